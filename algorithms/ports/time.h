@@ -1,0 +1,79 @@
+// The times a synchronisation algorithm may see, one type per time base.
+//
+// Every stamp in simbench belongs to exactly one time base. Each base has its own
+// std::chrono::time_point type, so stamps of different bases neither compare nor subtract: a host's
+// reading minus a camera's is a compile-time error, not a wrong number. The one named exception is
+// offset_between(a, b), for the places that mean exactly that.
+//
+//   HostTime    what a host's system clock reads: set, stepped and slewed by synchronisation
+//   SteadyTime  what a host's oscillator counts: never set, never stepped (deadlines, intervals)
+//   DeviceTime  what a camera's clock counts, unwrapped; its 32-bit register is DeviceStamp
+//   GlobalTime  the common time that device_time assigns to a frame: the master host's system time
+//
+// True time is not here: algorithms never see it (recording/true_time.h).
+//
+// Unit: integer nanoseconds, except DeviceTime, which is in integer microseconds like the register.
+//
+//   HostTime sent = ...;
+//   HostTime later = sent + from_ms(2.5);
+//   double gap_ms = to_ms(later - sent);
+#ifndef SIMBENCH_ALGORITHMS_PORTS_TIME_H_
+#define SIMBENCH_ALGORITHMS_PORTS_TIME_H_
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+namespace simbench {
+
+using Nanoseconds = std::chrono::duration<std::int64_t, std::nano>;
+using Microseconds = std::chrono::duration<std::int64_t, std::micro>;
+
+namespace time_base {
+struct HostSystem {
+  using duration = Nanoseconds;
+};
+struct HostSteady {
+  using duration = Nanoseconds;
+};
+struct Device {
+  using duration = Microseconds;
+};
+struct Global {
+  using duration = Nanoseconds;
+};
+}  // namespace time_base
+
+using HostTime = std::chrono::time_point<time_base::HostSystem>;
+using SteadyTime = std::chrono::time_point<time_base::HostSteady>;
+using DeviceTime = std::chrono::time_point<time_base::Device>;
+using GlobalTime = std::chrono::time_point<time_base::Global>;
+
+// A camera's 32-bit microsecond register as it is read: wraps every 2^32 us (71 min 35 s).
+struct DeviceStamp {
+  std::uint32_t us = 0;
+  friend bool operator==(DeviceStamp, DeviceStamp) = default;
+};
+
+// Milliseconds to the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
+inline Nanoseconds from_ms(double ms) { return Nanoseconds(std::llround(ms * 1e6)); }
+constexpr double to_ms(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
+constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
+
+// The stamp as a count of nanoseconds since the zero of its own base.
+template <class Base, class Duration>
+constexpr std::int64_t nanoseconds_of(std::chrono::time_point<Base, Duration> t) {
+  return std::chrono::duration_cast<Nanoseconds>(t.time_since_epoch()).count();
+}
+
+// Reading `a` minus reading `b`, taken at one instant on two different bases: the offset of a
+// against b. The only way to subtract across bases.
+template <class BaseA, class DurationA, class BaseB, class DurationB>
+constexpr Nanoseconds offset_between(std::chrono::time_point<BaseA, DurationA> a,
+                                     std::chrono::time_point<BaseB, DurationB> b) {
+  return Nanoseconds(nanoseconds_of(a) - nanoseconds_of(b));
+}
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_PORTS_TIME_H_
