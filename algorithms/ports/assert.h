@@ -20,11 +20,11 @@ namespace simbench {
 
 }  // namespace simbench
 
-#define SIMBENCH_ASSERT(condition, message)                                                 \
-  do {                                                                                      \
-    if (!(condition)) [[unlikely]] {                                                        \
-      ::simbench::assertion_failed(#condition, message, __FILE__, __LINE__);                \
-    }                                                                                       \
+#define SIMBENCH_ASSERT(condition, message)                                  \
+  do {                                                                       \
+    if (!(condition)) [[unlikely]] {                                         \
+      ::simbench::assertion_failed(#condition, message, __FILE__, __LINE__); \
+    }                                                                        \
   } while (false)
 
 #endif  // SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_

@@ -1,0 +1,45 @@
+// Stage 2, device_time: when, on the host clock, was this frame exposed?
+//
+// An estimator turns one camera's stream of (sensor stamp, arrival stamp) into global stamps. One
+// object per camera and stream; it sees the frames in order of delivery and knows no other camera,
+// no clock and no truth. It never waits and never allocates without bound.
+//
+// Degenerate input (one frame, equal stamps, decreasing stamps) gives a documented fallback, never
+// a NaN: see each estimator's header.
+//
+//   auto estimator = make_regression(RegressionWindow{30});
+//   for (const DeviceSample& sample : frames) global.push_back(estimator->stamp(sample));
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
+
+#include <cstdint>
+#include <span>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+struct DeviceSample {
+  DeviceTime sensor{};          // middle of the exposure, unwrapped
+  HostTime arrival{};           // delivery, on the host's system clock
+  SteadyTime arrival_steady{};  // the same instant on the host's steady clock
+  std::uint32_t exposure_us = 0;
+};
+
+class DeviceTimeEstimator {
+ public:
+  virtual ~DeviceTimeEstimator() = default;
+  // The global stamp of the newest frame.
+  virtual GlobalTime stamp(const DeviceSample& sample) = 0;
+  // True for an estimator that must see the whole recording before its first stamp (offline);
+  // it is then given to learn() once, in order, before stamp() is called for each frame again.
+  virtual bool offline() const { return false; }
+  virtual void learn(std::span<const DeviceSample> /*recording*/) {}
+  // True if stamps count from the camera's own first frame instead of a host's zero; whoever
+  // combines cameras adds one common anchor.
+  virtual bool relative() const { return false; }
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_

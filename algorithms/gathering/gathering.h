@@ -1,0 +1,52 @@
+// Stage 3, gathering: which frames belong together?
+//
+// A gatherer sees the frames of n sources (a source is one stream of one camera) in order of
+// arrival and emits sets of frames taken at the same instant, one frame per source. It never
+// reorders a source's frames and uses each at most once; frames it gives up are counted.
+//
+// Memory is bounded: at most `queue_limit` frames wait per source, an overflow drops the oldest.
+//
+//   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = ..., .interval = ...});
+//   gatherer->push({.source = 3, .stamp = t, .tag = frame_index}, sink);
+#ifndef SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
+#define SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
+
+#include <cstdint>
+#include <span>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+struct GatherFrame {
+  std::uint32_t source = 0;
+  GlobalTime stamp{};
+  DeviceTime sensor{};   // unwrapped, for gatherers that order by device time
+  std::int64_t tag = 0;  // the caller's name for the frame; carried, not interpreted
+};
+
+class FrameSetSink {
+ public:
+  virtual ~FrameSetSink() = default;
+  // One frame per source, in order of source. The span is valid during the call only.
+  virtual void on_set(std::span<const GatherFrame> set) = 0;
+};
+
+struct GatheringSetup {
+  std::uint32_t sources = 0;
+  Nanoseconds period{};    // nominal frame period
+  Nanoseconds interval{};  // T_int, largest range of a set
+  std::uint32_t queue_limit = 64;
+};
+
+class Gatherer {
+ public:
+  virtual ~Gatherer() = default;
+  virtual void push(const GatherFrame& frame, FrameSetSink& sink) = 0;
+  // Frames given up so far: they will be in no set.
+  virtual std::uint64_t discarded() const = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_

@@ -1,0 +1,44 @@
+// Stage 1, host_sync: what time is it on the other host?
+//
+// A HostSync is a protocol between one master and its slaves, written as coroutines over the ports.
+// It disciplines each slave's system clock so that it agrees with the master's. One object serves a
+// whole run; it holds parameters, not state, and its coroutines run concurrently.
+//
+// Two kinds:
+//  - one that ends (the paper's): the capture starts a pause after run_master has returned;
+//  - a service (NTP and its kin): it runs for warm_up() before the capture and goes on during it;
+//    its coroutines need not return.
+//
+// Failures are outcomes, not exceptions: report them with Host::report_outcome, once per slave,
+// with a message that says what would help.
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algorithms/ports/host.h"
+
+namespace simbench {
+
+// What the slaves' system clocks are when the run begins.
+enum class InitialClocks : std::uint8_t {
+  kUnsynchronised,  // some arbitrary offset
+  kLastSet,         // were right hours ago and have run free since
+  kMaster,          // are the master's own clock: the limit no protocol can pass
+};
+
+class HostSync {
+ public:
+  virtual ~HostSync() = default;
+  virtual InitialClocks initial_clocks() const { return InitialClocks::kUnsynchronised; }
+  // For a service: how long it runs before the capture. Nothing: it ends by itself.
+  virtual std::optional<Nanoseconds> warm_up() const { return std::nullopt; }
+  virtual Task<void> run_master(Host& host, std::vector<PeerId> slaves) = 0;
+  virtual Task<void> run_slave(Host& host, PeerId master) = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_

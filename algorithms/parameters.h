@@ -1,0 +1,67 @@
+// Parameters of an algorithm: what it declares, and the checked values it is made with.
+//
+// An algorithm states each parameter once - name, default, range, meaning, source. A scenario may
+// set it; check_parameters() refuses names that were not declared and values out of range, so a
+// factory can rely on what it gets.
+//
+//   const std::vector<ParameterSpec> specs = {
+//       {.name = "stamps", .fallback = 100.0, .low = 1, .high = 1e6, .meaning = "n_d", ...}};
+//   Parameters parameters = check_parameters(specs, {{"stamps", 10.0}});
+//   parameters.number("stamps");   // 10
+#ifndef SIMBENCH_ALGORITHMS_PARAMETERS_H_
+#define SIMBENCH_ALGORITHMS_PARAMETERS_H_
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace simbench {
+
+using ParameterValue = std::variant<bool, double, std::string>;
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+struct ParameterSpec {
+  std::string name;         // with its unit, e.g. "threshold_ms"
+  ParameterValue fallback;  // the value if a scenario sets none; also fixes the type
+  double low = 0;           // allowed range of a number
+  double high = 0;
+  std::vector<std::string> choices;  // allowed texts
+  std::string meaning;
+  std::string source;
+};
+
+// A value that a scenario may not give. `parameter` names it, for a JSON pointer.
+class ParameterError : public std::invalid_argument {
+ public:
+  ParameterError(std::string parameter, const std::string& what)
+      : std::invalid_argument(what), parameter_(std::move(parameter)) {}
+  const std::string& parameter() const { return parameter_; }
+
+ private:
+  std::string parameter_;
+};
+
+// Checked values; asking for a name that was not declared is a programming error.
+class Parameters {
+ public:
+  Parameters() = default;
+  double number(const std::string& name) const;
+  bool flag(const std::string& name) const;
+  const std::string& text(const std::string& name) const;
+  const ParameterValues& all() const { return values_; }
+
+ private:
+  friend Parameters check_parameters(const std::vector<ParameterSpec>&, const ParameterValues&);
+  const ParameterValue& at(const std::string& name) const;
+  ParameterValues values_;
+};
+
+// The declared parameters with `given` over their defaults. Throws ParameterError, whose message
+// says what was found and what is allowed.
+Parameters check_parameters(const std::vector<ParameterSpec>& specs, const ParameterValues& given);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_PARAMETERS_H_

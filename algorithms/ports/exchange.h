@@ -1,0 +1,39 @@
+// What a host synchronisation puts on record: its exchanges, and how each slave's session ended.
+//
+// Algorithms report each through Host::report_exchange, so that a recording holds them and other
+// estimators can be run on them afterwards. Stamps an algorithm does not have are absent.
+//
+// Convention (RFC 5905 section 8): t1 leaves the client, t2 reaches the server, t3 leaves the
+// server, t4 reaches the client; t1 and t4 on the client's clock, t2 and t3 on the server's.
+#ifndef SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_
+#define SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+using PeerId = std::uint32_t;  // a host of the rig, by index; 0 is the master
+
+struct Exchange {
+  PeerId peer = 0;
+  std::optional<HostTime> t1;
+  std::optional<HostTime> t2;
+  std::optional<HostTime> t3;
+  std::optional<HostTime> t4;
+};
+
+// How the synchronisation of one slave ended.
+struct SyncOutcome {
+  PeerId slave = 0;
+  bool synchronised = false;
+  std::uint32_t passes = 0;
+  std::string message;  // empty, or why it failed and what would help
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_PORTS_EXCHANGE_H_

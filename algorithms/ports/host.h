@@ -1,0 +1,107 @@
+// What a conversing algorithm may ask of the host it runs on: its clocks, its CPU, its network.
+//
+// Algorithms 1 and 2, NTP and the like are written once, as coroutines over these interfaces. The
+// simulator implements them on virtual time, the hardware backend with sockets and the operating
+// system's clocks; an algorithm cannot tell which, and there is no way to ask.
+//
+// Contract
+//  - Calls that take time on a real host are awaitable, and take time in the simulator too: that
+//    time is what the paper measures. A host has one CPU; the cost of calls and sends queues on it.
+//  - Deadlines and intervals are steady time. Only sleep_until(HostTime) follows the system clock,
+//    and is re-armed when that is set or slewed.
+//  - Objects returned by reference live as long as the Host; the Host outlives every coroutine.
+//  - Coroutines take parameters by value (or references that outlive the run), never capture in a
+//    lambda, never co_await inside catch, and await once per statement.
+//
+// Source: DESIGN section 4.
+//
+//   Task<void> greet(Host& host) {
+//     MessageChannel& channel = host.open_channel(0, Transport::kStream);
+//     co_await channel.send(Bytes{std::byte{1}});
+//     auto reply = co_await channel.receive(host.steady_clock().now() + from_ms(100));
+//     if (reply) co_await host.clock().set(reply->received + from_ms(2));
+//   }
+#ifndef SIMBENCH_ALGORITHMS_PORTS_HOST_H_
+#define SIMBENCH_ALGORITHMS_PORTS_HOST_H_
+
+#include <boost/asio/awaitable.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algorithms/ports/exchange.h"
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+template <class T>
+using Task = boost::asio::awaitable<T>;
+using Bytes = std::vector<std::byte>;
+
+// The host's system clock, through the operating system's calls.
+class HostClock {
+ public:
+  virtual ~HostClock() = default;
+  // The reading, in the granularity of the call.
+  virtual Task<HostTime> now() = 0;
+  // Steps the clock. The value counts from some instant during the call.
+  virtual Task<void> set(HostTime value) = 0;
+  // Rate correction against the oscillator, replacing the previous one.
+  virtual Task<void> adjust_frequency(double ppb) = 0;
+  // Adds `offset` gradually, at no more than `max_rate_ppb`, replacing an unfinished slew.
+  virtual Task<void> slew(Nanoseconds offset, double max_rate_ppb) = 0;
+};
+
+// The host's oscillator; monotonic, untouched by HostClock. Reading it costs nothing measurable.
+class SteadyClock {
+ public:
+  virtual ~SteadyClock() = default;
+  virtual SteadyTime now() const = 0;
+};
+
+enum class Transport : std::uint8_t {
+  kStream,    // in order, complete, with Nagle and delayed ACK where the host has them
+  kDatagram,  // may be lost, duplicated, reordered
+};
+
+using MessageId = std::uint64_t;
+
+struct ReceivedMessage {
+  Bytes bytes;
+  HostTime received{};  // receive stamp, from the point of the stack that stamps
+  SteadyTime received_steady{};
+};
+
+// A two-way channel to one peer. At most one receive may be pending on a channel.
+class MessageChannel {
+ public:
+  virtual ~MessageChannel() = default;
+  // Returns when the call returns, which may be before the message leaves.
+  virtual Task<MessageId> send(Bytes message) = 0;
+  // The next message, or nothing once the deadline has passed.
+  virtual Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) = 0;
+  // When message `id` left, if the host can tell; asking does not change any timing.
+  virtual Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) = 0;
+};
+
+class Host {
+ public:
+  virtual ~Host() = default;
+  virtual PeerId id() const = 0;
+  virtual HostClock& clock() = 0;
+  virtual const SteadyClock& steady_clock() const = 0;
+  // The channel to `peer`; both ends open it. Asking again returns the same channel.
+  virtual MessageChannel& open_channel(PeerId peer, Transport transport) = 0;
+  virtual Task<void> sleep_for(Nanoseconds interval) = 0;
+  virtual Task<void> sleep_until(HostTime at) = 0;
+  // A number in [0, 1) for algorithms that spread their polls; seeded where runs must repeat.
+  virtual double random_uniform() = 0;
+  // Puts an exchange, or how the synchronisation of a host ended, on record.
+  virtual void report_exchange(const Exchange& exchange) = 0;
+  virtual void report_outcome(const SyncOutcome& outcome) = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_PORTS_HOST_H_

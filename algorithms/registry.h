@@ -1,0 +1,68 @@
+// The algorithms a scenario can name: simbench's own, and those that a user registers.
+//
+// A registered algorithm is a name, a line about it, its parameters and a factory. Pipelines name
+// one algorithm per stage; `simbench list algorithms` prints them all. An algorithm of your own,
+// from your own repository, needs find_package(simbench), one registration and a call of
+// run_command_line (tools/command_line.h):
+//
+//   simbench::register_device_time({
+//       .info = {.name = "mine", .family = "mine", .summary = "...", .source = "...", ...},
+//       .make = [](const simbench::Parameters& p) { return std::make_unique<Mine>(p); }});
+//
+// Parameters are looked up in the scenario under /algorithms/<family>/<parameter>.
+// Registration is not thread-safe: do it before running anything. A name may be registered once
+// per stage; a second registration throws std::invalid_argument.
+#ifndef SIMBENCH_ALGORITHMS_REGISTRY_H_
+#define SIMBENCH_ALGORITHMS_REGISTRY_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/device_time/device_time.h"
+#include "algorithms/gathering/gathering.h"
+#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/parameters.h"
+
+namespace simbench {
+
+struct AlgorithmInfo {
+  std::string name;
+  std::string family;   // algorithms of one family share the scenario's parameters
+  std::string summary;  // one line
+  std::string source;
+  std::vector<ParameterSpec> parameters;
+};
+
+struct HostSyncEntry {
+  AlgorithmInfo info;
+  std::function<std::unique_ptr<HostSync>(const Parameters&)> make;
+};
+struct DeviceTimeEntry {
+  AlgorithmInfo info;
+  // Empty for "oracle": it needs the truth, which only evaluation has.
+  std::function<std::unique_ptr<DeviceTimeEstimator>(const Parameters&)> make;
+};
+struct GatheringEntry {
+  AlgorithmInfo info;
+  std::function<std::unique_ptr<Gatherer>(const Parameters&, const GatheringSetup&)> make;
+};
+
+void register_host_sync(HostSyncEntry entry);
+void register_device_time(DeviceTimeEntry entry);
+void register_gathering(GatheringEntry entry);
+
+// In order of registration, simbench's own first.
+const std::vector<HostSyncEntry>& host_sync_algorithms();
+const std::vector<DeviceTimeEntry>& device_time_algorithms();
+const std::vector<GatheringEntry>& gathering_algorithms();
+
+// By name; null if there is none.
+const HostSyncEntry* find_host_sync(const std::string& name);
+const DeviceTimeEntry* find_device_time(const std::string& name);
+const GatheringEntry* find_gathering(const std::string& name);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_REGISTRY_H_

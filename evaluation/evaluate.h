@@ -1,0 +1,47 @@
+// Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
+//
+// Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
+// threads; results do not depend on how many. A job that throws ends the evaluation after the
+// running jobs have finished; finished jobs are kept in the error (EvaluationFailed).
+//
+//   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
+//   nullptr);
+#ifndef SIMBENCH_EVALUATION_EVALUATE_H_
+#define SIMBENCH_EVALUATION_EVALUATE_H_
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evaluation/results.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::evaluation {
+
+struct EvaluationOptions {
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 32;
+  unsigned jobs = 0;                   // threads; 0: as many as there are cores
+  std::vector<std::string> pipelines;  // by name, in this order; empty: all of the scenario
+  bool keep_pulses = false;            // keep SeedScore::pulses (for frames.csv)
+};
+
+// Called from worker threads, one call at a time.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+// Makes the backend of one worker thread; called once per thread, from that thread.
+using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
+
+// Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
+// algorithm does not have or allow; EvaluationFailed if a job failed.
+Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
+                 const EvaluationOptions& options, const Progress& progress);
+
+// Checks that every pipeline of the scenario names known algorithms with allowed parameters.
+void check_pipelines(const scenarios::Scenario& scenario);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_EVALUATE_H_

@@ -1,0 +1,135 @@
+// What an evaluation found: a score per seed and pipeline, and the table made of them.
+//
+// Definitions: DESIGN section 8. Units in the names. A quantity that does not exist (0/0, no truth,
+// no evaluated frame) is NaN here and null in JSON; it is left out of medians and bands.
+#ifndef SIMBENCH_EVALUATION_RESULTS_H_
+#define SIMBENCH_EVALUATION_RESULTS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace simbench::evaluation {
+
+// One evaluated pulse, as frames.csv has it.
+struct PulseScore {
+  std::int64_t pulse = 0;
+  double spread_ms = 0;     // max - min of the global stamps: this pulse's term of AMD
+  double deviation_ms = 0;  // this pulse's term of RMDV
+};
+
+struct FrameCounts {
+  std::int64_t expected = 0;  // evaluated pulses x sources
+  std::int64_t delivered = 0;
+  std::int64_t dropped = 0;
+};
+
+struct SetCounts {
+  std::int64_t emitted = 0;          // complete sets with a member among the evaluated pulses
+  std::int64_t pure = 0;             // of those, all members from one pulse
+  std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
+  std::int64_t discarded_frames = 0;
+};
+
+// One pipeline, one seed.
+struct SeedScore {
+  std::uint64_t seed = 0;
+  double amd_ms = 0;
+  double rmdv_ms = 0;
+  double absolute_error_ms = 0;
+  double bias_ms = 0;
+  double host_error_ms = 0;
+  double exposure_spread_ms = 0;
+  // Beyond the table; the paper's claims rest on these.
+  double offline_amd_ms = 0;  // AMD of regression_offline over the same recording; NaN if not asked
+  double spread_in_host_ms = 0;        // mean over pulses and hosts of the range inside one host
+  double spread_between_hosts_ms = 0;  // mean over pulses of the range of the hosts' means
+  double trend_ms = 0;                 // change of the spread over the recording, by least squares
+  double share_below_half_period = 0;  // of evaluated pulses whose spread is under half a period
+  FrameCounts frames;
+  SetCounts sets;
+  std::vector<PulseScore> pulses;
+  std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
+  std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
+  RecordingCost cost;
+};
+
+// Values in seed order, with the median and the 5-95 % band of those that exist.
+struct Series {
+  std::vector<double> values;
+  double median = 0;
+  double p05 = 0;
+  double p95 = 0;
+};
+
+// A fraction of seeds with its 95 % binomial interval (Clopper-Pearson).
+struct Percentile {
+  double percent = 0;
+  double low = 0;
+  double high = 0;
+};
+
+struct PublishedComparison {
+  double amd_ms = 0;
+  double rmdv_ms = 0;
+  bool amd_inside = false;  // between the 5 % and the 95 % quantile of the seeds
+  bool rmdv_inside = false;
+  bool rmdv_attainable = false;  // rmdv_ms <= bound * amd_ms, the bound of eq. (4)
+  Percentile amd_percentile;
+  Percentile rmdv_percentile;
+};
+
+// One pipeline over all seeds.
+struct Row {
+  std::string pipeline;
+  std::string host_sync;
+  std::string device_time;
+  std::string gathering;
+  Series amd_ms;
+  Series rmdv_ms;
+  Series absolute_error_ms;
+  Series bias_ms;
+  Series host_error_ms;
+  Series exposure_spread_ms;
+  double precision = 0;  // over all seeds
+  double recall = 0;
+  double margin_ms = 0;
+  FrameCounts frames;
+  std::int64_t evaluated_pulses = 0;
+  std::int64_t unsynchronised_hosts = 0;  // over all seeds
+  std::optional<PublishedComparison> published;
+  std::vector<SeedScore> seeds;
+};
+
+struct Claim {
+  std::string id;                        // "C1" ... "C10", paper.md section 11
+  std::string text;                      // with the threshold that decides it
+  std::optional<double> holds_fraction;  // of seeds; nothing if it needs another scenario
+  std::string needs;                     // which, then
+};
+
+struct Performance {
+  std::uint64_t events = 0;
+  double simulated_seconds = 0;
+  double cpu_seconds = 0;  // of all workers
+  double wall_seconds = 0;
+  double events_per_second = 0;  // of wall time, all workers together
+  double simulated_seconds_per_second = 0;
+};
+
+struct Results {
+  std::string scenario;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seed_count = 0;
+  std::vector<Row> rows;
+  std::vector<Claim> claims;
+  std::vector<std::string> warnings;
+  Performance performance;
+};
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_RESULTS_H_

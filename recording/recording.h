@@ -1,0 +1,123 @@
+// A recording: everything a capture leaves behind, as plain data, and the seam it comes through.
+//
+// This is the waist of simbench. Every backend (the simulator, a real rig, a replayed file) hands
+// over its capture through a RecordingSink, in order of delivery, and nothing after it can tell
+// which backend it was. Only the simulator also hands over truth; a real rig passes no FrameTruth
+// and no PulseTruth.
+//
+// Streaming is deliberate: a capture of 18,000 cameras is scored without being held in memory.
+// `Recording` is the sink that keeps it all, and can play itself back into another sink.
+//
+// Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
+// Source: DESIGN section 2; the four stamps: reference/d455.md section 1.
+//
+//   Recording kept;
+//   source.record(request, kept);       // any RecordingSource
+//   kept.play(scorer);                  // any other RecordingSink
+#ifndef SIMBENCH_RECORDING_RECORDING_H_
+#define SIMBENCH_RECORDING_RECORDING_H_
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "algorithms/ports/exchange.h"
+#include "algorithms/ports/time.h"
+#include "recording/true_time.h"
+
+namespace simbench {
+
+enum class StreamKind : std::uint8_t { kDepth, kColour };
+enum class StampDomain : std::uint8_t { kHardwareClock, kSystemTime, kGlobalTime };
+
+// One frame as its host received it.
+struct FrameRecord {
+  std::uint32_t camera = 0;
+  StreamKind stream = StreamKind::kDepth;
+  StampDomain domain = StampDomain::kHardwareClock;
+  std::uint32_t counter = 0;  // the camera's frame counter; a gap is a lost frame
+  std::uint32_t exposure_us = 0;
+  DeviceStamp sensor;           // middle of the exposure, device clock
+  DeviceStamp frame;            // start of readout and transmission, device clock
+  HostTime backend{};           // copied to the kernel, host's system clock
+  HostTime arrival{};           // delivered, host's system clock, in steps of the arrival quantum
+  SteadyTime arrival_steady{};  // the same instant on the host's steady clock
+};
+
+// What really happened to a frame; simulated captures only.
+struct FrameTruth {
+  std::int64_t pulse = -1;  // index of the trigger pulse that exposed it; -1: free-running
+  TrueTime exposure_start{};
+  TrueTime exposure_end{};
+  HostTime reference{};  // master's clock at mid-exposure: what the global stamp should be
+  HostTime own_host{};   // the camera's own host's clock at mid-exposure
+
+  TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
+};
+
+// What was true at a trigger pulse; simulated captures only.
+struct PulseTruth {
+  std::int64_t pulse = 0;
+  TrueTime at{};
+  std::span<const Nanoseconds> host_errors;  // system clock minus the master's, per host; [0] is 0
+};
+
+// A change of a host's system clock: it read `before`, and from that instant on reads `after`.
+struct ClockAdjustment {
+  std::uint32_t host = 0;
+  SteadyTime at{};
+  HostTime before{};
+  HostTime after{};
+  double rate_ppb = 0;  // of the system clock against the steady clock, from now on
+};
+
+struct CameraLayout {
+  std::uint32_t host = 0;
+};
+
+// What was captured, known before the first frame.
+struct RigLayout {
+  std::uint32_t hosts = 0;
+  std::vector<CameraLayout> cameras;
+  double frame_rate_hz = 0;      // of the frames that should arrive
+  std::int64_t first_pulse = 0;  // evaluated pulses: [first_pulse, first_pulse + pulses)
+  std::int64_t pulses = 0;
+};
+
+class RecordingSink {
+ public:
+  virtual ~RecordingSink() = default;
+  virtual void on_start(const RigLayout& layout) = 0;
+  // Frames in order of delivery; `truth` is null on a real rig. Includes the warm-up.
+  virtual void on_frame(const FrameRecord& frame, const FrameTruth* truth) = 0;
+  virtual void on_pulse(const PulseTruth& truth) = 0;
+  virtual void on_adjustment(const ClockAdjustment& adjustment) = 0;
+  virtual void on_exchange(std::uint32_t host, const Exchange& exchange) = 0;
+  virtual void on_outcome(const SyncOutcome& outcome) = 0;
+};
+
+// What a capture is asked for: the pipeline decides which host_sync runs and which load is drawn.
+struct RecordingRequest {
+  std::uint64_t seed = 1;
+  std::string pipeline;  // by name, one of the scenario's
+};
+
+// What making the recording cost; for the performance line.
+struct RecordingCost {
+  std::uint64_t events = 0;
+  double simulated_seconds = 0;  // 0 on a real rig
+  std::uint64_t trace_hash = 0;  // of the simulated events; 0 on a real rig
+};
+
+// A backend. Errors: throws what its own header documents; the sink may have seen part of it.
+class RecordingSource {
+ public:
+  virtual ~RecordingSource() = default;
+  virtual RecordingCost record(const RecordingRequest& request, RecordingSink& sink) = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_RECORDING_H_

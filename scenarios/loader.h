@@ -1,0 +1,82 @@
+// Loading a scenario: file or built-in name, inheritance, overrides, validation.
+//
+// A scenario is JSON. "base" names another scenario (built in, or a path relative to the file)
+// whose members it inherits by RFC 7386 merge; --set overrides apply last. The result is validated
+// against scenarios/schema.json and then checked for what a schema cannot say. The first thing that
+// is wrong is thrown as an InputError; nothing is guessed.
+//
+// The scenarios of the distribution are built into the program, so they need no installed files.
+//
+//   Scenario s = load_scenario("18cam_6host_45fps", {{"/timeline/frames", "100"}});
+#ifndef SIMBENCH_SCENARIOS_LOADER_H_
+#define SIMBENCH_SCENARIOS_LOADER_H_
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scenarios/scenario.h"
+
+namespace simbench::scenarios {
+
+// Bad input, for the user: where, what was found, what is allowed. what() is the whole message:
+// "FILE:LINE: /json/pointer: found ..., allowed ...".
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// One --set /json/pointer=value. The value is JSON; what does not parse as JSON is taken as text.
+struct Override {
+  std::string pointer;
+  std::string value;
+};
+
+// Where each JSON pointer of a resolved scenario came from: a file and line, or a --set.
+class Origin {
+ public:
+  virtual ~Origin() = default;
+  // "FILE:LINE: /pointer" (or "--set /pointer") of the nearest known place.
+  virtual std::string describe(const std::string& pointer) const = 0;
+};
+
+// `name_or_path`: a built-in scenario's name, or a path to a .json file. Throws InputError.
+Scenario load_scenario(const std::string& name_or_path,
+                       const std::vector<Override>& overrides = {});
+
+// The same from text, as if it were the content of `file_name`; the fuzz target's way in.
+Scenario load_scenario_text(const std::string& text, const std::string& file_name,
+                            const std::vector<Override>& overrides = {});
+
+struct BuiltinScenario {
+  std::string name;
+  std::string summary;
+};
+// In alphabetical order.
+std::vector<BuiltinScenario> builtin_scenarios();
+
+// Settings that are possible but suspicious: more bytes than USB carries (with the drop rate to
+// expect), an exposure that makes the camera miss pulses, ...: one line each.
+std::vector<std::string> warnings(const Scenario& scenario);
+
+// One line per parameter of the resolved scenario.
+struct ParameterLine {
+  std::string pointer;
+  std::string value;
+  std::string unit;
+  std::string meaning;
+  std::string source;
+};
+std::vector<ParameterLine> describe(const Scenario& scenario);
+
+// InputError about a place in a loaded scenario; for checks made by those who use it.
+[[noreturn]] void fail_at(const Scenario& scenario, const std::string& pointer,
+                          const std::string& problem);
+
+// The nearest names, for "did you mean": at most three, by edit distance.
+std::vector<std::string> nearest(const std::string& name, const std::vector<std::string>& known);
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_LOADER_H_
