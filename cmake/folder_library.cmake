@@ -1,7 +1,8 @@
 # simbench_folder_library(NAME [LINK target...])
 #
 # Makes the static library simbench_NAME from every .cc file below the calling folder, links it
-# publicly to the given targets, and lets includes be written from the root of the project.
+# publicly to the given targets, lets includes be written from the root of the project, and installs
+# it with its headers.
 function(simbench_folder_library name)
   cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
@@ -13,4 +14,7 @@ function(simbench_folder_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/simbench>)
   target_link_libraries(simbench_${name} PUBLIC simbench_flags ${arg_LINK})
+  install(TARGETS simbench_${name} EXPORT simbench)
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
+          FILES_MATCHING PATTERN "*.h")
 endfunction()

@@ -1,1 +1,22 @@
-# Install and export targets.
+# Install and export: the command, the libraries with their headers, the scenarios, and the CMake
+# package `simbench` (see cmake/simbench-config.cmake.in for how a user's project asks for it).
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/simbench)
+
+install(TARGETS simbench RUNTIME)
+install(TARGETS simbench_flags simbench_boost EXPORT simbench)
+install(EXPORT simbench NAMESPACE simbench:: FILE simbench-targets.cmake DESTINATION ${package_dir})
+install(DIRECTORY scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/simbench/scenarios
+        FILES_MATCHING PATTERN "*.json")
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+
+configure_package_config_file(cmake/simbench-config.cmake.in
+  ${PROJECT_BINARY_DIR}/generated/simbench-config.cmake INSTALL_DESTINATION ${package_dir}
+  NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/simbench-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/generated/simbench-config.cmake
+  ${PROJECT_BINARY_DIR}/generated/simbench-config-version.cmake
+  cmake/find_boost_headers.cmake
+  DESTINATION ${package_dir})

@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# tools/setup on machines that are made up: in a folder of its own, with stand-ins for apt-get and
+# dpkg-deb that write down what they are asked for, so nothing on this machine changes.
+set -euo pipefail
+source_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() { printf '%s: %s\n' "$case" "$*" >&2; sed 's/^/  | /' "$work/said" "$work/asked" >&2; exit 1; }
+
+# machine NAME: a fresh one, which has compilers but no libraries.
+machine() {
+  case=$1
+  rm -rf "${work:?}"/*
+  mkdir -p "$work"/{bin,usr/include,project/tools,build}
+  cp "$source_root/tools/setup" "$work/project/tools/setup"
+  : > "$work/asked"
+  : > "$work/removes"
+  cat > "$work/provide" <<'PROVIDE'
+prove() { mkdir -p "$(dirname "$1")" && : > "$1"; }
+# provide FOLDER PACKAGE: makes the files that prove the package.
+provide() {
+  case $2 in
+    libeigen3-dev) prove "$1/include/eigen3/Eigen/Dense" ;;
+    nlohmann-json3-dev) prove "$1/include/nlohmann/json.hpp" ;;
+    libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
+    libfmt-dev) prove "$1/include/fmt/core.h" ;;
+    libvalijson-dev) prove "$1/include/valijson/validator.hpp" ;;
+    libboost1.81-dev)
+      prove "$1/include/boost/asio/awaitable.hpp"
+      echo '#define BOOST_VERSION 108100' > "$1/include/boost/version.hpp" ;;
+  esac
+}
+PROVIDE
+  # Simulated, it says what would be removed: what the test wrote in `removes`.
+  cat > "$work/bin/apt-get" <<'APT'
+#!/usr/bin/env bash
+work=$(dirname "$0")/..
+source "$work/provide"
+if [[ " $* " == *' -s '* ]]; then
+  sed -n "s/^${*: -1} \(.*\)/Remv \1 [1]/p" "$work/removes"
+  exit 0
+fi
+echo "$*" >> "$work/asked"
+case " $* " in
+  *' download '*) for package in "${@:3}"; do : > "$package.deb"; done ;;
+  *' install '*) for package in "$@"; do provide "$work/usr" "$package"; done ;;
+esac
+APT
+  cat > "$work/bin/dpkg-deb" <<'DPKG'
+#!/usr/bin/env bash
+source "$(dirname "$0")/../provide"
+provide "$3/usr" "$(basename "$2" .deb)"
+DPKG
+  printf '#!/bin/sh\nexec "$@"\n' > "$work/bin/sudo"
+  chmod +x "$work"/bin/*
+}
+
+setup() {
+  status=0
+  PATH=$work/bin:$PATH SIMBENCH_SYSTEM_USR=$work/usr "$work/project/tools/setup" "$@" \
+    > /dev/null 2> "$work/said" || status=$?
+}
+expect_status() { (( status == $1 )) || fail "exit status $status, expected $1"; }
+expect_asked() { grep -qE -- "$1" "$work/asked" || fail "apt-get was not asked: $1"; }
+expect_not_asked() { ! grep -qE -- "$1" "$work/asked" || fail "apt-get was asked: $1"; }
+deps() { printf '%s' "$work/project/build/deps/usr/include/$1"; }
+
+machine "a bare machine"
+setup
+expect_status 0
+expect_asked 'install .*libeigen3-dev .*libfmt-dev'
+expect_asked '--no-remove'
+expect_not_asked 'install .*(boost|valijson)'
+[[ -e $(deps valijson/validator.hpp) ]] || fail "valijson was not unpacked"
+: > "$work/asked"
+setup
+expect_status 0
+[[ ! -s $work/asked && ! -s $work/said ]] || fail "the second call was not silent"
+
+machine "an old Boost of the user's"
+mkdir -p "$work/usr/include/boost/asio"
+: > "$work/usr/include/boost/asio/awaitable.hpp"
+echo '#define BOOST_VERSION 107400' > "$work/usr/include/boost/version.hpp"
+setup
+expect_status 0
+[[ -e $(deps boost/version.hpp) ]] || fail "Boost 1.81 was not unpacked"
+grep -q 107400 "$work/usr/include/boost/version.hpp" || fail "the user's Boost was touched"
+
+machine "a new Boost of the user's"
+mkdir -p "$work/usr/include/boost/asio"
+: > "$work/usr/include/boost/asio/awaitable.hpp"
+echo '#define BOOST_VERSION 108100' > "$work/usr/include/boost/version.hpp"
+setup
+expect_status 0
+expect_not_asked 'boost'
+
+machine "a library whose package would remove another"
+echo "libfmt-dev libspdlog-dev" > "$work/removes"
+setup
+expect_status 0
+expect_not_asked 'install .*libfmt-dev'
+[[ -e $(deps fmt/core.h) ]] || fail "fmt was not unpacked"
+
+machine "a program whose package would remove another"
+echo "libgtest-dev googletest" > "$work/removes"
+setup check
+expect_status 2
+expect_not_asked 'install'
+grep -q 'libgtest-dev would remove googletest' "$work/said" || fail "the message does not say what"
+
+machine "an unpacking that was interrupted"
+mkdir -p "$(deps valijson)"
+: > "$(deps valijson/validator.hpp)"
+setup
+expect_status 0
+expect_asked 'download libvalijson-dev'
+
+machine "a level that does not exist"
+setup everything
+expect_status 2
+
+echo "setup_test: 7 machines passed"
