@@ -1,0 +1,15 @@
+#include "sim/engine/callback_slab.h"
+
+namespace simbench::sim {
+
+void CallbackSlab::clear() {
+  while (live_ > 0) {
+    for (std::uint32_t index = 0; index < slots_.size(); ++index) {
+      if (!holds(index)) continue;
+      destroy(index);
+      release(index);
+    }
+  }
+}
+
+}  // namespace simbench::sim

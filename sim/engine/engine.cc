@@ -1,0 +1,131 @@
+#include "sim/engine/engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace simbench::sim {
+namespace {
+
+// Below this many cancelled callbacks the queue is not worth sweeping.
+constexpr std::size_t kFewCancelled = 64;
+
+// Odd constants with about half of their bits set (golden ratio; first constant of splitmix64).
+constexpr std::uint64_t kHashPayload = 0x9E3779B97F4A7C15;
+constexpr std::uint64_t kHashChain = 0xBF58476D1CE4E5B9;
+
+// Handler, kind and subject as one number. Callbacks have only their handler, the mark: the slot
+// of a callback says nothing about the world.
+std::uint64_t payload_of(HandlerId handler, std::uint16_t kind, std::uint32_t subject) {
+  return (static_cast<std::uint64_t>(handler) << 48) | (static_cast<std::uint64_t>(kind) << 32) |
+         subject;
+}
+
+// One multiplication on the chain from event to event, so that the hash keeps pace with the queue.
+std::uint64_t extend_hash(std::uint64_t hash, TrueTime time, std::uint64_t payload) {
+  const auto time_ns = static_cast<std::uint64_t>(time.time_since_epoch().count());
+  hash = (hash ^ (time_ns + payload * kHashPayload)) * kHashChain;
+  return hash ^ (hash >> 32);
+}
+
+double seconds_of(TrueTime time) { return to_seconds(time.time_since_epoch()); }
+
+}  // namespace
+
+Engine::Engine(EngineLimits limits, TrueTime start) : limits_(limits), now_(start) {}
+
+HandlerId Engine::attach(EventHandler& handler) {
+  SIMBENCH_ASSERT(handlers_.size() < kCallbackHandler, "too many event handlers");
+  handlers_.push_back(&handler);
+  return static_cast<HandlerId>(handlers_.size() - 1);
+}
+
+bool Engine::cancel(TimerId id) {
+  if (!callbacks_.exists(id.slot_) || callbacks_.generation(id.slot_) != id.generation_ ||
+      !callbacks_.holds(id.slot_)) {
+    return false;
+  }
+  ++cancelled_;
+  callbacks_.destroy(id.slot_);
+  if (cancelled_ > kFewCancelled && cancelled_ > queue_.size() / 2) {
+    queue_.erase_if([this](const Event& event) { return release_if_cancelled(event); });
+  }
+  return true;
+}
+
+bool Engine::release_if_cancelled(const Event& event) {
+  if (event.handler != kCallbackHandler || callbacks_.holds(event.subject)) return false;
+  --cancelled_;
+  callbacks_.release(event.subject);
+  return true;
+}
+
+void Engine::run() {
+  execute_through(limits_.max_time);
+  if (!stopped_ && pending() > 0) throw_limit_reached();
+}
+
+void Engine::run_until(TrueTime end) {
+  SIMBENCH_ASSERT(end >= now_, "virtual time cannot run backwards");
+  const TrueTime last = end - Nanoseconds(1);
+  execute_through(std::min(last, limits_.max_time));
+  if (stopped_) return;
+  if (has_event_through(last)) throw_limit_reached();
+  now_ = end;
+}
+
+void Engine::execute_through(TrueTime last) {
+  SIMBENCH_ASSERT(!running_, "an event must not run the engine that executes it");
+  struct Running {
+    bool& flag;
+    explicit Running(bool& running) : flag(running) { flag = true; }
+    ~Running() { flag = false; }
+  } const running(running_);
+  stopped_ = false;
+  Event event;
+  while (events_ < limits_.max_events && queue_.pop_through(last, event)) {
+    if (release_if_cancelled(event)) continue;
+    execute(event);
+    if (stopped_) return;
+  }
+}
+
+void Engine::execute(const Event& event) {
+  now_ = event.time;
+  ++events_;
+  if (event.handler != kCallbackHandler) {
+    trace_hash_ =
+        extend_hash(trace_hash_, event.time, payload_of(event.handler, event.kind, event.subject));
+    handlers_[event.handler]->handle(event);
+  } else {
+    trace_hash_ = extend_hash(trace_hash_, event.time, payload_of(kCallbackHandler, 0, 0));
+    callbacks_.run(event.subject);
+  }
+}
+
+bool Engine::has_event_through(TrueTime last) {
+  const Event* first = queue_.first();
+  while (first != nullptr && first->time <= last && release_if_cancelled(*first)) {
+    Event cancelled;
+    queue_.pop_through(last, cancelled);
+    first = queue_.first();
+  }
+  return first != nullptr && first->time <= last;
+}
+
+void Engine::throw_limit_reached() const {
+  const std::string limit =
+      events_ >= limits_.max_events
+          ? fmt::format("limit of {} events reached", limits_.max_events)
+          : fmt::format("limit of virtual time, {} s, reached", seconds_of(limits_.max_time));
+  std::string message = fmt::format("{} at {} s after {} events, {} pending", limit,
+                                    seconds_of(now_), events_, pending());
+  if (wait_reporter_) {
+    const std::vector<std::string> waits = wait_reporter_();
+    message += fmt::format("; {} coroutines wait", waits.size());
+    for (const std::string& wait : waits) message += "\n  " + wait;
+  }
+  throw EngineLimitReached(message);
+}
+
+}  // namespace simbench::sim
