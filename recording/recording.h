@@ -29,6 +29,8 @@
 
 namespace simbench {
 
+class HostSync;
+
 enum class StreamKind : std::uint8_t { kDepth, kColour };
 enum class StampDomain : std::uint8_t { kHardwareClock, kSystemTime, kGlobalTime };
 
@@ -101,7 +103,8 @@ class RecordingSink {
 // What a capture is asked for: the pipeline decides which host_sync runs and which load is drawn.
 struct RecordingRequest {
   std::uint64_t seed = 1;
-  std::string pipeline;  // by name, one of the scenario's
+  std::string pipeline;           // by name, one of the scenario's
+  HostSync* host_sync = nullptr;  // the algorithm to run; outlives the call; null: none runs
 };
 
 // What making the recording cost; for the performance line.

@@ -1,0 +1,47 @@
+// A camera's clock: an oscillator counted in microseconds by a 32-bit register.
+//
+// The register starts anywhere and wraps every 2^32 us (71 min 35 s). A stamp is the reading with
+// the device's own timing noise, rounded down to a whole microsecond.
+//
+// Source: reference/d455.md section 1; reference/calibration.md section 2 ("Cameras").
+#ifndef SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
+#define SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
+
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/clock/oscillator.h"
+
+namespace simbench::sim {
+
+class DeviceClock {
+ public:
+  // The register reads `epoch_ms` at true time `zero`.
+  DeviceClock(OscillatorModel oscillator, double epoch_ms, TrueTime zero)
+      : oscillator_(std::move(oscillator)), epoch_ns_(std::llround(epoch_ms * 1e6)), zero_(zero) {}
+
+  // The register at `t`, with `noise_ns` of timing noise.
+  DeviceStamp stamp(TrueTime t, double noise_ns) {
+    const double wander_ns = oscillator_.deviation_ns(t) + noise_ns;
+    const std::int64_t ns =
+        epoch_ns_ + (t - zero_).count() + static_cast<std::int64_t>(std::floor(wander_ns));
+    const std::int64_t us = ns >= 0 ? ns / 1000 : (ns - 999) / 1000;
+    return DeviceStamp{static_cast<std::uint32_t>(us)};
+  }
+
+  // How many nanoseconds of true time one device nanosecond lasts, by the constant skew alone: what
+  // the camera's own frame period is stretched by.
+  double true_per_device() const { return 1.0 / (1.0 + oscillator_.skew()); }
+
+ private:
+  OscillatorModel oscillator_;
+  std::int64_t epoch_ns_;
+  TrueTime zero_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_

@@ -1,0 +1,57 @@
+#include "sim/camera/shutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace simbench::sim {
+
+Shutter::Shutter(const ShutterSettings& settings, TrueTime start)
+    : settings_(settings), start_(start), last_pulse_(start), ignore_until_(start) {
+  if (settings.mode == ShutterMode::kFreeRunning) next_timer_ = start;
+  if (settings.mode == ShutterMode::kSlave) {
+    next_timer_ = start + periods(settings.free_run_after_periods);
+  }
+  free_run_origin_ = next_timer_;
+}
+
+Nanoseconds Shutter::periods(double count) const {
+  return Nanoseconds(std::llround(count * settings_.mode_period_ns));
+}
+
+Exposure Shutter::end_aligned(TrueTime period_start, std::int64_t pulse) const {
+  const TrueTime end = period_start + settings_.trigger_to_exposure + periods(1.0);
+  return {pulse, end - settings_.exposure, end};
+}
+
+std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
+  if (settings_.mode == ShutterMode::kFreeRunning || at < ignore_until_) return std::nullopt;
+  last_pulse_ = at;
+  const double unguarded = 1.0 - settings_.guard_fraction;
+  if (settings_.mode == ShutterMode::kSlave) {
+    ignore_until_ = at + periods(unguarded);
+    return end_aligned(at, pulse);
+  }
+  const TrueTime start = at + settings_.trigger_to_exposure;
+  const TrueTime end = start + settings_.exposure;
+  ignore_until_ = std::max(at + periods(2.0 * unguarded), end);
+  return Exposure{pulse, start, end};
+}
+
+std::optional<Exposure> Shutter::on_timer(TrueTime now) {
+  if (settings_.mode == ShutterMode::kSlave) {
+    const TrueTime runs_free_from = last_pulse_ + periods(settings_.free_run_after_periods);
+    if (now < runs_free_from) {
+      next_timer_ = runs_free_from;
+      free_run_origin_ = runs_free_from;
+      free_run_frames_ = 0;
+      return std::nullopt;
+    }
+    ignore_until_ = now + periods(1.0 - settings_.guard_fraction);
+  }
+  // Counted from the origin, so that rounding to nanoseconds does not add up to a rate error.
+  ++free_run_frames_;
+  next_timer_ = free_run_origin_ + periods(static_cast<double>(free_run_frames_));
+  return end_aligned(now, kNoPulse);
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,77 @@
+// When a camera exposes: one image stream's answer to trigger pulses and to their absence.
+//
+// Behaviour by sync mode (reference/d455.md section 2, DESIGN section 7):
+//  - genlock (depth only): waits without limit; a pulse starts an exposure. Pulses are then ignored
+//    for two mode periods less a guard (the camera's own periods, an assumption about the guard),
+//    and while the exposure lasts. So a trigger at the full mode rate yields every second pulse,
+//    and a slow camera without a guard yields every second pulse of a half-rate trigger too.
+//  - slave (depth; colour too in full slave): the exposure *ends* one mode period after the pulse,
+//    so a longer exposure starts earlier and arrives no later. Pulses closer together than a mode
+//    period less the guard are ignored. Without pulses the stream runs free after a while, at its
+//    own mode rate; the next pulse takes over again.
+//  - free-running (default and master mode, and streams the mode does not synchronise): exposures
+//    end at a fixed phase of the camera's own mode period.
+//
+// A frame of a free-running exposure belongs to no pulse (kNoPulse).
+//
+//   Shutter shutter(settings, camera_start);
+//   if (auto exposure = shutter.on_pulse(at, slot)) expose(*exposure);
+//   // and, unless next_timer() is never: call on_timer(t) at t = next_timer(), again and again.
+#ifndef SIMBENCH_SIM_CAMERA_SHUTTER_H_
+#define SIMBENCH_SIM_CAMERA_SHUTTER_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "recording/true_time.h"
+
+namespace simbench::sim {
+
+inline constexpr std::int64_t kNoPulse = -1;
+
+enum class ShutterMode : std::uint8_t { kFreeRunning, kSlave, kGenlock };
+
+struct ShutterSettings {
+  ShutterMode mode = ShutterMode::kFreeRunning;
+  double mode_period_ns = 0;  // of true time: the camera's oscillator makes its periods
+  Nanoseconds exposure{};
+  Nanoseconds trigger_to_exposure{};
+  double guard_fraction = 0;
+  double free_run_after_periods = 0;
+};
+
+struct Exposure {
+  std::int64_t pulse = kNoPulse;
+  TrueTime start{};
+  TrueTime end{};
+};
+
+class Shutter {
+ public:
+  // The stream is started at `start`, and knows nothing of pulses before that.
+  Shutter(const ShutterSettings& settings, TrueTime start);
+
+  // A pulse reaches the camera at `at`: the exposure it causes, if any.
+  std::optional<Exposure> on_pulse(TrueTime at, std::int64_t pulse);
+
+  // When on_timer wants to be called next; TrueTime::max() means never.
+  TrueTime next_timer() const { return next_timer_; }
+  // Time has come to next_timer(): the free-running exposure that begins, if any.
+  std::optional<Exposure> on_timer(TrueTime now);
+
+ private:
+  Nanoseconds periods(double count) const;
+  Exposure end_aligned(TrueTime period_start, std::int64_t pulse) const;
+
+  ShutterSettings settings_;
+  TrueTime start_;
+  TrueTime last_pulse_;
+  TrueTime ignore_until_;
+  TrueTime next_timer_ = TrueTime::max();
+  TrueTime free_run_origin_{};
+  std::int64_t free_run_frames_ = 0;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_CAMERA_SHUTTER_H_

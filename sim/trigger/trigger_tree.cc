@@ -1,0 +1,63 @@
+#include "sim/trigger/trigger_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/engine/random.h"
+
+namespace simbench::sim {
+namespace {
+
+Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
+
+}  // namespace
+
+TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras,
+                         std::uint64_t seed)
+    : settings_(settings),
+      seed_(seed),
+      period_ns_(1e9 / (settings.rate_hz * (1.0 + settings.rate_error_ppm * 1e-6))) {
+  delays_.reserve(cameras);
+  for (std::size_t camera = 0; camera < cameras; ++camera) {
+    const std::size_t branch = camera / static_cast<std::size_t>(settings.cameras_per_sub_trigger);
+    RandomStream branch_stream(seed, "trigger/branch", branch);
+    RandomStream cable_stream(seed, "trigger/cable", camera);
+    delays_.push_back(from_us(branch_stream.uniform(0, settings.branch_delay_max_us) +
+                              cable_stream.uniform(0, settings.cable_delay_max_us)));
+  }
+}
+
+void TriggerTree::start(TrueTime capture_start) {
+  capture_start_ = capture_start;
+  first_due_ = capture_start + from_ms(settings_.start_delay_ms);
+}
+
+TrueTime TriggerTree::due(std::int64_t slot) const {
+  return first_due_ + Nanoseconds(std::llround(static_cast<double>(slot) * period_ns_));
+}
+
+std::optional<TrueTime> TriggerTree::pulse(std::int64_t slot) const {
+  const TrueTime at = due(slot);
+  const double since_start_ms = to_ms(at - capture_start_);
+  for (const scenarios::TriggerPause& pause : settings_.pauses) {
+    if (since_start_ms >= pause.at_ms && since_start_ms < pause.at_ms + pause.duration_ms) {
+      return std::nullopt;
+    }
+  }
+  RandomStream stream(seed_, "trigger/pulse", static_cast<std::uint64_t>(slot));
+  if (stream.chance(settings_.missed_pulse_probability)) return std::nullopt;
+  return at + from_us(stream.normal(settings_.pulse_jitter_sigma_us));
+}
+
+Nanoseconds TriggerTree::longest_delay() const {
+  return delays_.empty() ? Nanoseconds(0) : *std::max_element(delays_.begin(), delays_.end());
+}
+
+std::int64_t TriggerTree::first_slot_from(TrueTime at) const {
+  const double periods = static_cast<double>((at - first_due_).count()) / period_ns_;
+  std::int64_t slot = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(periods)));
+  while (due(slot) < at) ++slot;
+  return slot;
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,59 @@
+// The trigger tree: one main trigger, sub-triggers in bypass mode, a cable to every camera.
+//
+// The main trigger (TG-16C) makes a pulse per period of its own oscillator; a sub-trigger (TG-4C)
+// passes it on to its cameras. A pulse is named by its slot: slot i is due i periods after the
+// first. Missed and paused pulses leave their slot empty, so that a slot number means the same to
+// every camera and to the ground truth.
+//
+// All randomness is drawn per slot or per branch from streams of its own, so pulses are the same
+// for every pipeline of a seed.
+//
+// Source: paper section 4.1, reference/d455.md section 2. Unit: true time, nanoseconds.
+//
+//   TriggerTree tree(scenario.trigger, 18, seed);
+//   tree.start(capture_start);
+//   if (auto pulse = tree.pulse(0)) camera_sees_it_at = *pulse + tree.delay_to(7);
+#ifndef SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
+#define SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::sim {
+
+class TriggerTree {
+ public:
+  TriggerTree(const scenarios::Trigger& settings, std::size_t cameras, std::uint64_t seed);
+
+  // The cameras start at `capture_start`; slot 0 is due start_delay_ms later.
+  void start(TrueTime capture_start);
+
+  // When slot `slot` is due, without jitter. Slots are equally spaced to the nanosecond over hours.
+  TrueTime due(std::int64_t slot) const;
+  // When the main trigger's pulse for `slot` leaves; nothing if it is missed or paused.
+  std::optional<TrueTime> pulse(std::int64_t slot) const;
+  // Propagation from the main trigger to camera `camera`, through its branch and cable.
+  Nanoseconds delay_to(std::size_t camera) const { return delays_[camera]; }
+  // The largest of those.
+  Nanoseconds longest_delay() const;
+  // Mean time between pulses, with the trigger's own rate error.
+  double period_ns() const { return period_ns_; }
+  // The first slot due at or after `at`.
+  std::int64_t first_slot_from(TrueTime at) const;
+
+ private:
+  scenarios::Trigger settings_;
+  std::uint64_t seed_;
+  double period_ns_;
+  TrueTime capture_start_{};
+  TrueTime first_due_{};
+  std::vector<Nanoseconds> delays_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_

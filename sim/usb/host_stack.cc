@@ -1,0 +1,40 @@
+#include "sim/usb/host_stack.h"
+
+#include <algorithm>
+
+namespace simbench::sim {
+
+HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
+                       TrueTime capture_start, double period_ns)
+    : mean_(settings.host_jitter_transfers),
+      correlation_(settings.host_jitter_correlation),
+      period_ns_(period_ns),
+      start_(capture_start),
+      stream_(seed, "usb/host_jitter", host) {}
+
+double HostJitter::at(TrueTime t) {
+  if (mean_ <= 0) return 0;
+  const auto cell = static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
+  for (; cell_ < cell; ++cell_) {
+    value_ = correlation_ * value_ + (1 - correlation_) * stream_.exponential(mean_);
+  }
+  return value_;
+}
+
+FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std::size_t stream)
+    : kernel_copy_mean_ns_(settings.kernel_copy_exponential_ms * 1e6),
+      jitter_transfers_(settings.delivery_jitter_transfers),
+      spike_probability_(settings.spike_probability),
+      spike_max_transfers_(settings.spike_max_transfers),
+      stream_(seed, "usb/frame_delays", stream) {}
+
+FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
+  Draw draw{stream_.exponential(kernel_copy_mean_ns_),
+            stream_.exponential(jitter_transfers_ * transfer_ns)};
+  if (spike_probability_ > 0 && stream_.chance(spike_probability_)) {
+    draw.delivery_ns += stream_.uniform(0, spike_max_transfers_ * transfer_ns);
+  }
+  return draw;
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,63 @@
+// What happens to a frame between the end of its transfer and the application: copy to the kernel,
+// jitter of the delivery, jitter that all cameras of a host share, and rare big jumps.
+//
+//   delivery = end of transfer + kernel copy + own jitter + host's jitter + jump
+//
+// All terms scale with the transfer time of one frame alone on the bus, as calibration.md has it;
+// frames of one stream never overtake each other.
+//
+// The host's part is an AR(1) process on a grid of frame periods in true time,
+// h[i] = rho * h[i-1] + (1 - rho) * Exp(mean), so it does not depend on which frames ask for it.
+//
+// Source: reference/calibration.md section 2 ("Cameras"), parameters jcam, jhost, jrho, spk, spkm.
+#ifndef SIMBENCH_SIM_USB_HOST_STACK_H_
+#define SIMBENCH_SIM_USB_HOST_STACK_H_
+
+#include <cstdint>
+
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/engine/random.h"
+
+namespace simbench::sim {
+
+// The part of the jitter that is common to the cameras of one host.
+class HostJitter {
+ public:
+  HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
+             TrueTime capture_start, double period_ns);
+  // In transfer times. `t` may not go back by more than the present grid cell.
+  double at(TrueTime t);
+
+ private:
+  double mean_;
+  double correlation_;
+  double period_ns_;
+  TrueTime start_;
+  std::int64_t cell_ = -1;
+  double value_ = 0;
+  RandomStream stream_;
+};
+
+// One stream's own delays. Draws are made for every exposed frame, in order of exposure.
+class FrameDelays {
+ public:
+  FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std::size_t stream);
+
+  struct Draw {
+    double kernel_copy_ns;
+    double delivery_ns;  // own jitter and jumps
+  };
+  Draw draw(double transfer_ns);
+
+ private:
+  double kernel_copy_mean_ns_;
+  double jitter_transfers_;
+  double spike_probability_;
+  double spike_max_transfers_;
+  RandomStream stream_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_USB_HOST_STACK_H_

@@ -1,0 +1,87 @@
+#include "sim/usb/usb_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/ports/assert.h"
+
+namespace simbench::sim {
+namespace {
+
+// Two transfers of the same size that start together end together: a thousandth of a byte is far
+// below what a nanosecond carries, and far above the rounding of the sums.
+constexpr double kByteTolerance = 1e-3;
+
+double as_ns(TrueTime t) { return static_cast<double>(t.time_since_epoch().count()); }
+
+}  // namespace
+
+UsbController::UsbController(const UsbSettings& settings, std::size_t streams)
+    : settings_(settings), pending_of_stream_(streams, 0) {
+  SIMBENCH_ASSERT(settings.bytes_per_ns > 0, "a USB controller needs bandwidth");
+}
+
+bool UsbController::later(const Transfer& a, const Transfer& b) {
+  return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
+}
+
+void UsbController::serve_until(TrueTime now) {
+  if (!pending_.empty()) {
+    served_bytes_ += static_cast<double>((now - served_until_).count()) * settings_.bytes_per_ns /
+                     static_cast<double>(pending_.size());
+  } else {
+    served_bytes_ = 0;  // nothing pending refers to the sum: keep it small, and so exact
+  }
+  served_until_ = now;
+}
+
+bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket) {
+  if (pending_of_stream_[stream] >= settings_.buffered_frames) return false;
+  double done_at = 0;
+  switch (settings_.sharing) {
+    case UsbSharing::kDedicated:
+      done_at = as_ns(now) + bytes / settings_.bytes_per_ns;
+      break;
+    case UsbSharing::kFifo:
+      bus_free_at_ns_ = std::max(bus_free_at_ns_, as_ns(now)) + bytes / settings_.bytes_per_ns;
+      done_at = bus_free_at_ns_;
+      break;
+    case UsbSharing::kFair:
+      serve_until(now);
+      done_at = served_bytes_ + bytes;
+      break;
+  }
+  ++pending_of_stream_[stream];
+  pending_.push_back({done_at, submissions_++, ticket, static_cast<std::uint32_t>(stream)});
+  std::push_heap(pending_.begin(), pending_.end(), later);
+  return true;
+}
+
+TrueTime UsbController::next_completion() const {
+  if (pending_.empty()) return TrueTime::max();
+  const double done_at = pending_.front().done_at;
+  if (settings_.sharing != UsbSharing::kFair) {
+    return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at))));
+  }
+  const double remaining_ns = (done_at - served_bytes_) * static_cast<double>(pending_.size()) /
+                              settings_.bytes_per_ns;
+  return served_until_ +
+         Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
+}
+
+std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
+  if (pending_.empty()) return std::nullopt;
+  double reached = as_ns(now);
+  if (settings_.sharing == UsbSharing::kFair) {
+    serve_until(now);
+    reached = served_bytes_ + kByteTolerance;
+  }
+  if (pending_.front().done_at > reached) return std::nullopt;
+  std::pop_heap(pending_.begin(), pending_.end(), later);
+  const Transfer done = pending_.back();
+  pending_.pop_back();
+  --pending_of_stream_[done.stream];
+  return done.ticket;
+}
+
+}  // namespace simbench::sim

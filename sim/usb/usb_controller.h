@@ -1,0 +1,73 @@
+// A USB controller: how long a frame's bytes take to reach the host when cameras share the bus.
+//
+// Three ways of sharing:
+//  - dedicated: every stream has the whole bandwidth to itself (a calibrated world, or one camera);
+//  - fifo: frames are transferred one after the other, in the order in which they were submitted;
+//  - fair: all pending frames advance at an equal share (processor sharing).
+//
+// A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
+// an incomplete frame is on a bus that more bytes are asked of than it carries.
+//
+// The controller is a passive model on true time. Whoever owns it submits frames, and comes back at
+// next_completion() to collect what is done. For dedicated and fifo the completion is known at
+// submission; fair sharing revises it as frames come and go.
+//
+// Complexity: O(log n) per frame, n frames pending on the controller. Source: reference/d455.md
+// section 3, DESIGN section 7.
+#ifndef SIMBENCH_SIM_USB_USB_CONTROLLER_H_
+#define SIMBENCH_SIM_USB_USB_CONTROLLER_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "recording/true_time.h"
+
+namespace simbench::sim {
+
+enum class UsbSharing : std::uint8_t { kDedicated, kFifo, kFair };
+
+struct UsbSettings {
+  UsbSharing sharing = UsbSharing::kDedicated;
+  double bytes_per_ns = 0;
+  std::uint32_t buffered_frames = 1;  // per stream
+};
+
+class UsbController {
+ public:
+  UsbController(const UsbSettings& settings, std::size_t streams);
+
+  // Stream `stream` offers a frame of `bytes`, to be known as `ticket`. False: it was lost.
+  bool submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket);
+
+  // When the next transfer completes if nothing else is submitted; TrueTime::max() if none is
+  // pending.
+  TrueTime next_completion() const;
+
+  // The ticket of a transfer that is complete at `now`, in order of completion; nothing if none is.
+  std::optional<std::uint32_t> take_completed(TrueTime now);
+
+ private:
+  // A pending transfer. `done_at` is in ns of true time, or under fair sharing in bytes served to
+  // every pending transfer since the controller began.
+  struct Transfer {
+    double done_at;
+    std::uint64_t order;
+    std::uint32_t ticket;
+    std::uint32_t stream;
+  };
+  static bool later(const Transfer& a, const Transfer& b);
+  void serve_until(TrueTime now);
+
+  UsbSettings settings_;
+  std::vector<Transfer> pending_;  // a min-heap by (done_at, order)
+  std::vector<std::uint32_t> pending_of_stream_;
+  std::uint64_t submissions_ = 0;
+  double bus_free_at_ns_ = 0;  // fifo
+  double served_bytes_ = 0;    // fair: to each pending transfer
+  TrueTime served_until_{};    // fair
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_USB_USB_CONTROLLER_H_
