@@ -6,12 +6,12 @@
 // and no PulseTruth.
 //
 // Streaming is deliberate: a capture of 18,000 cameras is scored without being held in memory.
-// `Recording` is the sink that keeps it all, and can play itself back into another sink.
+// KeptRecording (kept_recording.h) keeps it all and can play itself back into another sink.
 //
 // Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
 // Source: DESIGN section 2; the four stamps: reference/d455.md section 1.
 //
-//   Recording kept;
+//   KeptRecording kept;
 //   source.record(request, kept);       // any RecordingSource
 //   kept.play(scorer);                  // any other RecordingSink
 #ifndef SIMBENCH_RECORDING_RECORDING_H_

@@ -45,6 +45,9 @@ class Gatherer {
   virtual void push(const GatherFrame& frame, FrameSetSink& sink) = 0;
   // Frames given up so far: they will be in no set.
   virtual std::uint64_t discarded() const = 0;
+  // True for a gatherer that counts from a camera's first frame: it is given the warm-up too, in
+  // which `stamp` is the bare arrival unless the estimator runs there as well.
+  virtual bool from_first_frame() const { return false; }
 };
 
 }  // namespace simbench
