@@ -1,0 +1,94 @@
+// Workload w2, rig: triggered cameras whose frames pass five stages until a host has them. What
+// cameras, frames and hosts do, without an engine.
+//
+// Event kinds: 0 triggers a camera (subject: camera); 1 to 5 move a frame to that stage (subject:
+// its slot); 5 is the delivery to the host.
+#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_
+#define SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bench/engine_workloads/tables.h"
+
+namespace simbench::bench {
+
+class RigModel {
+ public:
+  static constexpr std::uint16_t kTrigger = 0;
+  static constexpr std::uint16_t kDelivery = 5;
+  static constexpr std::int64_t kPeriod_ns = 22'222'222;
+
+  explicit RigModel(std::uint32_t cameras)
+      : stage_ns_(workload_tables().stage_ns),
+        next_frame_(cameras),
+        slots_(std::size_t{kSlotsPerCamera} * cameras),
+        hosts_(cameras / 3) {
+    for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+      slots_[i].camera = i / kSlotsPerCamera;
+      slots_[i].host = slots_[i].camera % static_cast<std::uint32_t>(hosts_.size());
+    }
+  }
+
+  // Starts the camera's next frame; returns its slot.
+  std::uint32_t trigger(std::uint32_t camera, std::int64_t now_ns) {
+    const std::uint32_t frame = next_frame_[camera]++;
+    const std::uint32_t slot = camera * kSlotsPerCamera + frame % kSlotsPerCamera;
+    slots_[slot].frame = frame;
+    slots_[slot].stamps_ns[0] = now_ns;
+    return slot;
+  }
+
+  // The time that the frame spends in a stage from 0 to 4.
+  std::int64_t delay_ns(std::uint32_t stage, std::uint32_t slot) const {
+    const Slot& s = slots_[slot];
+    return stage_ns_[stage][(131 * s.camera + 17 * s.frame + 7 * stage) % 1024];
+  }
+
+  void stamp(std::uint32_t stage, std::uint32_t slot, std::int64_t now_ns) {
+    slots_[slot].stamps_ns[stage] = now_ns;
+  }
+
+  void deliver(std::uint32_t slot, std::int64_t now_ns) {
+    Slot& s = slots_[slot];
+    s.stamps_ns[kDelivery] = now_ns;
+    Host& host = hosts_[s.host];
+    host.latency_ns += static_cast<std::uint64_t>(now_ns - s.stamps_ns[0]);
+    host.hash = host.hash * 0x9E3779B97F4A7C15 + s.camera;
+  }
+
+  std::uint64_t checksum() const {
+    std::uint64_t sum = 0;
+    for (const Host& host : hosts_) sum += host.latency_ns;
+    return sum;
+  }
+  std::uint64_t order_checksum() const {
+    std::uint64_t mixed = 0;
+    for (const Host& host : hosts_) mixed ^= host.hash;
+    return mixed;
+  }
+
+ private:
+  static constexpr std::uint32_t kSlotsPerCamera = 4;  // several frames are under way at once
+
+  struct Slot {
+    std::uint32_t camera = 0;
+    std::uint32_t host = 0;
+    std::uint32_t frame = 0;
+    std::array<std::int64_t, 6> stamps_ns{};
+  };
+  struct Host {
+    std::uint64_t latency_ns = 0;
+    std::uint64_t hash = 0;
+  };
+
+  const std::array<std::array<std::int64_t, 1024>, 5>& stage_ns_;
+  std::vector<std::uint32_t> next_frame_;
+  std::vector<Slot> slots_;
+  std::vector<Host> hosts_;
+};
+
+}  // namespace simbench::bench
+
+#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_

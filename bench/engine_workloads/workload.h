@@ -1,0 +1,37 @@
+// The two workloads, run by simbench's engine and by the reference they are compared with.
+//
+// The reference is what one writes without an engine: a std::priority_queue of plain events and a
+// switch. Both sides share the models (hold_model.h, rig_model.h), so that only the queue and the
+// dispatch differ. Definitions and checksums: reference/event_engine.md, section 1.
+#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
+#define SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
+
+#include <cstdint>
+
+namespace simbench::bench {
+
+struct WorkloadResult {
+  std::uint64_t events = 0;  // without the warm-up
+  double seconds = 0;        // process CPU time of these events
+  std::uint64_t checksum = 0;
+  std::uint64_t order_checksum = 0;
+};
+
+// w1: `timers` timers expire `events` times after the warm-up. Both at least 1.
+WorkloadResult run_hold(std::uint32_t timers, std::uint64_t events);
+WorkloadResult run_hold_reference(std::uint32_t timers, std::uint64_t events);
+
+// w2: at least 3 cameras for `duration_ms`. Throws std::invalid_argument if that is too short for
+// the warm-up, six events per camera.
+WorkloadResult run_rig(std::uint32_t cameras, std::int64_t duration_ms);
+WorkloadResult run_rig_reference(std::uint32_t cameras, std::int64_t duration_ms);
+
+// CPU time of this process in seconds.
+double cpu_seconds();
+
+// What run_rig and run_rig_reference throw.
+[[noreturn]] void throw_too_short(std::int64_t duration_ms);
+
+}  // namespace simbench::bench
+
+#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
