@@ -1,0 +1,30 @@
+// Integer arithmetic on stamps that cannot overflow: 128 bits in between, 64 at the ends.
+//
+// Stamps of a real recording may be anything, and a difference of two of them need not fit 64 bits.
+// A result beyond the range becomes the end of the range.
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace simbench {
+
+__extension__ typedef __int128 Int128;
+
+inline std::int64_t saturate(Int128 value) {
+  constexpr Int128 kLow = std::numeric_limits<std::int64_t>::min();
+  constexpr Int128 kHigh = std::numeric_limits<std::int64_t>::max();
+  return static_cast<std::int64_t>(std::clamp(value, kLow, kHigh));
+}
+
+// The nearest integer, within +-2^62. The value is not a NaN.
+inline std::int64_t saturate_round(double value) {
+  return std::llround(std::clamp(value, -0x1p62, 0x1p62));
+}
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_

@@ -1,0 +1,56 @@
+// Unwraps a counter that starts again at zero: each reading becomes the number nearest to the
+// previous one that the counter would show as this reading (half-range rule).
+//
+// Frames may be delivered out of order, so a smaller reading alone is no wrap: it is one only if
+// the decrease is more than half of the modulus, and a reading from before the wrap that comes
+// after it goes back. Consecutive readings must lie less than half a modulus apart (for a D455's
+// register 35 min); one that is exactly half apart counts as earlier. The first reading is taken as
+// it is, so results may become negative if it was delivered ahead of earlier frames near zero.
+//
+// Source: reference/device_time.md section 1 (Unwrapping), reference/d455.md section 1 (Wrap).
+//
+//   DeviceStampUnwrapper unwrapper;   // one per camera
+//   DeviceTime sensor = unwrapper.unwrap(frame.sensor);
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+// For a counter with the values 0 .. kModulus - 1.
+template <std::int64_t kModulus>
+class CounterUnwrapper {
+  static_assert(kModulus > 1);
+
+ public:
+  // 0 <= reading < kModulus.
+  std::int64_t unwrap(std::int64_t reading) {
+    if (!previous_) return *(previous_ = reading);
+    std::int64_t step = (reading - *previous_) % kModulus;
+    if (step >= kModulus - kModulus / 2) step -= kModulus;
+    if (step < -(kModulus / 2)) step += kModulus;
+    return *previous_ += step;
+  }
+
+ private:
+  std::optional<std::int64_t> previous_;
+};
+
+// For a camera's 32-bit microsecond register.
+class DeviceStampUnwrapper {
+ public:
+  DeviceTime unwrap(DeviceStamp stamp) {
+    return DeviceTime(Microseconds(counter_.unwrap(stamp.us)));
+  }
+
+ private:
+  CounterUnwrapper<std::int64_t{1} << 32> counter_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_

@@ -1,0 +1,35 @@
+#include "algorithms/gathering/genlock.h"
+
+#include <vector>
+
+#include "algorithms/gathering/front_matcher.h"
+#include "algorithms/ports/assert.h"
+
+namespace simbench {
+namespace {
+
+class GenlockGatherer final : public Gatherer {
+ public:
+  GenlockGatherer(const GatheringSetup& setup, GenlockOrder::Variant variant)
+      : orders_(setup.sources, GenlockOrder(setup.period, variant)),
+        matcher_(setup.sources, /*tolerance=*/1, setup.queue_limit) {}
+
+  void push(const GatherFrame& frame, FrameSetSink& sink) override {
+    SIMBENCH_ASSERT(frame.source < orders_.size(), "a frame of a source that does not exist");
+    matcher_.push(orders_[frame.source].next(frame.sensor), frame, sink);
+  }
+  std::uint64_t discarded() const override { return matcher_.discarded(); }
+
+ private:
+  std::vector<GenlockOrder> orders_;  // by source
+  FrontMatcher matcher_;              // over pulse indices
+};
+
+}  // namespace
+
+std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
+                                                GenlockOrder::Variant variant) {
+  return std::make_unique<GenlockGatherer>(setup, variant);
+}
+
+}  // namespace simbench
