@@ -49,10 +49,6 @@ std::optional<TrueTime> TriggerTree::pulse(std::int64_t slot) const {
   return at + from_us(stream.normal(settings_.pulse_jitter_sigma_us));
 }
 
-Nanoseconds TriggerTree::longest_delay() const {
-  return delays_.empty() ? Nanoseconds(0) : *std::max_element(delays_.begin(), delays_.end());
-}
-
 std::int64_t TriggerTree::first_slot_from(TrueTime at) const {
   const double periods = static_cast<double>((at - first_due_).count()) / period_ns_;
   std::int64_t slot = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(periods)));

@@ -38,8 +38,6 @@ class TriggerTree {
   std::optional<TrueTime> pulse(std::int64_t slot) const;
   // Propagation from the main trigger to camera `camera`, through its branch and cable.
   Nanoseconds delay_to(std::size_t camera) const { return delays_[camera]; }
-  // The largest of those.
-  Nanoseconds longest_delay() const;
   // Mean time between pulses, with the trigger's own rate error.
   double period_ns() const { return period_ns_; }
   // The first slot due at or after `at`.

@@ -14,7 +14,8 @@ HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::
 
 double HostJitter::at(TrueTime t) {
   if (mean_ <= 0) return 0;
-  const auto cell = static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
+  const auto cell =
+      static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
   for (; cell_ < cell; ++cell_) {
     value_ = correlation_ * value_ + (1 - correlation_) * stream_.exponential(mean_);
   }

@@ -63,8 +63,8 @@ TrueTime UsbController::next_completion() const {
   if (settings_.sharing != UsbSharing::kFair) {
     return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at))));
   }
-  const double remaining_ns = (done_at - served_bytes_) * static_cast<double>(pending_.size()) /
-                              settings_.bytes_per_ns;
+  const double remaining_ns =
+      (done_at - served_bytes_) * static_cast<double>(pending_.size()) / settings_.bytes_per_ns;
   return served_until_ +
          Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
 }

@@ -1,0 +1,128 @@
+#include "sim/camera/shutter.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace simbench::sim {
+namespace {
+
+constexpr double kModePeriod90 = 1e9 / 90;
+
+TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
+
+ShutterSettings settings_of(ShutterMode mode, double mode_period_ns, double exposure_ms = 4) {
+  return {.mode = mode,
+          .mode_period_ns = mode_period_ns,
+          .exposure = from_ms(exposure_ms),
+          .trigger_to_exposure = Nanoseconds(0),
+          .guard_fraction = 0.02,
+          .free_run_after_periods = 3};
+}
+
+// The slots of those of `pulses` regular pulses that the shutter answers.
+std::vector<std::int64_t> answered(const ShutterSettings& settings, double pulse_period_ns,
+                                   int pulses) {
+  Shutter shutter(settings, TrueTime{});
+  std::vector<std::int64_t> slots;
+  for (int slot = 0; slot < pulses; ++slot) {
+    const TrueTime at{Nanoseconds(std::llround(slot * pulse_period_ns))};
+    if (const auto exposure = shutter.on_pulse(at, slot)) slots.push_back(exposure->pulse);
+  }
+  return slots;
+}
+
+TEST(GenlockShutter, ExposureStartsWithThePulse) {
+  ShutterSettings settings = settings_of(ShutterMode::kGenlock, kModePeriod90);
+  settings.trigger_to_exposure = from_ms(0.79);
+  Shutter shutter(settings, TrueTime{});
+  const auto exposure = shutter.on_pulse(at_ms(100), 9);
+  ASSERT_TRUE(exposure);
+  EXPECT_EQ(exposure->pulse, 9);
+  EXPECT_EQ(exposure->start, at_ms(100.79));
+  EXPECT_EQ(exposure->end, at_ms(104.79));
+}
+
+TEST(GenlockShutter, AnswersEveryPulseAtHalfTheModeRate) {
+  EXPECT_EQ(answered(settings_of(ShutterMode::kGenlock, kModePeriod90), 2 * kModePeriod90, 5),
+            (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
+}
+
+TEST(GenlockShutter, RefusesATriggerAtTheFullModeRate) {
+  EXPECT_EQ(answered(settings_of(ShutterMode::kGenlock, kModePeriod90), kModePeriod90, 8),
+            (std::vector<std::int64_t>{0, 2, 4, 6}));
+}
+
+TEST(GenlockShutter, ASlowCameraWithoutGuardHalvesTheRateAgain) {
+  // Its own two periods last 50 ppm longer than the trigger's one.
+  ShutterSettings slow = settings_of(ShutterMode::kGenlock, kModePeriod90 * (1 + 50e-6));
+  EXPECT_EQ(answered(slow, 2 * kModePeriod90, 6), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
+  slow.guard_fraction = 0;
+  EXPECT_EQ(answered(slow, 2 * kModePeriod90, 6), (std::vector<std::int64_t>{0, 2, 4}));
+}
+
+TEST(GenlockShutter, AnExposureBeyondTheCycleMissesPulses) {
+  EXPECT_EQ(answered(settings_of(ShutterMode::kGenlock, kModePeriod90, 23), 2 * kModePeriod90, 5),
+            (std::vector<std::int64_t>{0, 2, 4}));
+}
+
+TEST(GenlockShutter, WaitsForPulsesWithoutLimitAndKnowsNoneBeforeItsStart) {
+  Shutter shutter(settings_of(ShutterMode::kGenlock, kModePeriod90), at_ms(50));
+  EXPECT_EQ(shutter.next_timer(), TrueTime::max());
+  EXPECT_FALSE(shutter.on_pulse(at_ms(49.9), 0));
+  EXPECT_TRUE(shutter.on_pulse(at_ms(3.6e6), 1));
+}
+
+TEST(SlaveShutter, ExposureEndsAtAFixedPhaseWhateverItsLength) {
+  for (const double exposure_ms : {1.0, 4.0, 11.0}) {
+    Shutter shutter(settings_of(ShutterMode::kSlave, kModePeriod90, exposure_ms), TrueTime{});
+    const auto exposure = shutter.on_pulse(at_ms(20), 1);
+    ASSERT_TRUE(exposure);
+    EXPECT_EQ(exposure->end, at_ms(20) + Nanoseconds(11111111)) << exposure_ms << " ms";
+    EXPECT_EQ(exposure->end - exposure->start, from_ms(exposure_ms));
+  }
+}
+
+TEST(SlaveShutter, FollowsPulsesAtTheModeRate) {
+  // 500 ppm fast, as support advises.
+  EXPECT_EQ(answered(settings_of(ShutterMode::kSlave, kModePeriod90), kModePeriod90 / 1.0005, 4),
+            (std::vector<std::int64_t>{0, 1, 2, 3}));
+}
+
+TEST(SlaveShutter, RunsFreeWithoutPulsesAndIsTakenBack) {
+  const double period_ns = 10e6;
+  Shutter shutter(settings_of(ShutterMode::kSlave, period_ns), TrueTime{});
+  ASSERT_TRUE(shutter.on_pulse(at_ms(5), 0));
+  EXPECT_EQ(shutter.next_timer(), at_ms(30));
+  EXPECT_FALSE(shutter.on_timer(at_ms(30)));  // three periods after the pulse are not over
+  ASSERT_EQ(shutter.next_timer(), at_ms(35));
+  for (int frame = 0; frame < 4; ++frame) {
+    const TrueTime due = at_ms(35 + 10 * frame);
+    ASSERT_EQ(shutter.next_timer(), due);
+    const auto exposure = shutter.on_timer(due);
+    ASSERT_TRUE(exposure);
+    EXPECT_EQ(exposure->pulse, kNoPulse);
+    EXPECT_EQ(exposure->end, due + from_ms(10));
+  }
+  ASSERT_EQ(shutter.next_timer(), at_ms(75));
+  EXPECT_FALSE(shutter.on_pulse(at_ms(70), 1));  // in the middle of a free-running frame
+  const auto taken_back = shutter.on_pulse(at_ms(74.9), 2);
+  ASSERT_TRUE(taken_back);
+  EXPECT_EQ(taken_back->pulse, 2);
+  EXPECT_FALSE(shutter.on_timer(at_ms(75)));
+  EXPECT_EQ(shutter.next_timer(), at_ms(104.9));
+}
+
+TEST(FreeRunningShutter, KeepsItsOwnRateWithoutAccumulatingRoundingErrors) {
+  Shutter shutter(settings_of(ShutterMode::kFreeRunning, kModePeriod90), at_ms(3));
+  EXPECT_FALSE(shutter.on_pulse(at_ms(3), 0));
+  for (int frame = 0; frame < 90 * 60; ++frame) {
+    const auto exposure = shutter.on_timer(shutter.next_timer());
+    ASSERT_TRUE(exposure);
+    ASSERT_EQ(exposure->pulse, kNoPulse);
+  }
+  EXPECT_EQ(shutter.next_timer(), at_ms(60003));
+}
+
+}  // namespace
+}  // namespace simbench::sim

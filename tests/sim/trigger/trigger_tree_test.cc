@@ -1,0 +1,120 @@
+#include "sim/trigger/trigger_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace simbench::sim {
+namespace {
+
+scenarios::Trigger ideal(double rate_hz) {
+  return {.rate_hz = rate_hz,
+          .rate_error_ppm = 0,
+          .pulse_jitter_sigma_us = 0,
+          .branch_delay_max_us = 0,
+          .cable_delay_max_us = 0,
+          .cameras_per_sub_trigger = 6,
+          .start_delay_ms = 0,
+          .missed_pulse_probability = 0,
+          .pauses = {}};
+}
+
+TEST(TriggerTree, SlotsAreEquallySpacedOverHours) {
+  TriggerTree tree(ideal(45), 18, 1);
+  tree.start(TrueTime(from_ms(100)));
+  EXPECT_EQ(tree.due(0), TrueTime(from_ms(100)));
+  // Three hours of 45 Hz: 486,000 periods of 22.2 recurring ms are exactly 10,800 s.
+  EXPECT_EQ(tree.due(486000), TrueTime(from_ms(100) + std::chrono::hours(3)));
+  EXPECT_EQ(tree.pulse(486000), tree.due(486000));
+}
+
+TEST(TriggerTree, RateErrorShortensThePeriod) {
+  scenarios::Trigger settings = ideal(30);
+  settings.rate_error_ppm = 500;
+  TriggerTree tree(settings, 6, 1);
+  tree.start(TrueTime{});
+  EXPECT_DOUBLE_EQ(tree.period_ns(), 1e9 / 30.015);
+  EXPECT_EQ(tree.due(30015), TrueTime(std::chrono::seconds(1000)));
+}
+
+TEST(TriggerTree, StartsLate) {
+  scenarios::Trigger settings = ideal(10);
+  settings.start_delay_ms = 250;
+  TriggerTree tree(settings, 6, 1);
+  tree.start(TrueTime{});
+  EXPECT_EQ(tree.pulse(0), TrueTime(from_ms(250)));
+  EXPECT_EQ(tree.first_slot_from(TrueTime{}), 0);
+  EXPECT_EQ(tree.first_slot_from(TrueTime(from_ms(250))), 0);
+  EXPECT_EQ(tree.first_slot_from(TrueTime(from_ms(250.001))), 1);
+}
+
+TEST(TriggerTree, PausesLeaveTheirSlotsEmptyAndKeepTheNumbering) {
+  scenarios::Trigger settings = ideal(10);
+  settings.pauses = {{.at_ms = 200, .duration_ms = 300}};
+  TriggerTree tree(settings, 6, 1);
+  tree.start(TrueTime{});
+  for (std::int64_t slot = 0; slot < 10; ++slot) {
+    EXPECT_EQ(tree.pulse(slot).has_value(), slot < 2 || slot >= 5) << "slot " << slot;
+  }
+  EXPECT_EQ(tree.pulse(5), TrueTime(from_ms(500)));
+}
+
+TEST(TriggerTree, MissedPulsesHaveTheirProbabilityAndTheSameSlotsEachTime) {
+  scenarios::Trigger settings = ideal(100);
+  settings.missed_pulse_probability = 0.1;
+  TriggerTree tree(settings, 6, 7);
+  tree.start(TrueTime{});
+  int missed = 0;
+  const int slots = 20000;
+  for (int slot = 0; slot < slots; ++slot) {
+    missed += tree.pulse(slot).has_value() ? 0 : 1;
+    EXPECT_EQ(tree.pulse(slot), tree.pulse(slot));
+  }
+  // Binomial: 2000 expected, sigma = sqrt(20000 * 0.1 * 0.9) = 42.4.
+  EXPECT_NEAR(missed, 2000, 5 * 42.4) << "seed 7";
+}
+
+TEST(TriggerTree, JitterIsThatOfTheSettings) {
+  scenarios::Trigger settings = ideal(100);
+  settings.pulse_jitter_sigma_us = 3;
+  TriggerTree tree(settings, 6, 3);
+  tree.start(TrueTime{});
+  double sum = 0;
+  double squares = 0;
+  const int slots = 20000;
+  for (int slot = 0; slot < slots; ++slot) {
+    const double us = 1e-3 * static_cast<double>((*tree.pulse(slot) - tree.due(slot)).count());
+    sum += us;
+    squares += us * us;
+  }
+  EXPECT_NEAR(sum / slots, 0.0, 5 * 3 / std::sqrt(slots)) << "seed 3";
+  EXPECT_NEAR(std::sqrt(squares / slots), 3.0, 5 * 3 / std::sqrt(2.0 * slots)) << "seed 3";
+}
+
+TEST(TriggerTree, CamerasOfOneBranchShareItsDelay) {
+  scenarios::Trigger settings = ideal(45);
+  settings.branch_delay_max_us = 5;
+  TriggerTree tree(settings, 18, 11);
+  std::set<Nanoseconds> branches;
+  for (std::size_t camera = 0; camera < 18; ++camera) {
+    EXPECT_EQ(tree.delay_to(camera), tree.delay_to(camera / 6 * 6)) << "camera " << camera;
+    EXPECT_GE(tree.delay_to(camera), Nanoseconds(0));
+    EXPECT_LE(tree.delay_to(camera), Nanoseconds(5000));
+    branches.insert(tree.delay_to(camera));
+  }
+  EXPECT_EQ(branches.size(), 3u);
+}
+
+TEST(TriggerTree, EveryCableHasItsOwnDelay) {
+  scenarios::Trigger settings = ideal(45);
+  settings.cable_delay_max_us = 0.1;
+  TriggerTree tree(settings, 18, 11);
+  std::set<Nanoseconds> delays;
+  for (std::size_t camera = 0; camera < 18; ++camera) delays.insert(tree.delay_to(camera));
+  EXPECT_GT(delays.size(), 10u);
+  EXPECT_LE(*delays.rbegin(), Nanoseconds(100));
+}
+
+}  // namespace
+}  // namespace simbench::sim
