@@ -19,6 +19,7 @@ class GenlockGatherer final : public Gatherer {
     matcher_.push(orders_[frame.source].next(frame.sensor), frame, sink);
   }
   std::uint64_t discarded() const override { return matcher_.discarded(); }
+  bool from_first_frame() const override { return true; }
 
  private:
   std::vector<GenlockOrder> orders_;  // by source
