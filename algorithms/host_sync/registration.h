@@ -1,4 +1,8 @@
-// simbench's own host_sync algorithms, as the registry lists them.
+// simbench's own host_sync algorithms, with their parameters and the sources of their defaults.
+//
+//   yoon2021_network, yoon2021_time, yoon2021_both, yoon2021_neither   (family yoon2021)
+//   w32time                                                            (family w32time)
+//   free_running, ntp_last_set, oracle                                 (no parameters)
 //
 // Named explicitly instead of registering themselves: a linker drops what nothing refers to from a
 // static library, and an algorithm with it.
