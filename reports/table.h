@@ -1,0 +1,25 @@
+// Results for people: the table that `simbench run` prints, for a terminal or as markdown.
+//
+// Two blocks, each with a row per pipeline: the paper's metrics beside the published values, and
+// what only a bench with true time can tell. Below them a legend that a newcomer can start from,
+// the paper's claims with the fraction of seeds in which each holds, and what the run cost. About
+// 130 columns wide. Source of the definitions: DESIGN section 8.
+//
+//   std::cout << table(results, scenario.summary);
+#ifndef SIMBENCH_REPORTS_TABLE_H_
+#define SIMBENCH_REPORTS_TABLE_H_
+
+#include <string>
+#include <string_view>
+
+#include "evaluation/results.h"
+
+namespace simbench::reports {
+
+// `summary` is the scenario's own line about itself; it says where a scenario is a fit.
+std::string table(const evaluation::Results& results, std::string_view summary);
+std::string markdown(const evaluation::Results& results, std::string_view summary);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TABLE_H_

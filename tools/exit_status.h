@@ -1,0 +1,16 @@
+// What the command's exit status means; part of its interface, scripts rely on it.
+#ifndef SIMBENCH_TOOLS_EXIT_STATUS_H_
+#define SIMBENCH_TOOLS_EXIT_STATUS_H_
+
+namespace simbench::tools {
+
+enum ExitStatus : int {
+  kOk = 0,
+  kInternalError = 1,
+  kBadInput = 2,  // of the command line, of a file, of an output folder
+  kInterrupted = 130,
+};
+
+}  // namespace simbench::tools
+
+#endif  // SIMBENCH_TOOLS_EXIT_STATUS_H_

@@ -1,0 +1,74 @@
+#include "tools/interrupt.h"
+
+#include <atomic>
+#include <utility>
+
+namespace simbench::tools {
+namespace {
+
+std::atomic<bool> flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
+
+void throw_if_interrupted() {
+  if (flag.load(std::memory_order_relaxed)) throw Interrupted();
+}
+
+// Hands everything on; frames are frequent enough to notice the flag by.
+class InterruptibleSink : public RecordingSink {
+ public:
+  explicit InterruptibleSink(RecordingSink& sink) : sink_(sink) {}
+  void on_start(const RigLayout& layout) override { sink_.on_start(layout); }
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
+    throw_if_interrupted();
+    sink_.on_frame(frame, truth);
+  }
+  void on_pulse(const PulseTruth& truth) override { sink_.on_pulse(truth); }
+  void on_adjustment(const ClockAdjustment& adjustment) override {
+    sink_.on_adjustment(adjustment);
+  }
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
+    throw_if_interrupted();
+    sink_.on_exchange(host, exchange);
+  }
+  void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
+
+ private:
+  RecordingSink& sink_;
+};
+
+class InterruptibleSource : public RecordingSource {
+ public:
+  explicit InterruptibleSource(std::unique_ptr<RecordingSource> source)
+      : source_(std::move(source)) {}
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    throw_if_interrupted();
+    InterruptibleSink watched(sink);
+    return source_->record(request, watched);
+  }
+
+ private:
+  std::unique_ptr<RecordingSource> source_;
+};
+
+}  // namespace
+
+InterruptHandler::InterruptHandler() {
+  flag = false;
+  struct sigaction action = {};
+  action.sa_handler = [](int) { flag = true; };
+  // The second signal finds the default again. An interrupted write is resumed: the result of a run
+  // that is already complete is not lost.
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &previous_);
+}
+
+InterruptHandler::~InterruptHandler() { sigaction(SIGINT, &previous_, nullptr); }
+
+bool InterruptHandler::raised() { return flag; }
+
+std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source) {
+  return std::make_unique<InterruptibleSource>(std::move(source));
+}
+
+}  // namespace simbench::tools

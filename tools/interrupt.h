@@ -1,0 +1,42 @@
+// Ctrl-C: stops the jobs at their next frame instead of in the middle of something.
+//
+//   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
+//   ... evaluate(scenario, [&] { return interruptible(make_simulation(scenario)); }, ...)
+//   if (InterruptHandler::raised()) return kInterrupted;
+//
+// A second SIGINT ends the program at once, as it always did.
+#ifndef SIMBENCH_TOOLS_INTERRUPT_H_
+#define SIMBENCH_TOOLS_INTERRUPT_H_
+
+#include <csignal>
+#include <exception>
+#include <memory>
+
+#include "recording/recording.h"
+
+namespace simbench::tools {
+
+// One at a time: signal handlers belong to the process.
+class InterruptHandler {
+ public:
+  InterruptHandler();
+  ~InterruptHandler();
+  InterruptHandler(const InterruptHandler&) = delete;
+  InterruptHandler& operator=(const InterruptHandler&) = delete;
+  static bool raised();
+
+ private:
+  struct sigaction previous_;
+};
+
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+// The same source, but record() throws Interrupted once the flag is raised.
+std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source);
+
+}  // namespace simbench::tools
+
+#endif  // SIMBENCH_TOOLS_INTERRUPT_H_

@@ -1,0 +1,125 @@
+#include "tools/list_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <variant>
+
+#include "algorithms/registry.h"
+#include "reports/text_table.h"
+#include "tools/exit_status.h"
+
+namespace simbench::tools {
+namespace {
+
+using reports::Align;
+using reports::TextTable;
+
+constexpr const char* kExamples = R"(
+Examples:
+  simbench list                                       everything by name
+  simbench list algorithms                            with parameters and sources
+  simbench list pipelines --scenario 18cam_6host_45fps)";
+
+struct ListOptions {
+  std::string what;
+  std::string scenario;
+};
+
+std::string value_text(const ParameterValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  return std::get<std::string>(value);
+}
+
+std::string range_text(const ParameterSpec& spec) {
+  if (std::holds_alternative<bool>(spec.fallback)) return "true, false";
+  if (!std::holds_alternative<double>(spec.fallback)) {
+    return fmt::format("{}", fmt::join(spec.choices, ", "));
+  }
+  return fmt::format("{} to {}", spec.low, spec.high);
+}
+
+std::string scenarios_text() {
+  TextTable table({{"scenario", Align::kLeft}, {"what it is", Align::kLeft}});
+  for (const auto& scenario : scenarios::builtin_scenarios()) {
+    table.add({scenario.name, scenario.summary});
+  }
+  return table.plain();
+}
+
+template <class Entries>
+std::string names_text(const char* stage, const Entries& entries) {
+  TextTable table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
+  for (const auto& entry : entries) table.add({entry.info.name, entry.info.summary});
+  return table.plain();
+}
+
+std::string algorithm_text(const AlgorithmInfo& info) {
+  std::string text = fmt::format("\n{}: {}\n  source: {}\n", info.name, info.summary, info.source);
+  if (info.parameters.empty()) return text;
+  text += fmt::format("  parameters, in a scenario below /algorithms/{}:\n", info.family);
+  for (const ParameterSpec& spec : info.parameters) {
+    text += fmt::format("    {} = {} ({}): {} [{}]\n", spec.name, value_text(spec.fallback),
+                        range_text(spec), spec.meaning, spec.source);
+  }
+  return text;
+}
+
+template <class Entries>
+std::string details_text(const char* stage, const Entries& entries) {
+  std::string text = fmt::format("== {}\n", stage);
+  for (const auto& entry : entries) text += algorithm_text(entry.info);
+  return text;
+}
+
+std::string pipelines_text(const std::string& scenario) {
+  TextTable table({{"pipeline", Align::kLeft},
+                   {"host_sync", Align::kLeft},
+                   {"device_time", Align::kLeft},
+                   {"gathering", Align::kLeft}});
+  for (const auto& pipeline : scenarios::load_scenario(scenario).pipelines) {
+    table.add({pipeline.name, pipeline.host_sync, pipeline.device_time, pipeline.gathering});
+  }
+  return table.plain();
+}
+
+std::string listing(const ListOptions& options) {
+  if (options.what == "scenarios") return scenarios_text();
+  if (options.what == "pipelines") return pipelines_text(options.scenario);
+  if (options.what == "algorithms") {
+    return details_text("host_sync", host_sync_algorithms()) + "\n" +
+           details_text("device_time", device_time_algorithms()) + "\n" +
+           details_text("gathering", gathering_algorithms());
+  }
+  return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
+         names_text("device_time", device_time_algorithms()) + "\n" +
+         names_text("gathering", gathering_algorithms());
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("list", "List scenarios, and the algorithms of each stage");
+  auto options = std::make_shared<ListOptions>();
+  command
+      ->add_option("what", options->what,
+                   "scenarios, pipelines or algorithms (with parameters and sources); without it, "
+                   "scenarios and algorithms by name")
+      ->type_name("WHAT")
+      ->check(one_of({"scenarios", "pipelines", "algorithms"}));
+  options->scenario = "18cam_6host_45fps";
+  command->add_option("--scenario", options->scenario, "Whose pipelines to list")
+      ->type_name("SCENARIO")
+      ->capture_default_str();
+  command->footer(kExamples);
+  command->callback([options, &action] {
+    action = [options] {
+      print_result(listing(*options));
+      return static_cast<int>(kOk);
+    };
+  });
+}
+
+}  // namespace simbench::tools

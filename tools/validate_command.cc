@@ -1,0 +1,51 @@
+#include "tools/validate_command.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "evaluation/evaluate.h"
+#include "tools/exit_status.h"
+
+namespace simbench::tools {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  simbench validate my_rig.json
+  simbench validate rigs/*.json      checks every one; exit status 2 if any is wrong)";
+
+// True if the file is a scenario that could be run.
+bool validate(const std::string& file) {
+  try {
+    const scenarios::Scenario scenario = scenarios::load_scenario(file);
+    evaluation::check_pipelines(scenario);
+    print_warnings(scenarios::warnings(scenario));
+  } catch (const scenarios::InputError& error) {
+    std::cerr << "error: " << error.what() << '\n';
+    return false;
+  }
+  print_result(fmt::format("{}: ok\n", file));
+  return true;
+}
+
+int validate_all(const std::vector<std::string>& files) {
+  int status = kOk;
+  for (const std::string& file : files) {
+    if (!validate(file)) status = kBadInput;
+  }
+  return status;
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("validate", "Check scenario files without running them");
+  auto files = std::make_shared<std::vector<std::string>>();
+  command->add_option("files", *files, "Scenario files")->type_name("FILE...")->required();
+  command->footer(kExamples);
+  command->callback([files, &action] { action = [files] { return validate_all(*files); }; });
+}
+
+}  // namespace simbench::tools
