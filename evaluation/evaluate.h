@@ -5,13 +5,15 @@
 // running jobs have finished; finished jobs are kept in the error (EvaluationFailed).
 //
 //   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
-//   nullptr);
+//                        nullptr);
 #ifndef SIMBENCH_EVALUATION_EVALUATE_H_
 #define SIMBENCH_EVALUATION_EVALUATE_H_
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,15 +29,37 @@ struct EvaluationOptions {
   unsigned jobs = 0;                   // threads; 0: as many as there are cores
   std::vector<std::string> pipelines;  // by name, in this order; empty: all of the scenario
   bool keep_pulses = false;            // keep SeedScore::pulses (for frames.csv)
+  // Looked at before each job; once true, no more are begun. May be set by a signal handler.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
-// Called from worker threads, one call at a time.
+// Called from worker threads, one call at a time; must not throw.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 // Makes the backend of one worker thread; called once per thread, from that thread.
 using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
 
+// An evaluation that did not get to its end, with what it had by then.
+class EvaluationFailed : public std::runtime_error {
+ public:
+  EvaluationFailed(const std::string& what, Results finished)
+      : std::runtime_error(what), finished_(std::make_shared<const Results>(std::move(finished))) {}
+  // The rows of the seeds that were done; rows may have different seeds, and there are no claims.
+  const Results& finished() const { return *finished_; }
+
+ private:
+  std::shared_ptr<const Results> finished_;
+};
+
+// One that was ended through EvaluationOptions::cancel.
+class EvaluationCancelled final : public EvaluationFailed {
+ public:
+  using EvaluationFailed::EvaluationFailed;
+};
+
 // Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
-// algorithm does not have or allow; EvaluationFailed if a job failed.
+// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, whose
+// message names scenario, pipeline, seed, version and commit. What make_source throws passes
+// through.
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
 

@@ -51,7 +51,9 @@ struct SeedScore {
   double share_below_half_period = 0;  // of evaluated pulses whose spread is under half a period
   FrameCounts frames;
   SetCounts sets;
-  std::vector<PulseScore> pulses;
+  // Frames whose place in GenLock order is not that of the pulse that exposed them; genlock only.
+  std::int64_t genlock_index_errors = 0;
+  std::vector<PulseScore> pulses;      // if asked for
   std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
   std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   RecordingCost cost;

@@ -1,0 +1,201 @@
+#include "evaluation/evaluate.h"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "evaluation/claims.h"
+#include "evaluation/pipeline_choice.h"
+#include "evaluation/pipeline_scorer.h"
+#include "evaluation/rows.h"
+#include "recording/version.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::Scenario;
+
+double thread_cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+// The jobs of one evaluation and what has come of them.
+class Evaluation {
+ public:
+  Evaluation(const Scenario& scenario, const SourceFactory& make_source,
+             const EvaluationOptions& options, const Progress& progress)
+      : scenario_(scenario),
+        make_source_(make_source),
+        options_(options),
+        progress_(progress),
+        choices_(choose_pipelines(scenario, options.pipelines)),
+        scores_(choices_.size() * options.seeds) {}
+
+  Results run() {
+    const auto begin = std::chrono::steady_clock::now();
+    run_workers();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    if (source_error_) std::rethrow_exception(source_error_);
+    if (!failure_.empty()) throw EvaluationFailed(failure_, results(wall.count()));
+    if (done_ < scores_.size()) throw EvaluationCancelled("cancelled", results(wall.count()));
+    Results all = results(wall.count());
+    all.claims = check_claims(all.rows, scenario_.trigger.rate_hz);
+    return all;
+  }
+
+ private:
+  // Jobs of one seed are neighbours, so that the time left can be told from the time gone.
+  std::size_t pipeline_of(std::size_t job) const { return job % choices_.size(); }
+  std::uint64_t seed_of(std::size_t job) const {
+    return options_.first_seed + job / choices_.size();
+  }
+
+  void run_workers() {
+    unsigned workers = options_.jobs > 0 ? options_.jobs : std::thread::hardware_concurrency();
+    workers = static_cast<unsigned>(
+        std::clamp<std::size_t>(workers, 1, std::max<std::size_t>(scores_.size(), 1)));
+    std::vector<std::jthread> threads;
+    for (unsigned i = 1; i < workers; ++i) threads.emplace_back([this] { work(); });
+    work();
+  }
+
+  void work() {
+    const double begin = thread_cpu_seconds();
+    try {
+      const std::unique_ptr<RecordingSource> source = make_source_();
+      for (std::size_t job = next(); job < scores_.size(); job = next()) run_job(job, *source);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+      if (!source_error_) source_error_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    cpu_seconds_ += thread_cpu_seconds() - begin;
+  }
+
+  std::size_t next() {
+    const bool cancelled = options_.cancel != nullptr && options_.cancel->load();
+    return stop_ || cancelled ? scores_.size() : next_++;
+  }
+
+  void run_job(std::size_t job, RecordingSource& source) {
+    const PipelineChoice& choice = choices_[pipeline_of(job)];
+    const std::uint64_t seed = seed_of(job);
+    try {
+      PipelineScorer scorer(scorer_setup(scenario_, choice));
+      const RecordingCost cost =
+          source.record({.seed = seed, .pipeline = choice.pipeline.name}, scorer);
+      SeedScore score = scorer.finish();
+      score.seed = seed;
+      score.cost = cost;
+      scores_[job] = std::move(score);
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+      if (failure_.empty() || job < failed_job_) {
+        failed_job_ = job;
+        failure_ =
+            fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})", scenario_.name,
+                        choice.pipeline.name, seed, error.what(), version(), commit());
+      }
+      return;
+    }
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (progress_) progress_(done_, scores_.size());
+  }
+
+  // Of the jobs that are done; takes their scores.
+  Results results(double wall_seconds) {
+    Results results;
+    results.scenario = scenario_.name;
+    results.first_seed = options_.first_seed;
+    results.seed_count = options_.seeds;
+    const RowSetting setting = row_setting(scenario_);
+    for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
+      results.rows.push_back(row(pipeline, setting));
+      add_cost(results.rows.back(), results.performance);
+      add_warnings(results.rows.back(), results.warnings);
+    }
+    Performance& performance = results.performance;
+    performance.cpu_seconds = cpu_seconds_;
+    performance.wall_seconds = wall_seconds;
+    performance.events_per_second = static_cast<double>(performance.events) / wall_seconds;
+    performance.simulated_seconds_per_second = performance.simulated_seconds / wall_seconds;
+    return results;
+  }
+
+  Row row(std::size_t pipeline, const RowSetting& setting) {
+    std::vector<SeedScore> seeds;
+    for (std::size_t job = pipeline; job < scores_.size(); job += choices_.size()) {
+      if (scores_[job]) seeds.push_back(std::move(*scores_[job]));
+    }
+    Row row = make_row(choices_[pipeline].pipeline, std::move(seeds), setting);
+    const auto published = scenario_.published.find(row.pipeline);
+    if (published != scenario_.published.end()) {
+      row.published = compare(published->second, row, setting);
+    }
+    for (SeedScore& seed : row.seeds) {
+      if (!options_.keep_pulses) seed.pulses = {};
+    }
+    return row;
+  }
+
+  static void add_cost(const Row& row, Performance& performance) {
+    for (const SeedScore& seed : row.seeds) {
+      performance.events += seed.cost.events;
+      performance.simulated_seconds += seed.cost.simulated_seconds;
+    }
+  }
+
+  static void add_warnings(const Row& row, std::vector<std::string>& warnings) {
+    std::int64_t errors = 0;
+    std::int64_t seeds = 0;
+    for (const SeedScore& seed : row.seeds) {
+      if (seed.genlock_index_errors == 0 || seed.frames.dropped > 0) continue;
+      errors += seed.genlock_index_errors;
+      ++seeds;
+    }
+    if (seeds == 0) return;
+    warnings.push_back(fmt::format(
+        "{}: GenLock order differs from the pulses of {} frames in {} seeds, though no evaluated "
+        "frame was lost; did all cameras start with the same pulse?",
+        row.pipeline, errors, seeds));
+  }
+
+  const Scenario& scenario_;
+  const SourceFactory& make_source_;
+  const EvaluationOptions& options_;
+  const Progress& progress_;
+  const std::vector<PipelineChoice> choices_;
+  std::vector<std::optional<SeedScore>> scores_;  // by job; each written by one worker
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;  // guards what follows
+  std::size_t done_ = 0;
+  double cpu_seconds_ = 0;
+  std::exception_ptr source_error_;
+  std::size_t failed_job_ = 0;
+  std::string failure_;
+};
+
+}  // namespace
+
+Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
+                 const EvaluationOptions& options, const Progress& progress) {
+  return Evaluation(scenario, make_source, options, progress).run();
+}
+
+void check_pipelines(const Scenario& scenario) { choose_pipelines(scenario, {}); }
+
+}  // namespace simbench::evaluation

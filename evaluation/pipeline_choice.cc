@@ -1,0 +1,202 @@
+#include "evaluation/pipeline_choice.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "algorithms/parameters.h"
+#include "evaluation/claims.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::Scenario;
+
+constexpr std::int64_t kMostFramesKept = 200'000;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// found "genlok"; did you mean genlock? Known: genlock, yoon2021
+std::string unknown(const std::string& name, const std::vector<std::string>& known) {
+  const std::vector<std::string> near = scenarios::nearest(name, known);
+  const std::string guess = near.empty() ? "" : " did you mean " + joined(near) + "?";
+  return "found \"" + name + "\";" + guess + " known: " + joined(known);
+}
+
+// A name as a part of a JSON pointer (RFC 6901).
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '~') {
+      text += "~0";
+    } else if (c == '/') {
+      text += "~1";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+template <class Entry>
+void append_infos(const std::vector<Entry>& entries, std::vector<const AlgorithmInfo*>& infos) {
+  for (const Entry& entry : entries) infos.push_back(&entry.info);
+}
+
+std::vector<const AlgorithmInfo*> all_algorithms() {
+  std::vector<const AlgorithmInfo*> infos;
+  append_infos(host_sync_algorithms(), infos);
+  append_infos(device_time_algorithms(), infos);
+  append_infos(gathering_algorithms(), infos);
+  return infos;
+}
+
+bool declares(const AlgorithmInfo& info, const std::string& parameter) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(),
+                     [&](const ParameterSpec& spec) { return spec.name == parameter; });
+}
+
+// Every parameter in the scenario is declared by an algorithm of that name or family, and allowed.
+void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
+                     const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
+  const std::string pointer = "/algorithms/" + escaped(key) + "/" + escaped(parameter);
+  bool declared = false;
+  std::vector<std::string> known;
+  for (const AlgorithmInfo* info : named) {
+    for (const ParameterSpec& spec : info->parameters) {
+      if (std::find(known.begin(), known.end(), spec.name) == known.end()) {
+        known.push_back(spec.name);
+      }
+    }
+    if (!declares(*info, parameter)) continue;
+    declared = true;
+    try {
+      check_parameters(info->parameters, {{parameter, value}});
+    } catch (const ParameterError& error) {
+      scenarios::fail_at(scenario, pointer, error.what());
+    }
+  }
+  if (declared) return;
+  scenarios::fail_at(
+      scenario, pointer,
+      known.empty() ? "\"" + key + "\" has no parameters" : unknown(parameter, known));
+}
+
+void check_all_parameters(const Scenario& scenario) {
+  const std::vector<const AlgorithmInfo*> infos = all_algorithms();
+  for (const auto& [key, parameters] : scenario.algorithms) {
+    std::vector<const AlgorithmInfo*> named;
+    std::vector<std::string> known;
+    for (const AlgorithmInfo* info : infos) {
+      for (const std::string& name : {info->family, info->name}) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+      }
+      if (info->family == key || info->name == key) named.push_back(info);
+    }
+    if (named.empty()) {
+      scenarios::fail_at(scenario, "/algorithms/" + escaped(key), unknown(key, known));
+    }
+    for (const auto& [parameter, value] : parameters) {
+      check_parameter(scenario, key, parameter, value, named);
+    }
+  }
+}
+
+Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
+  ParameterValues given;
+  for (const std::string& key : {info.family, info.name}) {
+    const auto found = scenario.algorithms.find(key);
+    if (found == scenario.algorithms.end()) continue;
+    for (const auto& [parameter, value] : found->second) {
+      if (declares(info, parameter)) given[parameter] = value;
+    }
+  }
+  return check_parameters(info.parameters, given);
+}
+
+template <class Entry>
+const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const char* stage,
+                          const std::string& name, const std::vector<Entry>& entries) {
+  std::vector<std::string> known;
+  for (const Entry& entry : entries) {
+    if (entry.info.name == name) return entry;
+    known.push_back(entry.info.name);
+  }
+  scenarios::fail_at(scenario, "/pipelines/" + std::to_string(pipeline) + "/" + stage,
+                     unknown(name, known));
+}
+
+PipelineChoice choose(const Scenario& scenario, std::size_t index) {
+  const scenarios::Pipeline& pipeline = scenario.pipelines[index];
+  algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
+  const DeviceTimeEntry& device_time =
+      algorithm_at(scenario, index, "device_time", pipeline.device_time, device_time_algorithms());
+  const GatheringEntry& gathering =
+      algorithm_at(scenario, index, "gathering", pipeline.gathering, gathering_algorithms());
+  return {.pipeline = pipeline,
+          .device_time = device_time,
+          .device_time_parameters = parameters_of(scenario, device_time.info),
+          .gathering = gathering,
+          .gathering_parameters = parameters_of(scenario, gathering.info)};
+}
+
+}  // namespace
+
+std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
+                                             const std::vector<std::string>& names) {
+  check_all_parameters(scenario);
+  std::vector<PipelineChoice> all;
+  std::vector<std::string> known;
+  for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
+    all.push_back(choose(scenario, index));
+    known.push_back(scenario.pipelines[index].name);
+  }
+  if (names.empty()) return all;
+
+  std::vector<PipelineChoice> chosen;
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    const auto found = std::find(known.begin(), known.end(), *name);
+    if (found == known.end()) {
+      throw scenarios::InputError("pipelines of " + scenario.name + ": " + unknown(*name, known));
+    }
+    if (std::find(names.begin(), name, *name) != name) {
+      throw scenarios::InputError("pipelines: \"" + *name + "\" is named twice");
+    }
+    chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return chosen;
+}
+
+ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
+  ScorerSetup setup;
+  setup.stream = scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth;
+  setup.median = median_kind(scenario.evaluation.rmdv_median);
+  setup.genlock = scenario.cameras.sync_mode == "genlock";
+  setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
+  setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
+                            const GatheringSetup& gathering) {
+    return make(parameters, gathering);
+  };
+  if (choice.device_time.make) {
+    setup.make_estimator = [make = choice.device_time.make,
+                            parameters = choice.device_time_parameters] {
+      return make(parameters);
+    };
+  }
+  const DeviceTimeEntry* offline = find_device_time("regression_offline");
+  if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&
+      scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
+    setup.make_second_estimator = [make = offline->make,
+                                   parameters = parameters_of(scenario, offline->info)] {
+      return make(parameters);
+    };
+  }
+  return setup;
+}
+
+}  // namespace simbench::evaluation
