@@ -1,0 +1,73 @@
+// All hosts of a scenario, with their clocks and the network between them, ready to run.
+//
+// The clocks at true zero, whenever the world starts: the master's reads 0. The slaves' clocks are
+//   kUnsynchronised  off by N(initial_offset_sigma_ms);
+//   kLastSet         off by N(last_set.skew_sigma_ppm) * hours_ago, the rate error of those hours
+//                    being independent of the present one, plus the present rate difference to the
+//                    master times minutes_since_baseline;
+//   kMaster          the master's own, at every instant.
+// Steady clocks start from an arbitrary reading within an hour, each host's another one, so that
+// nothing can mistake one host's for another's.
+//
+// Everything random but the load is drawn from streams named after the hosts alone: all pipelines
+// of a seed, and all scenarios that differ in something else, have the same oscillators and
+// offsets.
+//
+// Source: reference/calibration.md section 2 ("Host clock", "None row").
+//
+//   Engine engine;
+//   VirtualContext context(engine);
+//   HostGroup hosts(context, scenario.hosts, scenario.network,
+//                   {.run_seed = seed, .load_key = "both@18cam_6host_45fps"}, sink);
+//   co_spawn(context, host_sync.run_master(hosts.host(0), slaves), detached);
+#ifndef SIMBENCH_SIM_HOST_HOST_GROUP_H_
+#define SIMBENCH_SIM_HOST_HOST_GROUP_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "algorithms/host_sync/host_sync.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+#include "sim/clock/system_clock.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/host/sim_host.h"
+#include "sim/network/network.h"
+#include "sim/network/run_load.h"
+
+namespace simbench::sim {
+
+struct HostGroupOptions {
+  std::uint64_t run_seed = 1;
+  std::string load_key;  // "<pipeline>@<scenario>"
+  InitialClocks initial_clocks = InitialClocks::kUnsynchronised;
+};
+
+class HostGroup {
+ public:
+  // Passes the initial setting of every clock to the sink. What is referred to must outlive the
+  // group; the group must outlive the coroutines that use its hosts.
+  HostGroup(VirtualContext& context, const scenarios::Hosts& hosts,
+            const scenarios::Network& network, const HostGroupOptions& options,
+            RecordingSink& sink);
+  HostGroup(const HostGroup&) = delete;
+  HostGroup& operator=(const HostGroup&) = delete;
+
+  std::size_t size() const { return hosts_.size(); }
+  SimHost& host(std::size_t index) { return hosts_[index]; }
+  SystemClock& clock(std::size_t index) { return clocks_[index]; }
+
+ private:
+  void make_clocks(const scenarios::Hosts& hosts, const HostGroupOptions& options);
+
+  RunLoad load_;
+  Network network_;
+  std::deque<SystemClock> clocks_;
+  std::deque<SimHost> hosts_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_HOST_GROUP_H_

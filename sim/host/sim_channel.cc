@@ -1,0 +1,96 @@
+#include "sim/host/sim_channel.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kStreamSendCost("host: cost of sending on a stream");
+constexpr ComponentKey kDatagramSendCost("host: cost of sending a datagram");
+constexpr std::size_t kStampsKept = 4096;
+
+}  // namespace
+
+SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
+    : host_(host),
+      peer_(peer),
+      transport_(transport),
+      path_(host.world().network.open(host.id(), peer, transport, *this)),
+      stamps_in_kernel_(host.world().network_parameters.stamp_point == "kernel"),
+      send_cost_ms_(host.world().hosts.send_cost_ms +
+                    host.world().load.session(host.id(), peer).send_cost_ms),
+      arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))),
+      left_(host.world().context, host.name("transmit stamp to host" + std::to_string(peer))) {}
+
+Nanoseconds SimChannel::occupancy(MessageId id) const {
+  const HostWorld& world = host_.world();
+  RandomStream draw(world.run_seed,
+                    transport_ == Transport::kStream ? kStreamSendCost : kDatagramSendCost,
+                    direction_of(host_.id(), peer_), id);
+  return from_ms(send_cost_ms_ + draw.exponential(world.hosts.send_cost_exponential_ms));
+}
+
+Task<MessageId> SimChannel::send(Bytes message) {
+  const MessageId id = next_id_++;
+  const Cpu::Turn turn = host_.cpu().reserve(occupancy(id));
+  if (turn.end > host_.true_now()) {
+    co_await sleep_until(host_.world().context, turn.end, "send");
+  }
+  host_.world().network.send(path_, id, std::move(message));
+  co_return id;
+}
+
+Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
+  Inbox& inbox = host_.world().network.inbox(path_);
+  SIMBENCH_ASSERT(!arrived_.waiting(), "one receive at a time on a channel");
+  if (inbox.empty()) {
+    const std::optional<TrueTime> until = host_.instant_of(deadline);
+    if (until && *until <= host_.true_now()) co_return std::nullopt;
+    co_await arrived_.wait(until);
+    if (inbox.empty()) co_return std::nullopt;
+  }
+  ArrivedMessage message = std::move(inbox.front());
+  inbox.pop_front();
+  const Nanoseconds wake_up = from_ms(host_.world().hosts.receive_wake_up_ms);
+  if (wake_up.count() > 0) {
+    co_await sleep_until(host_.world().context, host_.true_now() + wake_up, "receive: wake up");
+  }
+  const SystemClock& clock = host_.system_clock();
+  const TrueTime stamped = stamps_in_kernel_ ? message.at : host_.true_now();
+  const HostTime exact = clock.read(stamped);
+  const ClockInterface& interface = host_.clock_interface();
+  co_return ReceivedMessage{
+      .bytes = std::move(message.bytes),
+      .received = stamps_in_kernel_ ? interface.tick_of(exact) : interface.read(exact),
+      .received_steady = clock.steady(stamped)};
+}
+
+Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
+  if (!stamps_in_kernel_) co_return std::nullopt;
+  const std::optional<TrueTime> until = host_.instant_of(deadline);
+  while (!has_left(id)) {
+    if (until && *until <= host_.true_now()) co_return std::nullopt;
+    co_await left_.wait(until);
+  }
+  if (id < first_stamp_) co_return std::nullopt;
+  co_return transmit_stamps_[static_cast<std::size_t>(id - first_stamp_)];
+}
+
+void SimChannel::on_left(MessageId first, std::size_t count) {
+  if (!stamps_in_kernel_) return;
+  SIMBENCH_ASSERT(first == first_stamp_ + transmit_stamps_.size(), "messages leave in order");
+  const HostTime stamp =
+      host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
+  transmit_stamps_.insert(transmit_stamps_.end(), count, stamp);
+  while (transmit_stamps_.size() > kStampsKept) {
+    transmit_stamps_.pop_front();
+    ++first_stamp_;
+  }
+  left_.notify();
+}
+
+}  // namespace simbench::sim

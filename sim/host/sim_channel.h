@@ -1,0 +1,65 @@
+// A simulated host's channel to one peer.
+//
+// send() occupies the host's CPU for
+//   send_cost_ms + Exp(send_cost_exponential_ms) + what the session's load adds;
+// the message leaves, and the call returns, at the end of that. The random part is keyed by (link,
+// direction, transport, number of the message).
+//
+// receive() returns receive_wake_up_ms after the message was available and the call was waiting for
+// it: a message that is there when receive() is called costs the wake-up too. A message that
+// arrives before the deadline is returned even if the wake-up ends after it.
+//
+// Stamps: at "application", the receive stamp is the reading of the system clock, through its
+// interface, when receive() returns, and there are no transmit stamps; at "kernel", both are taken
+// when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
+// resolution. Stamps of the last 4096 messages are kept.
+//
+// Source: reference/calibration.md section 2 (steps 1, 2 and 4); DESIGN section 4.
+#ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
+#define SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "algorithms/ports/host.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/network/network.h"
+
+namespace simbench::sim {
+
+class SimHost;
+
+class SimChannel final : public MessageChannel, private Endpoint {
+ public:
+  // `host` must outlive the channel and the channel its network's events.
+  SimChannel(SimHost& host, PeerId peer, Transport transport);
+
+  Task<MessageId> send(Bytes message) override;
+  Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) override;
+  Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) override;
+
+ private:
+  void on_arrival() override { arrived_.notify(); }
+  void on_left(MessageId first, std::size_t count) override;
+
+  Nanoseconds occupancy(MessageId id) const;
+  bool has_left(MessageId id) const { return id < first_stamp_ + transmit_stamps_.size(); }
+
+  SimHost& host_;
+  PeerId peer_;
+  Transport transport_;
+  PathId path_;
+  bool stamps_in_kernel_;
+  double send_cost_ms_;
+  MessageId next_id_ = 0;
+  WaitPoint arrived_;
+  WaitPoint left_;
+  MessageId first_stamp_ = 0;  // the message of the first of
+  std::deque<HostTime> transmit_stamps_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_SIM_CHANNEL_H_

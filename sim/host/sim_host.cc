@@ -1,0 +1,79 @@
+#include "sim/host/sim_host.h"
+
+#include "sim/host/sim_channel.h"
+
+namespace simbench::sim {
+namespace {
+
+// Beyond this a deadline is none: no run lasts so long, and instants further away may not exist.
+constexpr std::chrono::hours kNever(24 * 365 * 10);
+
+std::string host_name(PeerId id) { return "host" + std::to_string(id); }
+
+ClockInterface interface_of(const HostWorld& world, PeerId id) {
+  const scenarios::HostClock& clock = world.hosts.clock;
+  RandomStream draw(world.run_seed, host_name(id) + ": tick phase");
+  return ClockInterface(from_ms(clock.tick_ms), from_ms(draw.uniform(0, clock.tick_ms)),
+                        from_ms(clock.resolution_ms));
+}
+
+}  // namespace
+
+SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock)
+    : world_(world),
+      id_(id),
+      system_clock_(system_clock),
+      interface_(interface_of(world, id)),
+      cpu_(world.context.engine()),
+      clock_port_({world.context, system_clock, cpu_, world.hosts.clock}, interface_,
+                  world.load.set_cost_factor(id), RandomStream(world.run_seed, name("set cost")),
+                  host_name(id)),
+      steady_port_(world.context.engine(), system_clock),
+      algorithm_draws_(world.run_seed, name("algorithm")),
+      sleep_label_(name("sleep")) {
+  system_clock_.observe(true_now(),
+                        [this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
+}
+
+SimHost::~SimHost() { system_clock_.observe(true_now(), nullptr); }
+
+MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {
+  std::unique_ptr<SimChannel>& channel = channels_[{peer, transport}];
+  if (channel == nullptr) channel = std::make_unique<SimChannel>(*this, peer, transport);
+  return *channel;
+}
+
+Task<void> SimHost::sleep_for(Nanoseconds interval) {
+  const SteadyTime deadline = steady_port_.now() + interval;
+  co_await sim::sleep_until(world_.context, system_clock_.when(deadline), sleep_label_);
+}
+
+Task<void> SimHost::sleep_until(HostTime at) {
+  Sleeper sleeper(world_.context, sleep_label_);
+  sleepers_.push_back(sleeper);
+  for (;;) {
+    const TrueTime wake = system_clock_.when(at, true_now());
+    if (wake <= true_now()) break;
+    co_await sleeper.adjusted.wait(wake);
+  }
+}
+
+void SimHost::on_adjustment(const ClockAdjustment& adjustment) {
+  world_.sink.on_adjustment(adjustment);
+  for (Sleeper& sleeper : sleepers_) sleeper.adjusted.notify();
+}
+
+void SimHost::report_exchange(const Exchange& exchange) { world_.sink.on_exchange(id_, exchange); }
+
+void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcome(outcome); }
+
+std::optional<TrueTime> SimHost::instant_of(SteadyTime deadline) const {
+  if (deadline > steady_port_.now() + kNever) return std::nullopt;
+  return system_clock_.when(deadline);
+}
+
+std::string SimHost::name(std::string_view what) const {
+  return host_name(id_).append(": ").append(what);
+}
+
+}  // namespace simbench::sim

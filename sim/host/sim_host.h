@@ -1,0 +1,110 @@
+// A simulated host: what algorithms/ports/host.h promises, in virtual time.
+//
+// Calls of the clock cost CPU time (sim/host/clock_port.h), sends the sender's occupancy
+// (sim/host/sim_channel.h). All waits are on the engine: intervals and deadlines follow the host's
+// oscillator, sleep_until follows its system clock and is re-armed whenever that is adjusted, by
+// whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen, and the
+// clock's setting when the host is made comes first.
+//
+// The host's random streams are named after its number ("host3: ..."), never after the scenario.
+//
+// Source: DESIGN section 4; reference/calibration.md section 2.
+//
+//   SystemClock clock(3, oscillator, offset);
+//   SimHost host({context, scenario.hosts, scenario.network, network, load, sink, seed}, 3, clock);
+//   co_spawn(context, host_sync.run_slave(host, 0), detached);
+#ifndef SIMBENCH_SIM_HOST_SIM_HOST_H_
+#define SIMBENCH_SIM_HOST_SIM_HOST_H_
+
+#include <boost/intrusive/list.hpp>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "algorithms/ports/host.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+#include "sim/clock/clock_interface.h"
+#include "sim/clock/system_clock.h"
+#include "sim/engine/random.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/host/clock_port.h"
+#include "sim/host/cpu.h"
+#include "sim/network/network.h"
+#include "sim/network/run_load.h"
+
+namespace simbench::sim {
+
+class SimChannel;
+
+// What the hosts of a world have in common. Everything referred to must outlive them.
+struct HostWorld {
+  VirtualContext& context;
+  const scenarios::Hosts& hosts;
+  const scenarios::Network& network_parameters;
+  Network& network;
+  const RunLoad& load;
+  RecordingSink& sink;
+  std::uint64_t run_seed;
+};
+
+class SimHost final : public Host {
+ public:
+  // `system_clock` must outlive the host, which becomes its observer.
+  SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock);
+  SimHost(const SimHost&) = delete;
+  SimHost& operator=(const SimHost&) = delete;
+  ~SimHost() override;
+
+  PeerId id() const override { return id_; }
+  HostClock& clock() override { return clock_port_; }
+  const SteadyClock& steady_clock() const override { return steady_port_; }
+  MessageChannel& open_channel(PeerId peer, Transport transport) override;
+  Task<void> sleep_for(Nanoseconds interval) override;
+  Task<void> sleep_until(HostTime at) override;
+  double random_uniform() override { return algorithm_draws_.uniform(); }
+  void report_exchange(const Exchange& exchange) override;
+  void report_outcome(const SyncOutcome& outcome) override;
+
+  // For its channels.
+  const HostWorld& world() const { return world_; }
+  const SystemClock& system_clock() const { return system_clock_; }
+  const ClockInterface& clock_interface() const { return interface_; }
+  Cpu& cpu() { return cpu_; }
+  TrueTime true_now() const { return world_.context.engine().now(); }
+  // The instant of a deadline, for a wait; nothing if it is years away.
+  std::optional<TrueTime> instant_of(SteadyTime deadline) const;
+  // "host3: what".
+  std::string name(std::string_view what) const;
+
+ private:
+  using AutoUnlink =
+      boost::intrusive::list_base_hook<boost::intrusive::link_mode<boost::intrusive::auto_unlink>>;
+  // A sleep_until() under way.
+  struct Sleeper : AutoUnlink {
+    Sleeper(VirtualContext& context, std::string label) : adjusted(context, std::move(label)) {}
+    WaitPoint adjusted;
+  };
+
+  void on_adjustment(const ClockAdjustment& adjustment);
+
+  HostWorld world_;
+  PeerId id_;
+  SystemClock& system_clock_;
+  ClockInterface interface_;
+  Cpu cpu_;
+  ClockPort clock_port_;
+  SteadyPort steady_port_;
+  RandomStream algorithm_draws_;
+  std::string sleep_label_;
+  std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
+  boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_SIM_HOST_H_

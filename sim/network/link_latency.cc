@@ -1,0 +1,34 @@
+#include "sim/network/link_latency.h"
+
+#include <algorithm>
+
+namespace simbench::sim {
+namespace {
+
+double asymmetry_ms(double sigma_ms, std::uint64_t run_seed, PeerId from, PeerId to) {
+  static constexpr ComponentKey kAsymmetry("network: asymmetry");
+  RandomStream draw(run_seed, kAsymmetry, std::min(from, to), std::max(from, to));
+  const double forward_minus_backward_ms = draw.normal(sigma_ms);
+  return from < to ? forward_minus_backward_ms : -forward_minus_backward_ms;
+}
+
+}  // namespace
+
+LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from,
+                         PeerId to, double session_latency_ms)
+    : network_(&network),
+      fixed_ms_(network.latency_fixed_ms + session_latency_ms +
+                asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2),
+      bursts_(network.burst, run_seed, direction_of(from, to)) {}
+
+Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
+  double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);
+  // Both are drawn whatever comes of them, so that the draws after them stay in place.
+  const bool has_spike = draw.chance(network_->spike_probability);
+  const double spike_ms = draw.uniform(0, network_->spike_max_ms);
+  if (has_spike) latency_ms += spike_ms;
+  if (bursts_.active(left)) latency_ms += network_->burst.latency_ms;
+  return from_ms(std::max(0.0, latency_ms));
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,44 @@
+// The latency of one direction of a link, without the queues at the switch.
+//
+//   fixed +- asymmetry / 2 + Exp + spike (with a probability) + burst (while one lasts) + session
+//
+// The asymmetry is the fixed latency from the host of lower number to that of higher number minus
+// the fixed latency back, one draw per link. A latency is never negative.
+//
+// Source: reference/calibration.md section 2 ("lat()"); reference/host_sync.md section 3.
+#ifndef SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
+#define SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
+
+#include <cstdint>
+
+#include "algorithms/ports/exchange.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/engine/random.h"
+#include "sim/network/burst_process.h"
+
+namespace simbench::sim {
+
+// Numbers the directions of all links.
+constexpr std::uint64_t direction_of(PeerId from, PeerId to) {
+  return (static_cast<std::uint64_t>(from) << 32) | to;
+}
+
+class LinkLatency {
+ public:
+  // `session_latency_ms` comes on top. `network` must outlive this.
+  LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
+              double session_latency_ms);
+
+  // The latency of a message that leaves at `left`; `draw` is the message's own stream.
+  Nanoseconds draw(RandomStream& draw, TrueTime left);
+
+ private:
+  const scenarios::Network* network_;
+  double fixed_ms_;
+  BurstProcess bursts_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_

@@ -1,0 +1,241 @@
+#include "sim/network/network.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kDatagramDraws("network: datagram");
+constexpr ComponentKey kStreamDraws("network: stream");
+constexpr ComponentKey kAckDraws("network: acknowledgement");
+
+// Ethernet's 1500 bytes less the headers of IP and TCP.
+constexpr double kFullSegmentBytes = 1460;
+// As Linux' tcp_retries2.
+constexpr int kMaxRetransmissions = 15;
+
+}  // namespace
+
+Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Transport kind)
+    : from(from_host),
+      to(to_host),
+      transport(kind),
+      latency(network.parameters_, network.run_seed_, from, to,
+              network.load_.session(from, to).latency_ms) {
+  if (network.parameters_.nagle && transport == Transport::kStream) {
+    nagle = std::make_unique<NagleState>();
+  }
+}
+
+Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
+                 std::size_t hosts, const RunLoad& load)
+    : engine_(engine),
+      parameters_(parameters),
+      run_seed_(run_seed),
+      load_(load),
+      rate_(parameters.bandwidth_mbit_per_s),
+      handler_id_(engine.attach(*this)),
+      host_ports_(hosts),
+      switch_ports_(hosts) {}
+
+PathId Network::open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint) {
+  SIMBENCH_ASSERT(from != to && std::max(from, to) < host_ports_.size(), "no such link");
+  auto& ids = path_ids_[static_cast<std::size_t>(transport)];
+  const auto [found, is_new] =
+      ids.try_emplace(direction_of(from, to), static_cast<PathId>(paths_.size()));
+  const PathId path = found->second;
+  if (is_new) {
+    ids.emplace(direction_of(to, from), path + 1);
+    paths_.emplace_back(*this, from, to, transport);
+    paths_.emplace_back(*this, to, from, transport);
+  }
+  paths_[path].sender = &endpoint;
+  paths_[path ^ 1].receiver = &endpoint;
+  return path;
+}
+
+void Network::send(PathId path_id, MessageId id, Bytes message) {
+  Path& path = paths_[path_id];
+  const auto bytes = static_cast<double>(message.size());
+  if (path.nagle == nullptr) {
+    Segment segment{.path = path_id, .first = id, .bytes = bytes};
+    segment.messages.push_back(std::move(message));
+    send_segment(std::move(segment));
+    return;
+  }
+  NagleState& nagle = *path.nagle;
+  if (nagle.waiting.messages.empty()) {
+    nagle.waiting = {.path = path_id, .first = id};
+  }
+  nagle.waiting.bytes += bytes;
+  nagle.waiting.messages.push_back(std::move(message));
+  if (nagle.acknowledged == nagle.sent || nagle.waiting.bytes >= kFullSegmentBytes) {
+    send_segment(std::exchange(nagle.waiting, {}));
+  }
+}
+
+void Network::send_segment(Segment segment) {
+  const PathId path_id = segment.path;
+  Path& path = paths_[path_id];
+  segment.left = engine_.now();
+  const MessageId first = segment.first;
+  const std::size_t count = segment.messages.size();
+  const Nanoseconds duration = on_the_line(segment);
+  const SegmentId id = keep(std::move(segment));
+  if (path.nagle != nullptr) {
+    ++path.nagle->sent;
+    // What the sender owes for the way back travels with its data.
+    if (paths_[path_id ^ 1].nagle->owes_ack) acknowledge(path_id ^ 1);
+  }
+  if (rate_.is_infinite()) {
+    travel(id, engine_.now());
+  } else {
+    engine_.schedule(host_ports_[path.from].pass(engine_.now(), duration), handler_id_, kAtSwitch,
+                     id);
+  }
+  path.sender->on_left(first, count);
+}
+
+void Network::handle(const Event& event) {
+  switch (static_cast<EventKind>(event.kind)) {
+    case kAtSwitch: {
+      const Segment& segment = segments_[event.subject];
+      Port& port = switch_ports_[paths_[segment.path].to];
+      travel(event.subject, port.pass(event.time, on_the_line(segment)));
+      break;
+    }
+    case kArrival:
+      arrive(event.subject);
+      break;
+    case kAckDue: {
+      const NagleState& nagle = *paths_[event.subject].nagle;
+      if (nagle.owes_ack && nagle.ack_due == event.time) acknowledge(event.subject);
+      break;
+    }
+    case kAckArrival:
+      on_ack(event.subject);
+      break;
+  }
+}
+
+void Network::travel(SegmentId id, TrueTime at) {
+  if (paths_[segments_[id].path].transport == Transport::kDatagram) {
+    travel_as_datagram(id, at);
+  } else {
+    travel_on_stream(id, at);
+  }
+}
+
+void Network::travel_as_datagram(SegmentId id, TrueTime at) {
+  const Segment& segment = segments_[id];
+  Path& path = paths_[segment.path];
+  RandomStream draw = draws_of(path, segment.first);
+  const TrueTime arrival = at + path.latency.draw(draw, segment.left);
+  const TrueTime copy_arrival = at + path.latency.draw(draw, segment.left);
+  const bool is_lost = draw.chance(parameters_.loss_probability);
+  const bool is_duplicated = draw.chance(parameters_.duplicate_probability);
+  const bool is_reordered = draw.chance(parameters_.reorder_probability);
+  const double detour_ms = draw.uniform(0, parameters_.reorder_max_ms);
+  if (is_lost) {
+    release(id);
+    return;
+  }
+  const TrueTime in_order = std::max(arrival, path.last_arrival);
+  if (is_reordered) {
+    engine_.schedule(in_order + from_ms(detour_ms), handler_id_, kArrival, id);
+  } else {
+    path.last_arrival = in_order;
+    engine_.schedule(in_order, handler_id_, kArrival, id);
+  }
+  if (is_duplicated) {
+    engine_.schedule(std::max(copy_arrival, in_order), handler_id_, kArrival, keep(segment));
+  }
+}
+
+void Network::travel_on_stream(SegmentId id, TrueTime at) {
+  const Segment& segment = segments_[id];
+  Path& path = paths_[segment.path];
+  RandomStream draw = draws_of(path, segment.first);
+  TrueTime arrival = at + path.latency.draw(draw, segment.left);
+  double timeout_ms = parameters_.retransmit_timeout_ms;
+  for (int losses = 0; draw.chance(parameters_.loss_probability); timeout_ms *= 2) {
+    if (++losses > kMaxRetransmissions) path.is_broken = true;
+    if (path.is_broken) break;
+    arrival += from_ms(timeout_ms);
+  }
+  if (path.is_broken) {
+    release(id);
+    return;
+  }
+  path.last_arrival = std::max(path.last_arrival, arrival);
+  engine_.schedule(path.last_arrival, handler_id_, kArrival, id);
+}
+
+void Network::arrive(SegmentId id) {
+  Segment segment = release(id);
+  Path& path = paths_[segment.path];
+  for (Bytes& message : segment.messages) {
+    path.inbox.push_back({std::move(message), engine_.now()});
+  }
+  if (path.nagle != nullptr) on_segment_delivered(segment.path);
+  if (path.receiver != nullptr) path.receiver->on_arrival();
+}
+
+void Network::on_segment_delivered(PathId path_id) {
+  NagleState& nagle = *paths_[path_id].nagle;
+  ++nagle.delivered;
+  if (nagle.owes_ack || parameters_.delayed_ack_ms == 0) {
+    acknowledge(path_id);
+    return;
+  }
+  nagle.owes_ack = true;
+  nagle.ack_due = engine_.now() + from_ms(parameters_.delayed_ack_ms);
+  engine_.schedule(nagle.ack_due, handler_id_, kAckDue, path_id);
+}
+
+void Network::acknowledge(PathId path_id) {
+  NagleState& nagle = *paths_[path_id].nagle;
+  Path& way_back = paths_[path_id ^ 1];
+  nagle.owes_ack = false;
+  RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to), nagle.acks++);
+  const TrueTime arrival = engine_.now() + way_back.latency.draw(draw, engine_.now());
+  nagle.last_ack = std::max(nagle.last_ack, arrival);
+  nagle.acks_on_the_way.push_back(nagle.delivered);
+  engine_.schedule(nagle.last_ack, handler_id_, kAckArrival, path_id);
+}
+
+void Network::on_ack(PathId path_id) {
+  NagleState& nagle = *paths_[path_id].nagle;
+  nagle.acknowledged = nagle.acks_on_the_way.front();
+  nagle.acks_on_the_way.pop_front();
+  if (nagle.acknowledged == nagle.sent && !nagle.waiting.messages.empty()) {
+    send_segment(std::exchange(nagle.waiting, {}));
+  }
+}
+
+RandomStream Network::draws_of(const Path& path, MessageId id) const {
+  const ComponentKey key = path.transport == Transport::kDatagram ? kDatagramDraws : kStreamDraws;
+  return RandomStream(run_seed_, key, direction_of(path.from, path.to), id);
+}
+
+Network::SegmentId Network::keep(Segment segment) {
+  if (free_segments_.empty()) {
+    segments_.push_back(std::move(segment));
+    return static_cast<SegmentId>(segments_.size() - 1);
+  }
+  const SegmentId id = free_segments_.back();
+  free_segments_.pop_back();
+  segments_[id] = std::move(segment);
+  return id;
+}
+
+Network::Segment Network::release(SegmentId id) {
+  free_segments_.push_back(id);
+  return std::exchange(segments_[id], {});
+}
+
+}  // namespace simbench::sim

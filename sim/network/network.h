@@ -1,0 +1,161 @@
+// The network of the rig: every host on one switch, messages as datagrams or on streams.
+//
+// A message that leaves a host passes the host's port to the switch and the switch's port to the
+// receiver, each of which serves in order of arrival, and then takes the latency of its direction
+// of the link. All random numbers of a message are keyed by (link, direction, transport, number of
+// the message): whoever sends more moves nobody else's.
+//
+// Datagrams may be lost, duplicated (the copy has a latency of its own) and reordered (delayed on
+// their own, others pass); apart from that they keep their order. Streams are in order and
+// complete: a lost segment arrives a retransmission timeout later, doubled each time, and holds up
+// what follows it. After 15 retransmissions the stream is broken and nothing arrives any more.
+//
+// Nagle's algorithm (streams, RFC 896 and RFC 1122 4.2.3.4): while a segment is unacknowledged,
+// smaller messages wait and leave together when the acknowledgement comes or a full segment is
+// reached; they arrive together, as separate messages. The receiver acknowledges a second segment,
+// or together with its own data, at once, a single one only after the delay. Acknowledgements have
+// the latency of their direction and no size; without Nagle they change nothing and are not
+// simulated.
+//
+// Links are made when first used: memory grows with the links in use, not with hosts squared.
+// Cost: one event per message, two with a bandwidth; no allocation of its own in steady state.
+// Source: DESIGN section 7; reference/calibration.md sections 2 and 5 (H9).
+//
+//   Network network(engine, scenario.network, seed, host_count, load);
+//   PathId path = network.open(0, 3, Transport::kStream, endpoint_of_host_0);
+//   network.send(path, 0, std::move(bytes));  // leaves host 0 now
+#ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
+#define SIMBENCH_SIM_NETWORK_NETWORK_H_
+
+#include <boost/container/small_vector.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "algorithms/ports/host.h"
+#include "scenarios/scenario.h"
+#include "sim/engine/engine.h"
+#include "sim/network/link_latency.h"
+#include "sim/network/port.h"
+#include "sim/network/run_load.h"
+
+namespace simbench::sim {
+
+// Numbers the paths: one per transport and direction of a link.
+using PathId = std::uint32_t;
+
+// A message that has arrived and waits to be received.
+struct ArrivedMessage {
+  Bytes bytes;
+  TrueTime at;
+};
+using Inbox = std::deque<ArrivedMessage>;
+
+// One end of a channel, told what happens, at the virtual time when it happens.
+class Endpoint {
+ public:
+  virtual ~Endpoint() = default;
+  // A message has been added to the inbox.
+  virtual void on_arrival() = 0;
+  // Messages `first` to `first + count - 1` have left the host.
+  virtual void on_left(MessageId first, std::size_t count) = 0;
+};
+
+class Network : private EventHandler {
+ public:
+  // `engine` and `parameters` must outlive the network.
+  Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
+          std::size_t hosts, const RunLoad& load);
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
+  ~Network() override = default;
+
+  // The path from `from` to `to`, both of whose ends at `from` are `endpoint` from now on: it is
+  // told what leaves on this path and what arrives on the way back. It must outlive the network's
+  // events. Messages that arrive before the receiver has opened its end wait in the inbox.
+  PathId open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint);
+
+  // Message `id` leaves the host now; ids count from 0 on each path.
+  void send(PathId path, MessageId id, Bytes message);
+
+  // What has arrived at the host that opened `path`, sent by its peer.
+  Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
+
+ private:
+  using SegmentId = std::uint32_t;
+  struct Segment {
+    PathId path = 0;
+    MessageId first = 0;  // number of the first message
+    TrueTime left{};
+    double bytes = 0;  // of the messages, without headers
+    boost::container::small_vector<Bytes, 1> messages{};
+  };
+  // The state of a stream under Nagle's algorithm.
+  struct NagleState {
+    Segment waiting;              // for an acknowledgement
+    std::uint64_t sent = 0;       // segments
+    std::uint64_t delivered = 0;  // segments
+    std::uint64_t acknowledged = 0;
+    bool owes_ack = false;                      // the receiver, for one segment
+    TrueTime ack_due{};                         // then, if nothing happens before
+    std::uint64_t acks = 0;                     // sent
+    TrueTime last_ack{};                        // when it arrives
+    std::deque<std::uint64_t> acks_on_the_way;  // each covers the segments up to this count
+  };
+  // The two paths of a link and transport have numbers 2n and 2n + 1.
+  struct Path {
+    Path(const Network& network, PeerId from_host, PeerId to_host, Transport kind);
+
+    PeerId from;
+    PeerId to;
+    Transport transport;
+    LinkLatency latency;
+    TrueTime last_arrival = TrueTime::min();
+    bool is_broken = false;
+    Endpoint* sender = nullptr;
+    Endpoint* receiver = nullptr;
+    Inbox inbox;
+    std::unique_ptr<NagleState> nagle;  // streams under Nagle's algorithm only
+  };
+  enum EventKind : std::uint16_t { kAtSwitch, kArrival, kAckDue, kAckArrival };
+
+  void handle(const Event& event) override;
+
+  RandomStream draws_of(const Path& path, MessageId id) const;
+  Nanoseconds on_the_line(const Segment& segment) const {
+    return rate_.duration(segment.bytes + parameters_.overhead_bytes);
+  }
+
+  SegmentId keep(Segment segment);
+  Segment release(SegmentId id);
+
+  void send_segment(Segment segment);
+  // The segment is through the switch at `at`.
+  void travel(SegmentId id, TrueTime at);
+  void travel_as_datagram(SegmentId id, TrueTime at);
+  void travel_on_stream(SegmentId id, TrueTime at);
+  void arrive(SegmentId id);
+  void on_segment_delivered(PathId path);
+  void acknowledge(PathId path);
+  void on_ack(PathId path);
+
+  Engine& engine_;
+  const scenarios::Network& parameters_;
+  std::uint64_t run_seed_;
+  RunLoad load_;
+  LineRate rate_;
+  HandlerId handler_id_;
+  std::vector<Port> host_ports_;
+  std::vector<Port> switch_ports_;
+  std::deque<Path> paths_;
+  std::unordered_map<std::uint64_t, PathId> path_ids_[2];  // by transport, then direction
+  std::deque<Segment> segments_;
+  std::vector<SegmentId> free_segments_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_NETWORK_NETWORK_H_
