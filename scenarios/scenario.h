@@ -159,14 +159,15 @@ struct Usb {
   double spike_max_transfers;         // of U(0, this * transfer time)
 };
 
-// Something that goes wrong, at a time after the start of the capture.
+// Something that goes wrong, at a time after the start of the capture. Members that the kind does
+// not use may not be stated and are 0 here.
 struct Fault {
-  std::string kind;     // "camera_vanishes", "clock_step", "late_first_frame"
-  std::int64_t camera;  // camera_vanishes, late_first_frame
-  std::int64_t host;    // clock_step
-  double at_ms;
-  double duration_ms;  // camera_vanishes: until it returns; late_first_frame: its delay
-  double step_ms;      // clock_step
+  std::string kind;         // "camera_vanishes", "clock_step", "late_first_frame"
+  std::int64_t camera = 0;  // camera_vanishes, late_first_frame
+  std::int64_t host = 0;    // clock_step
+  double at_ms = 0;         // camera_vanishes, clock_step
+  double duration_ms = 0;   // camera_vanishes: until it returns; late_first_frame: its delay
+  double step_ms = 0;       // clock_step
 };
 
 // One choice for each stage, by the names under which algorithms are registered.

@@ -1,0 +1,23 @@
+// The files of scenarios/*.json as they are built into the program (written by embed.cmake).
+#ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
+#define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
+
+#include <string_view>
+#include <vector>
+
+namespace simbench::scenarios {
+
+struct BuiltinFile {
+  std::string_view name;  // of the scenario: the file's name without ".json"
+  std::string_view text;
+};
+
+// The scenarios in alphabetical order; the schema is not among them.
+const std::vector<BuiltinFile>& builtin_files();
+
+// scenarios/schema.json.
+std::string_view schema_text();
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_BUILTIN_FILES_H_

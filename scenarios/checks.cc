@@ -1,0 +1,4 @@
+#include "scenarios/checks.h"
+namespace simbench::scenarios {
+void check(const Scenario&) {}
+}

@@ -1,0 +1,17 @@
+// What the schema cannot say: members of a scenario that must agree with each other.
+#ifndef SIMBENCH_SCENARIOS_CHECKS_H_
+#define SIMBENCH_SCENARIOS_CHECKS_H_
+
+#include "scenarios/scenario.h"
+
+namespace simbench::scenarios {
+
+// Throws InputError about the first contradiction.
+void check(const Scenario& scenario);
+
+// The same for what the cameras are asked to do: profiles, sync mode and rates (rates.cc).
+void check_rates(const Scenario& scenario);
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_CHECKS_H_

@@ -1,0 +1,44 @@
+// Validation against scenarios/schema.json, with messages for people.
+//
+// valijson gives the verdict and the place; the message is then made from the schema's own words
+// for that place: "found X, allowed Y".
+#ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
+#define SIMBENCH_SCENARIOS_SCHEMA_H_
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenarios/places.h"
+
+namespace simbench::scenarios {
+
+enum class Completeness {
+  kDifferences,  // a file as written: what it states must be right
+  kResolved,     // every property of every object must be there, but for those in "x-optional"
+};
+
+// Throws InputError about the first line that the schema refuses.
+void validate(const nlohmann::json& document, Completeness completeness, const Places& places);
+
+// scenarios/schema.json with its properties in the order of the file.
+const nlohmann::ordered_json& ordered_schema();
+
+// The same value with its keys in the order of the schema.
+nlohmann::ordered_json in_schema_order(const nlohmann::json& document);
+
+// The part of the schema that describes the value at `key` of what `node` describes: a property, an
+// element, or a member of a map. Null if there is none.
+template <class Json>
+const Json* schema_of_child(const Json& node, const std::string& key) {
+  for (const char* const container : {"properties", "items", "additionalProperties"}) {
+    const auto found = node.find(container);
+    if (found == node.end() || !found->is_object()) continue;
+    if (container != std::string("properties")) return &*found;
+    if (const auto child = found->find(key); child != found->end()) return &*child;
+  }
+  return nullptr;
+}
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_SCHEMA_H_
