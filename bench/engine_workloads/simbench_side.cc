@@ -13,7 +13,8 @@ class Timers final : public sim::EventHandler {
  public:
   Timers(sim::Engine& engine, std::uint32_t timers, std::uint64_t events)
       : engine_(engine), id_(engine.attach(*this)), model_(timers, events) {
-    for (std::uint32_t i = 0; i < timers; ++i) engine.schedule(at_ns(first_expiry_ns(i)), id_, 0, i);
+    for (std::uint32_t i = 0; i < timers; ++i)
+      engine.schedule(at_ns(first_expiry_ns(i)), id_, 0, i);
   }
 
   void handle(const sim::Event& event) override {

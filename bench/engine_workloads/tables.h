@@ -10,7 +10,7 @@
 namespace simbench::bench {
 
 struct WorkloadTables {
-  std::array<std::int64_t, 4096> hold_ns;                   // E: delays of w1
+  std::array<std::int64_t, 4096> hold_ns;                  // E: delays of w1
   std::array<std::array<std::int64_t, 1024>, 5> stage_ns;  // J0..J4: delays of w2
 };
 

@@ -14,17 +14,9 @@ constexpr std::size_t kFewCancelled = 64;
 constexpr std::uint64_t kHashPayload = 0x9E3779B97F4A7C15;
 constexpr std::uint64_t kHashChain = 0xBF58476D1CE4E5B9;
 
-// Handler, kind and subject as one number. Callbacks have only their handler, the mark: the slot
-// of a callback says nothing about the world.
-std::uint64_t payload_of(HandlerId handler, std::uint16_t kind, std::uint32_t subject) {
-  return (static_cast<std::uint64_t>(handler) << 48) | (static_cast<std::uint64_t>(kind) << 32) |
-         subject;
-}
-
 // One multiplication on the chain from event to event, so that the hash keeps pace with the queue.
-std::uint64_t extend_hash(std::uint64_t hash, TrueTime time, std::uint64_t payload) {
-  const auto time_ns = static_cast<std::uint64_t>(time.time_since_epoch().count());
-  hash = (hash ^ (time_ns + payload * kHashPayload)) * kHashChain;
+std::uint64_t extend_hash(std::uint64_t hash, std::int64_t time_ns, std::uint64_t payload) {
+  hash = (hash ^ (static_cast<std::uint64_t>(time_ns) + payload * kHashPayload)) * kHashChain;
   return hash ^ (hash >> 32);
 }
 
@@ -48,12 +40,13 @@ bool Engine::cancel(TimerId id) {
   ++cancelled_;
   callbacks_.destroy(id.slot_);
   if (cancelled_ > kFewCancelled && cancelled_ > queue_.size() / 2) {
-    queue_.erase_if([this](const Event& event) { return release_if_cancelled(event); });
+    queue_.erase_if([this](const QueueEntry& entry) { return release_if_cancelled(entry); });
   }
   return true;
 }
 
-bool Engine::release_if_cancelled(const Event& event) {
+bool Engine::release_if_cancelled(const QueueEntry& entry) {
+  const Event event = entry.event();
   if (event.handler != kCallbackHandler || callbacks_.holds(event.subject)) return false;
   --cancelled_;
   callbacks_.release(event.subject);
@@ -82,35 +75,37 @@ void Engine::execute_through(TrueTime last) {
     ~Running() { flag = false; }
   } const running(running_);
   stopped_ = false;
-  Event event;
-  while (events_ < limits_.max_events && queue_.pop_through(last, event)) {
-    if (release_if_cancelled(event)) continue;
-    execute(event);
+  QueueEntry entry;
+  while (events_ < limits_.max_events && queue_.pop_through(last, entry)) {
+    if (release_if_cancelled(entry)) continue;
+    execute(entry);
     if (stopped_) return;
   }
 }
 
-void Engine::execute(const Event& event) {
+void Engine::execute(const QueueEntry& entry) {
+  const Event event = entry.event();
   now_ = event.time;
   ++events_;
   if (event.handler != kCallbackHandler) {
-    trace_hash_ =
-        extend_hash(trace_hash_, event.time, payload_of(event.handler, event.kind, event.subject));
+    trace_hash_ = extend_hash(trace_hash_, entry.time_ns, entry.payload);
     handlers_[event.handler]->handle(event);
   } else {
-    trace_hash_ = extend_hash(trace_hash_, event.time, payload_of(kCallbackHandler, 0, 0));
+    // The slot of a callback says nothing about the world.
+    trace_hash_ = extend_hash(trace_hash_, entry.time_ns, payload_of(kCallbackHandler, 0, 0));
     callbacks_.run(event.subject);
   }
 }
 
 bool Engine::has_event_through(TrueTime last) {
-  const Event* first = queue_.first();
-  while (first != nullptr && first->time <= last && release_if_cancelled(*first)) {
-    Event cancelled;
+  const std::int64_t last_ns = last.time_since_epoch().count();
+  const QueueEntry* first = queue_.first();
+  while (first != nullptr && first->time_ns <= last_ns && release_if_cancelled(*first)) {
+    QueueEntry cancelled;
     queue_.pop_through(last, cancelled);
     first = queue_.first();
   }
-  return first != nullptr && first->time <= last;
+  return first != nullptr && first->time_ns <= last_ns;
 }
 
 void Engine::throw_limit_reached() const {

@@ -97,7 +97,7 @@ class Engine {
   void schedule(TrueTime at, HandlerId handler, std::uint16_t kind, std::uint32_t subject) {
     SIMBENCH_ASSERT(at >= now_, "an event cannot be scheduled in the past");
     SIMBENCH_ASSERT(handler < handlers_.size(), "the handler is not attached to this engine");
-    queue_.push({.time = at, .handler = handler, .kind = kind, .subject = subject});
+    queue_.push(at, payload_of(handler, kind, subject));
   }
 
   // Calls `callback()` at `at`, not before now(). The callback is destroyed exactly once: after
@@ -106,7 +106,7 @@ class Engine {
   TimerId call_at(TrueTime at, F callback) {
     SIMBENCH_ASSERT(at >= now_, "a callback cannot be scheduled in the past");
     const std::uint32_t slot = callbacks_.emplace(std::move(callback));
-    queue_.push({.time = at, .handler = kCallbackHandler, .kind = 0, .subject = slot});
+    queue_.push(at, payload_of(kCallbackHandler, 0, slot));
     return TimerId(slot, callbacks_.generation(slot));
   }
 
@@ -138,8 +138,8 @@ class Engine {
   static constexpr HandlerId kCallbackHandler = std::numeric_limits<HandlerId>::max();
 
   void execute_through(TrueTime last);
-  void execute(const Event& event);
-  bool release_if_cancelled(const Event& event);
+  void execute(const QueueEntry& entry);
+  bool release_if_cancelled(const QueueEntry& entry);
   bool has_event_through(TrueTime last);
   [[noreturn]] void throw_limit_reached() const;
 

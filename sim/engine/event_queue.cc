@@ -8,8 +8,19 @@ bool EventQueue::refill() {
   return true;
 }
 
-void EventQueue::spill() {
-  if (!ladder_.has_room()) return;
+void EventQueue::insert_into_full_heap(std::int64_t time_ns, std::uint64_t payload,
+                                       std::uint64_t sequence) {
+  make_room_in_heap();
+  insert({.time_ns = time_ns, .payload = payload, .sequence = sequence});
+}
+
+// A heap of its full size spills into the ladder. Not so while a run as long as the heap is being
+// popped, which would have to go back with it: then a deeper heap costs less.
+void EventQueue::make_room_in_heap() {
+  if (heap_.size() < kHeapEntries || heap_.size() < run_.size() || !ladder_.has_room()) {
+    heap_.grow();
+    return;
+  }
   drain_near(spilled_);
   ladder_.spill(spilled_);
 }

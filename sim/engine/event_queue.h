@@ -27,39 +27,42 @@ class EventQueue {
  public:
   std::size_t size() const { return heap_.size() + run_.size() + ladder_.size(); }
 
-  void push(const Event& event) { insert({.event = event, .sequence = next_sequence_++}); }
+  void push(TrueTime time, std::uint64_t payload) {
+    insert({.time_ns = time.time_since_epoch().count(),
+            .payload = payload,
+            .sequence = next_sequence_++});
+  }
 
-  // Takes the earliest event if it is not later than `last`. False, and `event` untouched, if
-  // there is none.
-  bool pop_through(TrueTime last, Event& event) {
-    if (run_.empty() && heap_.empty() && !refill()) return false;
-    if (!run_.empty() && (heap_.empty() || earlier(run_.back(), heap_.top()))) {
-      if (run_.back().event.time > last) return false;
-      event = run_.back().event;
+  // Takes the earliest entry if it is not later than `last`. False, and `entry` untouched, if there
+  // is none.
+  bool pop_through(TrueTime last, QueueEntry& entry) {
+    const QueueEntry* const earliest = first();
+    if (earliest == nullptr || earliest->time_ns > last.time_since_epoch().count()) return false;
+    entry = *earliest;
+    if (is_from_run(earliest)) {
       run_.pop_back();
-      return true;
+    } else {
+      heap_.pop();
     }
-    const QueueEntry& top = heap_.top();
-    if (top.event.time > last) return false;
-    event = top.event;
-    heap_.pop();
     return true;
   }
 
-  // The earliest event, until the queue is changed; null if there is none.
-  const Event* first() {
-    if (run_.empty() && heap_.empty() && !refill()) return nullptr;
-    const bool from_run = !run_.empty() && (heap_.empty() || earlier(run_.back(), heap_.top()));
-    return from_run ? &run_.back().event : &heap_.top().event;
+  // The earliest entry, until the queue is changed; null if there is none.
+  const QueueEntry* first() {
+    if (!run_.empty()) {
+      return heap_.empty() || earlier(run_.back(), heap_.top()) ? &run_.back() : &heap_.top();
+    }
+    if (!heap_.empty()) return &heap_.top();
+    return refill() ? &run_.back() : nullptr;
   }
 
-  // Removes the events for which `is_unwanted(event)` returns true. O(n).
+  // Removes the entries for which `is_unwanted(entry)` returns true. O(n).
   template <class Predicate>
   void erase_if(Predicate is_unwanted) {
     std::vector<QueueEntry> entries;
     drain(entries);
     for (const QueueEntry& entry : entries) {
-      if (!is_unwanted(entry.event)) insert(entry);
+      if (!is_unwanted(entry)) insert(entry);
     }
   }
 
@@ -68,27 +71,26 @@ class EventQueue {
   // (engine_workloads w1 with 100 to 2000 timers).
   static constexpr std::size_t kHeapEntries = 512;
 
-  void insert(const QueueEntry& entry) {
-    if (entry.event.time.time_since_epoch().count() < ladder_.start_ns()) {
-      heap_.push(entry);
-      // While a long run is being popped, spilling again and again what comes before its end would
-      // cost more than a deeper heap.
-      if (heap_.size() > kHeapEntries + run_.size()) [[unlikely]]
-        spill();
-    } else {
-      ladder_.push(entry);
+  void insert(QueueEntry entry) {
+    if (entry.time_ns >= ladder_.start_ns()) {
+      ladder_.push(entry.time_ns, entry.payload, entry.sequence);
+    } else if (!heap_.push(entry)) [[unlikely]] {
+      insert_into_full_heap(entry.time_ns, entry.payload, entry.sequence);
     }
   }
 
+  bool is_from_run(const QueueEntry* entry) const { return !run_.empty() && entry == &run_.back(); }
+
   bool refill();
-  void spill();
+  void insert_into_full_heap(std::int64_t time_ns, std::uint64_t payload, std::uint64_t sequence);
+  void make_room_in_heap();
   void drain_near(std::vector<QueueEntry>& out);
   void drain(std::vector<QueueEntry>& out);
 
   OpenHeap heap_;                // pending events before the ladder's start, except the run
   std::vector<QueueEntry> run_;  // the run being popped, latest first
   Ladder ladder_;
-  std::vector<QueueEntry> spilled_;  // scratch of spill()
+  std::vector<QueueEntry> spilled_;  // scratch of make_room_in_heap()
   std::uint64_t next_sequence_ = 0;
 };
 

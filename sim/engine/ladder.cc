@@ -18,8 +18,6 @@ constexpr std::size_t kEntriesPerBucket = 4;
 // become empty and its user goes on with a heap alone.
 constexpr std::uint32_t kFewLeft = 256;
 
-std::int64_t ns_of(const QueueEntry& entry) { return entry.event.time.time_since_epoch().count(); }
-
 // b - a for a <= b, also where the difference is no std::int64_t.
 std::uint64_t span_ns(std::int64_t a, std::int64_t b) {
   return static_cast<std::uint64_t>(b) - static_cast<std::uint64_t>(a);
@@ -36,9 +34,9 @@ Ladder::Bucket Ladder::Rung::take_next() {
   return next < size ? std::exchange(buckets[next++], Bucket{}) : Bucket{};
 }
 
-void Ladder::push(const QueueEntry& entry) {
+void Ladder::push(std::int64_t time_ns, std::uint64_t payload, std::uint64_t sequence) {
   ++size_;
-  const std::int64_t time_ns = ns_of(entry);
+  const QueueEntry entry = {.time_ns = time_ns, .payload = payload, .sequence = sequence};
   for (std::size_t i = depth_; i-- > 0;) {
     Rung& rung = rungs_[i];
     if (time_ns < rung.end_ns) {
@@ -139,13 +137,13 @@ void Ladder::spread(Bucket bucket, std::int64_t end_ns) {
     const std::uint32_t count = (left - 1) % kChunkEntries + 1;
     left -= count;
     for (std::uint32_t i = 0; i < count; ++i) {
-      first_ns = std::min(first_ns, ns_of(chunk.entries[i]));
-      last_ns = std::max(last_ns, ns_of(chunk.entries[i]));
+      first_ns = std::min(first_ns, chunk.entries[i].time_ns);
+      last_ns = std::max(last_ns, chunk.entries[i].time_ns);
     }
   }
   Rung& rung = add_rung(bucket.count, first_ns, last_ns, end_ns);
   consume(bucket, [&](const QueueEntry& entry) {
-    append(rung.buckets[span_ns(rung.start_ns, ns_of(entry)) >> rung.shift], entry);
+    append(rung.buckets[span_ns(rung.start_ns, entry.time_ns) >> rung.shift], entry);
   });
   start_ns_ = first_ns;
 }

@@ -36,7 +36,7 @@ class Ladder {
   std::size_t size() const { return size_; }
 
   // Takes an entry at or after start().
-  void push(const QueueEntry& entry);
+  void push(std::int64_t time_ns, std::uint64_t payload, std::uint64_t sequence);
 
   // Moves the earliest entries to `run`, latest first, and sets start() behind them. The ladder
   // must not be empty and `run` must be.

@@ -14,7 +14,8 @@ void OpenHeap::drain(std::vector<QueueEntry>& out) {
 }
 
 void OpenHeap::grow() {
-  places_.resize(std::max<std::size_t>(64, 2 * places_.size()), last_of_all());
+  capacity_ = std::max(kFirstCapacity, 2 * capacity_);
+  places_.resize(capacity_ + kChildren, last_of_all());
 }
 
 }  // namespace simbench::sim

@@ -20,17 +20,24 @@ namespace simbench::sim {
 class OpenHeap {
  public:
   std::size_t size() const { return used_ - (root_is_open_ ? 1 : 0); }
-  bool empty() const { return size() == 0; }
+  std::size_t capacity() const { return capacity_; }
+  bool empty() const { return used_ == (root_is_open_ ? 1 : 0); }
 
-  void push(const QueueEntry& entry) {
+  // False, and nothing done, if the heap has no place left: grow() or drain() it then.
+  bool push(QueueEntry entry) {
     if (root_is_open_) {
       root_is_open_ = false;
       sink_from_root(entry);
-    } else {
-      if (used_ + kChildren > places_.size()) grow();
-      rise(used_++, entry);
+      return true;
     }
+    if (used_ == capacity_) [[unlikely]]
+      return false;
+    rise(used_++, entry);
+    return true;
   }
+
+  // Doubles the number of places.
+  void grow();
 
   // The earliest entry. The heap must not be empty.
   const QueueEntry& top() {
@@ -46,11 +53,12 @@ class OpenHeap {
 
  private:
   static constexpr std::size_t kChildren = 4;
+  static constexpr std::size_t kFirstCapacity = 64;
 
-  // Later than any event, so that a group of children can be compared without asking how many of
-  // them exist: every place at or after used_ holds it.
+  // Later than any event. Every place from used_ on holds it, so that a group of children can be
+  // compared without asking how many of them exist.
   static constexpr QueueEntry last_of_all() {
-    return {.event = {.time = TrueTime::max()},
+    return {.time_ns = std::numeric_limits<std::int64_t>::max(),
             .sequence = std::numeric_limits<std::uint64_t>::max()};
   }
 
@@ -61,22 +69,23 @@ class OpenHeap {
     if (used_ > 0) sink_from_root(last);
   }
 
-  void sink_from_root(const QueueEntry& entry) {
-    QueueEntry* const places = places_.data();
-    const QueueKey key = key_of(entry);
-    std::size_t hole = 0;
-    for (std::size_t first = 1; first < used_; first = kChildren * hole + 1) {
-      const std::size_t left = first + (earlier(places[first + 1], places[first]) ? 1 : 0);
-      const std::size_t right = first + 2 + (earlier(places[first + 3], places[first + 2]) ? 1 : 0);
-      const std::size_t best = earlier(places[right], places[left]) ? right : left;
-      if (key < key_of(places[best])) break;
-      places[hole] = places[best];
+  void sink_from_root(QueueEntry entry) {
+    QueueEntry* const root = places_.data();
+    const QueueEntry* const end = root + used_;
+    const QueueKey key = entry.key();
+    QueueEntry* hole = root;
+    for (QueueEntry* child = root + 1; child < end; child = root + kChildren * (hole - root) + 1) {
+      QueueEntry* const left = child + static_cast<int>(earlier(child[1], child[0]));
+      QueueEntry* const right = child + 2 + static_cast<int>(earlier(child[3], child[2]));
+      QueueEntry* const best = earlier(*right, *left) ? right : left;
+      if (key < best->key()) break;
+      *hole = *best;
       hole = best;
     }
-    places[hole] = entry;
+    *hole = entry;
   }
 
-  void rise(std::size_t hole, const QueueEntry& entry) {
+  void rise(std::size_t hole, QueueEntry entry) {
     QueueEntry* const places = places_.data();
     while (hole > 0) {
       const std::size_t parent = (hole - 1) / kChildren;
@@ -87,11 +96,10 @@ class OpenHeap {
     places[hole] = entry;
   }
 
-  void grow();
-
-  std::vector<QueueEntry> places_;
-  std::size_t used_ = 0;  // places in use, an open root included
-  bool root_is_open_ = false;
+  std::vector<QueueEntry> places_;  // capacity_ and a group of children
+  std::size_t capacity_ = 0;
+  std::size_t used_ = 0;       // places in use, an open root included
+  bool root_is_open_ = false;  // the root's entry has been popped
 };
 
 }  // namespace simbench::sim
