@@ -13,8 +13,7 @@ LineSums::LineSums(std::size_t capacity)
 Line LineSums::line() const {
   const Int128 spread = count_ * sum_xx_ - Int128{sum_x_} * sum_x_;
   const Int128 common = count_ * sum_xy_ - Int128{sum_x_} * sum_y_;
-  const double slope =
-      spread == 0 ? 0.0 : static_cast<double>(common) / static_cast<double>(spread);
+  const double slope = spread == 0 ? 0.0 : to_double(common) / to_double(spread);
   return {.slope = slope, .count = count_, .sum_x = sum_x_, .sum_y = sum_y_};
 }
 

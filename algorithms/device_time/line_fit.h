@@ -40,8 +40,7 @@ struct Line {
   double at(std::int64_t x) const {
     if (count == 0) return 0;
     const Int128 lever = Int128{count} * x - sum_x;
-    return (static_cast<double>(sum_y) + slope * static_cast<double>(lever)) /
-           static_cast<double>(count);
+    return (static_cast<double>(sum_y) + slope * to_double(lever)) / static_cast<double>(count);
   }
 };
 

@@ -1,0 +1,79 @@
+#include "algorithms/registry.h"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace simbench {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+
+template <class Entry>
+std::vector<std::string> names(const std::vector<Entry>& entries) {
+  std::vector<std::string> all;
+  for (const Entry& entry : entries) all.push_back(entry.info.name);
+  return all;
+}
+
+class Constant : public DeviceTimeEstimator {
+ public:
+  GlobalTime stamp(const DeviceSample&) override { return GlobalTime(from_ms(1)); }
+};
+
+DeviceTimeEntry constant(const std::string& name) {
+  return {.info = {.name = name, .family = name, .summary = "", .source = "test", .parameters = {}},
+          .make = [](const Parameters&) { return std::make_unique<Constant>(); }};
+}
+
+TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
+  std::vector<std::string> device_time = names(device_time_algorithms());
+  device_time.resize(8);  // other tests may have registered more
+  EXPECT_THAT(device_time, ElementsAre("regression_30", "regression_offline", "eq1_printed",
+                                       "eq1_interval_previous", "eq1_interval_current",
+                                       "raw_arrival", "sensor_normalised", "oracle"));
+  EXPECT_THAT(names(gathering_algorithms()), ElementsAre("yoon2021", "genlock", "genlock_printed"));
+}
+
+TEST(Registry, MakesEveryBuiltInAlgorithm) {
+  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+    EXPECT_FALSE(entry.info.summary.empty() && entry.info.source != "test") << entry.info.name;
+    if (entry.info.name == "oracle") {
+      EXPECT_FALSE(entry.make) << "only evaluation has the truth";
+      continue;
+    }
+    const auto estimator = entry.make(check_parameters(entry.info.parameters, {}));
+    EXPECT_EQ(estimator->offline(), entry.info.name == "regression_offline") << entry.info.name;
+    EXPECT_EQ(estimator->relative(), entry.info.name == "sensor_normalised") << entry.info.name;
+  }
+  const GatheringSetup setup = {.sources = 2, .period = from_ms(20), .interval = from_ms(10)};
+  for (const GatheringEntry& entry : gathering_algorithms()) {
+    const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
+    EXPECT_EQ(gatherer->discarded(), 0U);
+    EXPECT_EQ(gatherer->from_first_frame(), entry.info.family == "genlock") << entry.info.name;
+  }
+}
+
+TEST(Registry, FindsByName) {
+  ASSERT_NE(find_gathering("yoon2021"), nullptr);
+  EXPECT_EQ(find_gathering("yoon2021")->info.name, "yoon2021");
+  EXPECT_EQ(find_gathering("yoon"), nullptr);
+  EXPECT_EQ(find_device_time("yoon2021"), nullptr) << "names belong to a stage";
+  EXPECT_EQ(find_host_sync("regression_30"), nullptr);
+}
+
+TEST(Registry, TakesAUsersAlgorithmOnce) {
+  register_device_time(constant("registry_test_constant"));
+  EXPECT_THAT(names(device_time_algorithms()), Contains("registry_test_constant"));
+  const DeviceTimeEntry* entry = find_device_time("registry_test_constant");
+  ASSERT_NE(entry, nullptr);
+  EXPECT_EQ(entry->make({})->stamp({}), GlobalTime(from_ms(1)));
+  EXPECT_THROW(register_device_time(constant("registry_test_constant")), std::invalid_argument);
+  EXPECT_THROW(register_device_time(constant("raw_arrival")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace simbench
