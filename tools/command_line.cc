@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/rs_csv.h"
 #include "recording/version.h"
 #include "reports/output_folder.h"
 #include "scenarios/loader.h"
@@ -78,17 +79,22 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   return action();
 }
 
+int bad_input(const std::exception& error) {
+  std::cerr << "error: " << error.what() << '\n';
+  return ExitStatus::kBadInput;
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
   try {
     return parse_and_run(std::vector<std::string>(argv, argv + argc));
   } catch (const scenarios::InputError& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return ExitStatus::kBadInput;
+    return bad_input(error);
   } catch (const reports::OutputError& error) {
-    std::cerr << "error: " << error.what() << '\n';
-    return ExitStatus::kBadInput;
+    return bad_input(error);
+  } catch (const CsvError& error) {
+    return bad_input(error);
   } catch (const std::exception& error) {
     std::cerr << fmt::format("internal error: {}\n(simbench {}, commit {})\n", error.what(),
                              version(), commit());

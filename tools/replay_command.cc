@@ -1,4 +1,95 @@
 #include "tools/replay_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/replay.h"
+#include "recording/rs_csv.h"
+#include "reports/archive.h"
+#include "reports/replay_report.h"
+#include "tools/exit_status.h"
+
 namespace simbench::tools {
-void add_replay_command(CLI::App&, Action&, std::vector<std::string>) {}
+namespace {
+
+constexpr const char* kExamples = R"(
+Takes the CSV of librealsense's rs-data-collect:
+  Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
+one file per camera, or one file of several cameras with two more columns, `camera` and `host`.
+Arrivals of several cameras must count from one instant. device_time and gathering are run on them;
+host_sync cannot be replayed.
+
+Examples:
+  simbench replay front.csv
+  simbench replay front.csv back.csv --format json > replay.json
+  simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
+
+struct ReplayOptions {
+  std::vector<std::string> files;
+  std::string format;
+  std::string output;
+  std::vector<std::string> command;
+};
+
+std::vector<CameraStream> read(const std::vector<std::string>& files) {
+  CsvRecordingReader reader;
+  for (auto file = files.begin(); file != files.end(); ++file) {
+    if (std::find(files.begin(), file, *file) != file) throw CsvError(*file + ": given twice");
+    reader.read_file(*file);
+  }
+  return reader.take();
+}
+
+std::string formatted(const evaluation::Replay& replay, const ReplayOptions& options) {
+  if (options.format == "json") return reports::replay_json(replay, options.files);
+  if (options.format == "csv") return reports::replay_csv(replay);
+  return reports::replay_table(replay);
+}
+
+int run_replay(const ReplayOptions& options) {
+  reports::Provenance provenance;
+  provenance.command = options.command;
+  provenance.started = std::chrono::system_clock::now();
+  std::vector<CameraStream> streams = read(options.files);
+  std::unique_ptr<reports::OutputFolder> output;
+  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+  const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
+  print_warnings(replay.warnings);
+  std::cerr << "note: host_sync cannot be replayed; device_time and gathering are\n";
+  provenance.finished = std::chrono::system_clock::now();
+  if (output) {
+    const nlohmann::ordered_json files = {{"files", options.files}};
+    output->file("manifest.json") << reports::manifest_json(provenance, files.dump());
+    output->file("results.json") << reports::replay_json(replay, options.files);
+    reports::write_replay_frames(replay, output->file("frames.csv"));
+    output->publish();
+    std::cerr << "results written to " << options.output << '\n';
+  }
+  print_result(formatted(replay, options));
+  return kOk;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
+  CLI::App* command =
+      app.add_subcommand("replay", "Run device_time and gathering on recordings of real cameras");
+  auto options = std::make_shared<ReplayOptions>();
+  options->command = std::move(arguments);
+  command->add_option("files", options->files, "Recordings")->type_name("FILE.csv...")->required();
+  add_format_option(*command, options->format, {"table", "json", "csv"});
+  command
+      ->add_option("--output", options->output,
+                   "Write manifest.json, results.json and frames.csv to this folder. An earlier "
+                   "result there is replaced")
+      ->type_name("DIR");
+  command->footer(kExamples);
+  command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
+}
+
 }  // namespace simbench::tools

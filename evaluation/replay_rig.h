@@ -1,0 +1,19 @@
+// The part of a replay that looks at several cameras together; see evaluation/replay.h.
+#ifndef SIMBENCH_EVALUATION_REPLAY_RIG_H_
+#define SIMBENCH_EVALUATION_REPLAY_RIG_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "evaluation/replay.h"
+
+namespace simbench::evaluation {
+
+// `members` are the cameras (two or more) that have `stream`; their rows are complete.
+RigReplay replay_rig(const std::vector<CameraReplay>& cameras, const std::string& stream,
+                     const std::vector<std::size_t>& members);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_REPLAY_RIG_H_

@@ -1,0 +1,82 @@
+// Recordings of real cameras as text: the CSV that librealsense's rs-data-collect writes.
+//
+//   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
+//   Depth,0,1,1000.000,12.345
+//
+// HW Timestamp is the frame stamp on the camera's clock, Host Timestamp the arrival in milliseconds
+// since the tool was started. The tool's own files are read as they are: the "Configuration:" part
+// before the header is skipped, a header may come again for each stream, columns may stand in any
+// order, and unknown ones are ignored. Gyro, Accel and Pose lines are no frames and are skipped.
+//
+// Two more columns make one file of several cameras: `camera` and `host` (names or numbers).
+// Without `camera`, a file is one camera with the name of the file; without `host`, a host of that
+// name. A camera that occurs in several files goes on in the order of the files. Stamps of several
+// cameras must count from one zero per host, and, for their spread to mean something, all hosts
+// from one.
+//
+// Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
+// Complexity: linear in the text. Source: reference/d455.md section 8.
+//
+//   CsvRecordingReader reader;
+//   reader.read_file("front.csv");
+//   reader.read_file("back.csv");
+//   std::vector<CameraStream> streams = reader.take();
+#ifndef SIMBENCH_RECORDING_RS_CSV_H_
+#define SIMBENCH_RECORDING_RS_CSV_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+struct StampedFrame {
+  std::uint64_t counter = 0;
+  Nanoseconds sensor{};   // of the camera's clock
+  Nanoseconds arrival{};  // since the zero of its host
+};
+
+// One stream of one camera, frames in order of delivery.
+struct CameraStream {
+  std::string camera;
+  std::string host;
+  std::string stream;  // "Depth 0": type and index
+  std::vector<StampedFrame> frames;
+};
+
+// A file that is no such recording. what() is the whole message, for the user: "FILE:LINE: ...".
+class CsvError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Largest stamp that is read, in milliseconds either way: 126 years.
+inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
+
+class CsvRecordingReader {
+ public:
+  // Throws CsvError: unreadable, without a header or a frame, a line that is damaged.
+  void read_file(const std::string& path);
+  // The same from text, as if it were the content of `path`.
+  void read_text(std::string_view text, const std::string& path);
+
+  // In order of first occurrence. The reader is empty afterwards.
+  std::vector<CameraStream> take();
+
+ private:
+  CameraStream& stream_of(std::string_view camera, std::string_view host, std::string_view stream);
+
+  std::vector<CameraStream> streams_;
+  std::unordered_map<std::string, std::size_t> index_;
+  std::string key_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_RS_CSV_H_
