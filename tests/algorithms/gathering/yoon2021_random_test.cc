@@ -1,0 +1,207 @@
+// Algorithm 3 on random streams: its properties, and the same sets as a naive implementation.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "algorithms/gathering/yoon2021.h"
+#include "tests/algorithms/gathering/collected_sets.h"
+
+namespace simbench {
+namespace {
+
+// Algorithm 3 to the letter: O(n) a step, no thought of speed.
+class NaiveGatherer {
+ public:
+  explicit NaiveGatherer(const GatheringSetup& setup) : setup_(setup), queues_(setup.sources) {}
+
+  void push(const GatherFrame& frame, FrameSetSink& sink) {
+    std::deque<GatherFrame>& queue = queues_[frame.source];
+    if (queue.size() == setup_.queue_limit) {
+      queue.pop_front();
+      ++discarded;
+    }
+    queue.push_back(frame);
+    while (std::ranges::none_of(queues_, [](const auto& q) { return q.empty(); })) step(sink);
+  }
+
+  std::uint64_t discarded = 0;
+
+ private:
+  void step(FrameSetSink& sink) {
+    std::vector<GatherFrame> fronts;
+    for (const auto& queue : queues_) fronts.push_back(queue.front());
+    const auto [low, high] = std::ranges::minmax_element(fronts, {}, &GatherFrame::stamp);
+    if (high->stamp - low->stamp < setup_.interval) {
+      sink.on_set(fronts);
+      for (auto& queue : queues_) queue.pop_front();
+    } else {
+      queues_[low->source].pop_front();
+      ++discarded;
+    }
+  }
+
+  GatheringSetup setup_;
+  std::vector<std::deque<GatherFrame>> queues_;
+};
+
+struct World {
+  std::uint32_t sources = 18;
+  std::int64_t pulses = 300;
+  double sigma_ms = 1;      // of the stamps
+  double drop = 0;          // share of lost frames
+  double outage = 0;        // share of sources that are silent in the middle third
+  double delay_max_ms = 0;  // of delivery, per frame; frames of a source stay in order
+  double quantum_ms = 0;    // of the stamps: makes ties
+};
+
+constexpr double kPeriodMs = 22.0;
+
+// The frames of a world in order of arrival; the tag is the pulse.
+std::vector<GatherFrame> frames_of(const World& world, std::uint32_t seed) {
+  boost::random::mt19937 random(seed);
+  boost::random::normal_distribution<double> noise_ms(0, world.sigma_ms);
+  boost::random::uniform_01<double> uniform;
+  std::vector<std::pair<double, GatherFrame>> arrivals;
+  for (std::uint32_t source = 0; source < world.sources; ++source) {
+    const bool out = uniform(random) < world.outage;
+    double last_ms = 0;
+    for (std::int64_t pulse = 0; pulse < world.pulses; ++pulse) {
+      const double at_ms = static_cast<double>(pulse) * kPeriodMs;
+      double stamp_ms = at_ms + noise_ms(random);
+      if (world.quantum_ms > 0) {
+        stamp_ms = std::floor(stamp_ms / world.quantum_ms) * world.quantum_ms;
+      }
+      last_ms = std::max(last_ms, at_ms + 10 + world.delay_max_ms * uniform(random));
+      const bool silent = out && pulse > world.pulses / 3 && pulse < 2 * world.pulses / 3;
+      if (uniform(random) < world.drop || silent) continue;
+      arrivals.emplace_back(last_ms, frame_at(source, stamp_ms, pulse));
+    }
+  }
+  std::ranges::stable_sort(arrivals, {}, [](const auto& arrival) { return arrival.first; });
+  std::vector<GatherFrame> frames;
+  for (const auto& arrival : arrivals) frames.push_back(arrival.second);
+  return frames;
+}
+
+GatheringSetup setup_of(const World& world, double interval_ms, std::uint32_t queue_limit) {
+  return {.sources = world.sources,
+          .period = from_ms(kPeriodMs),
+          .interval = from_ms(interval_ms),
+          .queue_limit = queue_limit};
+}
+
+TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
+  for (std::uint32_t seed = 1; seed <= 300; ++seed) {
+    boost::random::mt19937 random(seed);
+    boost::random::uniform_01<double> uniform;
+    World world;
+    world.sources = 1 + static_cast<std::uint32_t>(random() % 9);
+    world.pulses = 60;
+    world.sigma_ms = 8 * uniform(random);
+    world.drop = 0.2 * uniform(random);
+    world.outage = 0.3 * uniform(random);
+    world.delay_max_ms = 100 * uniform(random);
+    world.quantum_ms = seed % 2 == 0 ? 4 : 0;
+    const auto limit = static_cast<std::uint32_t>(seed % 3 == 0 ? 1 + random() % 4 : 64);
+    const GatheringSetup setup = setup_of(world, 1 + 21 * uniform(random), limit);
+    const auto gatherer = make_yoon2021_gatherer(setup);
+    NaiveGatherer naive(setup);
+    CollectedSets sets;
+    CollectedSets expected;
+    for (const GatherFrame& frame : frames_of(world, seed)) {
+      gatherer->push(frame, sets);
+      naive.push(frame, expected);
+      ASSERT_EQ(sets.sets.size(), expected.sets.size()) << "seed " << seed;
+      ASSERT_EQ(gatherer->discarded(), naive.discarded) << "seed " << seed;
+    }
+    ASSERT_EQ(sets.tags(), expected.tags()) << "seed " << seed;
+  }
+}
+
+TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
+  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+    const World world = {
+        .sources = 6, .sigma_ms = 4, .drop = 0.05, .outage = 0.2, .delay_max_ms = 60};
+    const GatheringSetup setup = setup_of(world, kPeriodMs / 2, 8);
+    const auto gatherer = make_yoon2021_gatherer(setup);
+    CollectedSets out;
+    const std::vector<GatherFrame> frames = frames_of(world, seed);
+    for (const GatherFrame& frame : frames) gatherer->push(frame, out);
+    ASSERT_FALSE(out.sets.empty()) << "seed " << seed;
+    std::map<std::uint32_t, std::int64_t> last_tag;
+    for (const std::vector<GatherFrame>& set : out.sets) {
+      ASSERT_EQ(set.size(), world.sources) << "seed " << seed;
+      const auto [low, high] = std::ranges::minmax_element(set, {}, &GatherFrame::stamp);
+      ASSERT_LT(high->stamp - low->stamp, setup.interval) << "seed " << seed;
+      for (std::uint32_t source = 0; source < world.sources; ++source) {
+        ASSERT_EQ(set[source].source, source) << "seed " << seed;
+        const auto [entry, is_first] = last_tag.try_emplace(source, -1);
+        ASSERT_GT(set[source].tag, entry->second) << "seed " << seed << ", source " << source;
+        entry->second = set[source].tag;
+      }
+    }
+    // Every frame is in a set, given up or waiting in a queue.
+    const std::uint64_t used = out.sets.size() * world.sources + gatherer->discarded();
+    ASSERT_LE(used, frames.size()) << "seed " << seed;
+    ASSERT_LE(frames.size() - used, (world.sources - 1) * setup.queue_limit) << "seed " << seed;
+  }
+}
+
+TEST(Yoon2021Random, CleanInputHasRecallOne) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const World world = {.sources = 18, .pulses = 200, .sigma_ms = 1, .delay_max_ms = 60};
+    const auto gatherer = make_yoon2021_gatherer(setup_of(world, kPeriodMs / 2, 64));
+    CollectedSets out;
+    for (const GatherFrame& frame : frames_of(world, seed)) gatherer->push(frame, out);
+    ASSERT_EQ(out.sets.size(), 200U) << "seed " << seed;
+    ASSERT_EQ(out.pure(), 200) << "seed " << seed;
+    ASSERT_EQ(gatherer->discarded(), 0U) << "seed " << seed;
+  }
+}
+
+// Without synchronisation: six hosts with independent phases find sets only if all lie within half
+// a period, 6/2^5 of the time (reference/paper.md section 11, C9).
+TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
+  constexpr std::uint32_t kSeed = 17;
+  constexpr int kRuns = 2000;
+  boost::random::mt19937 random(kSeed);
+  boost::random::uniform_01<double> uniform;
+  int without = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto gatherer = make_yoon2021_gatherer(setup_of({.sources = 6}, kPeriodMs / 2, 64));
+    CollectedSets out;
+    std::vector<double> phase_ms;
+    for (int host = 0; host < 6; ++host) phase_ms.push_back(kPeriodMs * uniform(random));
+    for (std::int64_t pulse = 0; pulse < 10; ++pulse) {
+      for (std::uint32_t host = 0; host < 6; ++host) {
+        gatherer->push(
+            frame_at(host, static_cast<double>(pulse) * kPeriodMs + phase_ms[host], pulse), out);
+      }
+    }
+    without += out.sets.empty() ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(without) / kRuns, 1 - 6.0 / 32, 0.03) << "seed " << kSeed;
+}
+
+TEST(Yoon2021Random, EighteenThousandSources) {
+  const World world = {.sources = 18'000, .pulses = 4, .sigma_ms = 0.5, .drop = 2e-5};
+  const auto gatherer = make_yoon2021_gatherer(setup_of(world, kPeriodMs / 2, 8));
+  CollectedSets out;
+  const std::vector<GatherFrame> frames = frames_of(world, 4);
+  for (const GatherFrame& frame : frames) gatherer->push(frame, out);
+  // A pulse with a lost frame gives no set; all its frames are given up once the next is complete.
+  EXPECT_GE(out.sets.size(), 1U);
+  EXPECT_EQ(out.pure(), static_cast<std::int64_t>(out.sets.size()));
+}
+
+}  // namespace
+}  // namespace simbench
