@@ -11,12 +11,13 @@ namespace {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 // A bucket of up to this many entries is sorted; a larger one is spread over a finer rung.
-constexpr std::uint32_t kSortable = 48;
+constexpr std::size_t kSortable = 48;
 // Entries per bucket that a new rung is laid out for.
 constexpr std::size_t kEntriesPerBucket = 4;
 // When no more than this many are left in all, they are handed out as one run: the ladder has
 // become empty and its user goes on with a heap alone.
-constexpr std::uint32_t kFewLeft = 256;
+constexpr std::size_t kFewLeft = 256;
+constexpr std::size_t kChunksPerBlock = 64;
 
 // b - a for a <= b, also where the difference is no std::int64_t.
 std::uint64_t span_ns(std::int64_t a, std::int64_t b) {
@@ -35,17 +36,17 @@ Ladder::Bucket Ladder::Rung::take_next() {
 }
 
 void Ladder::push(std::int64_t time_ns, std::uint64_t payload, std::uint64_t sequence) {
-  ++size_;
   const QueueEntry entry = {.time_ns = time_ns, .payload = payload, .sequence = sequence};
-  for (std::size_t i = depth_; i-- > 0;) {
-    Rung& rung = rungs_[i];
-    if (time_ns < rung.end_ns) {
-      const std::size_t place = span_ns(rung.start_ns, time_ns) >> rung.shift;
-      append(rung.buckets[std::min(place, rung.size - 1)], entry);
-      return;
-    }
+  ++size_;
+  if (depth_ == 0 || time_ns >= rungs_[0].end_ns) {
+    append(top_, entry);
+    return;
   }
-  append(top_, entry);
+  std::size_t i = 0;
+  while (i + 1 < depth_ && time_ns < rungs_[i + 1].end_ns) ++i;
+  Rung& rung = rungs_[i];
+  const std::size_t place = span_ns(rung.start_ns, time_ns) >> rung.shift;
+  append(rung.buckets[std::min(place, rung.size - 1)], entry);
 }
 
 void Ladder::take_run(std::vector<QueueEntry>& run) {
@@ -96,50 +97,34 @@ void Ladder::drain(std::vector<QueueEntry>& out) {
   start_ns_ = kNever;
 }
 
-std::uint32_t Ladder::new_chunk(std::uint32_t next) {
-  std::uint32_t index = free_chunk_;
-  if (index != kNoChunk) {
-    free_chunk_ = chunks_[index].next;
-  } else {
-    SIMBENCH_ASSERT(chunks_.size() < kNoChunk, "more pending events than the ladder can number");
-    index = static_cast<std::uint32_t>(chunks_.size());
-    chunks_.emplace_back();
+void Ladder::add_chunks() {
+  Chunk* const block = chunks_.emplace_back(std::make_unique<Chunk[]>(kChunksPerBlock)).get();
+  for (std::size_t i = 0; i < kChunksPerBlock; ++i) {
+    block[i].next = std::exchange(free_chunk_, &block[i]);
   }
-  chunks_[index].next = next;
-  return index;
-}
-
-void Ladder::append(Bucket& bucket, const QueueEntry& entry) {
-  const std::uint32_t place = bucket.count++ % kChunkEntries;
-  if (place == 0) bucket.chunk = new_chunk(bucket.chunk);
-  chunks_[bucket.chunk].entries[place] = entry;
 }
 
 template <class Visit>
 void Ladder::consume(Bucket bucket, Visit visit) {
   while (bucket.count > 0) {
-    // A copy, and the chunk is free before the first visit: what visit appends may take it.
-    const Chunk chunk = chunks_[bucket.chunk];
-    chunks_[bucket.chunk].next = std::exchange(free_chunk_, bucket.chunk);
-    bucket.chunk = chunk.next;
-    const std::uint32_t count = (bucket.count - 1) % kChunkEntries + 1;
-    bucket.count -= count;
-    for (std::uint32_t i = 0; i < count; ++i) visit(chunk.entries[i]);
+    Chunk* const chunk = bucket.chunk;
+    const std::size_t count = bucket.in_first_chunk();
+    for (std::size_t i = 0; i < count; ++i) visit(chunk->entries[i]);
+    bucket = {.chunk = chunk->next, .count = bucket.count - count};
+    chunk->next = std::exchange(free_chunk_, chunk);
   }
 }
 
 void Ladder::spread(Bucket bucket, std::int64_t end_ns) {
   std::int64_t first_ns = kNever;
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
-  std::uint32_t left = bucket.count;
-  for (std::uint32_t index = bucket.chunk; left > 0; index = chunks_[index].next) {
-    const Chunk& chunk = chunks_[index];
-    const std::uint32_t count = (left - 1) % kChunkEntries + 1;
-    left -= count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      first_ns = std::min(first_ns, chunk.entries[i].time_ns);
-      last_ns = std::max(last_ns, chunk.entries[i].time_ns);
+  for (Bucket rest = bucket; rest.count > 0;) {
+    const std::size_t count = rest.in_first_chunk();
+    for (std::size_t i = 0; i < count; ++i) {
+      first_ns = std::min(first_ns, rest.chunk->entries[i].time_ns);
+      last_ns = std::max(last_ns, rest.chunk->entries[i].time_ns);
     }
+    rest = {.chunk = rest.chunk->next, .count = rest.count - count};
   }
   Rung& rung = add_rung(bucket.count, first_ns, last_ns, end_ns);
   consume(bucket, [&](const QueueEntry& entry) {
@@ -168,7 +153,9 @@ Ladder::Rung& Ladder::add_rung(std::size_t count, std::int64_t first_ns, std::in
 
 void Ladder::make_run(Bucket bucket, std::vector<QueueEntry>& run) {
   size_ -= bucket.count;
-  consume(bucket, [&run](const QueueEntry& entry) { run.push_back(entry); });
+  run.resize(bucket.count);
+  auto place = run.begin();
+  consume(bucket, [&place](const QueueEntry& entry) { *place++ = entry; });
   std::sort(run.begin(), run.end(),
             [](const QueueEntry& a, const QueueEntry& b) { return earlier(b, a); });
 }

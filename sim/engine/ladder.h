@@ -22,6 +22,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "sim/engine/queue_entry.h"
@@ -51,18 +53,19 @@ class Ladder {
   void drain(std::vector<QueueEntry>& out);
 
  private:
-  static constexpr std::uint32_t kNoChunk = std::numeric_limits<std::uint32_t>::max();
-  static constexpr std::uint32_t kChunkEntries = 8;
+  static constexpr std::size_t kChunkEntries = 8;
   static constexpr std::size_t kMaxRungs = 8;
 
   struct Chunk {
     std::array<QueueEntry, kChunkEntries> entries;
-    std::uint32_t next = kNoChunk;
+    Chunk* next = nullptr;
   };
   // Entries in no particular order: a chain of chunks of which only the first may be part full.
   struct Bucket {
-    std::uint32_t chunk = kNoChunk;
-    std::uint32_t count = 0;
+    Chunk* chunk = nullptr;
+    std::size_t count = 0;
+
+    std::size_t in_first_chunk() const { return (count - 1) % kChunkEntries + 1; }
   };
   struct Rung {
     std::int64_t start_ns = 0;
@@ -76,10 +79,22 @@ class Ladder {
     Bucket take_next();  // the first bucket that is not empty; an empty one if there is none
   };
 
-  void append(Bucket& bucket, const QueueEntry& entry);
+  void append(Bucket& bucket, const QueueEntry& entry) {
+    const std::size_t place = bucket.count++ % kChunkEntries;
+    if (place == 0) bucket.chunk = new_chunk(bucket.chunk);
+    bucket.chunk->entries[place] = entry;
+  }
+  Chunk* new_chunk(Chunk* next) {
+    if (free_chunk_ == nullptr) [[unlikely]]
+      add_chunks();
+    Chunk* const chunk = std::exchange(free_chunk_, free_chunk_->next);
+    chunk->next = next;
+    return chunk;
+  }
+  void add_chunks();
+  // Visits the entries and frees their chunks.
   template <class Visit>
   void consume(Bucket bucket, Visit visit);
-  std::uint32_t new_chunk(std::uint32_t next);
 
   // Makes the innermost rung from the entries of `bucket`, none at or after `end_ns`.
   void spread(Bucket bucket, std::int64_t end_ns);
@@ -88,8 +103,8 @@ class Ladder {
                  std::int64_t end_ns);
   void make_run(Bucket bucket, std::vector<QueueEntry>& run);
 
-  std::vector<Chunk> chunks_;
-  std::uint32_t free_chunk_ = kNoChunk;
+  std::vector<std::unique_ptr<Chunk[]>> chunks_;  // all of them, in blocks
+  Chunk* free_chunk_ = nullptr;
   std::array<Rung, kMaxRungs> rungs_;  // outermost first
   std::size_t depth_ = 0;              // rungs in use
   Bucket top_;
