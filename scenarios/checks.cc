@@ -1,4 +1,148 @@
 #include "scenarios/checks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/document.h"
+#include "scenarios/loader.h"
+#include "scenarios/rates.h"
+
 namespace simbench::scenarios {
-void check(const Scenario&) {}
+namespace {
+
+// Names become file names, table cells and command line arguments.
+void check_name(const Scenario& scenario, const std::string& pointer, const std::string& name) {
+  const auto is_allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  if (std::all_of(name.begin(), name.end(), is_allowed) && name.front() != '-') return;
+  fail_at(scenario, pointer,
+          fmt::format("found \"{}\", allowed letters, digits, '_', '-' and '.', no '-' in front",
+                      shown_text(name)));
 }
+
+void check_hosts(const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  const std::int64_t hosts = scenario.hosts.count;
+  if (cameras.host_of_camera.empty()) {
+    const std::int64_t last = cameras.count - 1;
+    if (scenario.host_of(last) < hosts) return;
+    fail_at(scenario, "/cameras/cameras_per_host",
+            fmt::format("found {}, which puts camera {} on host {}, allowed hosts are 0 to {} "
+                        "(/hosts/count is {})",
+                        cameras.cameras_per_host, last, scenario.host_of(last), hosts - 1, hosts));
+  }
+  if (cameras.host_of_camera.size() != static_cast<std::size_t>(cameras.count)) {
+    fail_at(scenario, "/cameras/host_of_camera",
+            fmt::format("found {} hosts, allowed none or one for each of the {} cameras",
+                        cameras.host_of_camera.size(), cameras.count));
+  }
+  for (std::size_t j = 0; j < cameras.host_of_camera.size(); ++j) {
+    if (cameras.host_of_camera[j] < hosts) continue;
+    fail_at(scenario, fmt::format("/cameras/host_of_camera/{}", j),
+            fmt::format("found {}, allowed 0 to {} (/hosts/count is {})", cameras.host_of_camera[j],
+                        hosts - 1, hosts));
+  }
+}
+
+void check_streams(const Scenario& scenario) {
+  std::set<std::string> kinds;
+  const std::vector<Stream>& streams = scenario.cameras.streams;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    if (kinds.insert(streams[i].kind).second) continue;
+    fail_at(scenario, fmt::format("/cameras/streams/{}/kind", i),
+            fmt::format("found a second \"{}\", allowed one stream of a kind", streams[i].kind));
+  }
+  if (kinds.count(scenario.evaluation.stream) == 0) {
+    fail_at(scenario, "/evaluation/stream",
+            fmt::format("found \"{}\", allowed \"{}\", the captured streams",
+                        scenario.evaluation.stream, fmt::join(kinds, "\", \"")));
+  }
+}
+
+void check_faults(const Scenario& scenario) {
+  // What each kind of fault needs; the rest of a Fault's members it may not state.
+  struct Need {
+    std::string_view kind;
+    std::vector<std::string_view> members;
+  };
+  static const std::vector<Need> needs = {
+      {"camera_vanishes", {"camera", "at_ms", "duration_ms"}},
+      {"late_first_frame", {"camera", "duration_ms"}},
+      {"clock_step", {"host", "at_ms", "step_ms"}},
+  };
+  const auto stated = nlohmann::json::parse(scenario.resolved_json).at("faults");
+  for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
+    const Fault& fault = scenario.faults[i];
+    const std::string pointer = fmt::format("/faults/{}", i);
+    const auto& members = std::find_if(needs.begin(), needs.end(), [&](const Need& need) {
+                            return need.kind == fault.kind;
+                          })->members;
+    for (const std::string_view member : members) {
+      if (stated[i].contains(member)) continue;
+      fail_at(scenario, fmt::format("{}/{}", pointer, member),
+              fmt::format("found nothing, \"{}\" needs {}", fault.kind, fmt::join(members, ", ")));
+    }
+    for (const auto& [key, value] : stated[i].items()) {
+      if (key == "kind" || std::find(members.begin(), members.end(), key) != members.end()) {
+        continue;
+      }
+      fail_at(scenario, fmt::format("{}/{}", pointer, key),
+              fmt::format("found {}, \"{}\" uses {} alone", value.dump(), fault.kind,
+                          fmt::join(members, ", ")));
+    }
+    if (fault.camera >= scenario.cameras.count) {
+      fail_at(scenario, pointer + "/camera",
+              fmt::format("found {}, allowed 0 to {} (/cameras/count is {})", fault.camera,
+                          scenario.cameras.count - 1, scenario.cameras.count));
+    }
+    if (fault.host >= scenario.hosts.count) {
+      fail_at(scenario, pointer + "/host",
+              fmt::format("found {}, allowed 0 to {} (/hosts/count is {})", fault.host,
+                          scenario.hosts.count - 1, scenario.hosts.count));
+    }
+  }
+}
+
+void check_pipelines(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scenario.pipelines.size(); ++i) {
+    const std::string& name = scenario.pipelines[i].name;
+    const std::string pointer = fmt::format("/pipelines/{}/name", i);
+    check_name(scenario, pointer, name);
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      fail_at(scenario, pointer,
+              fmt::format("found a second \"{}\", allowed a name for each pipeline", name));
+    }
+    names.push_back(name);
+  }
+  for (const auto& [name, result] : scenario.published) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::vector<std::string> similar = nearest(name, names);
+    fail_at(
+        scenario, child_pointer("/published", name),
+        similar.empty()
+            ? fmt::format("found no such pipeline, allowed {}", fmt::join(names, ", "))
+            : fmt::format("found no such pipeline, did you mean {}?", fmt::join(similar, " or ")));
+  }
+}
+
+}  // namespace
+
+void check(const Scenario& scenario) {
+  check_name(scenario, "/name", scenario.name);
+  check_hosts(scenario);
+  check_streams(scenario);
+  check_rates(scenario);
+  check_faults(scenario);
+  check_pipelines(scenario);
+}
+
+}  // namespace simbench::scenarios

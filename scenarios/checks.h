@@ -9,9 +9,6 @@ namespace simbench::scenarios {
 // Throws InputError about the first contradiction.
 void check(const Scenario& scenario);
 
-// The same for what the cameras are asked to do: profiles, sync mode and rates (rates.cc).
-void check_rates(const Scenario& scenario);
-
 }  // namespace simbench::scenarios
 
 #endif  // SIMBENCH_SCENARIOS_CHECKS_H_

@@ -1,5 +1,96 @@
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenarios/document.h"
 #include "scenarios/loader.h"
+#include "scenarios/places.h"
+#include "scenarios/schema.h"
+
 namespace simbench::scenarios {
-std::vector<ParameterLine> describe(const Scenario&) { return {}; }
-std::vector<std::string> warnings(const Scenario&) { return {}; }
+namespace {
+
+using nlohmann::ordered_json;
+
+// Units stand last in names; longer endings come before those they end in.
+std::string unit_of(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kUnits = {{
+      {"_ppb_per_sqrt_s", "ppb/sqrt(s)"},
+      {"_mbit_per_s", "Mbit/s"},
+      {"_mb_per_s", "MB/s"},
+      {"_ppm", "ppm"},
+      {"_ppb", "ppb"},
+      {"_hz", "Hz"},
+      {"_ms", "ms"},
+      {"_us", "us"},
+      {"_s", "s"},
+      {"_hours", "h"},
+      {"hours_ago", "h"},
+      {"minutes_since_baseline", "min"},
+      {"_bytes", "bytes"},
+      {"bytes_per_pixel", "bytes"},
+      {"_mode_periods", "mode periods"},
+      {"_after_periods", "mode periods"},
+      {"_periods", "frame periods"},
+      {"_transfers", "transfer times"},
+      {"width", "pixels"},
+      {"height", "pixels"},
+  }};
+  for (const auto& [ending, unit] : kUnits) {
+    if (name.ends_with(ending)) return std::string(unit);
+  }
+  return "";
 }
+
+class Walker {
+ public:
+  explicit Walker(const Scenario& scenario)
+      : places_(dynamic_cast<const Places&>(*scenario.origin)) {}
+
+  void walk(const std::string& pointer, std::string_view name, const ordered_json* node,
+            const ordered_json& value) {
+    if (!value.is_structured() || value.empty()) {
+      add(pointer, name, node, value);
+      return;
+    }
+    for (const auto& [key, member] : value.items()) {
+      walk(child_pointer(pointer, key), value.is_array() ? name : key,
+           node == nullptr ? nullptr : schema_of_child(*node, key), member);
+    }
+  }
+
+  std::vector<ParameterLine> take() { return std::move(lines_); }
+
+ private:
+  void add(const std::string& pointer, std::string_view name, const ordered_json* node,
+           const ordered_json& value) {
+    ParameterLine line;
+    line.pointer = pointer;
+    line.value = value.is_string() ? value.get<std::string>() : value.dump();
+    line.unit = unit_of(name);
+    if (node != nullptr) {
+      line.meaning = node->value("description", "");
+      line.source = node->value("x-source", "");
+    }
+    // The source of the distribution's own figures does not speak for the user's.
+    const Place& place = places_.nearest(pointer);
+    if (!place.is_builtin) line.source = place.label;
+    lines_.push_back(std::move(line));
+  }
+
+  const Places& places_;
+  std::vector<ParameterLine> lines_;
+};
+
+}  // namespace
+
+std::vector<ParameterLine> describe(const Scenario& scenario) {
+  Walker walker(scenario);
+  walker.walk("", "", &ordered_schema(), ordered_json::parse(scenario.resolved_json));
+  return walker.take();
+}
+
+}  // namespace simbench::scenarios

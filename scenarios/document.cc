@@ -92,7 +92,7 @@ class Builder : public json::json_sax_t {
   bool end_array() override { return close(); }
 
   bool key(string_t& name) override {
-    advance_to(*furthest_);
+    advance_to(*furthest_ - 1);
     if (open_.back().container->contains(name)) {
       fail(fmt::format("the key \"{}\" stands twice in this object", shown_text(name)), false);
     }
@@ -103,7 +103,8 @@ class Builder : public json::json_sax_t {
   bool parse_error(std::size_t position, const std::string& token,
                    const nlohmann::detail::exception& error) override {
     constexpr int kNumberOverflow = 406;
-    const std::size_t offset = std::min(text_.size(), position - std::min<std::size_t>(position, 1));
+    const std::size_t offset =
+        std::min(text_.size(), position - std::min<std::size_t>(position, 1));
     advance_to(std::max(text_.data() + offset, line_start_));
     if (error.id == kNumberOverflow) {
       fail(fmt::format("the number {} is too large", shown_text(token)), false);
@@ -148,7 +149,7 @@ class Builder : public json::json_sax_t {
   }
 
   bool open(json container) {
-    advance_to(*furthest_);
+    advance_to(*furthest_ - 1);
     if (open_.size() == kMaximumNesting) {
       fail(fmt::format("nested more than {} levels deep", kMaximumNesting), false);
     }
@@ -202,7 +203,8 @@ Document parse_document(std::string_view text) {
     throw DocumentError("nothing in it; a JSON object was expected", true, 1, 1);
   }
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
-    const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+    const auto lines =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
     throw DocumentError("not text but binary data", true, static_cast<std::size_t>(lines) + 1, 1);
   }
   const char* furthest = text.data();

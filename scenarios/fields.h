@@ -51,9 +51,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Network, latency_fixed_ms, latency_exponentia
                                    nagle, delayed_ack_ms, stamp_point)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
-                                   branch_delay_max_us, cable_delay_max_us,
-                                   cameras_per_sub_trigger, start_delay_ms,
-                                   missed_pulse_probability, pauses)
+                                   branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,
+                                   start_delay_ms, missed_pulse_probability, pauses)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stream, kind, width, height, bytes_per_pixel, mode_rate_hz,
                                    pipeline_latency_ms, latency_mode_periods)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, sync_mode,

@@ -56,8 +56,9 @@ std::string no_such_key(const std::string& pointer, const std::string& key, cons
 
 json& element(json& array, const std::string& pointer, const std::string& key,
               const std::string& label) {
-  const bool is_index = !key.empty() && key.size() < 10 && (key == "0" || key[0] != '0') &&
-                        std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const bool is_index =
+      !key.empty() && key.size() < 10 && (key == "0" || key[0] != '0') &&
+      std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (is_index && std::stoul(key) < array.size()) return array[std::stoul(key)];
   throw InputError(array.empty() ? fmt::format("{}: found no \"{}\" in {}, which is empty", label,
                                                shown_text(key), pointer)
@@ -108,7 +109,12 @@ void apply_override(const Override& override_, std::size_t level, json& document
     *target = value;
   }
   places.erase(pointer);
-  places.set(pointer, {.label = label, .set_pointer = pointer, .is_set = true, .level = level});
+  Place place;
+  place.label = label;
+  place.set_pointer = pointer;
+  place.is_set = true;
+  place.level = level;
+  places.set(pointer, std::move(place));
 }
 
 }  // namespace simbench::scenarios

@@ -39,8 +39,7 @@ std::size_t Places::latest_level(const std::string& pointer) const {
 
 void Places::erase(const std::string& pointer) {
   places_.erase(pointer);
-  places_.erase(places_.lower_bound(begin_below(pointer)),
-                places_.lower_bound(end_below(pointer)));
+  places_.erase(places_.lower_bound(begin_below(pointer)), places_.lower_bound(end_below(pointer)));
 }
 
 void Places::adopt(const std::string& pointer, const Places& other) {

@@ -17,7 +17,8 @@ struct Place {
   std::string label;        // "FILE:LINE" or "--set /pointer=value"
   std::string set_pointer;  // of a --set: the pointer it names
   bool is_set = false;
-  std::size_t level = 0;  // later sources have higher levels
+  bool is_builtin = false;  // a file of the distribution
+  std::size_t level = 0;    // later sources have higher levels
   std::size_t line = 0;
 };
 

@@ -32,6 +32,7 @@ Layer read_layer(const Source& source, std::size_t level) {
       layer.places.set(pointer, {.label = fmt::format("{}:{}", label, line),
                                  .set_pointer = "",
                                  .is_set = false,
+                                 .is_builtin = source.is_builtin,
                                  .level = level,
                                  .line = line});
     }
@@ -60,8 +61,8 @@ std::vector<Layer> read_layers(Source source) {
                                    fmt::join(files, " -> "), base.label));
     }
     if (layers.size() == kMostLayers) {
-      throw InputError(fmt::format("{}: found more than {} bases upon each other", place,
-                                   kMostLayers));
+      throw InputError(
+          fmt::format("{}: found more than {} bases upon each other", place, kMostLayers));
     }
     source = std::move(base);
   }
@@ -100,9 +101,9 @@ void drop_outlived_results(Resolved& resolved) {
   json kept = json::object();
   for (const auto& [name, result] : resolved.document["published"].items()) {
     const json& pipelines = resolved.document["pipelines"];
-    const bool has_pipeline = std::any_of(
-        pipelines.begin(), pipelines.end(),
-        [&wanted = name](const json& pipeline) { return pipeline["name"] == wanted; });
+    const bool has_pipeline =
+        std::any_of(pipelines.begin(), pipelines.end(),
+                    [&wanted = name](const json& pipeline) { return pipeline["name"] == wanted; });
     const std::string pointer = child_pointer("/published", name);
     if (has_pipeline || resolved.places->latest_level(pointer) >= pipelines_level) {
       kept[name] = result;

@@ -6,20 +6,16 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 #include <vector>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/document.h"
+#include "scenarios/json_schema.h"
 
 namespace simbench::scenarios {
 namespace {
 
 using nlohmann::json;
-using valijson::adapters::NlohmannJsonAdapter;
 
 // Makes every property of every object required, but for those that the schema calls optional.
 void require_all(json& node) {
@@ -39,20 +35,15 @@ void require_all(json& node) {
   }
 }
 
-// The schema as JSON, for the messages, and as valijson's, for the verdict.
-struct Checker {
-  explicit Checker(Completeness completeness) : text(json::parse(schema_text())) {
-    if (completeness == Completeness::kResolved) require_all(text);
-    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-        .populateSchema(NlohmannJsonAdapter(text), schema);
-  }
-  json text;
-  valijson::Schema schema;
-};
+json schema_for(Completeness completeness) {
+  json schema = json::parse(schema_text());
+  if (completeness == Completeness::kResolved) require_all(schema);
+  return schema;
+}
 
-const Checker& checker(Completeness completeness) {
-  static const Checker differences(Completeness::kDifferences);
-  static const Checker resolved(Completeness::kResolved);
+const JsonSchema& checker(Completeness completeness) {
+  static const JsonSchema differences(schema_for(Completeness::kDifferences));
+  static const JsonSchema resolved(schema_for(Completeness::kResolved));
   return completeness == Completeness::kResolved ? resolved : differences;
 }
 
@@ -91,7 +82,7 @@ std::string allowed(const json& node) {
                           : "text");
     }
   }
-  return fmt::format("{}", fmt::join(kinds, " or "));
+  return fmt::format("{}", fmt::join(kinds, node.contains("enum") ? ", " : " or "));
 }
 
 struct Problem {
@@ -104,9 +95,9 @@ Problem unknown_key(const std::string& pointer, const std::string& key, const js
   for (const auto& [name, child] : node["properties"].items()) known.push_back(name);
   const std::vector<std::string> similar = nearest(key, known);
   return {child_pointer(pointer, key),
-          similar.empty() ? fmt::format("found an unknown key, allowed {}", fmt::join(known, ", "))
-                          : fmt::format("found an unknown key, did you mean {}?",
-                                        fmt::join(similar, " or "))};
+          similar.empty()
+              ? fmt::format("found an unknown key, allowed {}", fmt::join(known, ", "))
+              : fmt::format("found an unknown key, did you mean {}?", fmt::join(similar, " or "))};
 }
 
 // What is wrong with a value itself, not counting what lies inside it.
@@ -134,25 +125,25 @@ std::vector<Problem> problems_at(const std::string& pointer, const json& node, c
   return problems;
 }
 
-// valijson names a place as {"<root>", "[key]", "[0]"}.
-std::vector<Problem> problems_of(const valijson::ValidationResults::Error& error,
-                                 const json& schema, const json& document) {
+// What is wrong where the schema refused the document.
+std::vector<Problem> problems_of(const JsonSchema::Refusal& refusal, const json& schema,
+                                 const json& document) {
   const json* node = &schema;
   const json* value = &document;
   std::string pointer;
-  for (std::size_t i = 1; i < error.context.size(); ++i) {
-    const std::string key = error.context[i].substr(1, error.context[i].size() - 2);
+  for (const std::string& key : refusal.keys) {
     node = schema_of_child(*node, key);
+    if (node == nullptr) return {};
     value = value->is_array() ? &value->at(std::stoul(key)) : &value->at(key);
     pointer = child_pointer(pointer, key);
-    if (node == nullptr) return {};
   }
   return problems_at(pointer, *node, *value);
 }
 
 nlohmann::ordered_json in_order_of(const nlohmann::ordered_json* node, const json& value) {
   if (!value.is_structured()) return value;
-  auto result = value.is_array() ? nlohmann::ordered_json::array() : nlohmann::ordered_json::object();
+  auto result =
+      value.is_array() ? nlohmann::ordered_json::array() : nlohmann::ordered_json::object();
   const auto child = [node](const std::string& key) {
     return node == nullptr ? nullptr : schema_of_child(*node, key);
   };
@@ -173,21 +164,19 @@ nlohmann::ordered_json in_order_of(const nlohmann::ordered_json* node, const jso
 }  // namespace
 
 void validate(const json& document, Completeness completeness, const Places& places) {
-  const Checker& check = checker(completeness);
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  const NlohmannJsonAdapter target(document);
-  if (validator.validate(check.schema, target, &results)) return;
+  const JsonSchema& schema = checker(completeness);
+  const std::vector<JsonSchema::Refusal> refusals = schema.validate(document);
+  if (refusals.empty()) return;
 
   std::optional<Problem> first;
-  for (const auto& error : results) {
-    for (const Problem& problem : problems_of(error, check.text, document)) {
+  for (const JsonSchema::Refusal& refusal : refusals) {
+    for (const Problem& problem : problems_of(refusal, schema.text(), document)) {
       if (!first || places.nearest(problem.pointer).line < places.nearest(first->pointer).line) {
         first = problem;
       }
     }
   }
-  if (!first) first = Problem{"", "refused by the schema: " + results.begin()->description};
+  if (!first) first = Problem{"", "refused by the schema: " + refusals.front().reason};
   throw InputError(places.describe(first->pointer) + ": " + first->text);
 }
 

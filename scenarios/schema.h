@@ -1,7 +1,7 @@
 // Validation against scenarios/schema.json, with messages for people.
 //
-// valijson gives the verdict and the place; the message is then made from the schema's own words
-// for that place: "found X, allowed Y".
+// The validator gives the verdict and the place; the message is then made from the schema's own
+// words for that place: "found X, allowed Y".
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_H_
 

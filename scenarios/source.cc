@@ -62,8 +62,8 @@ Source read_file(const std::string& path, const std::string& prefix) {
   if (file.bad()) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > kMaximumBytes) {
-    fail_to_read(prefix, fmt::format("found more than {} bytes, which no scenario needs",
-                                     kMaximumBytes));
+    fail_to_read(prefix,
+                 fmt::format("found more than {} bytes, which no scenario needs", kMaximumBytes));
   }
   return {path, std::move(text), false};
 }

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/loader.h"
+#include "scenarios/rates.h"
+
+namespace simbench::scenarios {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+void warn(Lines& lines, const Scenario& scenario, const std::string& pointer,
+          const std::string& text) {
+  lines.push_back(scenario.origin->describe(pointer) + ": " + text);
+}
+
+// In 1e6 bytes per second.
+double camera_load_mb_per_s(const Scenario& scenario) {
+  double load = 0;
+  for (const Stream& stream : scenario.cameras.streams) {
+    load += static_cast<double>(stream.width * stream.height) * stream.bytes_per_pixel *
+            frame_rate_hz(scenario, stream) * 1e-6;
+  }
+  return load;
+}
+
+std::map<std::int64_t, std::int64_t> cameras_by_host(const Scenario& scenario) {
+  std::map<std::int64_t, std::int64_t> cameras;
+  for (std::int64_t j = 0; j < scenario.cameras.count; ++j) ++cameras[scenario.host_of(j)];
+  return cameras;
+}
+
+void warn_about_usb(Lines& lines, const Scenario& scenario) {
+  const Usb& usb = scenario.usb;
+  constexpr std::int64_t kKnownToWork = 3;
+  std::int64_t sharers = 1;
+  if (usb.sharing != "dedicated") {
+    std::int64_t most_on_a_host = 0;
+    for (const auto& [host, count] : cameras_by_host(scenario)) {
+      most_on_a_host = std::max(most_on_a_host, count);
+    }
+    sharers = std::min(usb.cameras_per_controller, most_on_a_host);
+  }
+  const double offered = camera_load_mb_per_s(scenario) * static_cast<double>(sharers);
+  if (offered > usb.bandwidth_mb_per_s) {
+    warn(lines, scenario, "/usb/bandwidth_mb_per_s",
+         fmt::format("{} camera(s) offer {:.1f} MB/s to a controller that carries {:g}: expect "
+                     "{:.1f} % of their frames to be dropped",
+                     sharers, offered, usb.bandwidth_mb_per_s,
+                     100 * (1 - usb.bandwidth_mb_per_s / offered)));
+  } else if (sharers > kKnownToWork) {
+    warn(lines, scenario, "/usb/cameras_per_controller",
+         fmt::format("{} cameras share a controller; with more than {} incomplete frames and drops "
+                     "are reported of real ones (librealsense #4627), which the model does not "
+                     "show",
+                     sharers, kKnownToWork));
+  }
+}
+
+void warn_about_exposure(Lines& lines, const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  const double period_ms = 1e3 / pulse_rate_hz(scenario.trigger);
+  const double longest_ms =
+      cameras.exposure_ms +
+      (cameras.exposure_camera_periods + cameras.exposure_host_periods) * period_ms;
+  const bool is_triggered =
+      std::any_of(cameras.streams.begin(), cameras.streams.end(),
+                  [&cameras](const Stream& stream) { return follows_trigger(cameras, stream); });
+  const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
+  if (start_ms + longest_ms <= period_ms) return;
+  warn(lines, scenario, "/cameras/exposure_ms",
+       fmt::format("exposures of up to {:.2f} ms, beginning {:.2f} ms after the pulse, do not fit "
+                   "into the frame period of {:.2f} ms: expect missed pulses and half the rate "
+                   "(realsense-ros #2612)",
+                   longest_ms, start_ms, period_ms));
+}
+
+void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  for (const Stream& stream : cameras.streams) {
+    if (stream.kind != scenario.evaluation.stream || follows_trigger(cameras, stream)) continue;
+    warn(lines, scenario, "/evaluation/stream",
+         fmt::format("in sync mode \"{}\" the {} stream does not follow the trigger: its frames "
+                     "differ by up to a frame period",
+                     cameras.sync_mode, stream.kind));
+  }
+  if (scenario.timeline.warm_up_ms < cameras.unstable_start_ms) {
+    warn(lines, scenario, "/timeline/warm_up_ms",
+         fmt::format("evaluation begins after {:g} ms, exposures are unsteady for {:g} ms",
+                     scenario.timeline.warm_up_ms, cameras.unstable_start_ms));
+  }
+}
+
+void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
+  const auto busy = static_cast<std::int64_t>(cameras_by_host(scenario).size());
+  if (busy == scenario.hosts.count) return;
+  warn(lines, scenario, "/hosts/count",
+       fmt::format("{} of {} hosts have no camera", scenario.hosts.count - busy,
+                   scenario.hosts.count));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Scenario& scenario) {
+  Lines lines;
+  warn_about_usb(lines, scenario);
+  warn_about_exposure(lines, scenario);
+  warn_about_evaluation(lines, scenario);
+  warn_about_idle_hosts(lines, scenario);
+  return lines;
+}
+
+}  // namespace simbench::scenarios
