@@ -160,16 +160,13 @@ void SystemClock::settle(TrueTime now) {
   while (reported_ < settings_.size() && settings_[reported_].since <= now) report(reported_++);
 }
 
-void SystemClock::observe(TrueTime now, Observer observer) {
-  settle(now);
-  observer_ = std::move(observer);
-  if (!observer_) return;
+ClockAdjustment SystemClock::present(TrueTime now) const {
   const HostTime reads = read(now);
-  observer_({.host = host_,
-             .at = steady(now),
-             .before = reads,
-             .after = reads,
-             .rate_ppb = setting_at(now).rate() * 1e9});
+  return {.host = host_,
+          .at = steady(now),
+          .before = reads,
+          .after = reads,
+          .rate_ppb = setting_at(now).rate() * 1e9};
 }
 
 void SystemClock::report(std::size_t index) {

@@ -8,8 +8,8 @@
 //
 // Adjustments must come in order of true time. A slew ends by itself; a step or another slew before
 // its end leaves the rest of it undone, a change of rate does not. Each adjustment is passed to the
-// observer, also the initial setting and the end of a slew, in order of time; who wants the end of
-// a slew reported in time calls settle() at settles_at().
+// observer in order of time, also the end of a slew; who wants that in time calls settle() at
+// settles_at().
 //
 // The clock of an oracle's slave follows the master's: both its clocks are the master's at every
 // instant, adjustments of its own have no effect, and it reports the master's adjustments.
@@ -28,6 +28,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "recording/recording.h"
@@ -73,8 +74,10 @@ class SystemClock {
   // Reports the end of a slew that was reached at or before `now`.
   void settle(TrueTime now);
 
-  // From now on passes adjustments to `observer`, first the present setting at `now`.
-  void observe(TrueTime now, Observer observer);
+  // The setting valid at `now`, as an adjustment that changes nothing.
+  ClockAdjustment present(TrueTime now) const;
+  // From now on passes adjustments to `observer`, in place of the one before.
+  void observe(Observer observer) { observer_ = std::move(observer); }
 
   // Makes this an oracle's clock. Only before any adjustment; the master must outlive this.
   void follow(SystemClock& master);

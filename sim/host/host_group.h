@@ -15,10 +15,9 @@
 //
 // Source: reference/calibration.md section 2 ("Host clock", "None row").
 //
-//   Engine engine;
-//   VirtualContext context(engine);
-//   HostGroup hosts(context, scenario.hosts, scenario.network,
-//                   {.run_seed = seed, .load_key = "both@18cam_6host_45fps"}, sink);
+//   HostGroup hosts(scenario, seed, "both@18cam_6host_45fps", InitialClocks::kUnsynchronised,
+//                   context, sink);
+//   hosts.report_clocks();
 //   co_spawn(context, host_sync.run_master(hosts.host(0), slaves), detached);
 #ifndef SIMBENCH_SIM_HOST_HOST_GROUP_H_
 #define SIMBENCH_SIM_HOST_HOST_GROUP_H_
@@ -26,7 +25,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <string>
+#include <string_view>
+#include <vector>
 
 #include "algorithms/host_sync/host_sync.h"
 #include "recording/recording.h"
@@ -39,29 +39,29 @@
 
 namespace simbench::sim {
 
-struct HostGroupOptions {
-  std::uint64_t run_seed = 1;
-  std::string load_key;  // "<pipeline>@<scenario>"
-  InitialClocks initial_clocks = InitialClocks::kUnsynchronised;
-};
-
 class HostGroup {
  public:
-  // Passes the initial setting of every clock to the sink. What is referred to must outlive the
-  // group; the group must outlive the coroutines that use its hosts.
-  HostGroup(VirtualContext& context, const scenarios::Hosts& hosts,
-            const scenarios::Network& network, const HostGroupOptions& options,
-            RecordingSink& sink);
+  // `load_key` names the run whose load is drawn: "<pipeline>@<scenario>". What is referred to must
+  // outlive the group, and the engine must not run after the group is gone.
+  HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed, std::string_view load_key,
+            InitialClocks initial_clocks, VirtualContext& context, RecordingSink& sink);
   HostGroup(const HostGroup&) = delete;
   HostGroup& operator=(const HostGroup&) = delete;
 
   std::size_t size() const { return hosts_.size(); }
   SimHost& host(std::size_t index) { return hosts_[index]; }
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
+  std::vector<SystemClock*> clocks();
+
+  // Puts the present setting of every clock on record, which all later adjustments start from.
+  void report_clocks();
 
  private:
-  void make_clocks(const scenarios::Hosts& hosts, const HostGroupOptions& options);
+  void make_clock(const scenarios::HostClock& parameters, std::uint64_t run_seed,
+                  InitialClocks initial_clocks);
 
+  Engine& engine_;
+  RecordingSink& sink_;
   RunLoad load_;
   Network network_;
   std::deque<SystemClock> clocks_;

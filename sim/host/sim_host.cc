@@ -31,11 +31,10 @@ SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock)
       steady_port_(world.context.engine(), system_clock),
       algorithm_draws_(world.run_seed, name("algorithm")),
       sleep_label_(name("sleep")) {
-  system_clock_.observe(true_now(),
-                        [this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
+  system_clock_.observe([this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
 }
 
-SimHost::~SimHost() { system_clock_.observe(true_now(), nullptr); }
+SimHost::~SimHost() { system_clock_.observe(nullptr); }
 
 MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {
   std::unique_ptr<SimChannel>& channel = channels_[{peer, transport}];

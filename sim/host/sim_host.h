@@ -3,8 +3,7 @@
 // Calls of the clock cost CPU time (sim/host/clock_port.h), sends the sender's occupancy
 // (sim/host/sim_channel.h). All waits are on the engine: intervals and deadlines follow the host's
 // oscillator, sleep_until follows its system clock and is re-armed whenever that is adjusted, by
-// whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen, and the
-// clock's setting when the host is made comes first.
+// whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen.
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //
