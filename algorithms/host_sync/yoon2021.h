@@ -31,7 +31,8 @@
 //   4. the printed last message is "ready", which would start another pass: it is SUCCESS;
 //   -  every receive has a time limit, so a dead peer or a lost datagram ends the pass, and
 //      kSilentPassLimit such passes in a row the session. Algorithm 2 counts n_d receives: one lost
-//      stamp loses the pass; a duplicate counts as a stamp. On a lossy network use the stream.
+//      stamp, or one that overtakes READY, loses the pass; a duplicate counts as a stamp. On a
+//      network that loses or reorders use the stream.
 //
 // Latency estimate "intended": the paper describes t_l as "the average time taken for the
 // transmission of n_d data packets". One-way times cannot be measured between clocks that are not
