@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 
 option(SIMBENCH_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SIMBENCH_BUILD_BENCH "Build the benchmark programs" ${PROJECT_IS_TOP_LEVEL})
-option(SIMBENCH_BUILD_FUZZ "Build the libFuzzer programs (clang only; see the preset fuzz)" OFF)
+option(SIMBENCH_BUILD_FUZZ "Build the fuzzers, which need clang's libFuzzer (preset asan)" OFF)
 set(SIMBENCH_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize= (empty: none)")
 
 set(CMAKE_CXX_STANDARD 20)
@@ -36,4 +36,7 @@ if(SIMBENCH_SANITIZE)
   simbench_build_options(-fsanitize=${SIMBENCH_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   target_link_options(simbench_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${SIMBENCH_SANITIZE}>)
+endif()
+if(SIMBENCH_BUILD_FUZZ)
+  simbench_build_options(-fsanitize=fuzzer-no-link)
 endif()
