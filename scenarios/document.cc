@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -42,20 +43,36 @@ class WatchedIterator {
   const char** furthest_ = nullptr;
 };
 
-// nlohmann's reason in plain words.
-std::string plain_words(std::string message) {
+// The word of the text that `at` points into.
+std::string_view word_around(std::string_view text, std::size_t at) {
+  const auto is_part = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("+-._").find(c) != std::string_view::npos;
+  };
+  constexpr std::size_t kLongest = 40;
+  std::size_t begin = at;
+  while (begin > 0 && at - begin < kLongest && is_part(text[begin - 1])) --begin;
+  std::size_t end = at < text.size() ? at + 1 : at;
+  while (end < text.size() && end - at < kLongest && is_part(text[end])) ++end;
+  return text.substr(begin, end - begin);
+}
+
+// nlohmann's reason in plain words; `word` is where it met the mistake.
+std::string plain_words(std::string message, std::string_view word) {
   const auto replace = [&message](std::string_view what, std::string_view with) {
     const std::size_t at = message.find(what);
     if (at != std::string::npos) message.replace(at, what.size(), with);
   };
-  const std::size_t reason = message.find(" - ");
-  if (reason != std::string::npos) message.erase(0, reason + 3);
-  const bool is_comment = message.find("last read: '/'") != std::string::npos;
-  replace("; last read: ", " near ");
+  if (const std::size_t reason = message.find(" - "); reason != std::string::npos) {
+    message.erase(0, reason + 3);
+  }
+  if (const std::size_t near = message.find("; last read: "); near != std::string::npos) {
+    message.replace(near, std::string::npos, fmt::format(" near '{}'", shown_text(word)));
+  }
   replace("string literal", "text in double quotes");
   replace("'[', '{', or a literal", "a value");
   replace("invalid literal", "no JSON value");
-  if (is_comment) message += " (JSON has no comments)";
+  if (word.starts_with('/')) message += " (JSON has no comments)";
   if (message.starts_with("unexpected '}'; expected text") ||
       message.starts_with("unexpected ']'; expected a value")) {
     message += " (a comma too many?)";
@@ -103,13 +120,13 @@ class Builder : public json::json_sax_t {
   bool parse_error(std::size_t position, const std::string& token,
                    const nlohmann::detail::exception& error) override {
     constexpr int kNumberOverflow = 406;
-    const std::size_t offset =
-        std::min(text_.size(), position - std::min<std::size_t>(position, 1));
-    advance_to(std::max(text_.data() + offset, line_start_));
+    const std::size_t at = position == 0 ? 0 : std::min(text_.size(), position - 1);
+    const std::string_view word = word_around(text_, at);
+    advance_to(std::max(word.data(), line_start_));
     if (error.id == kNumberOverflow) {
       fail(fmt::format("the number {} is too large", shown_text(token)), false);
     }
-    fail("broken JSON: " + shown_text(plain_words(error.what())), true);
+    fail("broken JSON: " + plain_words(error.what(), word), true);
   }
 
  private:

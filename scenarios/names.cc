@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <utility>
 
 #include "scenarios/loader.h"
@@ -8,21 +7,30 @@
 namespace simbench::scenarios {
 namespace {
 
-// Levenshtein distance, one row at a time; upper and lower case count as equal.
+// Insertions, deletions, replacements and swaps of neighbours; upper and lower case count as equal.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const bool equal = std::tolower(static_cast<unsigned char>(a[i])) ==
-                         std::tolower(static_cast<unsigned char>(b[j]));
-      const std::size_t replaced = diagonal + (equal ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+  const auto equal = [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) ==
+           std::tolower(static_cast<unsigned char>(y));
+  };
+  // distance[i][j]: between the first i characters of a and the first j of b.
+  std::vector<std::vector<std::size_t>> distance(a.size() + 1,
+                                                 std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      std::size_t& here = distance[i][j];
+      if (i == 0 || j == 0) {
+        here = i + j;
+        continue;
+      }
+      here = std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1,
+                       distance[i - 1][j - 1] + (equal(a[i - 1], b[j - 1]) ? 0 : 1)});
+      if (i > 1 && j > 1 && equal(a[i - 1], b[j - 2]) && equal(a[i - 2], b[j - 1])) {
+        here = std::min(here, distance[i - 2][j - 2] + 1);
+      }
     }
   }
-  return row.back();
+  return distance[a.size()][b.size()];
 }
 
 }  // namespace
@@ -42,7 +50,10 @@ std::vector<std::string> nearest(const std::string& name, const std::vector<std:
   }
   std::sort(found.begin(), found.end());
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) names.push_back(found[i].second);
+  for (const auto& [distance, candidate] : found) {
+    if (names.size() == kMost || distance > 2 * found.front().first) break;
+    names.push_back(candidate);
+  }
   return names;
 }
 

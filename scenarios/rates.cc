@@ -59,7 +59,7 @@ void check_full_rate(const Scenario& scenario, const std::string& pointer, const
     return;
   }
   const double rate = pulse_rate_hz(scenario.trigger);
-  if (std::abs(rate / stream.mode_rate_hz - 1) <= kRateTolerance) return;
+  if (std::abs(rate / stream.mode_rate_hz - 1) <= kRateTolerance + kRounding) return;
   fail_at(scenario, "/trigger/rate_hz",
           fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
                       "Hz mode",

@@ -1,0 +1,155 @@
+// The scenarios of the distribution, their warnings and descriptions.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/scenarios/support.h"
+
+namespace simbench::scenarios {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+TEST(Builtin, AllAreThereInOrder) {
+  std::vector<std::string> names;
+  for (const BuiltinScenario& scenario : builtin_scenarios()) names.push_back(scenario.name);
+  EXPECT_THAT(
+      names,
+      ElementsAre("18cam_1host_pcie", "18cam_6host_15fps", "18cam_6host_15fps_lan",
+                  "18cam_6host_45fps", "18cam_6host_45fps_lan", "18cam_6host_45fps_staggered_start",
+                  "18cam_6host_90fps_full_slave", "3cam_1host_30fps", "6cam_2host_30fps",
+                  "pulse_index_off_by_two", "scale_18000cam_6000host_45fps"));
+}
+
+TEST(Builtin, AllLoadWithoutWarnings) {
+  for (const BuiltinScenario& builtin : builtin_scenarios()) {
+    SCOPED_TRACE(builtin.name);
+    const Scenario scenario = load_scenario(builtin.name);
+    EXPECT_EQ(scenario.name, builtin.name);
+    EXPECT_EQ(scenario.summary, builtin.summary);
+    EXPECT_THAT(warnings(scenario), IsEmpty());
+    const bool says_what_it_is = scenario.summary.find("fit") != std::string::npos ||
+                                 scenario.summary.find("ominal") != std::string::npos;
+    EXPECT_TRUE(says_what_it_is) << scenario.summary;
+  }
+}
+
+TEST(Builtin, ResolvedJsonLoadsAsTheSameScenario) {
+  for (const BuiltinScenario& builtin : builtin_scenarios()) {
+    const std::string once = load_scenario(builtin.name).resolved_json;
+    const std::string twice = load_scenario_text(once, "resolved.json").resolved_json;
+    EXPECT_EQ(once, twice) << builtin.name;
+  }
+}
+
+// The two calibrated scenarios by the figures of the fit.
+TEST(Builtin, CalibratedWorlds) {
+  for (const auto& [name, rate, period_ms, transfer_ms] :
+       {std::tuple("18cam_6host_45fps", 45.0, 15.0, 2.33),
+        std::tuple("18cam_6host_15fps", 15.0, 0.0, 5.27)}) {
+    const Scenario s = load_scenario(name);
+    EXPECT_EQ(s.trigger.rate_hz, rate);
+    EXPECT_EQ(s.cameras.streams[0].mode_rate_hz, 2 * rate);
+    EXPECT_EQ(s.hosts.clock.last_set.minutes_since_baseline, period_ms);
+    const Stream& stream = s.cameras.streams[0];
+    const double bytes = static_cast<double>(stream.width * stream.height) * stream.bytes_per_pixel;
+    EXPECT_NEAR(bytes / s.usb.bandwidth_mb_per_s * 1e-3, transfer_ms, 0.005);
+    EXPECT_EQ(s.hosts.clock.set_cost_ms, 4.5);
+    EXPECT_EQ(s.cameras.exposure_host_periods, 0.14);
+    EXPECT_EQ(s.published.size(), 4U);
+    EXPECT_EQ(std::get<double>(s.algorithms.at("yoon2021").at("threshold_ms")), 100);
+  }
+  EXPECT_EQ(load_scenario("18cam_6host_15fps").published.at("yoon2021_network").amd_ms, 11.1648);
+  EXPECT_EQ(load_scenario("18cam_6host_45fps").published.at("yoon2021_network").amd_ms, 3.9161);
+}
+
+TEST(Builtin, PipelinesOfTheMainScenario) {
+  std::vector<std::string> names;
+  for (const Pipeline& pipeline : load_scenario("18cam_6host_45fps").pipelines) {
+    names.push_back(pipeline.name);
+  }
+  EXPECT_THAT(
+      names, ElementsAre("ntp_last_set", "ntp_w32time", "yoon2021_network", "yoon2021_time",
+                         "yoon2021_both", "yoon2021_neither", "free_running", "oracle", "genlock"));
+}
+
+TEST(Warnings, MoreBytesThanUsbCarries) {
+  // 848 * 480 * 2 bytes at 45 Hz are 36.6336 MB/s.
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps", {{"/usb/bandwidth_mb_per_s", "20"}})),
+              ElementsAre("--set /usb/bandwidth_mb_per_s=20: 1 camera(s) offer 36.6 MB/s to a "
+                          "controller that carries 20: expect 45.4 % of their frames to be "
+                          "dropped"));
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan", {{"/usb/bandwidth_mb_per_s", "100"}})),
+      ElementsAre(HasSubstr("3 camera(s) offer 109.9 MB/s to a controller that carries 100: expect "
+                            "9.0 % of their frames to be dropped")));
+}
+
+TEST(Warnings, ManyCamerasOnAController) {
+  EXPECT_THAT(warnings(load_scenario("18cam_1host_pcie", {{"/usb/cameras_per_controller", "6"}})),
+              ElementsAre(StartsWith("--set /usb/cameras_per_controller=6: 6 cameras share")));
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan", {{"/usb/cameras_per_controller", "6"}})),
+      IsEmpty());
+}
+
+TEST(Warnings, ExposureLongerThanThePeriod) {
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps_lan", {{"/cameras/exposure_ms", "21.4"}})),
+              IsEmpty());
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps_lan", {{"/cameras/exposure_ms", "21.5"}})),
+              ElementsAre("--set /cameras/exposure_ms=21.5: exposures of up to 21.50 ms, beginning "
+                          "0.79 ms after the pulse, do not fit into the frame period of 22.22 ms: "
+                          "expect missed pulses and half the rate (realsense-ros #2612)"));
+}
+
+TEST(Warnings, ScoredFramesThatAreNotTriggered) {
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_90fps_full_slave",
+                             {{"/cameras/sync_mode", "slave"}, {"/evaluation/stream", "colour"}})),
+      ElementsAre(StartsWith("--set /evaluation/stream=colour: in sync mode \"slave\" the "
+                             "colour stream does not follow the trigger")));
+}
+
+TEST(Warnings, EarlyEvaluationAndIdleHosts) {
+  EXPECT_THAT(warnings(load_scenario("18cam_6host_45fps_lan",
+                                     {{"/timeline/warm_up_ms", "10"}, {"/hosts/count", "8"}})),
+              ElementsAre("--set /timeline/warm_up_ms=10: evaluation begins after 10 ms, exposures "
+                          "are unsteady for 5000 ms",
+                          "--set /hosts/count=8: 2 of 8 hosts have no camera"));
+}
+
+TEST(Describe, ALineForEveryParameter) {
+  const Scenario scenario =
+      load_derived(R"("hosts": {"clock": {"tick_ms": 15.6}})", {{"/timeline/frames", "100"}});
+  const std::vector<ParameterLine> lines = describe(scenario);
+  const auto line = [&lines](const std::string& pointer) {
+    const auto found =
+        std::find_if(lines.begin(), lines.end(),
+                     [&pointer](const ParameterLine& each) { return each.pointer == pointer; });
+    return found == lines.end() ? ParameterLine{} : *found;
+  };
+  EXPECT_EQ(line("/network/latency_fixed_ms").value, "0.1");
+  EXPECT_EQ(line("/network/latency_fixed_ms").unit, "ms");
+  EXPECT_EQ(line("/network/latency_fixed_ms").meaning, "One-way latency: fixed part");
+  EXPECT_THAT(line("/network/latency_fixed_ms").source, HasSubstr("FIT-C"));
+  EXPECT_EQ(line("/hosts/clock/tick_ms").source, "my.json:3");
+  EXPECT_EQ(line("/timeline/frames").source, "--set /timeline/frames=100");
+  EXPECT_EQ(line("/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s").unit, "ppb/sqrt(s)");
+  EXPECT_EQ(line("/hosts/clock/last_set/hours_ago").unit, "h");
+  EXPECT_EQ(line("/usb/bandwidth_mb_per_s").unit, "MB/s");
+  EXPECT_EQ(line("/cameras/streams/0/width").unit, "pixels");
+  EXPECT_EQ(line("/cameras/host_of_camera").value, "[]");
+  EXPECT_EQ(line("/algorithms/yoon2021/latency_estimate").value, "literal");
+  for (const ParameterLine& each : lines) {
+    EXPECT_FALSE(each.meaning.empty()) << each.pointer;
+    EXPECT_FALSE(each.source.empty()) << each.pointer;
+  }
+}
+
+}  // namespace
+}  // namespace simbench::scenarios

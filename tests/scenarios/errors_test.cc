@@ -1,0 +1,178 @@
+// What the schema and the checks refuse: exact messages.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/scenarios/support.h"
+
+namespace simbench::scenarios {
+namespace {
+
+TEST(SchemaErrors, TypeRangeAndChoice) {
+  EXPECT_EQ(error_of_text("[]"), "my.json:1: found an array of 0, allowed an object");
+  EXPECT_EQ(error_of(R"("timeline": {"frames": "many"})"),
+            "my.json:3: /timeline/frames: found \"many\", allowed a whole number from 1 to "
+            "10000000");
+  EXPECT_EQ(error_of(R"("timeline": {"frames": 1.5})"),
+            "my.json:3: /timeline/frames: found 1.5, allowed a whole number from 1 to 10000000");
+  EXPECT_EQ(error_of(R"("timeline": {"frames": 18446744073709551615})"),
+            "my.json:3: /timeline/frames: found 1.8446744073709552e+19, allowed a whole number "
+            "from 1 to 10000000");
+  EXPECT_EQ(error_of("\"usb\": {\"spike_probability\":\n 1.5}"),
+            "my.json:4: /usb/spike_probability: found 1.5, allowed a number from 0 to 1");
+  EXPECT_EQ(error_of(R"("evaluation": {"gathering_interval_periods": 0})"),
+            "my.json:3: /evaluation/gathering_interval_periods: found 0, allowed a number above 0 "
+            "and at most 10");
+  EXPECT_EQ(error_of(R"("cameras": {"sync_mode": "slav"})"),
+            "my.json:3: /cameras/sync_mode: found \"slav\", allowed \"default\", \"master\", "
+            "\"slave\", \"full_slave\", \"genlock\"");
+  EXPECT_EQ(error_of(R"("network": {"nagle": 1})"),
+            "my.json:3: /network/nagle: found 1, allowed true or false");
+  EXPECT_EQ(error_of(R"("hosts": 6)"), "my.json:3: /hosts: found 6, allowed an object");
+  EXPECT_EQ(error_of(R"("hosts": {"count": null})"),
+            "my.json:3: /hosts/count: found null, allowed a whole number from 1 to 1000000");
+  EXPECT_EQ(error_of(R"("pipelines": [])"),
+            "my.json:3: /pipelines: found an array of 0, allowed an array of 1 to 1000");
+  EXPECT_EQ(error_of(R"("algorithms": {"a": {"b": []}})"),
+            "my.json:3: /algorithms/a/b: found an array of 0, allowed a number or true or false or "
+            "text");
+  EXPECT_EQ(error_of(R"("schema_version": 2)"),
+            "my.json:3: /schema_version: found 2, allowed a whole number equal to 1");
+}
+
+TEST(SchemaErrors, UnknownKeys) {
+  EXPECT_EQ(error_of(R"("hosts": {"cuont": 6})"),
+            "my.json:3: /hosts/cuont: found an unknown key, did you mean count?");
+  EXPECT_EQ(error_of(R"("evaluation": {"xyz": 6})"),
+            "my.json:3: /evaluation/xyz: found an unknown key, allowed gathering_interval_periods, "
+            "rmdv_median, stream");
+  EXPECT_EQ(error_of(R"("trigger": {"pauses": [{"at_ms": 1, "duration_ms": 2, "a/b": 3}]})"),
+            "my.json:3: /trigger/pauses/0/a~1b: found an unknown key, allowed at_ms, duration_ms");
+}
+
+TEST(SchemaErrors, TheFirstLineCounts) {
+  EXPECT_EQ(error_of("\"usb\": {\"sharing\": 1},\n \"hosts\": {\"count\": 0},\n \"z\": 1"),
+            "my.json:3: /usb/sharing: found 1, allowed \"dedicated\", \"fair\", \"fifo\"");
+}
+
+TEST(SchemaErrors, MissingMembers) {
+  EXPECT_EQ(error_of_text("{\"name\": \"a\"}"),
+            "my.json:1: /summary: found nothing, allowed text of 1 to 4000 characters");
+  EXPECT_EQ(error_of_text("{\"name\": \"a\", \"summary\": \"b\"}"),
+            "my.json:1: /algorithms: found nothing, allowed an object");
+  EXPECT_EQ(error_of("\"pipelines\": [\n {\"name\": \"a\", \"host_sync\": \"b\",\n"
+                     " \"gathering\": \"c\"}]"),
+            "my.json:4: /pipelines/0/device_time: found nothing, allowed text of 1 to 100 "
+            "characters");
+}
+
+TEST(Checks, Names) {
+  EXPECT_EQ(error_of_text(R"({"base": "18cam_6host_45fps", "name": "a b", "summary": "s"})"),
+            "my.json:1: /name: found \"a b\", allowed letters, digits, '_', '-' and '.', no '-' in "
+            "front");
+  EXPECT_EQ(error_of_set("/pipelines/1/name", "ntp_last_set"),
+            "--set /pipelines/1/name=ntp_last_set: found a second \"ntp_last_set\", allowed a name "
+            "for each pipeline");
+  EXPECT_EQ(error_of(R"("published": {"yoon2021_bot": {"amd_ms": 1, "rmdv_ms": 1}})"),
+            "my.json:3: /published/yoon2021_bot: found no such pipeline, did you mean "
+            "yoon2021_both?");
+}
+
+TEST(Checks, CamerasAndHosts) {
+  EXPECT_EQ(error_of(R"("hosts": {"count": 5})"),
+            "18cam_6host_45fps.json:77: /cameras/cameras_per_host: found 3, which puts camera 17 "
+            "on host 5, allowed hosts are 0 to 4 (/hosts/count is 5)");
+  EXPECT_EQ(error_of(R"("cameras": {"count": 2, "host_of_camera": [0]})"),
+            "my.json:3: /cameras/host_of_camera: found 1 hosts, allowed none or one for each of "
+            "the 2 cameras");
+  EXPECT_EQ(error_of("\"cameras\": {\"count\": 2, \"host_of_camera\": [0,\n 6]}"),
+            "my.json:4: /cameras/host_of_camera/1: found 6, allowed 0 to 5 (/hosts/count is 6)");
+}
+
+std::string stream(const std::string& kind, int width, int height, int rate_hz) {
+  return fmt::format(
+      R"({{"kind": "{}", "width": {}, "height": {}, "bytes_per_pixel": 2, "mode_rate_hz": {},
+           "pipeline_latency_ms": 8, "latency_mode_periods": 0}})",
+      kind, width, height, rate_hz);
+}
+
+// The last line of a scenario's members.
+std::string streams(const std::vector<std::string>& streams,
+                    const std::string& sync_mode = "genlock") {
+  return fmt::format(R"("cameras": {{"sync_mode": "{}", "streams": [{}]}})", sync_mode,
+                     fmt::join(streams, ", "));
+}
+
+TEST(Checks, Profiles) {
+  EXPECT_EQ(error_of(streams({stream("depth", 848, 480, 45)})),
+            "my.json:3: /cameras/streams/0/mode_rate_hz: found 45, allowed 15, 30, 60, 90 "
+            "(profiles of a D455 for depth 848x480)");
+  EXPECT_EQ(
+      error_of(streams({stream("colour", 640, 480, 30)})),
+      "18cam_6host_45fps.json:125: /evaluation/stream: found \"depth\", allowed \"colour\", the "
+      "captured streams");
+  EXPECT_EQ(error_of(streams({stream("depth", 800, 600, 30)})),
+            "my.json:3: /cameras/streams/0/width: found depth 800x600, allowed 1280x720, 848x480, "
+            "848x100, 640x480, 640x360, 480x270, 424x240, 256x144 (profiles of a D455)");
+  EXPECT_EQ(error_of(streams({stream("depth", 848, 480, 90), stream("depth", 640, 480, 90)})),
+            "my.json:4: /cameras/streams/1/kind: found a second \"depth\", allowed one stream of a "
+            "kind");
+}
+
+TEST(Checks, RatesOfTheSyncModes) {
+  EXPECT_EQ(error_of_set("/trigger/rate_hz", "60"),
+            "--set /trigger/rate_hz=60: found 60 Hz, allowed at most 45.9184 Hz: genlock in a 90 "
+            "Hz mode ignores pulses for two mode periods less the guard of 0.02");
+  EXPECT_EQ(error_of_set("/cameras/genlock_guard_fraction", "0"), "");
+  EXPECT_EQ(error_of("\"cameras\": {\"genlock_guard_fraction\": 0},\n"
+                     " \"trigger\": {\"rate_error_ppm\": 1}"),
+            "18cam_6host_45fps.json:65: /trigger/rate_hz: found 45 Hz, allowed at most 45 Hz: "
+            "genlock in a 90 Hz mode ignores pulses for two mode periods less the guard of 0");
+  EXPECT_EQ(error_of_set("/cameras/sync_mode", "slave"),
+            "18cam_6host_45fps.json:65: /trigger/rate_hz: found 45 Hz, allowed 89.1 to 90.9 Hz in "
+            "sync mode \"slave\" with a 90 Hz mode");
+  EXPECT_EQ(error_of(R"("trigger": {"rate_hz": 90.9}, "cameras": {"sync_mode": "slave"})"), "");
+  EXPECT_EQ(error_of("\"trigger\": {\"rate_hz\": 100},\n" +
+                     streams({stream("depth", 848, 100, 100)}, "full_slave")),
+            "my.json:4: /cameras/streams/0/mode_rate_hz: found 100, allowed 6, 15, 30, 60, 90 in "
+            "sync mode \"full_slave\"");
+  // Free-running cameras take any profile, and only the scored stream must keep the rate.
+  EXPECT_EQ(error_of("\"trigger\": {\"rate_hz\": 100},\n" +
+                     streams({stream("depth", 848, 100, 100), stream("colour", 848, 480, 30)},
+                             "default")),
+            "");
+}
+
+TEST(Checks, Faults) {
+  EXPECT_EQ(error_of("\"faults\": [{\"kind\": \"clock_step\", \"host\": 1,\n \"at_ms\": 1}]"),
+            "my.json:3: /faults/0/step_ms: found nothing, \"clock_step\" needs host, at_ms, "
+            "step_ms");
+  EXPECT_EQ(error_of(R"("faults": [{"kind": "late_first_frame", "camera": 1, "duration_ms": 5,
+                        "at_ms": 7}])"),
+            "my.json:4: /faults/0/at_ms: found 7, \"late_first_frame\" uses camera, duration_ms "
+            "alone");
+  EXPECT_EQ(error_of(R"("faults": [{"kind": "late_first_frame", "camera": 18, "duration_ms": 5}])"),
+            "my.json:3: /faults/0/camera: found 18, allowed 0 to 17 (/cameras/count is 18)");
+  EXPECT_EQ(error_of(R"("faults": [{"kind": "clock_step", "host": 6, "at_ms": 5, "step_ms": -1}])"),
+            "my.json:3: /faults/0/host: found 6, allowed 0 to 5 (/hosts/count is 6)");
+}
+
+TEST(Checks, FailAtNamesThePlace) {
+  const Scenario scenario = load_derived(R"("usb": {"sharing": "fair"})", {{"/hosts/count", "7"}});
+  const auto message = [&scenario](const std::string& pointer) -> std::string {
+    try {
+      fail_at(scenario, pointer, "found X, allowed Y");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message("/usb/sharing"), "my.json:3: /usb/sharing: found X, allowed Y");
+  EXPECT_EQ(message("/usb/unheard_of"), "my.json:3: /usb/unheard_of: found X, allowed Y");
+  EXPECT_EQ(message("/hosts/count"), "--set /hosts/count=7: found X, allowed Y");
+}
+
+}  // namespace
+}  // namespace simbench::scenarios
