@@ -59,11 +59,11 @@ class EventQueue {
   // Removes the entries for which `is_unwanted(entry)` returns true. O(n).
   template <class Predicate>
   void erase_if(Predicate is_unwanted) {
-    std::vector<QueueEntry> entries;
-    drain(entries);
-    for (const QueueEntry& entry : entries) {
+    drain(drained_);
+    for (const QueueEntry& entry : drained_) {
       if (!is_unwanted(entry)) insert(entry);
     }
+    drained_.clear();
   }
 
  private:
@@ -91,6 +91,7 @@ class EventQueue {
   std::vector<QueueEntry> run_;  // the run being popped, latest first
   Ladder ladder_;
   std::vector<QueueEntry> spilled_;  // scratch of make_room_in_heap()
+  std::vector<QueueEntry> drained_;  // scratch of erase_if()
   std::uint64_t next_sequence_ = 0;
 };
 

@@ -17,7 +17,7 @@ constexpr std::size_t kEntriesPerBucket = 4;
 // When no more than this many are left in all, they are handed out as one run: the ladder has
 // become empty and its user goes on with a heap alone.
 constexpr std::size_t kFewLeft = 256;
-constexpr std::size_t kChunksPerBlock = 64;
+constexpr std::size_t kFirstChunks = 64;
 
 // b - a for a <= b, also where the difference is no std::int64_t.
 std::uint64_t span_ns(std::int64_t a, std::int64_t b) {
@@ -97,11 +97,15 @@ void Ladder::drain(std::vector<QueueEntry>& out) {
   start_ns_ = kNever;
 }
 
+// Doubles their number, so that a number of pending entries that merely fluctuates soon needs no
+// more.
 void Ladder::add_chunks() {
-  Chunk* const block = chunks_.emplace_back(std::make_unique<Chunk[]>(kChunksPerBlock)).get();
-  for (std::size_t i = 0; i < kChunksPerBlock; ++i) {
+  const std::size_t count = std::max(kFirstChunks, chunk_count_);
+  Chunk* const block = chunks_.emplace_back(std::make_unique<Chunk[]>(count)).get();
+  for (std::size_t i = 0; i < count; ++i) {
     block[i].next = std::exchange(free_chunk_, &block[i]);
   }
+  chunk_count_ += count;
 }
 
 template <class Visit>
@@ -147,7 +151,7 @@ Ladder::Rung& Ladder::add_rung(std::size_t count, std::int64_t first_ns, std::in
   rung.end_ns = end_ns != kNever ? end_ns
                 : reaches_never  ? kNever
                                  : first_ns + static_cast<std::int64_t>(reach);
-  if (rung.buckets.size() < rung.size) rung.buckets.resize(rung.size);
+  if (rung.buckets.size() < rung.size) rung.buckets.resize(std::bit_ceil(rung.size));
   return rung;
 }
 

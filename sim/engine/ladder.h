@@ -104,6 +104,7 @@ class Ladder {
   void make_run(Bucket bucket, std::vector<QueueEntry>& run);
 
   std::vector<std::unique_ptr<Chunk[]>> chunks_;  // all of them, in blocks
+  std::size_t chunk_count_ = 0;
   Chunk* free_chunk_ = nullptr;
   std::array<Rung, kMaxRungs> rungs_;  // outermost first
   std::size_t depth_ = 0;              // rungs in use

@@ -1,0 +1,18 @@
+// Counts the allocations of the test program: operator new, and std::aligned_alloc, from which Asio
+// takes the frames of coroutines.
+//
+//   const std::uint64_t before = allocations();
+//   ...
+//   EXPECT_EQ(allocations() - before, 0);
+#ifndef SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_
+#define SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_
+
+#include <cstdint>
+
+namespace simbench::sim {
+
+std::uint64_t allocations();
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_TESTS_SIM_ENGINE_COUNTING_NEW_H_
