@@ -1,0 +1,72 @@
+// A small world of simulated hosts for tests: no cost, no noise, no latency unless a test says so.
+#ifndef SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_
+#define SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_
+
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "sim/host/host_group.h"
+
+namespace simbench::sim {
+
+inline TrueTime true_ms(double ms) { return TrueTime(from_ms(ms)); }
+inline HostTime host_ms(double ms) { return HostTime(from_ms(ms)); }
+inline double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
+inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
+
+inline scenarios::Scenario ideal_hosts(std::int64_t count = 2) {
+  scenarios::Scenario scenario{};
+  scenario.hosts.count = count;
+  scenario.network.retransmit_timeout_ms = 200;
+  scenario.network.stamp_point = "application";
+  return scenario;
+}
+
+class KeptRecord : public RecordingSink {
+ public:
+  void on_start(const RigLayout&) override {}
+  void on_frame(const FrameRecord&, const FrameTruth*) override {}
+  void on_pulse(const PulseTruth&) override {}
+  void on_adjustment(const ClockAdjustment& adjustment) override {
+    adjustments.push_back(adjustment);
+  }
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
+    exchanges.emplace_back(host, exchange);
+  }
+  void on_outcome(const SyncOutcome& outcome) override { outcomes.push_back(outcome); }
+
+  std::vector<ClockAdjustment> adjustments;
+  std::vector<std::pair<std::uint32_t, Exchange>> exchanges;
+  std::vector<SyncOutcome> outcomes;
+};
+
+class SimWorld {
+ public:
+  explicit SimWorld(scenarios::Scenario parameters, std::uint64_t seed = 1,
+                    InitialClocks clocks = InitialClocks::kUnsynchronised,
+                    std::string_view load_key = "test@world")
+      : scenario(std::move(parameters)),
+        context(engine),
+        hosts(scenario, seed, load_key, clocks, context, record) {}
+
+  void spawn(Task<void> task) {
+    boost::asio::co_spawn(context, std::move(task), [](const std::exception_ptr& failure) {
+      if (failure) std::rethrow_exception(failure);
+    });
+  }
+  SimHost& host(std::size_t index) { return hosts.host(index); }
+  TrueTime now() const { return engine.now(); }
+  double now_ms() const { return ms_of(engine.now()); }
+
+  scenarios::Scenario scenario;
+  KeptRecord record;
+  Engine engine;
+  VirtualContext context;
+  HostGroup hosts;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_TESTS_SIM_HOST_SIM_WORLD_H_

@@ -1,0 +1,377 @@
+#include "sim/network/network.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace simbench::sim {
+namespace {
+
+constexpr std::uint64_t kSeed = 4242;
+
+TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
+double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
+
+// Latency 1 ms each way and nothing else.
+scenarios::Network plain_network() {
+  scenarios::Network network{};
+  network.latency_fixed_ms = 1;
+  network.retransmit_timeout_ms = 200;
+  network.stamp_point = "application";
+  return network;
+}
+
+struct Seen {
+  std::uint8_t number;
+  double at_ms;
+};
+
+// One end of a link: remembers what arrives, and when what it sends has left.
+class Probe : public Endpoint {
+ public:
+  Probe(Network& network, const Engine& engine, PeerId from, PeerId to, Transport transport)
+      : network_(network), engine_(engine), path_(network.open(from, to, transport, *this)) {}
+
+  void send(std::uint8_t number, std::size_t bytes = 1) {
+    Bytes message(bytes);
+    message[0] = std::byte{number};
+    network_.send(path_, next_++, std::move(message));
+  }
+  void on_arrival() override {
+    for (const ArrivedMessage& message : network_.inbox(path_)) {
+      arrived.push_back({std::to_integer<std::uint8_t>(message.bytes[0]), ms_of(message.at)});
+    }
+    network_.inbox(path_).clear();
+  }
+  void on_left(MessageId first, std::size_t count) override {
+    EXPECT_EQ(first, left_ms.size());
+    left_ms.insert(left_ms.end(), count, ms_of(engine_.now()));
+  }
+
+  std::vector<Seen> arrived;
+  std::vector<double> left_ms;
+
+ private:
+  Network& network_;
+  const Engine& engine_;
+  PathId path_;
+  MessageId next_ = 0;
+};
+
+// A network of some hosts in which things are sent at given times.
+class World {
+ public:
+  explicit World(const scenarios::Network& parameters, std::uint64_t seed = kSeed)
+      : parameters_(parameters),
+        load_(seed, "load", scenarios::Hosts{}, parameters_),
+        network_(engine_, parameters_, seed, 8, load_) {}
+
+  Probe& probe(PeerId from, PeerId to, Transport transport = Transport::kStream) {
+    probes_.push_back(std::make_unique<Probe>(network_, engine_, from, to, transport));
+    return *probes_.back();
+  }
+  void send_at(double ms, Probe& probe, std::uint8_t number, std::size_t bytes = 1) {
+    engine_.call_at(at_ms(ms), [&probe, number, bytes] { probe.send(number, bytes); });
+  }
+  void run() { engine_.run(); }
+
+ private:
+  scenarios::Network parameters_;
+  Engine engine_;
+  RunLoad load_;
+  Network network_;
+  std::vector<std::unique_ptr<Probe>> probes_;
+};
+
+std::vector<std::uint8_t> numbers(const std::vector<Seen>& seen) {
+  std::vector<std::uint8_t> all;
+  for (const Seen& message : seen) all.push_back(message.number);
+  return all;
+}
+std::vector<double> times(const std::vector<Seen>& seen) {
+  std::vector<double> all;
+  for (const Seen& message : seen) all.push_back(message.at_ms);
+  return all;
+}
+
+TEST(NetworkTest, FixedLatencyInBothDirections) {
+  World world(plain_network());
+  Probe& a = world.probe(0, 1);
+  Probe& b = world.probe(1, 0);
+  world.send_at(5, a, 1);
+  world.send_at(7, b, 2);
+  world.run();
+  ASSERT_EQ(times(b.arrived), std::vector<double>{6});
+  ASSERT_EQ(times(a.arrived), std::vector<double>{8});
+  EXPECT_EQ(a.left_ms, std::vector<double>{5});
+}
+
+TEST(NetworkTest, AsymmetryIsTheDifferenceOfTheDirectionsAndKeepsTheirSum) {
+  scenarios::Network network = plain_network();
+  network.asymmetry_sigma_ms = 0.1;
+  double squares = 0;
+  constexpr int kLinks = 400;
+  for (std::uint64_t seed = 1; seed <= kLinks; ++seed) {
+    World world(network, seed);
+    Probe& a = world.probe(0, 1);
+    Probe& b = world.probe(1, 0);
+    world.send_at(0, a, 1);
+    world.send_at(0, b, 2);
+    world.run();
+    const double forward_ms = b.arrived.at(0).at_ms;
+    const double backward_ms = a.arrived.at(0).at_ms;
+    ASSERT_NEAR(forward_ms + backward_ms, 2, 3e-6) << "seed " << seed;
+    squares += (forward_ms - backward_ms) * (forward_ms - backward_ms);
+  }
+  EXPECT_NEAR(std::sqrt(squares / kLinks), 0.1, 0.1 * 5 / std::sqrt(2.0 * kLinks));
+}
+
+TEST(NetworkTest, PortsServeInOrderOfArrival) {
+  scenarios::Network network = plain_network();
+  network.bandwidth_mbit_per_s = 8;  // 1 us per byte
+  network.overhead_bytes = 100;
+  World world(network);
+  Probe& from0 = world.probe(0, 2);
+  Probe& from1 = world.probe(1, 2);
+  Probe& at2_from0 = world.probe(2, 0);
+  Probe& at2_from1 = world.probe(2, 1);
+  // 1 ms each on the host's port and on the switch's towards host 2.
+  world.send_at(0, from0, 1, 900);
+  world.send_at(0, from0, 2, 900);    // leaves host 0's port at 2 ms
+  world.send_at(0.5, from1, 3, 900);  // reaches the switch at 1.5 ms: between 1 and 2
+  world.run();
+  EXPECT_EQ(times(at2_from0.arrived), (std::vector<double>{1 + 1 + 1, 4 + 1}));
+  EXPECT_EQ(times(at2_from1.arrived), (std::vector<double>{3 + 1}));
+}
+
+TEST(NetworkTest, OtherPortsAreNotHeldUp) {
+  scenarios::Network network = plain_network();
+  network.bandwidth_mbit_per_s = 8;
+  World world(network);
+  Probe& busy = world.probe(0, 1);
+  Probe& other = world.probe(2, 3);
+  Probe& at3 = world.probe(3, 2);
+  world.probe(1, 0);
+  world.send_at(0, busy, 1, 1'000'000);
+  world.send_at(0, other, 2, 1000);
+  world.run();
+  EXPECT_EQ(times(at3.arrived), std::vector<double>{1 + 1 + 1});
+}
+
+TEST(NetworkTest, StreamsKeepTheirOrder) {
+  scenarios::Network network = plain_network();
+  network.latency_exponential_ms = 5;
+  World world(network);
+  Probe& a = world.probe(0, 1);
+  Probe& b = world.probe(1, 0);
+  for (int i = 0; i < 200; ++i) world.send_at(i * 0.1, a, static_cast<std::uint8_t>(i));
+  world.run();
+  ASSERT_EQ(b.arrived.size(), 200u);
+  for (std::size_t i = 0; i < 200; ++i) ASSERT_EQ(b.arrived[i].number, i);
+}
+
+TEST(NetworkTest, ALostSegmentHoldsUpWhatFollowsIt) {
+  scenarios::Network network = plain_network();
+  network.loss_probability = 0.2;
+  World world(network);
+  Probe& a = world.probe(0, 1);
+  Probe& b = world.probe(1, 0);
+  for (int i = 0; i < 250; ++i) world.send_at(i * 10, a, static_cast<std::uint8_t>(i));
+  world.run();
+  ASSERT_EQ(b.arrived.size(), 250u);
+  int delayed_by_one_timeout = 0;
+  double held_until_ms = 0;
+  for (int i = 0; i < 250; ++i) {
+    const Seen& message = b.arrived[static_cast<std::size_t>(i)];
+    ASSERT_EQ(message.number, i) << "seed " << kSeed;
+    // Its own delay is 0, 200, 200 + 400 ... ms, or it arrives with one before it.
+    const double own_ms = message.at_ms - i * 10 - 1;
+    if (message.at_ms > held_until_ms) {
+      held_until_ms = message.at_ms;
+      const double timeouts = std::log2(own_ms / 200 + 1);
+      ASSERT_NEAR(timeouts, std::round(timeouts), 1e-6) << own_ms << " ms, seed " << kSeed;
+      if (timeouts > 0.5) ++delayed_by_one_timeout;
+    } else {
+      ASSERT_EQ(message.at_ms, held_until_ms);
+    }
+  }
+  EXPECT_GT(delayed_by_one_timeout, 3);
+}
+
+TEST(NetworkTest, AStreamOnADeadLinkBreaks) {
+  scenarios::Network network = plain_network();
+  network.loss_probability = 1;
+  World world(network);
+  Probe& a = world.probe(0, 1);
+  Probe& b = world.probe(1, 0);
+  world.send_at(0, a, 1);
+  world.send_at(1, a, 2);
+  world.run();
+  EXPECT_TRUE(b.arrived.empty());
+}
+
+TEST(NetworkTest, DatagramsAreLostDuplicatedAndReorderedAtTheirRates) {
+  scenarios::Network network = plain_network();
+  network.loss_probability = 0.1;
+  network.duplicate_probability = 0.05;
+  network.reorder_probability = 0.02;
+  network.reorder_max_ms = 0.9;
+  constexpr int kMessages = 20'000;
+  World world(network);
+  Probe& a = world.probe(0, 1, Transport::kDatagram);
+  Probe& b = world.probe(1, 0, Transport::kDatagram);
+  for (int i = 0; i < kMessages; ++i) world.send_at(i, a, static_cast<std::uint8_t>(i % 256));
+  world.run();
+  std::vector<int> copies(kMessages, 0);
+  int late = 0;
+  for (const Seen& message : b.arrived) {
+    const double sent_ms = std::floor(message.at_ms - 1 + 1e-9);
+    ++copies.at(static_cast<std::size_t>(sent_ms));
+    if (message.at_ms - 1 - sent_ms > 1e-9) ++late;
+  }
+  const auto count = [&](int n) {
+    return static_cast<double>(std::count(copies.begin(), copies.end(), n));
+  };
+  const auto expect_rate = [&](double seen, double p, const char* what) {
+    EXPECT_NEAR(seen / kMessages, p, 5 * std::sqrt(p * (1 - p) / kMessages))
+        << what << ", seed " << kSeed;
+  };
+  expect_rate(count(0), 0.1, "lost");
+  expect_rate(count(2), 0.9 * 0.05, "duplicated");
+  expect_rate(late, 0.9 * 0.02, "reordered");
+}
+
+TEST(NetworkTest, AReorderedDatagramIsOvertaken) {
+  scenarios::Network network = plain_network();
+  network.reorder_probability = 0.5;
+  network.reorder_max_ms = 100;
+  World world(network);
+  Probe& a = world.probe(0, 1, Transport::kDatagram);
+  Probe& b = world.probe(1, 0, Transport::kDatagram);
+  for (int i = 0; i < 100; ++i) world.send_at(i, a, static_cast<std::uint8_t>(i));
+  world.run();
+  std::vector<std::uint8_t> order = numbers(b.arrived);
+  ASSERT_EQ(order.size(), 100u);
+  EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
+  std::sort(order.begin(), order.end());
+  EXPECT_EQ(std::unique(order.begin(), order.end()), order.end());
+}
+
+TEST(NetworkTest, DatagramsOtherwiseKeepTheirOrder) {
+  scenarios::Network network = plain_network();
+  network.latency_exponential_ms = 5;
+  World world(network);
+  Probe& a = world.probe(0, 1, Transport::kDatagram);
+  Probe& b = world.probe(1, 0, Transport::kDatagram);
+  for (int i = 0; i < 200; ++i) world.send_at(i * 0.1, a, static_cast<std::uint8_t>(i));
+  world.run();
+  const std::vector<std::uint8_t> order = numbers(b.arrived);
+  EXPECT_EQ(order.size(), 200u);
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST(NetworkTest, LatencyHasTheMeanOfItsParts) {
+  scenarios::Network network = plain_network();
+  network.latency_fixed_ms = 0.1;
+  network.latency_exponential_ms = 0.05;
+  network.spike_probability = 0.1;
+  network.spike_max_ms = 2;
+  constexpr int kMessages = 20'000;
+  World world(network);
+  Probe& a = world.probe(0, 1);
+  Probe& b = world.probe(1, 0);
+  for (int i = 0; i < kMessages; ++i) world.send_at(i * 100, a, 1);
+  world.run();
+  double sum_ms = 0;
+  for (int i = 0; i < kMessages; ++i) {
+    const double latency_ms = b.arrived.at(static_cast<std::size_t>(i)).at_ms - i * 100;
+    ASSERT_GE(latency_ms, 0.1 - 1e-6);
+    sum_ms += latency_ms;
+  }
+  // Variance: 0.05^2, and of the spike p max^2 / 3 - (p max / 2)^2.
+  const double sigma_ms = std::sqrt(0.0025 + 0.1 * 4 / 3 - 0.01);
+  EXPECT_NEAR(sum_ms / kMessages, 0.1 + 0.05 + 0.1, 5 * sigma_ms / std::sqrt(kMessages))
+      << "seed " << kSeed;
+}
+
+// A sender that sends more on one link, or on the other transport of the same link, moves nobody
+// else's numbers.
+TEST(NetworkTest, DrawsAreKeyedByLinkDirectionAndMessage) {
+  scenarios::Network network = plain_network();
+  network.latency_exponential_ms = 0.2;
+  network.spike_probability = 0.1;
+  network.spike_max_ms = 5;
+  network.loss_probability = 0.05;
+  network.burst = {.rate_hz = 5, .duration_exponential_ms = 20, .latency_ms = 3};
+  const auto arrivals = [&](int extra) {
+    World world(network);
+    Probe& a = world.probe(0, 1);
+    Probe& b = world.probe(1, 0);
+    Probe& other = world.probe(0, 2);
+    Probe& datagrams = world.probe(0, 1, Transport::kDatagram);
+    world.probe(2, 0);
+    world.probe(1, 0, Transport::kDatagram);
+    for (int i = 0; i < 100; ++i) {
+      for (int k = 0; k < extra; ++k) {
+        world.send_at(i * 10, other, 9);
+        world.send_at(i * 10, datagrams, 9);
+        world.send_at(i * 10 + 1, b, 9);
+      }
+      world.send_at(i * 10, a, 1);
+    }
+    world.run();
+    return times(b.arrived);
+  };
+  EXPECT_EQ(arrivals(0), arrivals(7));
+}
+
+TEST(NetworkTest, MessagesWaitForAReceiverThatOpensLate) {
+  Engine engine;
+  const scenarios::Network parameters = plain_network();
+  const RunLoad load(kSeed, "load", scenarios::Hosts{}, parameters);
+  Network network(engine, parameters, kSeed, 2, load);
+  Probe a(network, engine, 0, 1, Transport::kStream);
+  a.send(1);
+  engine.run();
+  Probe b(network, engine, 1, 0, Transport::kStream);
+  b.on_arrival();
+  EXPECT_EQ(times(b.arrived), std::vector<double>{1});
+}
+
+TEST(NetworkTest, SessionLoadIsCommonToBothEndsAndToNothingElse) {
+  scenarios::Network network = plain_network();
+  network.latency_session_exponential_ms = 2;
+  scenarios::Hosts hosts{};
+  hosts.send_cost_session_exponential_ms = 3;
+  hosts.clock.set_cost_session_log_sigma = 0.2;
+  hosts.load_log_sigma = 0.6;
+  const RunLoad load(kSeed, "both@world", hosts, network);
+  EXPECT_EQ(load.session(0, 1).send_cost_ms, load.session(1, 0).send_cost_ms);
+  EXPECT_EQ(load.session(0, 1).latency_ms, load.session(1, 0).latency_ms);
+  EXPECT_NE(load.session(0, 1).send_cost_ms, load.session(0, 2).send_cost_ms);
+  EXPECT_NE(load.set_cost_factor(0), load.set_cost_factor(1));
+  EXPECT_NE(load.factor(), RunLoad(kSeed, "time@world", hosts, network).factor());
+}
+
+TEST(NetworkTest, SessionOccupancyIsExponentialTimesTheRunsFactor) {
+  scenarios::Hosts hosts{};
+  hosts.send_cost_session_exponential_ms = 3;
+  hosts.load_log_sigma = 0.6;
+  constexpr int kSeeds = 20'000;
+  double sum = 0;
+  double log_squares = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RunLoad load(seed, "both@world", hosts, plain_network());
+    sum += load.session(0, 1).send_cost_ms / load.factor();
+    log_squares += std::log(load.factor()) * std::log(load.factor());
+  }
+  EXPECT_NEAR(sum / kSeeds, 3, 5 * 3 / std::sqrt(kSeeds));
+  EXPECT_NEAR(std::sqrt(log_squares / kSeeds), 0.6, 5 * 0.6 / std::sqrt(2.0 * kSeeds));
+}
+
+}  // namespace
+}  // namespace simbench::sim
