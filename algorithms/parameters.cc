@@ -13,7 +13,7 @@ namespace {
 
 // The shortest text that reads back as the same number.
 std::string text_of(double number) {
-  std::array<char, 32> buffer;
+  std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr;
   return {buffer.data(), end};
 }
@@ -26,10 +26,8 @@ std::string text_of(const ParameterValue& value) {
   return quoted(std::get<std::string>(value));
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
+void append_quoted(std::string& list, const std::string& word) {
+  list += (list.empty() ? "" : ", ") + quoted(word);
 }
 
 std::string allowed(const ParameterSpec& spec) {
@@ -38,9 +36,9 @@ std::string allowed(const ParameterSpec& spec) {
     return "a number from " + text_of(spec.low) + " to " + text_of(spec.high);
   }
   if (spec.choices.empty()) return "a text";
-  std::vector<std::string> choices;
-  for (const std::string& choice : spec.choices) choices.push_back(quoted(choice));
-  return "one of " + joined(choices);
+  std::string choices;
+  for (const std::string& choice : spec.choices) append_quoted(choices, choice);
+  return "one of " + choices;
 }
 
 bool allows(const ParameterSpec& spec, const ParameterValue& value) {
@@ -55,11 +53,11 @@ bool allows(const ParameterSpec& spec, const ParameterValue& value) {
 }
 
 [[noreturn]] void throw_unknown(const std::vector<ParameterSpec>& specs, const std::string& name) {
-  std::vector<std::string> known;
-  for (const ParameterSpec& spec : specs) known.push_back(quoted(spec.name));
-  throw ParameterError(name, "unknown parameter " + quoted(name) +
-                                 (known.empty() ? "; this algorithm has none"
-                                                : "; known parameters: " + joined(known)));
+  std::string known;
+  for (const ParameterSpec& spec : specs) append_quoted(known, spec.name);
+  throw ParameterError(
+      name, "unknown parameter " + quoted(name) + "; " +
+                (known.empty() ? "this algorithm has none" : "known parameters: " + known));
 }
 
 }  // namespace

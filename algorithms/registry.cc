@@ -1,6 +1,7 @@
 #include "algorithms/registry.h"
 
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "algorithms/device_time/registration.h"
@@ -14,13 +15,13 @@ namespace {
 template <class Entry>
 class Stage {
  public:
-  Stage(const char* name, std::vector<Entry> builtin) : name_(name) {
+  Stage(std::string name, std::vector<Entry> builtin) : name_(std::move(name)) {
     for (Entry& entry : builtin) add(std::move(entry));
   }
 
   void add(Entry entry) {
     if (find(entry.info.name) != nullptr) {
-      throw std::invalid_argument(std::string(name_) + " algorithm \"" + entry.info.name +
+      throw std::invalid_argument(name_ + " algorithm \"" + entry.info.name +
                                   "\" is registered twice");
     }
     entries_.push_back(std::move(entry));
@@ -36,7 +37,7 @@ class Stage {
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
-  const char* name_;
+  std::string name_;
   std::vector<Entry> entries_;
 };
 

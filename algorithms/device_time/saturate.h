@@ -12,7 +12,8 @@
 
 namespace simbench {
 
-__extension__ typedef __int128 Int128;
+// Not `using`: only a typedef takes the mark that silences -Wpedantic.
+__extension__ typedef __int128 Int128;  // NOLINT(modernize-use-using)
 
 inline std::int64_t saturate(Int128 value) {
   constexpr Int128 kLow = std::numeric_limits<std::int64_t>::min();

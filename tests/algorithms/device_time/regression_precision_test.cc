@@ -52,7 +52,7 @@ long double reference_ns(std::span<const DeviceSample> window) {
 }
 
 TEST(RegressionPrecision, WindowAgreesWithTheReferenceForHours) {
-  const std::vector<DeviceSample> samples = hours(3, 45);
+  const std::vector<DeviceSample> samples = hours(3, 15);
   const auto estimator = make_regression(RegressionWindow{30});
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const GlobalTime stamp = estimator->stamp(samples[i]);
