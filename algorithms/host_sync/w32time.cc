@@ -133,6 +133,7 @@ W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& 
 
 Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
   std::vector<Task<void>> servers;
+  servers.reserve(slaves.size());
   for (const PeerId slave : slaves) servers.push_back(serve(host, slave));
   co_await join_all(std::move(servers));
 }

@@ -1,48 +1,18 @@
-// Algorithms 1 and 2 over scripted hosts: with constant costs and latencies every number is known.
-//
-// g: occupancy of a send, L: latency, w: wake-up, c: cost of a set, of which the first quarter
-// passes before the new value counts. From the reading of T_m to that instant pass g + L + w + c/4:
-// the delay really needed. The slave's error is t_d minus that.
+// What Algorithms 1 and 2 measure, and the slave's error that follows (yoon2021_rig.h).
 #include "algorithms/host_sync/yoon2021.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
-#include <stdexcept>
-#include <string>
+#include <vector>
 
 #include "algorithms/host_sync/wire.h"
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/algorithms/host_sync/yoon2021_rig.h"
 
 namespace simbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-
-constexpr Nanoseconds kSend{30'000};
-constexpr Nanoseconds kWake{20'000};
-constexpr Nanoseconds kSet{4'000'000};
-constexpr Nanoseconds kSetEffective = kSet / 4;
-
-void use_common_costs(ScriptWorld& world, PeerId hosts, Nanoseconds latency) {
-  for (PeerId id = 0; id < hosts; ++id) {
-    world.host(id).costs = {.send = kSend, .set = kSet, .set_fraction = 0.25, .wake = kWake};
-    world.host(id).offset = from_ms(300) * id;
-    if (id == 0) continue;
-    world.set_latency(0, id, latency);
-    world.set_latency(id, 0, latency);
-  }
-}
-
-Yoon2021Settings settings_for(bool network, bool time) {
-  Yoon2021Settings settings;
-  settings.add_network_delay = network;
-  settings.add_time_delay = time;
-  return settings;
-}
 
 // How far the slave's clock is ahead after one session over links of this latency.
 Nanoseconds lead_after(Yoon2021Settings settings, Nanoseconds latency) {
@@ -167,210 +137,10 @@ TEST(Yoon2021, ReportsTheExchangeOnTheClocksThatReadIt) {
   EXPECT_EQ(*exchange.t3 - *exchange.t1, kSet - kSetEffective);
 }
 
-TEST(Yoon2021, AThresholdBelowTheRoundTripEndsAtThePassLimit) {
-  ScriptWorld world(4);
-  use_common_costs(world, 4, from_ms(0.6));
-  Yoon2021Settings settings = settings_for(true, true);
-  settings.threshold = from_ms(1);
-  settings.stamps = 2;
-  settings.clock_calls = 2;
-  Yoon2021 algorithm(settings);
-  world.run(algorithm);
-  EXPECT_EQ(world.unfinished(), 0U);
-  ASSERT_EQ(world.host(0).outcomes.size(), 3U);
-  const SyncOutcome& outcome = world.host(0).outcomes.back();
-  EXPECT_EQ(outcome.slave, 3U);
-  EXPECT_FALSE(outcome.synchronised);
-  EXPECT_EQ(outcome.passes, 200U);
-  EXPECT_EQ(outcome.message,
-            "slave 3: not synchronised after 200 passes: the smallest round trip seen was 5.3 ms, "
-            "the threshold is 1 ms; a threshold_ms above the round trip can be met");
-}
-
 TEST(Yoon2021, AThresholdOfExactlyTheDelayIsMet) {
   Yoon2021Settings settings = settings_for(true, true);
   settings.threshold = 2 * (kSend + from_ms(1) + kWake) + kSet;
   lead_after(settings, from_ms(1));
-}
-
-// A slave that answers at once, always with a clock that stands still.
-Task<void> answer_with_a_stopped_clock(Host& host) {
-  MessageChannel& channel = host.open_channel(0, Transport::kStream);
-  while (true) {
-    auto received = co_await channel.receive(host.steady_clock().now() + from_ms(60e3));
-    if (!received) co_return;
-    SessionMessage message = *decode_session_message(received->bytes);
-    const bool last_stamp = message.kind == MessageKind::kStamp && message.index == 1;
-    const bool set_time = message.kind == MessageKind::kSetTime;
-    if (!last_stamp && !set_time) continue;
-    message.kind = last_stamp ? MessageKind::kMeasured : MessageKind::kSlaveTime;
-    message.index = 0;
-    message.time = HostTime{};
-    Bytes answer = encode(message);
-    co_await channel.send(std::move(answer));
-  }
-}
-
-TEST(Yoon2021, ALagBeyondTheThresholdIsNamedAsSuch) {
-  ScriptWorld world(2);
-  use_common_costs(world, 2, from_ms(1));
-  world.host(0).offset = from_ms(500);
-  Yoon2021Settings settings = settings_for(true, true);
-  settings.stamps = 2;
-  settings.pass_limit = 1;
-  Yoon2021 algorithm(settings);
-  world.start(answer_with_a_stopped_clock(world.host(1)));
-  world.start(algorithm.run_master(world.host(0), {1}));
-  world.run();
-  ASSERT_EQ(world.host(0).outcomes.size(), 1U);
-  EXPECT_FALSE(world.host(0).outcomes.front().synchronised);
-  EXPECT_THAT(world.host(0).outcomes.front().message,
-              HasSubstr("not synchronised after 1 pass: its clock stayed behind"));
-}
-
-TEST(Yoon2021, AHostWithoutAProcessIsGivenUpAndTheOthersAreServed) {
-  ScriptWorld world(4);
-  use_common_costs(world, 4, from_ms(1));
-  Yoon2021Settings settings = settings_for(true, true);
-  Yoon2021 algorithm(settings);
-  world.start(algorithm.run_slave(world.host(1), 0));
-  world.start(algorithm.run_slave(world.host(3), 0));
-  world.start(algorithm.run_master(world.host(0), {1, 2, 3}));
-  world.run();
-  EXPECT_EQ(world.unfinished(), 0U);
-  const std::vector<SyncOutcome>& outcomes = world.host(0).outcomes;
-  ASSERT_EQ(outcomes.size(), 3U);
-  EXPECT_TRUE(outcomes[0].synchronised);
-  EXPECT_FALSE(outcomes[1].synchronised);
-  EXPECT_EQ(outcomes[1].passes, Yoon2021::kSilentPassLimit);
-  EXPECT_EQ(outcomes[1].message,
-            "slave 2: no complete answer within 5000 ms in 5 passes in a row; is it running and "
-            "reachable, and does the transport lose messages?");
-  EXPECT_TRUE(outcomes[2].synchronised);
-}
-
-TEST(Yoon2021, ASlaveWhoseTurnNeverComesEnds) {
-  ScriptWorld world(2);
-  use_common_costs(world, 2, from_ms(1));
-  Yoon2021Settings settings;
-  settings.turn_timeout = from_ms(90e3);
-  Yoon2021 algorithm(settings);
-  world.start(algorithm.run_slave(world.host(1), 0));
-  world.run();
-  EXPECT_EQ(world.unfinished(), 0U);
-  EXPECT_EQ(world.now(), from_ms(90e3));
-}
-
-// Whichever message is lost, first time: the session goes on with another pass, or at worst ends.
-TEST(Yoon2021, AnyLostMessageCostsAtMostAPass) {
-  for (const bool intended : {false, true}) {
-    for (const PeerId sender : {0U, 1U}) {
-      for (std::size_t lost = 0; lost < 6; ++lost) {
-        ScriptWorld world(2);
-        use_common_costs(world, 2, from_ms(1));
-        world.script_link(sender, 1 - sender, [lost](std::size_t index, const Bytes&) {
-          return index == lost ? std::vector<Nanoseconds>{} : std::vector{from_ms(1)};
-        });
-        Yoon2021Settings settings = settings_for(true, true);
-        settings.stamps = 3;
-        settings.transport = Transport::kDatagram;
-        settings.ask_for_stamps = intended;
-        Yoon2021 algorithm(settings);
-        world.run(algorithm);
-        EXPECT_EQ(world.unfinished(), 0U);
-        ASSERT_EQ(world.host(0).outcomes.size(), 1U);
-        EXPECT_TRUE(world.host(0).outcomes.front().synchronised)
-            << "sender " << sender << ", message " << lost << ", intended " << intended;
-        EXPECT_LE(world.host(0).outcomes.front().passes, 2U);
-        EXPECT_LT(world.now(), from_ms(60e3));
-      }
-    }
-  }
-}
-
-TEST(Yoon2021, EveryMessageTwiceChangesNothingForTheIntendedEstimate) {
-  ScriptWorld world(2);
-  use_common_costs(world, 2, from_ms(1));
-  const auto twice = [](std::size_t, const Bytes&) {
-    return std::vector{from_ms(1), from_ms(1.5)};
-  };
-  world.script_link(0, 1, twice);
-  world.script_link(1, 0, twice);
-  Yoon2021Settings settings = settings_for(true, false);
-  settings.ask_for_stamps = true;
-  Yoon2021 algorithm(settings);
-  world.run(algorithm);
-  EXPECT_EQ(world.unfinished(), 0U);
-  EXPECT_TRUE(world.host(0).outcomes.at(0).synchronised);
-  EXPECT_EQ(world.host(0).exchanges.size(), 1U);
-  // A late copy may be in the reader's way for one wake-up, never stand for another message.
-  EXPECT_LE(abs(world.host(1).lead_over(world.host(0)) + kSetEffective), 2 * kWake);
-}
-
-TEST(Yoon2021, ForeignBytesAreIgnored) {
-  ScriptWorld world(2);
-  use_common_costs(world, 2, from_ms(1));
-  for (const Nanoseconds at : {from_ms(0), from_ms(1), from_ms(2), from_ms(500)}) {
-    world.call_at(at, [&world] {
-      world.host(0).deliver(1, Bytes(20, std::byte{0x59}));
-      world.host(1).deliver(0, Bytes{});
-    });
-  }
-  Yoon2021 algorithm(settings_for(true, true));
-  world.run(algorithm);
-  EXPECT_EQ(world.unfinished(), 0U);
-  EXPECT_TRUE(world.host(0).outcomes.at(0).synchronised);
-  EXPECT_EQ(world.host(0).outcomes.at(0).passes, 1U);
-}
-
-TEST(Yoon2021, SlavesAreServedInTurnWithAGapBetween) {
-  ScriptWorld world(4);
-  use_common_costs(world, 4, from_ms(1));
-  Yoon2021 algorithm(settings_for(true, true));
-  world.run(algorithm);
-  const std::vector<Nanoseconds>& times = world.host(0).outcome_times;
-  ASSERT_EQ(times.size(), 3U);
-  const Nanoseconds session = times[0];  // no gap before the first
-  EXPECT_EQ(times[1] - times[0], from_ms(1000) + session);
-  EXPECT_EQ(times[2] - times[1], from_ms(1000) + session);
-}
-
-TEST(Yoon2021, ParallelSessionsServeEverySlaveOnceAndSooner) {
-  for (const std::uint32_t groups : {2U, 5U, 64U}) {
-    ScriptWorld world(6);
-    use_common_costs(world, 6, from_ms(1));
-    Yoon2021Settings settings = settings_for(true, true);
-    settings.parallel_sessions = groups;
-    Yoon2021 algorithm(settings);
-    world.run(algorithm);
-    EXPECT_EQ(world.unfinished(), 0U);
-    std::vector<PeerId> served;
-    for (const SyncOutcome& outcome : world.host(0).outcomes) {
-      EXPECT_TRUE(outcome.synchronised);
-      served.push_back(outcome.slave);
-    }
-    std::sort(served.begin(), served.end());
-    EXPECT_THAT(served, ElementsAre(1, 2, 3, 4, 5));
-    EXPECT_LT(world.host(0).outcome_times.back(), from_ms(groups == 2 ? 3300 : 500));
-  }
-}
-
-TEST(Yoon2021, AFaultInOneParallelSessionIsThrownByTheMaster) {
-  ScriptWorld world(4);
-  use_common_costs(world, 4, from_ms(1));
-  world.host(0).throw_on_outcome = true;
-  Yoon2021Settings settings = settings_for(true, true);
-  settings.parallel_sessions = 3;
-  Yoon2021 algorithm(settings);
-  EXPECT_THROW(world.run(algorithm), std::runtime_error);
-}
-
-TEST(Yoon2021, NoSlavesNoSessions) {
-  ScriptWorld world(1);
-  Yoon2021 algorithm(settings_for(true, true));
-  world.run(algorithm);
-  EXPECT_EQ(world.unfinished(), 0U);
-  EXPECT_TRUE(world.host(0).outcomes.empty());
 }
 
 // A stream, 0.15 ms long, on which 30 % of the messages (and those behind them) are late by up to
