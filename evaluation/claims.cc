@@ -1,5 +1,8 @@
 #include "evaluation/claims.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -171,14 +174,14 @@ std::string missing(const Statement& statement, const std::vector<Row>& rows,
   if (!statement.holds) return statement.rig;
   // Rates of the trigger's own oscillator are off by ppm, advised ones by 500 of them.
   if (statement.rate_hz > 0 && std::abs(trigger_rate_hz / statement.rate_hz - 1) > 0.01) {
-    return "a scenario at " + std::to_string(std::lround(statement.rate_hz)) + " fps";
+    return fmt::format("a scenario at {:.0f} fps", statement.rate_hz);
   }
-  std::string pipelines;
+  std::vector<std::string> absent;
   for (const char* pipeline : statement.pipelines) {
-    if (find_row(rows, pipeline) != nullptr) continue;
-    pipelines += (pipelines.empty() ? "" : ", ") + std::string(pipeline);
+    if (find_row(rows, pipeline) == nullptr) absent.emplace_back(pipeline);
   }
-  return pipelines.empty() ? "" : "the pipelines " + pipelines;
+  if (absent.empty()) return "";
+  return fmt::format("the pipeline{} {}", absent.size() > 1 ? "s" : "", fmt::join(absent, ", "));
 }
 
 Claim check(const Statement& statement, const std::vector<Row>& rows, double trigger_rate_hz) {

@@ -26,9 +26,9 @@ namespace simbench::evaluation {
 struct EvaluationOptions {
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 32;
-  unsigned jobs = 0;                   // threads; 0: as many as there are cores
-  std::vector<std::string> pipelines;  // by name, in this order; empty: all of the scenario
-  bool keep_pulses = false;            // keep SeedScore::pulses (for frames.csv)
+  unsigned jobs = 0;                     // threads; 0: as many as there are cores
+  std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
+  bool keep_pulses = false;              // keep SeedScore::pulses (for frames.csv)
   // Looked at before each job; once true, no more are begun. May be set by a signal handler.
   const std::atomic<bool>* cancel = nullptr;
 };

@@ -1,5 +1,8 @@
 #include "evaluation/pipeline_choice.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,17 +18,13 @@ using scenarios::Scenario;
 
 constexpr std::int64_t kMostFramesKept = 200'000;
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-// found "genlok"; did you mean genlock? Known: genlock, yoon2021
+// found "genlok", did you mean genlock? Known: genlock, yoon2021
 std::string unknown(const std::string& name, const std::vector<std::string>& known) {
   const std::vector<std::string> near = scenarios::nearest(name, known);
-  const std::string guess = near.empty() ? "" : " did you mean " + joined(near) + "?";
-  return "found \"" + name + "\";" + guess + " known: " + joined(known);
+  const std::string guess =
+      near.empty() ? "" : fmt::format(", did you mean {}? Known", fmt::join(near, " or "));
+  return fmt::format("found \"{}\"{}: {}", name, guess.empty() ? ", known" : guess,
+                     fmt::join(known, ", "));
 }
 
 // A name as a part of a JSON pointer (RFC 6901).
@@ -64,7 +63,7 @@ bool declares(const AlgorithmInfo& info, const std::string& parameter) {
 // Every parameter in the scenario is declared by an algorithm of that name or family, and allowed.
 void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
                      const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
-  const std::string pointer = "/algorithms/" + escaped(key) + "/" + escaped(parameter);
+  const std::string pointer = fmt::format("/algorithms/{}/{}", escaped(key), escaped(parameter));
   bool declared = false;
   std::vector<std::string> known;
   for (const AlgorithmInfo* info : named) {
@@ -84,7 +83,7 @@ void check_parameter(const Scenario& scenario, const std::string& key, const std
   if (declared) return;
   scenarios::fail_at(
       scenario, pointer,
-      known.empty() ? "\"" + key + "\" has no parameters" : unknown(parameter, known));
+      known.empty() ? fmt::format("\"{}\" has no parameters", key) : unknown(parameter, known));
 }
 
 void check_all_parameters(const Scenario& scenario) {
@@ -127,18 +126,21 @@ const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const 
     if (entry.info.name == name) return entry;
     known.push_back(entry.info.name);
   }
-  scenarios::fail_at(scenario, "/pipelines/" + std::to_string(pipeline) + "/" + stage,
+  scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
                      unknown(name, known));
 }
 
 PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
-  algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
+  const HostSyncEntry& host_sync =
+      algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
   const DeviceTimeEntry& device_time =
       algorithm_at(scenario, index, "device_time", pipeline.device_time, device_time_algorithms());
   const GatheringEntry& gathering =
       algorithm_at(scenario, index, "gathering", pipeline.gathering, gathering_algorithms());
   return {.pipeline = pipeline,
+          .host_sync = host_sync,
+          .host_sync_parameters = parameters_of(scenario, host_sync.info),
           .device_time = device_time,
           .device_time_parameters = parameters_of(scenario, device_time.info),
           .gathering = gathering,
@@ -162,10 +164,11 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   for (auto name = names.begin(); name != names.end(); ++name) {
     const auto found = std::find(known.begin(), known.end(), *name);
     if (found == known.end()) {
-      throw scenarios::InputError("pipelines of " + scenario.name + ": " + unknown(*name, known));
+      throw scenarios::InputError(
+          fmt::format("pipelines of {}: {}", scenario.name, unknown(*name, known)));
     }
     if (std::find(names.begin(), name, *name) != name) {
-      throw scenarios::InputError("pipelines: \"" + *name + "\" is named twice");
+      throw scenarios::InputError(fmt::format("pipelines: \"{}\" is named twice", *name));
     }
     chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
   }
