@@ -9,6 +9,9 @@
 // it: a message that is there when receive() is called costs the wake-up too. A message that
 // arrives before the deadline is returned even if the wake-up ends after it.
 //
+// A send that is cancelled before the message has left sends nothing; a receive that is cancelled
+// leaves the message to the next one.
+//
 // Stamps: at "application", the receive stamp is the reading of the system clock, through its
 // interface, when receive() returns, and there are no transmit stamps; at "kernel", both are taken
 // when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
@@ -57,7 +60,7 @@ class SimChannel final : public MessageChannel, private Endpoint {
   WaitPoint arrived_;
   WaitPoint left_;
   MessageId first_stamp_ = 0;  // the message of the first of
-  std::deque<HostTime> transmit_stamps_;
+  std::deque<std::optional<HostTime>> transmit_stamps_;
 };
 
 }  // namespace simbench::sim

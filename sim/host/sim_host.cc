@@ -67,7 +67,9 @@ void SimHost::report_exchange(const Exchange& exchange) { world_.sink.on_exchang
 void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcome(outcome); }
 
 std::optional<TrueTime> SimHost::instant_of(SteadyTime deadline) const {
-  if (deadline > steady_port_.now() + kNever) return std::nullopt;
+  const SteadyTime now = steady_port_.now();
+  if (deadline > now + kNever) return std::nullopt;
+  if (deadline <= now) return true_now();
   return system_clock_.when(deadline);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -228,6 +229,53 @@ TEST(SimChannelTest, AnApplicationHasNoTransmitStamps) {
   world.engine.run();
   EXPECT_FALSE(stamp.stamp);
   EXPECT_EQ(stamp.returned_ms, 0);
+}
+
+Task<void> give_up_a_send(SimWorld& world, Stamp& next) {
+  using boost::asio::experimental::awaitable_operators::operator||;
+  SimHost& host = world.host(0);
+  MessageChannel& channel = host.open_channel(1, Transport::kStream);
+  co_await (channel.send(message(1)) || host.sleep_for(from_ms(1)));
+  const MessageId id = co_await channel.send(message(2));
+  next.stamp = co_await channel.transmit_stamp(id, SteadyTime::max());
+  next.returned_ms = world.now_ms();
+}
+
+TEST(SimChannelTest, ACancelledSendSendsNothingAndTheNextOneIsUnharmed) {
+  scenarios::Scenario scenario = ideal_hosts();
+  scenario.hosts.send_cost_ms = 2;
+  scenario.network.stamp_point = "kernel";
+  SimWorld world(scenario);
+  Stamp next;
+  std::vector<Received> received;
+  world.spawn(give_up_a_send(world, next));
+  world.spawn(receive_many(world, 2, 100, received));
+  world.engine.run();
+  ASSERT_EQ(received.size(), 2u);
+  EXPECT_EQ(received[0].number, 2);
+  EXPECT_FALSE(received[1].got_one);
+  EXPECT_EQ(next.stamp, host_ms(4));  // after the CPU time of both
+}
+
+Task<void> give_up_a_receive(SimWorld& world, std::vector<Received>& received) {
+  using boost::asio::experimental::awaitable_operators::operator||;
+  SimHost& host = world.host(1);
+  MessageChannel& channel = host.open_channel(0, Transport::kStream);
+  co_await (channel.receive(SteadyTime::max()) || host.sleep_for(from_ms(7)));
+  co_await receive_many(world, 1, 100, received);
+}
+
+TEST(SimChannelTest, ACancelledReceiveLeavesTheMessageToTheNext) {
+  scenarios::Scenario scenario = ideal_hosts();
+  scenario.hosts.receive_wake_up_ms = 5;
+  SimWorld world(scenario);
+  std::vector<Received> received;
+  world.spawn(give_up_a_receive(world, received));
+  world.spawn(send_one_at(world, 4));  // would be received at 9 ms
+  world.engine.run();
+  ASSERT_EQ(received.size(), 1u);
+  EXPECT_TRUE(received[0].got_one);
+  EXPECT_EQ(received[0].returned_ms, 12);
 }
 
 // Under Nagle's algorithm the second message leaves when the first is acknowledged.
