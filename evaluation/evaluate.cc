@@ -93,8 +93,10 @@ class Evaluation {
     const std::uint64_t seed = seed_of(job);
     try {
       PipelineScorer scorer(scorer_setup(scenario_, choice));
-      const RecordingCost cost =
-          source.record({.seed = seed, .pipeline = choice.pipeline.name}, scorer);
+      const std::unique_ptr<HostSync> host_sync =
+          choice.host_sync.make(choice.host_sync_parameters);
+      const RecordingCost cost = source.record(
+          {.seed = seed, .pipeline = choice.pipeline.name, .host_sync = host_sync.get()}, scorer);
       SeedScore score = scorer.finish();
       score.seed = seed;
       score.cost = cost;

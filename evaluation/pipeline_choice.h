@@ -21,6 +21,8 @@ namespace simbench::evaluation {
 
 struct PipelineChoice {
   scenarios::Pipeline pipeline;
+  HostSyncEntry host_sync;
+  Parameters host_sync_parameters;
   DeviceTimeEntry device_time;
   Parameters device_time_parameters;
   GatheringEntry gathering;

@@ -15,8 +15,9 @@
 // have found their slots.
 //
 //   Capture capture(scenario, seed, engine, clocks, sink);
-//   capture.start(capture_start);   // schedules the first pulse and the faults
-//   while (!capture.finished()) engine.run...;
+//   sink.on_start(capture.layout());
+//   capture.start(capture_start, [&] { engine.stop(); });
+//   engine.run();
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_H_
 
@@ -43,8 +44,11 @@ class Capture final : public EventHandler {
   Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
           std::vector<SystemClock*> clocks, RecordingSink& sink);
 
-  // The cameras are started at `at`, not before the engine's present; the layout is handed to the
-  // sink. `on_end` is called when the last frame has been delivered.
+  // What will be captured; known from the beginning.
+  RigLayout layout() const;
+
+  // The cameras are started at `at`, not before the engine's present. `on_end` is called when the
+  // last frame has been delivered.
   void start(TrueTime at, std::function<void()> on_end);
 
   void handle(const Event& event) override;
@@ -99,7 +103,6 @@ class Capture final : public EventHandler {
   Nanoseconds exposure_of(std::size_t camera) const;
   ShutterMode shutter_mode(StreamKind kind) const;
   TrueTime camera_start(std::size_t camera, TrueTime at) const;
-  RigLayout layout() const;
 
   void schedule_pulse(std::int64_t slot);
   void on_pulse(std::int64_t slot);

@@ -34,18 +34,18 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       late_frame_seen_(scenario.faults.size(), false),
       host_errors_(clocks_.size()),
-      arrival_quantum_ns_(std::llround(scenario.hosts.clock.arrival_quantum_ms * 1e6)) {}
+      arrival_quantum_ns_(std::llround(scenario.hosts.clock.arrival_quantum_ms * 1e6)) {
+  first_slot_ = trigger_.first_slot_from(TrueTime(from_ms(scenario.timeline.warm_up_ms)));
+  last_slot_ = first_slot_ + scenario.timeline.frames - 1;
+}
 
 void Capture::start(TrueTime at, std::function<void()> on_end) {
   start_ = at;
   on_end_ = std::move(on_end);
   trigger_.start(at);
-  first_slot_ = trigger_.first_slot_from(at + from_ms(scenario_.timeline.warm_up_ms));
-  last_slot_ = first_slot_ + scenario_.timeline.frames - 1;
   end_ = trigger_.due(last_slot_ + 2);
   build_clocks(at);
   build_streams(at);
-  sink_.on_start(layout());
 
   schedule_pulse(0);
   for (std::uint32_t id = 0; id < streams_.size(); ++id) {
@@ -175,9 +175,8 @@ RigLayout Capture::layout() const {
                    .frame_rate_hz = scenario_.trigger.rate_hz,
                    .first_pulse = first_slot_,
                    .pulses = scenario_.timeline.frames};
-  for (std::size_t camera = 0; camera < device_clocks_.size(); ++camera) {
-    layout.cameras.push_back(
-        {static_cast<std::uint32_t>(scenario_.host_of(static_cast<std::int64_t>(camera)))});
+  for (std::int64_t camera = 0; camera < scenario_.cameras.count; ++camera) {
+    layout.cameras.push_back({static_cast<std::uint32_t>(scenario_.host_of(camera))});
   }
   return layout;
 }

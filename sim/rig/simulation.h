@@ -16,7 +16,8 @@
 //
 //   auto source = make_simulation(scenario);
 //   Recording recording;
-//   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = host_sync.get()}, recording);
+//   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = host_sync.get()},
+//   recording);
 #ifndef SIMBENCH_SIM_RIG_SIMULATION_H_
 #define SIMBENCH_SIM_RIG_SIMULATION_H_
 

@@ -25,6 +25,7 @@ TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras
     delays_.push_back(from_us(branch_stream.uniform(0, settings.branch_delay_max_us) +
                               cable_stream.uniform(0, settings.cable_delay_max_us)));
   }
+  start(TrueTime{});
 }
 
 void TriggerTree::start(TrueTime capture_start) {

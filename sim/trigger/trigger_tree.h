@@ -29,7 +29,8 @@ class TriggerTree {
  public:
   TriggerTree(const scenarios::Trigger& settings, std::size_t cameras, std::uint64_t seed);
 
-  // The cameras start at `capture_start`; slot 0 is due start_delay_ms later.
+  // The cameras start at `capture_start`, until then taken to be true zero; slot 0 is due
+  // start_delay_ms later.
   void start(TrueTime capture_start);
 
   // When slot `slot` is due, without jitter. Slots are equally spaced to the nanosecond over hours.
@@ -47,8 +48,8 @@ class TriggerTree {
   scenarios::Trigger settings_;
   std::uint64_t seed_;
   double period_ns_;
-  TrueTime capture_start_{};
-  TrueTime first_due_{};
+  TrueTime capture_start_;
+  TrueTime first_due_;
   std::vector<Nanoseconds> delays_;
 };
 

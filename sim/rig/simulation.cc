@@ -1,0 +1,128 @@
+#include "sim/rig/simulation.h"
+
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algorithms/host_sync/host_sync.h"
+#include "sim/engine/engine.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/host/host_group.h"
+#include "sim/rig/capture.h"
+
+namespace simbench::sim {
+namespace {
+
+// One run of the world.
+class Run {
+ public:
+  Run(const scenarios::Scenario& scenario, const RecordingRequest& request, RecordingSink& sink)
+      : scenario_(scenario),
+        host_sync_(request.host_sync),
+        start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
+        engine_({}, start_),
+        context_(std::make_unique<VirtualContext>(engine_)),
+        hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
+               *context_, sink),
+        capture_(scenario, request.seed, engine_, hosts_.clocks(), sink) {}
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+  // Coroutines that still wait go first: they use the hosts.
+  ~Run() { context_.reset(); }
+
+  RecordingCost run(RecordingSink& sink) {
+    sink.on_start(capture_.layout());
+    hosts_.report_clocks();
+    hosts_.report_clocks();
+    start_host_sync();
+    if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
+    engine_.run();
+    if (failure_) std::rethrow_exception(failure_);
+    if (!captured_) throw SimulationError(standstill());
+    return {.events = engine_.events(),
+            .simulated_seconds = to_seconds(engine_.now() - start_),
+            .trace_hash = engine_.trace_hash()};
+  }
+
+ private:
+  std::optional<Nanoseconds> service_time() const {
+    return host_sync_ != nullptr ? host_sync_->warm_up() : std::nullopt;
+  }
+  InitialClocks initial_clocks() const {
+    return host_sync_ != nullptr ? host_sync_->initial_clocks() : InitialClocks::kUnsynchronised;
+  }
+  Nanoseconds wait_before_capture() const {
+    return from_ms(scenario_.timeline.wait_before_capture_ms);
+  }
+
+  void start_host_sync() {
+    if (host_sync_ == nullptr) return start_capture_at(engine_.now() + wait_before_capture());
+    std::vector<PeerId> slaves;
+    for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
+    for (const PeerId slave : slaves) {
+      boost::asio::co_spawn(*context_, host_sync_->run_slave(hosts_.host(slave), 0),
+                            [this](const std::exception_ptr& failure) { ended(failure); });
+    }
+    boost::asio::co_spawn(*context_, host_sync_->run_master(hosts_.host(0), slaves),
+                          [this](const std::exception_ptr& failure) {
+                            ended(failure);
+                            if (!failure && !service_time()) {
+                              start_capture_at(engine_.now() + wait_before_capture());
+                            }
+                          });
+  }
+
+  void ended(const std::exception_ptr& failure) {
+    if (!failure) return;
+    failure_ = failure;
+    engine_.stop();
+  }
+
+  void start_capture_at(TrueTime at) {
+    engine_.call_at(at, [this] {
+      capture_.start(engine_.now(), [this] {
+        captured_ = true;
+        engine_.stop();
+      });
+    });
+  }
+
+  std::string standstill() const {
+    std::string what = "host synchronisation came to a standstill before the capture; waiting:";
+    for (const std::string& wait : context_->waiting()) what += "\n  " + wait;
+    return what;
+  }
+
+  const scenarios::Scenario& scenario_;
+  HostSync* host_sync_;
+  TrueTime start_;
+  Engine engine_;
+  std::unique_ptr<VirtualContext> context_;
+  HostGroup hosts_;
+  Capture capture_;
+  std::exception_ptr failure_;
+  bool captured_ = false;
+};
+
+class Simulation final : public RecordingSource {
+ public:
+  explicit Simulation(const scenarios::Scenario& scenario) : scenario_(scenario) {}
+
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    return Run(scenario_, request, sink).run(sink);
+  }
+
+ private:
+  const scenarios::Scenario& scenario_;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordingSource> make_simulation(const scenarios::Scenario& scenario) {
+  return std::make_unique<Simulation>(scenario);
+}
+
+}  // namespace simbench::sim
