@@ -50,9 +50,10 @@ std::string_view word_around(std::string_view text, std::size_t at) {
            std::string_view("+-._").find(c) != std::string_view::npos;
   };
   constexpr std::size_t kLongest = 40;
+  if (at >= text.size()) return text.substr(text.size());
   std::size_t begin = at;
   while (begin > 0 && at - begin < kLongest && is_part(text[begin - 1])) --begin;
-  std::size_t end = at < text.size() ? at + 1 : at;
+  std::size_t end = at + 1;
   while (end < text.size() && end - at < kLongest && is_part(text[end])) ++end;
   return text.substr(begin, end - begin);
 }

@@ -46,7 +46,7 @@ TEST(BrokenJson, SaysWhereAndWhatWasExpected) {
   EXPECT_EQ(error_of_text("{\"a\": [1,]}"),
             "my.json:1:10: broken JSON: unexpected ']'; expected a value (a comma too many?)");
   EXPECT_EQ(error_of_text("{\"a\": 1\n \"b\": 2}"),
-            "my.json:2:4: broken JSON: unexpected text in double quotes; expected '}'");
+            "my.json:2:3: broken JSON: unexpected text in double quotes; expected '}'");
   EXPECT_EQ(error_of_text("{\"a\": 1"),
             "my.json:1:8: broken JSON: unexpected end of input; expected '}'");
   EXPECT_EQ(error_of_text("{\"a\": nan}"), "my.json:1:7: broken JSON: no JSON value near 'nan'");

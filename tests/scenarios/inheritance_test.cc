@@ -1,4 +1,5 @@
 // Files, names and "base".
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -102,7 +103,7 @@ TEST_F(Files, CirclesOfBases) {
 
 TEST_F(Files, ChainsOfBasesEnd) {
   for (int i = 0; i < 40; ++i) {
-    write("s" + std::to_string(i) + ".json", over("s" + std::to_string(i + 1) + ".json"));
+    write(fmt::format("s{}.json", i), over(fmt::format("s{}.json", i + 1)));
   }
   EXPECT_EQ(error_of_file(path("s0.json")),
             path("s31.json") + ":1: /base: found more than 32 bases upon each other");
