@@ -1,5 +1,5 @@
 # One source file against the rules of the house; prints FILE:LINE: what is wrong. For tools/lint,
-# which sets file, allowed (folders it may include from) and known (all folders of the project).
+# which sets file, allowed (folders and files it may include from) and known (all folders of the project).
 BEGIN {
   split(allowed, list, " ")
   for (i in list) may[list[i]] = 1
@@ -18,7 +18,7 @@ length($0) > 100 { found("longer than 100 columns") }
   depth = split(part[2], path, "/")
   if (!(path[1] in folder) || depth < 2)
     found("include \"" part[2] "\" is not written from the root of the project")
-  else if (!(path[1] in may) && !((path[1] "/" path[2]) in may))
+  else if (!(path[1] in may) && !((path[1] "/" path[2]) in may) && !(part[2] in may))
     found("a file of " substr(file, 1, index(file, "/")) " may not include " part[2])
 }
 
