@@ -25,12 +25,14 @@ std::vector<GlobalTime> offline(const std::vector<DeviceSample>& samples) {
 
 std::vector<std::int64_t> arrivals_of(const std::vector<DeviceSample>& samples) {
   std::vector<std::int64_t> all;
+  all.reserve(samples.size());
   for (const DeviceSample& sample : samples) all.push_back(nanoseconds_of(sample.arrival));
   return all;
 }
 
 std::vector<std::int64_t> counts_of(const std::vector<GlobalTime>& times) {
   std::vector<std::int64_t> all;
+  all.reserve(times.size());
   for (const GlobalTime time : times) all.push_back(nanoseconds_of(time));
   return all;
 }

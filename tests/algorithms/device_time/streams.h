@@ -39,6 +39,7 @@ inline std::vector<GlobalTime> stamps(DeviceTimeEstimator& estimator,
                                       const std::vector<DeviceSample>& samples) {
   if (estimator.offline()) estimator.learn(samples);
   std::vector<GlobalTime> all;
+  all.reserve(samples.size());
   for (const DeviceSample& sample : samples) all.push_back(estimator.stamp(sample));
   return all;
 }

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -88,6 +90,7 @@ std::vector<GatherFrame> frames_of(const World& world, std::uint32_t seed) {
   }
   std::ranges::stable_sort(arrivals, {}, [](const auto& arrival) { return arrival.first; });
   std::vector<GatherFrame> frames;
+  frames.reserve(arrivals.size());
   for (const auto& arrival : arrivals) frames.push_back(arrival.second);
   return frames;
 }
@@ -179,8 +182,8 @@ TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
   for (int run = 0; run < kRuns; ++run) {
     const auto gatherer = make_yoon2021_gatherer(setup_of({.sources = 6}, kPeriodMs / 2, 64));
     CollectedSets out;
-    std::vector<double> phase_ms;
-    for (int host = 0; host < 6; ++host) phase_ms.push_back(kPeriodMs * uniform(random));
+    std::array<double, 6> phase_ms{};
+    for (double& phase : phase_ms) phase = kPeriodMs * uniform(random);
     for (std::int64_t pulse = 0; pulse < 10; ++pulse) {
       for (std::uint32_t host = 0; host < 6; ++host) {
         gatherer->push(
