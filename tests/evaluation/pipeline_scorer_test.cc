@@ -71,9 +71,9 @@ TEST(PipelineScorerTest, RmdvWithTheMeanOfTheMiddleTwo) {
 
 TEST(PipelineScorerTest, OnlyPulsesThatAllCamerasDeliveredCount) {
   TestCapture capture(1, 3);
-  // Pulse 5 would dominate AMD, but camera 0 lost it.
+  // Pulse 5 would raise AMD, but camera 0 lost it.
   capture.late_by = [](std::uint32_t camera, std::int64_t pulse) {
-    return from_ms(pulse == 5 ? 9.0 * camera : 1.0 * camera);
+    return from_ms(pulse == 5 ? 4.0 * camera : 1.0 * camera);
   };
   capture.lost = [](std::uint32_t camera, std::int64_t pulse) {
     return camera == 0 && (pulse == 5 || pulse == 1);
