@@ -87,20 +87,19 @@ class SystemClock {
     TrueTime since;   // valid from here (the first one: from the beginning of time)
     TrueTime until;   // to before here
     TrueTime anchor;  // where the clock read base + base_part_ns
-    double anchor_deviation_ns;
+    double anchor_deviation_ns = 0;
     HostTime base;
-    double base_part_ns;  // in [0, 1)
-    double frequency;     // rate that stays, as a fraction
-    double slew_rate;     // rate that ends with the slew
-    double slew_left_ns;  // at the anchor
+    double base_part_ns = 0;  // in [0, 1)
+    double frequency = 0;     // rate that stays, as a fraction
+    double slew_rate = 0;     // rate that ends with the slew
+    double slew_left_ns = 0;  // at the anchor
     double rate() const { return frequency + slew_rate; }
   };
   // A reading with its part of a nanosecond, which a change of rate must not lose.
   struct Reading {
     HostTime whole;
-    double part_ns;
+    double part_ns = 0;
   };
-
   // What the oscillator has counted since the setting's anchor.
   double counted_ns(const Setting& setting, TrueTime t) const {
     return static_cast<double>((t - setting.anchor).count()) +
