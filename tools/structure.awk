@@ -1,5 +1,5 @@
 # One source file against the rules of the house; prints FILE:LINE: what is wrong. For tools/lint,
-# which sets file, allowed (folders and files it may include from) and known (all folders of the project).
+# which sets file, allowed (folders and files it may include from) and known (all folders).
 BEGIN {
   split(allowed, list, " ")
   for (i in list) may[list[i]] = 1
