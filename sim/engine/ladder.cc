@@ -24,10 +24,14 @@ std::uint64_t span_ns(std::int64_t a, std::int64_t b) {
   return static_cast<std::uint64_t>(b) - static_cast<std::uint64_t>(a);
 }
 
+std::int64_t later_ns(std::int64_t start_ns, std::uint64_t span) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(start_ns) + span);
+}
+
 }  // namespace
 
 std::int64_t Ladder::Rung::start_of_next_ns() const {
-  return next == size ? end_ns : start_ns + static_cast<std::int64_t>(next << shift);
+  return next == size ? end_ns : later_ns(start_ns, next << shift);
 }
 
 Ladder::Bucket Ladder::Rung::take_next() {
@@ -148,9 +152,7 @@ Ladder::Rung& Ladder::add_rung(std::size_t count, std::int64_t first_ns, std::in
   rung.size = (span >> rung.shift) + 1;
   const std::uint64_t reach = rung.size << rung.shift;
   const bool reaches_never = reach == 0 || reach > span_ns(first_ns, kNever);
-  rung.end_ns = end_ns != kNever ? end_ns
-                : reaches_never  ? kNever
-                                 : first_ns + static_cast<std::int64_t>(reach);
+  rung.end_ns = end_ns != kNever ? end_ns : reaches_never ? kNever : later_ns(first_ns, reach);
   if (rung.buckets.size() < rung.size) rung.buckets.resize(std::bit_ceil(rung.size));
   return rung;
 }

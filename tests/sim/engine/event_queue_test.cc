@@ -48,7 +48,8 @@ class QueuePair {
   explicit QueuePair(std::int64_t start_ns) : now_ns_(start_ns) {}
 
   void push(std::int64_t delay_ns) {
-    const std::int64_t time_ns = delay_ns > kNever - now_ns_ ? kNever : now_ns_ + delay_ns;
+    const std::int64_t time_ns =
+        now_ns_ > 0 && delay_ns > kNever - now_ns_ ? kNever : now_ns_ + delay_ns;
     queue_.push(TrueTime(Nanoseconds(time_ns)), next_payload_);
     reference_.push(time_ns, next_payload_++);
   }
