@@ -247,6 +247,11 @@ std::string child_pointer(const std::string& parent, std::string_view key) {
   return pointer;
 }
 
+bool is_utf8(const std::string& text) {
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace) ==
+         json(text).dump(-1, ' ', false, json::error_handler_t::ignore);
+}
+
 std::string shown_text(std::string_view text) {
   constexpr std::size_t kLongest = 160;
   const bool cut = text.size() > kLongest;

@@ -44,6 +44,9 @@ Document parse_document(std::string_view text);
 // "/parent" and "a/b" -> "/parent/a~1b" (RFC 6901).
 std::string child_pointer(const std::string& parent, std::string_view key);
 
+// Whether the text is UTF-8, as all text in JSON must be.
+bool is_utf8(const std::string& text);
+
 // A value for a message: short, on one line, printable.
 std::string shown(const nlohmann::json& value);
 // Text for a message: no control characters, no broken UTF-8, shortened after some 60 characters.

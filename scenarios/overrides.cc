@@ -77,6 +77,9 @@ void apply_override(const Override& override_, std::size_t level, json& document
   const std::string& pointer = override_.pointer;
   const std::string label =
       fmt::format("--set {}={}", shown_text(pointer), shown_text(override_.value));
+  if (!is_utf8(pointer) || !is_utf8(override_.value)) {
+    throw InputError(label + ": found bytes that are no UTF-8 text");
+  }
   const std::vector<std::string> keys = keys_of(pointer, label);
   const json value = parse_value(override_.value, label);
   const bool may_create = is_algorithm_parameter(keys);

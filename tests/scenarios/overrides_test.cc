@@ -81,6 +81,13 @@ TEST(Set, WhatIsNoPointer) {
   }
 }
 
+TEST(Set, BytesThatAreNoText) {
+  EXPECT_EQ(error_of_set("/algorithms/a\xA0/b", "1"),
+            "--set /algorithms/a\uFFFD/b=1: found bytes that are no UTF-8 text");
+  EXPECT_EQ(error_of_set("/algorithms/a/b", "\xFF"),
+            "--set /algorithms/a/b=\uFFFD: found bytes that are no UTF-8 text");
+}
+
 TEST(Set, WrongValues) {
   EXPECT_EQ(error_of_set("/timeline/frames", "0"),
             "--set /timeline/frames=0: found 0, allowed a whole number from 1 to 10000000");
