@@ -82,7 +82,7 @@ class CallbackSlab {
   using Operate = void (*)(std::byte* storage, bool run);
 
   struct Slot {
-    alignas(std::max_align_t) std::byte storage[kCallbackBytes];
+    alignas(std::max_align_t) std::byte storage[kCallbackBytes] = {};
     Operate operate = nullptr;
     std::uint32_t generation = 0;
     std::uint32_t next_free = kNone;
