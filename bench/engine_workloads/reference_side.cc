@@ -99,8 +99,10 @@ WorkloadResult run_rig_reference(std::uint32_t cameras, std::int64_t duration_ms
   const double start = cpu_seconds();
   const std::uint64_t events =
       run_rig_phase(queue, model, end_ns, std::numeric_limits<std::uint64_t>::max());
+  const double seconds = cpu_seconds() - start;
+  if (events == 0) throw_too_short(duration_ms);
   return {.events = events,
-          .seconds = cpu_seconds() - start,
+          .seconds = seconds,
           .checksum = model.checksum(),
           .order_checksum = model.order_checksum()};
 }

@@ -104,8 +104,10 @@ WorkloadResult run_rig(std::uint32_t cameras, std::int64_t duration_ms) {
   const std::uint64_t warm_up = engine.events();
   const double start = cpu_seconds();
   engine.run_until(end);
+  const double seconds = cpu_seconds() - start;
+  if (engine.events() == warm_up) throw_too_short(duration_ms);
   return {.events = engine.events() - warm_up,
-          .seconds = cpu_seconds() - start,
+          .seconds = seconds,
           .checksum = rig.model().checksum(),
           .order_checksum = rig.model().order_checksum()};
 }
