@@ -47,11 +47,9 @@ Task<MessageId> SimChannel::send(Bytes message) {
 Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
   Inbox& inbox = host_.world().network.inbox(path_);
   SIMBENCH_ASSERT(!arrived_.waiting(), "one receive at a time on a channel");
-  if (inbox.empty()) {
-    const std::optional<TrueTime> until = host_.instant_of(deadline);
-    if (until && *until <= host_.true_now()) co_return std::nullopt;
-    co_await arrived_.wait(until);
-    if (inbox.empty()) co_return std::nullopt;
+  while (inbox.empty()) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await arrived_.wait(host_.next_look(deadline));
   }
   const Nanoseconds wake_up = from_ms(host_.world().hosts.receive_wake_up_ms);
   if (wake_up.count() > 0) {
@@ -72,10 +70,9 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
 
 Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
   if (!stamps_in_kernel_) co_return std::nullopt;
-  const std::optional<TrueTime> until = host_.instant_of(deadline);
   while (!has_left(id)) {
-    if (until && *until <= host_.true_now()) co_return std::nullopt;
-    co_await left_.wait(until);
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await left_.wait(host_.next_look(deadline));
   }
   if (id < first_stamp_) co_return std::nullopt;
   co_return transmit_stamps_[static_cast<std::size_t>(id - first_stamp_)];

@@ -7,6 +7,8 @@ namespace {
 
 // Beyond this a deadline is none: no run lasts so long, and instants further away may not exist.
 constexpr std::chrono::hours kNever(24 * 365 * 10);
+// Noise is sampled as far as anyone asks: nobody asks further than this for a mere deadline.
+constexpr std::chrono::seconds kFarOff(10);
 
 std::string host_name(PeerId id) { return "host" + std::to_string(id); }
 
@@ -66,10 +68,11 @@ void SimHost::report_exchange(const Exchange& exchange) { world_.sink.on_exchang
 
 void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcome(outcome); }
 
-std::optional<TrueTime> SimHost::instant_of(SteadyTime deadline) const {
+std::optional<TrueTime> SimHost::next_look(SteadyTime deadline) const {
   const SteadyTime now = steady_port_.now();
   if (deadline > now + kNever) return std::nullopt;
-  if (deadline <= now) return true_now();
+  const Nanoseconds left = deadline - now;
+  if (left > kFarOff) return true_now() + left / 2;
   return system_clock_.when(deadline);
 }
 

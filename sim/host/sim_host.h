@@ -75,8 +75,11 @@ class SimHost final : public Host {
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
   TrueTime true_now() const { return world_.context.engine().now(); }
-  // The instant of a deadline, for a wait; nothing if it is years away.
-  std::optional<TrueTime> instant_of(SteadyTime deadline) const;
+  bool is_past(SteadyTime deadline) const { return steady_clock().now() >= deadline; }
+  // When a wait for `deadline` should look at the clock again: at the deadline's instant, or on the
+  // way to one that is far off, whose instant only the oscillator's future could tell; nothing if
+  // the deadline is years away. Only while the deadline is not past.
+  std::optional<TrueTime> next_look(SteadyTime deadline) const;
   // "host3: what".
   std::string name(std::string_view what) const;
 

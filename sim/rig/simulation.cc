@@ -36,7 +36,6 @@ class Run {
   RecordingCost run(RecordingSink& sink) {
     sink.on_start(capture_.layout());
     hosts_.report_clocks();
-    hosts_.report_clocks();
     start_host_sync();
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     engine_.run();

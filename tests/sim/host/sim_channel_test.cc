@@ -62,6 +62,25 @@ std::vector<double> returned_ms(const std::vector<Received>& received) {
   return all;
 }
 
+Task<void> echo(SimWorld& world, int count) {
+  MessageChannel& channel = world.host(1).open_channel(0, Transport::kStream);
+  for (int i = 0; i < count; ++i) {
+    std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
+    co_await channel.send(std::move(got->bytes));
+  }
+}
+
+Task<void> ping(SimWorld& world, int count, std::vector<double>& round_trips_ms) {
+  MessageChannel& channel = world.host(0).open_channel(1, Transport::kStream);
+  for (int i = 0; i < count; ++i) {
+    const double start_ms = world.now_ms();
+    co_await channel.send(message(1));
+    const std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
+    EXPECT_TRUE(got);
+    round_trips_ms.push_back(world.now_ms() - start_ms);
+  }
+}
+
 TEST(SimChannelTest, ASendOccupiesTheSenderAndThenTheMessageLeaves) {
   scenarios::Scenario scenario = ideal_hosts();
   scenario.hosts.send_cost_ms = 2;
@@ -118,6 +137,35 @@ TEST(SimChannelTest, ADeadlineReturnsNothingAtItsSteadyTime) {
   EXPECT_NEAR(received[0].returned_ms, 1000 / (1 + skew), 2e-6);
 }
 
+TEST(SimChannelTest, AFarDeadlineIsMetExactlyThroughNoise) {
+  scenarios::Scenario scenario = ideal_hosts();
+  scenario.hosts.clock.oscillator = {.skew_sigma_ppm = 1000,
+                                     .white_frequency_ppb = 100,
+                                     .random_walk_ppb_per_sqrt_s = 100,
+                                     .wander_step_ms = 100};
+  SimWorld world(scenario);
+  std::vector<Received> received;
+  const SystemClock& clock = world.hosts.clock(1);
+  const SteadyTime deadline = clock.steady(TrueTime{}) + from_ms(500e3);
+  world.spawn(receive_many(world, 1, 500e3, received));
+  world.engine.run();
+  EXPECT_GE(clock.steady(world.now()), deadline);
+  EXPECT_LT(clock.steady(world.now() - Nanoseconds(1)), deadline);
+}
+
+TEST(SimChannelTest, HoursBeforeZeroAreLikeAnyOtherTime) {
+  scenarios::Scenario scenario = ideal_hosts();
+  scenario.network.latency_fixed_ms = 2;
+  const TrueTime start{-std::chrono::hours(7)};
+  SimWorld world(scenario, 1, InitialClocks::kUnsynchronised, "test@world", start);
+  std::vector<double> round_trips_ms;
+  world.spawn(echo(world, 3));
+  world.spawn(ping(world, 3, round_trips_ms));
+  world.engine.run();
+  EXPECT_EQ(round_trips_ms.size(), 3u);
+  EXPECT_EQ(world.now(), start + from_ms(3 * 4));
+}
+
 TEST(SimChannelTest, AMessageThatArrivesInTimeIsReturnedAfterItsWakeUp) {
   scenarios::Scenario scenario = ideal_hosts();
   scenario.hosts.receive_wake_up_ms = 3;
@@ -131,25 +179,6 @@ TEST(SimChannelTest, AMessageThatArrivesInTimeIsReturnedAfterItsWakeUp) {
   EXPECT_EQ(received[0].returned_ms, 12);
   EXPECT_FALSE(received[1].got_one);
   EXPECT_EQ(received[1].returned_ms, 22);
-}
-
-Task<void> echo(SimWorld& world, int count) {
-  MessageChannel& channel = world.host(1).open_channel(0, Transport::kStream);
-  for (int i = 0; i < count; ++i) {
-    std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
-    co_await channel.send(std::move(got->bytes));
-  }
-}
-
-Task<void> ping(SimWorld& world, int count, std::vector<double>& round_trips_ms) {
-  MessageChannel& channel = world.host(0).open_channel(1, Transport::kStream);
-  for (int i = 0; i < count; ++i) {
-    const double start_ms = world.now_ms();
-    co_await channel.send(message(1));
-    const std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
-    EXPECT_TRUE(got);
-    round_trips_ms.push_back(world.now_ms() - start_ms);
-  }
 }
 
 TEST(SimChannelTest, PingPong) {

@@ -46,8 +46,9 @@ class SimWorld {
  public:
   explicit SimWorld(scenarios::Scenario parameters, std::uint64_t seed = 1,
                     InitialClocks clocks = InitialClocks::kUnsynchronised,
-                    std::string_view load_key = "test@world")
+                    std::string_view load_key = "test@world", TrueTime start = {})
       : scenario(std::move(parameters)),
+        engine({}, start),
         context(engine),
         hosts(scenario, seed, load_key, clocks, context, record) {}
 
