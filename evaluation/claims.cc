@@ -7,9 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
+#include <optional>
+#include <span>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "algorithms/ports/assert.h"
 
@@ -27,13 +28,15 @@ using Verdict = std::optional<bool>;
 // The scores of one seed, in the order of Statement::pipelines.
 using Scores = std::vector<const SeedScore*>;
 
+using Pipelines = std::span<const char* const>;
+
 struct Statement {
   const char* id;
   const char* text;
-  std::vector<const char*> pipelines;
+  Pipelines pipelines;
   double rate_hz;   // of the scenario it speaks of; 0: any
   const char* rig;  // what the rig must have, if a seed of any other cannot tell
-  std::function<Verdict(const Scores&)> holds;
+  Verdict (*holds)(const Scores&);
 };
 
 // The verdict, unless one of the quantities it rests on does not exist.
@@ -94,73 +97,37 @@ Verdict both_is_best(const Scores& seed) {
   return verdict(both < network && both < time, {both, network, time});
 }
 
-const std::vector<Statement>& statements() {
-  static const std::vector<Statement> all = {
-      {"C1",
-       "no synchronisation is worst by far: its AMD exceeds 5 times the largest of time, "
-       "network and both",
-       {kNone, kTime, kNetwork, kBoth},
-       0,
-       "",
-       none_is_worst},
-      {"C2",
-       "at 15 fps, AMD both < network < time",
-       {kBoth, kNetwork, kTime},
-       15,
-       "",
-       both_network_time},
-      {"C3",
-       "at 45 fps, AMD both < network < time",
-       {kBoth, kNetwork, kTime},
-       45,
-       "",
-       both_network_time},
-      {"C4",
-       "time, network and both have a lower AMD at 45 than at 15 fps",
-       {},
-       0,
-       "a comparison of the scenarios at 15 and at 45 fps",
-       nullptr},
-      {"C5",
-       "with both, the spread inside a host is under 0.2 of that between hosts",
-       {kBoth},
-       0,
-       "at least two hosts, one of them with two cameras",
-       hosts_apart},
-      {"C6",
-       "with both, the spread has no trend: its change over the recording is under 10 % of "
-       "AMD",
-       {kBoth},
-       0,
-       "",
-       no_trend},
-      {"C7",
-       "with both, AMD of online and offline regression differ by less than 10 %",
-       {kBoth},
-       0,
-       "a capture small enough to be kept for the offline regression",
-       online_is_offline},
-      {"C8",
-       "with both and with network, at least 99 % of pulses have a spread below half a "
-       "period",
-       {kBoth, kNetwork},
-       0,
-       "",
-       below_half_period},
-      {"C9",
-       "without synchronisation, gathering finds no set at all",
-       {kNone},
-       0,
-       "",
-       gathers_nothing},
-      {"C10",
-       "adding both delays helps: AMD both < network and both < time",
-       {kBoth, kNetwork, kTime},
-       0,
-       "",
-       both_is_best}};
-  return all;
-}
+constexpr std::array kEveryPipeline = {kNone, kTime, kNetwork, kBoth};
+constexpr std::array kBothNetworkTime = {kBoth, kNetwork, kTime};
+constexpr std::array kBothNetwork = {kBoth, kNetwork};
+constexpr std::array kBothAlone = {kBoth};
+constexpr std::array kNoneAlone = {kNone};
+
+constexpr Statement kStatements[] = {
+    {"C1",
+     "no synchronisation is worst by far: its AMD exceeds 5 times the largest of time, network and "
+     "both",
+     kEveryPipeline, 0, "", none_is_worst},
+    {"C2", "at 15 fps, AMD both < network < time", kBothNetworkTime, 15, "", both_network_time},
+    {"C3", "at 45 fps, AMD both < network < time", kBothNetworkTime, 45, "", both_network_time},
+    {"C4",
+     "time, network and both have a lower AMD at 45 than at 15 fps",
+     {},
+     0,
+     "a comparison of the scenarios at 15 and at 45 fps",
+     nullptr},
+    {"C5", "with both, the spread inside a host is under 0.2 of that between hosts", kBothAlone, 0,
+     "at least two hosts, one of them with two cameras", hosts_apart},
+    {"C6", "with both, the spread has no trend: its change over the recording is under 10 % of AMD",
+     kBothAlone, 0, "", no_trend},
+    {"C7", "with both, AMD of online and offline regression differ by less than 10 %", kBothAlone,
+     0, "a capture small enough to be kept for the offline regression", online_is_offline},
+    {"C8", "with both and with network, at least 99 % of pulses have a spread below half a period",
+     kBothNetwork, 0, "", below_half_period},
+    {"C9", "without synchronisation, gathering finds no set at all", kNoneAlone, 0, "",
+     gathers_nothing},
+    {"C10", "adding both delays helps: AMD both < network and both < time", kBothNetworkTime, 0, "",
+     both_is_best}};
 
 const Row* find_row(const std::vector<Row>& rows, const std::string& pipeline) {
   const auto found = std::find_if(rows.begin(), rows.end(),
@@ -171,7 +138,7 @@ const Row* find_row(const std::vector<Row>& rows, const std::string& pipeline) {
 // What the statement needs and the scenario or its rows have not; empty if nothing.
 std::string missing(const Statement& statement, const std::vector<Row>& rows,
                     double trigger_rate_hz) {
-  if (!statement.holds) return statement.rig;
+  if (statement.holds == nullptr) return statement.rig;
   // Rates of the trigger's own oscillator are off by ppm, advised ones by 500 of them.
   if (statement.rate_hz > 0 && std::abs(trigger_rate_hz / statement.rate_hz - 1) > 0.01) {
     return fmt::format("a scenario at {:.0f} fps", statement.rate_hz);
@@ -218,7 +185,7 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
 
 std::vector<Claim> check_claims(const std::vector<Row>& rows, double trigger_rate_hz) {
   std::vector<Claim> claims;
-  for (const Statement& statement : statements()) {
+  for (const Statement& statement : kStatements) {
     claims.push_back(check(statement, rows, trigger_rate_hz));
   }
   return claims;

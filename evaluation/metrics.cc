@@ -52,8 +52,9 @@ double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
 // the mean of the middle two with k = n/2, halfway between.
 double rmdv_bound(std::size_t n, MedianKind kind) {
   if (n < 2) return 0;
+  const std::size_t lower_half = n / 2;
   const auto count = static_cast<double>(n);
-  const auto half = static_cast<double>(n / 2);
+  const auto half = static_cast<double>(lower_half);
   if (kind == MedianKind::kUpperMiddle || n % 2 == 1) return std::sqrt(half / count);
   return std::sqrt(std::max(half - 1, count / 4) / count);
 }

@@ -17,7 +17,6 @@
 namespace simbench::evaluation {
 namespace {
 
-using ::testing::DoubleNear;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsNan;
