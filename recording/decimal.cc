@@ -56,8 +56,11 @@ std::string ms_text(Nanoseconds time) {
   const std::int64_t ns = time.count();
   const std::int64_t whole = ns / kNsPerMs;
   const std::string fraction = std::to_string(std::abs(ns % kNsPerMs));
-  const char* sign = ns < 0 && whole == 0 ? "-" : "";
-  return sign + std::to_string(whole) + "." + std::string(6 - fraction.size(), '0') + fraction;
+  std::string text = ns < 0 && whole == 0 ? "-" : "";
+  text += std::to_string(whole);
+  text += '.';
+  text.append(6 - fraction.size(), '0');
+  return text += fraction;
 }
 
 }  // namespace simbench

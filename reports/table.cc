@@ -149,37 +149,39 @@ std::string unsynchronised_line(const Row& row) {
 struct Layout {
   bool markdown;
   std::string block(const TextTable& text) const {
-    return "\n" + (markdown ? text.markdown() : text.plain());
+    return fmt::format("{}{}", markdown ? "" : "\n", markdown ? text.markdown() : text.plain());
   }
   std::string heading(std::string_view text) const {
-    return fmt::format(fmt::runtime(markdown ? "\n### {}\n" : "\n{}\n"), text);
+    return fmt::format("\n{}{}\n{}", markdown ? "### " : "", text, markdown ? "\n" : "");
   }
   std::string line(std::string_view text) const {
-    return fmt::format(fmt::runtime(markdown ? "- {}\n" : "  {}\n"), text);
+    return markdown ? fmt::format("- {}\n", text) : wrapped(text, 2);
+  }
+  std::string prose(std::string_view text) const {
+    return markdown ? fmt::format("\n{}\n", text) : wrapped(text);
   }
 };
 
 std::string report(const Results& results, std::string_view summary, const Layout& layout) {
   std::string out = fmt::format("{}{}: {}\n", layout.markdown ? "## " : "", results.scenario,
                                 seeds_text(results));
-  if (!summary.empty()) out += fmt::format("{}{}\n", layout.markdown ? "\n" : "", summary);
+  if (!summary.empty()) out += layout.prose(summary);
   out += layout.heading("The paper's metrics");
   out += layout.block(paper_block(results));
   out += layout.heading("What only known true time can tell");
   out += layout.block(truth_block(results));
   for (const Row& row : results.rows) {
-    if (row.unsynchronised_hosts > 0) out += "\n" + unsynchronised_line(row) + "\n";
+    if (row.unsynchronised_hosts > 0) out += fmt::format("\n{}\n", unsynchronised_line(row));
   }
-  out += layout.heading("How to read it") + (layout.markdown ? "\n" : "");
+  out += layout.heading("How to read it");
   for (const std::string& text : legend(results)) out += layout.line(text);
-  out += layout.heading("Pipelines = host_sync + device_time + gathering") +
-         (layout.markdown ? "\n" : "");
+  out += layout.heading("Pipelines = host_sync + device_time + gathering");
   for (const Row& row : results.rows) out += layout.line(stages_text(row));
   if (!results.claims.empty()) {
     out += layout.heading("The paper's claims, and the fraction of seeds in which each holds");
     out += layout.block(claims_block(results));
   }
-  return out + "\n" + cost_line(results) + "\n";
+  return out + fmt::format("\n{}\n", cost_line(results));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "reports/text_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -84,16 +86,34 @@ std::string TextTable::plain() const {
 
 std::string TextTable::markdown() const {
   std::string out = "|";
-  for (const Column& column : columns_) out += " " + markdown_cell(column.header) + " |";
+  for (const Column& column : columns_) out += fmt::format(" {} |", markdown_cell(column.header));
   out += "\n|";
   for (const Column& column : columns_) out += column.align == Align::kLeft ? "---|" : "---:|";
   out += "\n";
   for (const auto& row : rows_) {
     out += "|";
-    for (const std::string& cell : row) out += " " + markdown_cell(cell) + " |";
+    for (const std::string& cell : row) out += fmt::format(" {} |", markdown_cell(cell));
     out += "\n";
   }
   return out;
+}
+
+std::string wrapped(std::string_view text, std::size_t indent) {
+  const std::string margin(indent, ' ');
+  std::string out;
+  std::string line;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (word.empty()) continue;
+    if (!line.empty() && indent + line.size() + 1 + word.size() > kTextWidth) {
+      out += fmt::format("{}{}\n", margin, line);
+      line.clear();
+    }
+    line += fmt::format("{}{}", line.empty() ? "" : " ", word);
+  }
+  return line.empty() ? out : out + fmt::format("{}{}\n", margin, line);
 }
 
 }  // namespace simbench::reports

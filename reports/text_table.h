@@ -9,8 +9,10 @@
 #ifndef SIMBENCH_REPORTS_TEXT_TABLE_H_
 #define SIMBENCH_REPORTS_TEXT_TABLE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace simbench::reports {
@@ -34,6 +36,12 @@ class TextTable {
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
+
+inline constexpr std::size_t kTextWidth = 120;
+
+// Prose in lines of at most kTextWidth columns (a longer word has a line of its own), each after
+// `indent` blanks and ended by '\n'.
+std::string wrapped(std::string_view text, std::size_t indent = 0);
 
 }  // namespace simbench::reports
 

@@ -20,6 +20,12 @@ struct DescribeOptions {
   std::string format;
 };
 
+// A long text or list would make the table too wide; --format json has it whole.
+std::string shortened(const std::string& value) {
+  constexpr std::size_t kLongest = 40;
+  return value.size() <= kLongest ? value : value.substr(0, kLongest - 3) + "...";
+}
+
 std::string parameters_text(const scenarios::Scenario& scenario) {
   using reports::Align;
   reports::TextTable table({{"parameter", Align::kLeft},
@@ -28,9 +34,9 @@ std::string parameters_text(const scenarios::Scenario& scenario) {
                             {"meaning", Align::kLeft},
                             {"source", Align::kLeft}});
   for (const scenarios::ParameterLine& line : scenarios::describe(scenario)) {
-    table.add({line.pointer, line.value, line.unit, line.meaning, line.source});
+    table.add({line.pointer, shortened(line.value), line.unit, line.meaning, line.source});
   }
-  return scenario.name + ": " + scenario.summary + "\n\n" + table.plain();
+  return reports::wrapped(scenario.name + ": " + scenario.summary) + "\n" + table.plain();
 }
 
 int describe(const DescribeOptions& options) {

@@ -35,17 +35,21 @@ std::string value_text(const ParameterValue& value) {
 std::string range_text(const ParameterSpec& spec) {
   if (std::holds_alternative<bool>(spec.fallback)) return "true, false";
   if (!std::holds_alternative<double>(spec.fallback)) {
-    return fmt::format("{}", fmt::join(spec.choices, ", "));
+    std::string choices;
+    for (const std::string& choice : spec.choices) {
+      choices.append(choices.empty() ? "" : ", ").append(choice);
+    }
+    return choices;
   }
   return fmt::format("{} to {}", spec.low, spec.high);
 }
 
 std::string scenarios_text() {
-  TextTable table({{"scenario", Align::kLeft}, {"what it is", Align::kLeft}});
+  std::string text = "scenarios\n";
   for (const auto& scenario : scenarios::builtin_scenarios()) {
-    table.add({scenario.name, scenario.summary});
+    text += fmt::format("  {}\n{}", scenario.name, reports::wrapped(scenario.summary, 6));
   }
-  return table.plain();
+  return text;
 }
 
 template <class Entries>
@@ -105,14 +109,15 @@ void add_list_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ListOptions>();
   command
       ->add_option("what", options->what,
-                   "scenarios, pipelines or algorithms (with parameters and sources); without it, "
-                   "scenarios and algorithms by name")
+                   "scenarios, pipelines or algorithms (with parameters and sources).\n"
+                   "Default: scenarios and algorithms by name")
       ->type_name("WHAT")
       ->check(one_of({"scenarios", "pipelines", "algorithms"}));
   options->scenario = "18cam_6host_45fps";
-  command->add_option("--scenario", options->scenario, "Whose pipelines to list")
-      ->type_name("SCENARIO")
-      ->capture_default_str();
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Whose pipelines to list. Default: " + options->scenario)
+      ->type_name("SCENARIO");
   command->footer(kExamples);
   command->callback([options, &action] {
     action = [options] {

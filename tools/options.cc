@@ -45,8 +45,8 @@ void add_set_option(CLI::App& command, std::vector<std::string>& values) {
   };
   command
       .add_option("--set", values,
-                  "Change a parameter of the scenario; `simbench describe` names them all. "
-                  "Repeatable")
+                  "Change a parameter of the scenario, repeatable;\n"
+                  "`simbench describe SCENARIO` names them all")
       ->type_name("/POINTER=VALUE")
       ->allow_extra_args(false)
       ->check(CLI::Validator(check, ""));
@@ -64,10 +64,11 @@ std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& va
 void add_format_option(CLI::App& command, std::string& format,
                        const std::vector<std::string>& formats) {
   format = formats.front();
-  command.add_option("--format", format, fmt::format("One of: {}", fmt::join(formats, ", ")))
+  command
+      .add_option("--format", format,
+                  fmt::format("One of: {}. Default: {}", fmt::join(formats, ", "), format))
       ->type_name("FORMAT")
-      ->check(one_of(formats))
-      ->capture_default_str();
+      ->check(one_of(formats));
 }
 
 void print_result(const std::string& text) {

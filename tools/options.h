@@ -27,6 +27,7 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 void add_set_option(CLI::App& command, std::vector<std::string>& values);
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);
 
+// Defaults are stated in the texts of the options ("Default: ...").
 // --format with the first of `formats` as its default.
 void add_format_option(CLI::App& command, std::string& format,
                        const std::vector<std::string>& formats);

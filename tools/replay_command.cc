@@ -85,8 +85,8 @@ void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> 
   add_format_option(*command, options->format, {"table", "json", "csv"});
   command
       ->add_option("--output", options->output,
-                   "Write manifest.json, results.json and frames.csv to this folder. An earlier "
-                   "result there is replaced")
+                   "Write manifest.json, results.json and frames.csv to this folder.\n"
+                   "An earlier result there is replaced")
       ->type_name("DIR");
   command->footer(kExamples);
   command->callback([options, &action] { action = [options] { return run_replay(*options); }; });

@@ -110,28 +110,28 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
                    "Name of a scenario (see `simbench list`) or path of a scenario file")
       ->type_name("SCENARIO")
       ->required();
-  command->add_option("--seeds", evaluation.seeds, "How many seeds: runs of each pipeline")
+  command
+      ->add_option("--seeds", evaluation.seeds,
+                   "How many seeds: runs of each pipeline. Default: 32")
       ->type_name("N")
-      ->check(whole_number(1, 1'000'000))
-      ->capture_default_str();
-  command->add_option("--first-seed", evaluation.first_seed, "The first seed")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--first-seed", evaluation.first_seed, "The first seed. Default: 1")
       ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
-      ->capture_default_str();
-  command->add_option("--jobs", evaluation.jobs, "Threads; without it, one for every core")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command->add_option("--jobs", evaluation.jobs, "Threads. Default: one for every core")
       ->type_name("N")
       ->check(whole_number(1, 4096));
   command
       ->add_option("--pipelines", evaluation.pipelines,
                    "Only these pipelines of the scenario, in this order")
-      ->type_name("NAME,NAME...")
+      ->type_name("NAME,NAME")
       ->delimiter(',')
       ->allow_extra_args(false);
   add_set_option(*command, options->sets);
   add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
   command
       ->add_option("--output", options->output,
-                   "Write a result archive to this folder: manifest.json, results.json, "
+                   "Write a result archive to this folder: manifest.json, results.json,\n"
                    "frames.csv, hosts.csv. An earlier archive there is replaced")
       ->type_name("DIR");
   command->footer(kExamples);

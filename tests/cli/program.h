@@ -1,0 +1,55 @@
+// Runs the real simbench program as a user would, and keeps what it printed.
+#ifndef SIMBENCH_TESTS_CLI_PROGRAM_H_
+#define SIMBENCH_TESTS_CLI_PROGRAM_H_
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace simbench {
+
+struct ProgramResult {
+  int status = -1;  // exit status; 128 + signal if a signal ended it
+  std::string out;
+  std::string err;
+};
+
+struct ProgramOptions {
+  // SIGINT after this time; the second one is up to the test.
+  std::optional<std::chrono::milliseconds> interrupt_after;
+  // Writes beyond this size fail, as on a full disk.
+  std::optional<std::size_t> largest_file;
+  // Where standard output goes instead of ProgramResult::out.
+  std::string out_file;
+};
+
+// A test with a folder of its own, which is also the program's working directory.
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest();
+  ~ProgramTest() override;
+
+  ProgramResult run(const std::vector<std::string>& arguments,
+                    const ProgramOptions& options = {}) const;
+
+  // Writes a file into the folder and returns its name.
+  std::string file(const std::string& name, const std::string& content) const;
+  std::string content(const std::string& name) const;
+  // Names in a folder below the test's, in alphabetical order.
+  std::vector<std::string> names_in(const std::string& folder = ".") const;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path captures_;  // beside the folder: tests look at what is in that
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_TESTS_CLI_PROGRAM_H_

@@ -1,0 +1,149 @@
+// `simbench run`: what it prints, what it keeps, and that it does so every time.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Run : public ProgramTest {
+ protected:
+  static std::vector<std::string> small(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"run",
+                                          "--scenario",
+                                          "18cam_6host_45fps",
+                                          "--seeds",
+                                          "3",
+                                          "--set",
+                                          "/timeline/frames=60",
+                                          "--pipelines",
+                                          "yoon2021_both,oracle"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  static std::string without_performance(const std::string& text) {
+    Json root = Json::parse(text);
+    root.erase("performance");
+    return root.dump();
+  }
+  static std::size_t lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+};
+
+TEST_F(Run, TheTableHasARowPerPipelineAndItsLegend) {
+  const ProgramResult result = run(small());
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"yoon2021_both", "oracle", "AMD", "RMDV", "published", "2.438",
+                           "How to read it", "claims", "events/s"}) {
+    EXPECT_THAT(result.out, HasSubstr(part));
+  }
+  EXPECT_THAT(result.err, HasSubstr("6 runs in"));
+}
+
+TEST_F(Run, TheCommandRunIsTheDefault) {
+  std::vector<std::string> arguments = small({"--format", "json"});
+  const ProgramResult named = run(arguments);
+  arguments.erase(arguments.begin());
+  const ProgramResult unnamed = run(arguments);
+  EXPECT_EQ(unnamed.status, 0);
+  EXPECT_EQ(without_performance(named.out), without_performance(unnamed.out));
+}
+
+TEST_F(Run, JsonIsAllThatIsOnStandardOutput) {
+  const ProgramResult result = run(small({"--format", "json"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  EXPECT_EQ(root["scenario"], "18cam_6host_45fps");
+  EXPECT_EQ(root["seeds"]["count"], 3);
+  ASSERT_EQ(root["rows"].size(), 2U);
+  EXPECT_EQ(root["rows"][0]["pipeline"], "yoon2021_both");
+  EXPECT_EQ(root["rows"][0]["amd_ms"]["values"].size(), 3U);
+  EXPECT_EQ(root["rows"][0]["published"]["amd_ms"], 2.438);
+  EXPECT_GT(root["performance"]["events"], 0);
+}
+
+TEST_F(Run, EqualCommandsGiveEqualBytes) {
+  const std::string one = without_performance(run(small({"--format", "json"})).out);
+  EXPECT_EQ(one, without_performance(run(small({"--format", "json"})).out));
+  EXPECT_EQ(one, without_performance(run(small({"--format", "json", "--jobs", "1"})).out));
+  EXPECT_EQ(one, without_performance(run(small({"--format", "json", "--jobs", "2"})).out));
+  EXPECT_NE(one, without_performance(run(small({"--format", "json", "--first-seed", "2"})).out));
+  EXPECT_EQ(run(small({"--format", "csv"})).out, run(small({"--format", "csv"})).out);
+}
+
+TEST_F(Run, MarkdownAndCsv) {
+  EXPECT_THAT(run(small({"--format", "markdown"})).out, HasSubstr("| yoon2021_both |"));
+  EXPECT_EQ(lines(run(small({"--format", "csv"})).out), 3U);
+}
+
+TEST_F(Run, TheArchiveHoldsEverything) {
+  const ProgramResult result = run(small({"--output", "results", "--format", "json"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(names_in(), ElementsAre("results"));
+  EXPECT_THAT(names_in("results"),
+              ElementsAre("frames.csv", "hosts.csv", "manifest.json", "results.json"));
+  EXPECT_EQ(content("results/results.json"), result.out);
+  const Json manifest = Json::parse(content("results/manifest.json"));
+  EXPECT_EQ(manifest["seeds"]["count"], 3);
+  EXPECT_EQ(manifest["scenario"]["timeline"]["frames"], 60);
+  EXPECT_EQ(manifest["command"][1], "run");
+  EXPECT_TRUE(manifest.contains("version") && manifest.contains("commit"));
+  EXPECT_LE(manifest["started"], manifest["finished"]);
+  const std::string frames = content("results/frames.csv");
+  EXPECT_THAT(frames, testing::StartsWith("pipeline,seed,pulse,spread_ms,deviation_ms\n"));
+  EXPECT_EQ(lines(frames), 1U + 2 * 3 * 60);
+  EXPECT_EQ(lines(content("results/hosts.csv")), 1U + 2 * 3 * 6);
+}
+
+TEST_F(Run, AManifestsScenarioRepeatsTheRun) {
+  const ProgramResult first = run(small({"--output", "results", "--format", "json"}));
+  ASSERT_EQ(first.status, 0) << first.err;
+  file("again.json", Json::parse(content("results/manifest.json"))["scenario"].dump());
+  const ProgramResult again = run({"--scenario", "again.json", "--seeds", "3", "--pipelines",
+                                   "yoon2021_both,oracle", "--format", "json"});
+  EXPECT_EQ(without_performance(first.out), without_performance(again.out)) << again.err;
+}
+
+TEST_F(Run, AnEarlierArchiveIsReplaced) {
+  ASSERT_EQ(run(small({"--output", "results"})).status, 0);
+  ASSERT_EQ(run(small({"--output", "results", "--first-seed", "9"})).status, 0);
+  EXPECT_EQ(Json::parse(content("results/results.json"))["seeds"]["first"], 9);
+  EXPECT_THAT(names_in(), ElementsAre("results"));
+}
+
+TEST_F(Run, AFullDiskLeavesNothing) {
+  const ProgramResult result =
+      run(small({"--output", "results"}), {.largest_file = std::size_t{8192}});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("error: --output"));
+  EXPECT_THAT(result.err, HasSubstr("nothing was kept"));
+  EXPECT_THAT(names_in(), IsEmpty());
+}
+
+TEST_F(Run, AResultThatCannotBePrintedIsAnError) {
+  const ProgramResult result = run(small(), {.out_file = "/dev/full"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("standard output"));
+}
+
+TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
+  const ProgramResult result =
+      run({"--scenario", "18cam_6host_45fps", "--seeds", "100000", "--output", "results"},
+          {.interrupt_after = std::chrono::milliseconds(500)});
+  EXPECT_EQ(result.status, 130);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("interrupted after"));
+  EXPECT_THAT(names_in(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace simbench

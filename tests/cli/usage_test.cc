@@ -1,0 +1,115 @@
+// Help, lists and mistakes in the use of the command.
+#include <gmock/gmock.h>
+
+#include "recording/version.h"
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Usage : public ProgramTest {
+ protected:
+  // Refused with status 2 and a message that has all of `parts`; nothing on standard output.
+  void refuses(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, StartsWith("error: "));
+    for (const std::string& part : parts) EXPECT_THAT(result.err, HasSubstr(part));
+  }
+};
+
+TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
+  const ProgramResult all = run({"--help"});
+  EXPECT_EQ(all.status, 0);
+  EXPECT_EQ(all.err, "");
+  for (const char* command : {"run", "list", "describe", "validate", "replay", "convert-ibl"}) {
+    EXPECT_THAT(all.out, HasSubstr(command));
+    const ProgramResult result = run({command, "--help"});
+    EXPECT_EQ(result.status, 0) << command;
+    EXPECT_EQ(result.err, "") << command;
+    EXPECT_THAT(result.out, HasSubstr("Example")) << command;
+    EXPECT_THAT(result.out, HasSubstr(std::string("simbench ") + command)) << command;
+  }
+  EXPECT_THAT(all.out, AllOf(HasSubstr("simbench --scenario"), HasSubstr("Exit status: 0 ok")));
+}
+
+TEST_F(Usage, HelpNamesEveryOptionOfRun) {
+  const ProgramResult result = run({"run", "--help"});
+  for (const char* option : {"--scenario", "--seeds", "--first-seed", "--jobs", "--pipelines",
+                             "--set", "--format", "--output"}) {
+    EXPECT_THAT(result.out, HasSubstr(option));
+  }
+}
+
+TEST_F(Usage, VersionNamesTheCommit) {
+  const ProgramResult result = run({"--version"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out,
+            "simbench " + std::string(version()) + " (" + std::string(commit()) + ")\n");
+}
+
+TEST_F(Usage, ListsWhatThereIs) {
+  const ProgramResult names = run({"list"});
+  EXPECT_EQ(names.status, 0);
+  for (const char* name : {"18cam_6host_45fps", "host_sync", "yoon2021_both", "device_time",
+                           "regression_30", "gathering", "genlock"}) {
+    EXPECT_THAT(names.out, HasSubstr(name));
+  }
+  EXPECT_THAT(run({"list", "algorithms"}).out, HasSubstr("source: "));
+  EXPECT_THAT(run({"list", "pipelines"}).out, HasSubstr("ntp_last_set"));
+  EXPECT_THAT(run({"list", "scenarios"}).out, HasSubstr("18cam_6host_15fps"));
+  refuses({"list", "cameras"}, {"found 'cameras'", "scenarios, pipelines, algorithms"});
+}
+
+TEST_F(Usage, DescribesEveryParameter) {
+  const ProgramResult result =
+      run({"describe", "18cam_6host_45fps", "--set", "/timeline/frames=77"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, HasSubstr("/timeline/frames"));
+  EXPECT_THAT(result.out, HasSubstr("77"));
+  EXPECT_THAT(result.out, HasSubstr("source"));
+}
+
+TEST_F(Usage, WhatDescribePrintsAsJsonIsAScenario) {
+  const ProgramResult result = run({"describe", "18cam_6host_45fps", "--format", "json"});
+  ASSERT_EQ(result.status, 0);
+  const std::string name = file("mine.json", result.out);
+  const ProgramResult checked = run({"validate", name});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_EQ(checked.out, "mine.json: ok\n");
+}
+
+TEST_F(Usage, WrongCommandsAreRefused) {
+  refuses({}, {"subcommand is required", "See: simbench --help"});
+  refuses({"fly"}, {"fly"});
+  refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
+  refuses({"--seeds", "3"}, {"--scenario is required"});
+  refuses({"describe"}, {"scenario is required"});
+  refuses({"validate"}, {"files is required"});
+  refuses({"replay"}, {"files is required"});
+  refuses({"run", "--scenario", "18cam_6host_45fps", "--colour"}, {"--colour"});
+}
+
+TEST_F(Usage, NumbersAreChecked) {
+  for (const char* value : {"0", "-1", "many", "1.5", "1e3", "", "99999999999999999999"}) {
+    refuses({"--scenario", "18cam_6host_45fps", "--seeds", value},
+            {"--seeds", std::string("found '") + value + "'", "a whole number from 1 to 1000000"});
+  }
+  refuses({"--scenario", "18cam_6host_45fps", "--first-seed", "-3"}, {"--first-seed"});
+  refuses({"--scenario", "18cam_6host_45fps", "--jobs", "0"}, {"--jobs", "from 1 to"});
+  refuses({"--scenario", "18cam_6host_45fps", "--format", "xml"},
+          {"found 'xml'", "table, markdown, csv, json"});
+  refuses({"--scenario", "18cam_6host_45fps", "--set", "seeds=3"},
+          {"--set", "found 'seeds=3'", "/json/pointer=value"});
+  refuses({"--scenario", "18cam_6host_45fps", "--set", "/timeline/frames"}, {"--set"});
+}
+
+}  // namespace
+}  // namespace simbench

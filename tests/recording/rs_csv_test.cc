@@ -1,0 +1,128 @@
+#include "recording/rs_csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace simbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
+
+std::vector<CameraStream> read(const std::string& text, const std::string& path = "dir/front.csv") {
+  CsvRecordingReader reader;
+  reader.read_text(text, path);
+  return reader.take();
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const CsvError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(RsCsv, AFileIsACameraOfItsName) {
+  const auto streams = read(kHeader + "Depth,0,7,1000.001,12.5\nDepth,0,8,1033.334,45.75\n");
+  ASSERT_EQ(streams.size(), 1U);
+  EXPECT_EQ(streams[0].camera, "front");
+  EXPECT_EQ(streams[0].host, "front");
+  EXPECT_EQ(streams[0].stream, "Depth 0");
+  ASSERT_EQ(streams[0].frames.size(), 2U);
+  EXPECT_EQ(streams[0].frames[1].counter, 8U);
+  EXPECT_EQ(streams[0].frames[1].sensor, Nanoseconds(1'033'334'000));
+  EXPECT_EQ(streams[0].frames[1].arrival, Nanoseconds(45'750'000));
+}
+
+TEST(RsCsv, ReadsWhatTheToolWrites) {
+  const auto streams = read(
+      "Configuration:\n"
+      "Stream Type,Stream Name,Format,FPS,Width,Height\n"
+      "Depth,Depth,Z16,30,848,480\n"
+      "\n\nStream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n"
+      "Depth,0,1,10.000,100.5\nDepth,0,2,43.000,133.5\n"
+      "\n\nStream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),3DOF_x,3DOF_y,3DOF_z\n"
+      "Gyro,0,1,10.1,100.9,0.1,0.2,0.3\n"
+      "\n\nStream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n"
+      "Infrared,1,1,10.000,101.5\n");
+  ASSERT_EQ(streams.size(), 2U);
+  EXPECT_EQ(streams[0].frames.size(), 2U);
+  EXPECT_EQ(streams[1].stream, "Infrared 1");
+  EXPECT_EQ(streams[1].camera, "front");
+}
+
+TEST(RsCsv, SeveralCamerasInOneFile) {
+  const auto streams = read(
+      "host,camera,Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),remark\n"
+      "a,left,Depth,0,1,10,100,x\nb,right,Depth,0,1,20,101,\na,left,Depth,0,2,43,133,\n");
+  ASSERT_EQ(streams.size(), 2U);
+  EXPECT_EQ(streams[0].camera, "left");
+  EXPECT_EQ(streams[0].host, "a");
+  EXPECT_EQ(streams[0].frames.size(), 2U);
+  EXPECT_EQ(streams[1].camera, "right");
+}
+
+TEST(RsCsv, ACameraGoesOnInTheNextFile) {
+  CsvRecordingReader reader;
+  const std::string header = "camera," + kHeader;
+  reader.read_text(header + "left,Depth,0,1,10,100\n", "1.csv");
+  reader.read_text(header + "left,Depth,0,2,43,133\n", "2.csv");
+  const auto streams = reader.take();
+  ASSERT_EQ(streams.size(), 1U);
+  EXPECT_EQ(streams[0].frames.size(), 2U);
+  EXPECT_TRUE(reader.take().empty());
+}
+
+TEST(RsCsv, TakesLineEndsAndBlanksOfAllKinds) {
+  const std::string text =
+      "\xef\xbb\xbf"
+      "stream type, Index ,f#,HW Timestamp(ms),Host Timestamp (ms)\r\n"
+      "\r\n Depth , 0 , 1 , 10 , 100 \r\nDepth,0,2,43,133";
+  const auto streams = read(text);
+  ASSERT_EQ(streams.size(), 1U);
+  EXPECT_EQ(streams[0].frames.size(), 2U);
+}
+
+TEST(RsCsv, KeepsAWrappedRegisterAsItIs) {
+  const auto streams = read(kHeader + "Depth,0,1,4294967.2,1\nDepth,0,2,0.033,2\n");
+  EXPECT_EQ(streams[0].frames[1].sensor, Nanoseconds(33'000));
+}
+
+TEST(RsCsv, RefusesWhatIsNoRecording) {
+  EXPECT_THAT(refusal(""), HasSubstr("front.csv:1: the file is empty"));
+  EXPECT_THAT(refusal("time,value\n1,2\n"),
+              HasSubstr(":1: found 'time,value', allowed: the header"));
+  EXPECT_THAT(refusal("Configuration:\nDepth,Depth,Z16\n"), HasSubstr(":2: the file ends"));
+  EXPECT_THAT(refusal(kHeader), HasSubstr(":1: the file ends without a frame"));
+  EXPECT_THAT(refusal(kHeader + "Gyro,0,1,10,100\n"), HasSubstr("without a frame"));
+  EXPECT_THAT(refusal(std::string("\0\1\2\3", 4)), HasSubstr(":1: found '????'"));
+}
+
+TEST(RsCsv, NamesTheDamagedLine) {
+  const std::string good = kHeader + "Depth,0,1,10,100\n";
+  EXPECT_THAT(refusal(good + "Depth,0,2,43\n"), StartsWith("dir/front.csv:3: found 4 cells"));
+  EXPECT_THAT(refusal(good + "Depth,0,2,4x,133\n"),
+              HasSubstr(":3: HW Timestamp (ms): found '4x', allowed: a number"));
+  EXPECT_THAT(refusal(good + "Depth,0,2,-1,133\n"), HasSubstr("found '-1', allowed: 0 or more"));
+  EXPECT_THAT(refusal(good + "Depth,0,2,43,nan\n"), HasSubstr("Host Timestamp(ms): found 'nan'"));
+  EXPECT_THAT(refusal(good + "Depth,0,two,43,133\n"), HasSubstr("F#: found 'two'"));
+  EXPECT_THAT(refusal(good + ",0,2,43,133\n"), HasSubstr("empty cell"));
+  EXPECT_THAT(refusal(good + "Stream Type,Index\n"), HasSubstr(":3: found 'Stream Type,Index'"));
+  const std::string endless(100'000, 'x');
+  EXPECT_LT(refusal(good + "Depth,0,2," + endless + ",1\n").size(), 200U);
+}
+
+TEST(RsCsv, RefusesFilesThatCannotBeRead) {
+  CsvRecordingReader reader;
+  EXPECT_THROW(reader.read_file("/no/such/file.csv"), CsvError);
+  EXPECT_THROW(reader.read_file("/"), CsvError);
+}
+
+}  // namespace
+}  // namespace simbench

@@ -1,0 +1,95 @@
+// Small hand-made results for the tests of reports/.
+#ifndef SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
+#define SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
+
+#include <limits>
+
+#include "evaluation/results.h"
+
+namespace simbench::reports {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+inline evaluation::Series series(double first, double second) {
+  return {.values = {first, second}, .median = (first + second) / 2, .p05 = first, .p95 = second};
+}
+
+inline evaluation::Series no_series() {
+  return {.values = {kNaN, kNaN}, .median = kNaN, .p05 = kNaN, .p95 = kNaN};
+}
+
+inline evaluation::SeedScore seed_score(std::uint64_t seed) {
+  evaluation::SeedScore score;
+  score.seed = seed;
+  score.pulses = {{.pulse = 225, .spread_ms = 1.5, .deviation_ms = 0.25},
+                  {.pulse = 226, .spread_ms = 2, .deviation_ms = 0.5}};
+  score.host_errors_ms = {0, -0.125};
+  if (seed == 2) score.failures = {{.slave = 1, .synchronised = false, .message = "timeout"}};
+  return score;
+}
+
+// Two pipelines over two seeds: one with a published value and everything there is, one without.
+inline evaluation::Results sample_results() {
+  evaluation::Row both;
+  both.pipeline = "yoon2021_both";
+  both.host_sync = "yoon2021_both";
+  both.device_time = "regression_30";
+  both.gathering = "yoon2021";
+  both.amd_ms = series(1.5, 2.5);
+  both.rmdv_ms = series(0.5, 1);
+  both.absolute_error_ms = series(28, 30);
+  both.bias_ms = series(-28, -30);
+  both.host_error_ms = series(0.25, 0.75);
+  both.exposure_spread_ms = series(0, 0.125);
+  both.precision = 1;
+  both.recall = 0.75;
+  both.margin_ms = 8.5;
+  both.frames = {.expected = 34560, .delivered = 34557, .dropped = 3};
+  both.evaluated_pulses = 960;
+  both.unsynchronised_hosts = 1;
+  both.published = evaluation::PublishedComparison{.amd_ms = 2.438,
+                                                   .rmdv_ms = 1.8044,
+                                                   .amd_inside = true,
+                                                   .rmdv_inside = false,
+                                                   .rmdv_attainable = false,
+                                                   .amd_percentile = {50, 1.25, 98.75},
+                                                   .rmdv_percentile = {100, 15.75, 100}};
+  both.seeds = {seed_score(1), seed_score(2)};
+  evaluation::Row none;
+  none.pipeline = "free_running";
+  none.host_sync = "free_running";
+  none.device_time = "raw_arrival";
+  none.gathering = "yoon2021";
+  none.amd_ms = series(500, 1500000);
+  none.rmdv_ms = series(200, 300);
+  none.absolute_error_ms = no_series();
+  none.bias_ms = no_series();
+  none.host_error_ms = no_series();
+  none.exposure_spread_ms = no_series();
+  none.precision = kNaN;
+  none.recall = 0;
+  none.margin_ms = kNaN;
+
+  evaluation::Results results;
+  results.scenario = "sample";
+  results.first_seed = 1;
+  results.seed_count = 2;
+  results.rows = {both, none};
+  results.claims = {{.id = "C1", .text = "none is worst", .holds_fraction = 0.5, .needs = ""},
+                    {.id = "C4",
+                     .text = "lower at 45 than at 15 FPS",
+                     .holds_fraction = std::nullopt,
+                     .needs = "18cam_6host_15fps"}};
+  results.warnings = {"a host was not synchronised"};
+  results.performance = {.events = 1234567,
+                         .simulated_seconds = 64,
+                         .cpu_seconds = 0.5,
+                         .wall_seconds = 0.25,
+                         .events_per_second = 4938268,
+                         .simulated_seconds_per_second = 256};
+  return results;
+}
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_
