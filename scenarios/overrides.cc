@@ -73,15 +73,15 @@ bool is_algorithm_parameter(const std::vector<std::string>& keys) {
 
 }  // namespace
 
-void apply_override(const Override& override_, std::size_t level, json& document, Places& places) {
-  const std::string& pointer = override_.pointer;
+void apply_override(const Override& setting, std::size_t level, json& document, Places& places) {
+  const std::string& pointer = setting.pointer;
   const std::string label =
-      fmt::format("--set {}={}", shown_text(pointer), shown_text(override_.value));
-  if (!is_utf8(pointer) || !is_utf8(override_.value)) {
+      fmt::format("--set {}={}", shown_text(pointer), shown_text(setting.value));
+  if (!is_utf8(pointer) || !is_utf8(setting.value)) {
     throw InputError(label + ": found bytes that are no UTF-8 text");
   }
   const std::vector<std::string> keys = keys_of(pointer, label);
-  const json value = parse_value(override_.value, label);
+  const json value = parse_value(setting.value, label);
   const bool may_create = is_algorithm_parameter(keys);
 
   json* target = &document;

@@ -13,7 +13,7 @@ namespace simbench::scenarios {
 // Replaces the value that the pointer names; null removes it. The pointer must name something that
 // is there, but for /algorithms/NAME/PARAMETER: the algorithms know their parameters and defaults
 // themselves. Throws InputError.
-void apply_override(const Override& override_, std::size_t level, nlohmann::json& document,
+void apply_override(const Override& setting, std::size_t level, nlohmann::json& document,
                     Places& places);
 
 }  // namespace simbench::scenarios

@@ -124,8 +124,8 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
     merge("", layer.document, layer.places, resolved.document, *resolved.places);
   }
   std::size_t level = resolved.places->latest_level("");
-  for (const Override& override_ : overrides) {
-    apply_override(override_, ++level, resolved.document, *resolved.places);
+  for (const Override& setting : overrides) {
+    apply_override(setting, ++level, resolved.document, *resolved.places);
   }
   validate(resolved.document, Completeness::kResolved, *resolved.places);
   drop_outlived_results(resolved);
