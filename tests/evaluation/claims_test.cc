@@ -1,5 +1,6 @@
 #include "evaluation/claims.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +62,7 @@ TEST(ClaimsTest, AllTenInOrderWithTheirText) {
   const std::vector<Claim> claims = check_claims(good_rows(), 45);
   ASSERT_EQ(claims.size(), 10U);
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    EXPECT_EQ(claims[i].id, "C" + std::to_string(i + 1));
+    EXPECT_EQ(claims[i].id, fmt::format("C{}", i + 1));
     EXPECT_FALSE(claims[i].text.empty());
     // Either a fraction or what is missing.
     EXPECT_NE(claims[i].holds_fraction.has_value(), !claims[i].needs.empty()) << claims[i].id;
