@@ -2,9 +2,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scenarios/loader.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // A first line "/pointer=value" is an override, the rest the file.
   std::string text(reinterpret_cast<const char*>(data), size);

@@ -10,19 +10,19 @@ namespace simbench::scenarios {
 namespace {
 
 std::string damaged(std::string text, std::mt19937& random) {
-  static const std::string kBytes = "{}[]\",:0-9.eE+nulltrue \n\t/~\\\x7f\x80\xff";
+  const std::string bytes = "{}[]\",:0-9.eE+nulltrue \n\t/~\\\x7f\x80\xff";
   const auto below = [&random](std::size_t end) { return random() % end; };
   for (std::size_t edits = 1 + below(3); edits > 0 && !text.empty(); --edits) {
     const std::size_t at = below(text.size());
     switch (below(4)) {
       case 0:
-        text[at] = kBytes[below(kBytes.size())];
+        text[at] = bytes[below(bytes.size())];
         break;
       case 1:
         text.erase(at, 1 + below(20));
         break;
       case 2:
-        text.insert(at, 1, kBytes[below(kBytes.size())]);
+        text.insert(at, 1, bytes[below(bytes.size())]);
         break;
       default:
         text.insert(at, text.substr(below(text.size()), below(60)));

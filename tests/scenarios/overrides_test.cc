@@ -1,4 +1,5 @@
 // --set /json/pointer=value.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -65,9 +66,9 @@ TEST(Set, PointersThatNameNothing) {
             "--set /timeline/frames/0=1: found no \"0\" in /timeline/frames, which is a single "
             "value");
   for (const std::string index : {"9", "-", "00", "-1", "99999999999999999999", ""}) {
-    EXPECT_EQ(error_of_set("/pipelines/" + index, "1"), "--set /pipelines/" + index +
-                                                            "=1: found no \"" + index +
-                                                            "\" in /pipelines, allowed 0 to 8");
+    EXPECT_EQ(error_of_set(fmt::format("/pipelines/{}", index), "1"),
+              fmt::format("--set /pipelines/{0}=1: found no \"{0}\" in /pipelines, allowed 0 to 8",
+                          index));
   }
   EXPECT_EQ(error_of_set("/faults/0", "1"),
             "--set /faults/0=1: found no \"0\" in /faults, which is empty");

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "scenarios/document.h"
 #include "scenarios/fields.h"
 #include "scenarios/loader.h"
 #include "scenarios/resolve.h"
@@ -35,7 +36,7 @@ void collect_leaves(const std::string& pointer, const ordered_json& node,
                     std::set<std::string>& leaves) {
   if (node.contains("properties")) {
     for (const auto& [key, child] : node["properties"].items()) {
-      collect_leaves(pointer + "/" + key, child, leaves);
+      collect_leaves(child_pointer(pointer, key), child, leaves);
     }
   } else if (node.contains("items")) {
     collect_leaves(pointer + "/0", node["items"], leaves);
@@ -50,7 +51,7 @@ void for_each_leaf_schema(const std::string& pointer, const ordered_json& node, 
     if (!node.contains(container) || !node[container].is_object()) continue;
     if (container == std::string("properties")) {
       for (const auto& [key, child] : node[container].items()) {
-        for_each_leaf_schema(pointer + "/" + key, child, visit);
+        for_each_leaf_schema(child_pointer(pointer, key), child, visit);
       }
     } else {
       for_each_leaf_schema(pointer + "/*", node[container], visit);
@@ -102,7 +103,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructIsInTheSchema) {
 // Converts to anything: how many of it an aggregate takes is the number of its members.
 struct Anything {
   template <class T>
-  operator T() const;
+  operator T() const;  // NOLINT(google-explicit-constructor): implicit is what it is for
 };
 
 template <class T, class... Members>
@@ -145,7 +146,7 @@ TEST(Schema, EveryPropertyHasDescriptionSourceAndRange) {
       "", ordered_schema(), [](const std::string& pointer, const ordered_json& node) {
         EXPECT_FALSE(node.value("description", "").empty()) << pointer;
         EXPECT_FALSE(node.value("x-source", "").empty()) << pointer;
-        const ordered_json type = node.at("type");
+        const ordered_json& type = node.at("type");
         if (type == "integer" || type == "number") {
           EXPECT_TRUE(node.contains("minimum") || node.contains("exclusiveMinimum")) << pointer;
           EXPECT_TRUE(node.contains("maximum")) << pointer;
