@@ -22,8 +22,8 @@
 
 #include "algorithms/device_time/device_time.h"
 #include "algorithms/gathering/gathering.h"
-#include "algorithms/host_sync/host_sync.h"
 #include "algorithms/parameters.h"
+#include "algorithms/ports/host_sync.h"
 
 namespace simbench {
 

@@ -10,7 +10,7 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_LIMITS_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_LIMITS_H_
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 
 namespace simbench {
 

@@ -31,7 +31,7 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 
 namespace simbench {
 

@@ -55,7 +55,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 
 namespace simbench {
 

@@ -28,7 +28,7 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
 #include "sim/clock/system_clock.h"

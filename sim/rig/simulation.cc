@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"

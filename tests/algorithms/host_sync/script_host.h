@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/host_sync/host_sync.h"
+#include "algorithms/ports/host_sync.h"
 
 namespace simbench {
 

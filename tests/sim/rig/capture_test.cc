@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "ideal_scenario.h"
+#include "tests/sim/rig/ideal_scenario.h"
 
 namespace simbench::sim {
 namespace {

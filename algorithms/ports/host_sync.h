@@ -11,8 +11,8 @@
 //
 // Failures are outcomes, not exceptions: report them with Host::report_outcome, once per slave,
 // with a message that says what would help.
-#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_
-#define SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_
+#ifndef SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_
+#define SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_
 
 #include <cstdint>
 #include <optional>
@@ -41,4 +41,4 @@ class HostSync {
 
 }  // namespace simbench
 
-#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_HOST_SYNC_H_
+#endif  // SIMBENCH_ALGORITHMS_PORTS_HOST_SYNC_H_
