@@ -89,7 +89,7 @@ double standard_deviation(std::span<const double> values) {
   const double mean = mean_of(values);
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
-  return values.empty() ? kNaN : std::sqrt(sum / static_cast<double>(values.size()));
+  return values.size() < 2 ? kNaN : std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
 FittedLine fit_line(std::span<const double> x, std::span<const double> y) {

@@ -82,7 +82,7 @@ ResidualStatistics residual_statistics(std::vector<double> values);
 double difference_ms(std::int64_t a_ns, std::int64_t b_ns);
 
 double mean_of(std::span<const double> values);
-// Root mean square of the differences from the mean.
+// Of the population the values are a sample of (divisor n - 1); NaN with fewer than two.
 double standard_deviation(std::span<const double> values);
 
 }  // namespace simbench::evaluation

@@ -72,13 +72,13 @@ TextTable paper_block(const Results& results) {
 TextTable truth_block(const Results& results) {
   TextTable block({{"pipeline", Align::kLeft},
                    {"absolute error\nmedian ms"},
-                   {"\n5-95 %"},
+                   {"absolute error\n5-95 %"},
                    {"bias\nms"},
                    {"host clock error\nmedian ms"},
-                   {"\n5-95 %"},
+                   {"host clock error\n5-95 %"},
                    {"exposure\nspread ms"},
                    {"sets:\nprecision"},
-                   {"\nrecall"},
+                   {"sets:\nrecall"},
                    {"margin\nms"},
                    {"frames\ndropped"},
                    {"pulses\nscored"}});
@@ -102,19 +102,19 @@ std::string stages_text(const Row& row) {
 std::vector<std::string> legend(const Results& results) {
   std::vector<std::string> lines = {
       "Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, "
-      "[a, b] the band from 5 % to 95 %.",
-      "AMD: range of the global stamps of one pulse over all cameras; RMDV: their RMS deviation "
-      "from the median; both averaged over the pulses.",
-      "absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the "
-      "same with its sign. AMD cannot see what all cameras share.",
+      "[a, b] their band from 5 to 95 %.",
+      "AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation "
+      "of these from their median.",
+      "absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with "
+      "its sign. AMD is blind to what all share.",
       "host clock error: mean |slave - master|. exposure spread: how far apart the exposures "
       "really were, a limit for AMD.",
       "precision: gathered sets that hold one pulse only; recall: complete pulses found whole; "
-      "margin: how far the range stays below the limit of a set."};
+      "margin: from the range to the limit of a set."};
   if (any_published(results)) {
     lines.emplace_back(
-        "published: the paper's one recording. inside: within the band. not attainable: no data "
-        "give that RMDV with that AMD under eq. (4).");
+        "published: the paper's one recording. inside: within the band. not attainable: under eq. "
+        "(4) no data have that RMDV with that AMD.");
   }
   return lines;
 }

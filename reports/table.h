@@ -3,7 +3,7 @@
 // Two blocks, each with a row per pipeline: the paper's metrics beside the published values, and
 // what only a bench with true time can tell. Below them a legend that a newcomer can start from,
 // the paper's claims with the fraction of seeds in which each holds, and what the run cost. About
-// 130 columns wide. Source of the definitions: DESIGN section 8.
+// 145 columns wide. Source of the definitions: DESIGN section 8.
 //
 //   std::cout << table(results, scenario.summary);
 #ifndef SIMBENCH_REPORTS_TABLE_H_

@@ -37,7 +37,7 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-inline constexpr std::size_t kTextWidth = 120;
+inline constexpr std::size_t kTextWidth = 140;
 
 // Prose in lines of at most kTextWidth columns (a longer word has a line of its own), each after
 // `indent` blanks and ended by '\n'.

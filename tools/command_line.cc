@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +55,17 @@ int explain(const CLI::App& app, const CLI::ParseError& error, const std::string
   return ExitStatus::kBadInput;
 }
 
+// The first word of the command line, if it is no command: CLI11 would only say that one is
+// missing.
+std::optional<std::string> unknown_command(const CLI::App& app,
+                                           const std::vector<std::string>& arguments) {
+  if (arguments.size() < 2 || arguments[1].starts_with("-")) return std::nullopt;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), arguments[1]) != known.end()) return std::nullopt;
+  return fmt::format("found '{}', allowed: {}", arguments[1], fmt::join(known, ", "));
+}
+
 int parse_and_run(const std::vector<std::string>& arguments) {
   CLI::App app("simbench: how well will these cameras, on these hosts, be synchronised?");
   app.name("simbench");
@@ -68,6 +81,10 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   tools::add_convert_ibl_command(app, action);
 
   const std::vector<std::string> all = with_default_command(arguments);
+  if (const auto problem = unknown_command(app, all)) {
+    std::cerr << "error: " << *problem << "\nSee: simbench --help\n";
+    return ExitStatus::kBadInput;
+  }
   // CLI11 takes the arguments last first, without the program's name.
   std::vector<std::string> reversed(all.rbegin(), all.rend() - (all.empty() ? 0 : 1));
   try {

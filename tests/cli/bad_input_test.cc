@@ -26,7 +26,9 @@ class BadInput : public ProgramTest {
   }
   // A scenario file that differs from a good one by `member`; run would write results.
   void refuses_scenario(const std::string& member, const std::vector<std::string>& parts) {
-    const std::string text = "{\n  \"base\": \"18cam_6host_45fps\",\n  " + member + "\n}\n";
+    const std::string text =
+        "{\"name\": \"bad\", \"summary\": \"bad\",\n  \"base\": \"18cam_6host_45fps\",\n  " +
+        member + "\n}\n";
     refuses({"run", "--scenario", file("bad.json", text), "--output", "results"}, parts);
     refuses({"validate", "bad.json"}, parts);
   }
@@ -83,7 +85,7 @@ TEST_F(BadInput, AHundredThousandBrackets) {
 }
 
 TEST_F(BadInput, EveryFileIsValidated) {
-  file("good.json", "{\"base\": \"18cam_6host_45fps\"}");
+  file("good.json", "{\"name\": \"good\", \"summary\": \"good\", \"base\": \"18cam_6host_45fps\"}");
   file("bad.json", "{");
   const ProgramResult result = run({"validate", "bad.json", "good.json"});
   EXPECT_EQ(result.status, 2);

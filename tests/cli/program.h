@@ -21,11 +21,11 @@ struct ProgramResult {
 
 struct ProgramOptions {
   // SIGINT after this time; the second one is up to the test.
-  std::optional<std::chrono::milliseconds> interrupt_after;
+  std::optional<std::chrono::milliseconds> interrupt_after = std::nullopt;
   // Writes beyond this size fail, as on a full disk.
-  std::optional<std::size_t> largest_file;
+  std::optional<std::size_t> largest_file = std::nullopt;
   // Where standard output goes instead of ProgramResult::out.
-  std::string out_file;
+  std::string out_file = {};
 };
 
 // A test with a folder of its own, which is also the program's working directory.

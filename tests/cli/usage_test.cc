@@ -88,7 +88,7 @@ TEST_F(Usage, WhatDescribePrintsAsJsonIsAScenario) {
 
 TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({}, {"subcommand is required", "See: simbench --help"});
-  refuses({"fly"}, {"fly"});
+  refuses({"fly"}, {"found 'fly'", "run, list, describe, validate, replay, convert-ibl"});
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
   refuses({"describe"}, {"scenario is required"});

@@ -85,12 +85,12 @@ TEST(Replay, JitterStaysInRawArrivalsAndLeavesTheLine) {
   // Every other frame 2 ms late: about the line +-1 ms, from frame to frame +-2 ms.
   const Replay replay = run_replay({camera("a", 1001, 0, [](int i) { return i % 2 * 2.0; })});
   const CameraReplay& found = replay.cameras[0];
-  EXPECT_NEAR(found.statistics.residual.sd_ms, 1, 1e-3);
+  EXPECT_NEAR(found.statistics.residual.sd_ms, 1, 2e-3);
   EXPECT_NEAR(found.statistics.excess.max_ms, 2, 1e-3);
-  EXPECT_NEAR(row(found, "raw_arrival").jitter_ms, 2, 1e-3);
+  EXPECT_NEAR(row(found, "raw_arrival").jitter_ms, 2, 2e-3);
   EXPECT_NEAR(row(found, "raw_arrival").residual.sd_ms, 0, 1e-9);
   EXPECT_NEAR(row(found, "regression_offline").jitter_ms, 0, 2e-3);
-  EXPECT_NEAR(row(found, "regression_offline").residual.sd_ms, 1, 1e-3);
+  EXPECT_NEAR(row(found, "regression_offline").residual.sd_ms, 1, 2e-3);
 }
 
 TEST(Replay, RelativeStampsHaveNoDriftAndTheCommonAnchor) {

@@ -126,7 +126,10 @@ TEST(IblRecording, TheRealLeftCameraIsRead) {
   EXPECT_NEAR(found.sensor_period.mean_ms, 33.341, 0.0005);
   EXPECT_NEAR(found.sensor_period.sd_ms, 0.00229, 0.000005);
   EXPECT_NEAR(found.arrival_period.mean_ms, 33.3319, 0.00005);
+  EXPECT_NEAR(found.arrival_period.sd_ms, 0.5055, 0.00005);
   EXPECT_NEAR(found.drift_ppm, 59.313, 0.0005);
+  EXPECT_NEAR(found.envelope_drift_ppm, 117.742, 0.0005);
+  EXPECT_NEAR(found.residual.sd_ms, 0.3643, 0.00005);
 }
 
 }  // namespace

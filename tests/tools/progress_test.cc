@@ -49,7 +49,8 @@ TEST(Progress, ATerminalGetsOneLineThatIsErased) {
   Bench bench({.terminal = true, .colour = false, .width = 60});
   bench.now = 30;
   bench.progress.update(1, 4);
-  EXPECT_EQ(bench.new_text(), "\r\x1b[K[######.................]  25 % of 4 runs, 1 min 30 s left");
+  EXPECT_EQ(bench.new_text(),
+            "\r\x1b[K[######..................]  25 % of 4 runs, 1 min 30 s left");
   bench.progress.finish();
   EXPECT_EQ(bench.new_text(), "\r\x1b[K");
   bench.progress.update(2, 4);
