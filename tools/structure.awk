@@ -10,7 +10,6 @@ BEGIN {
 }
 function found(what) { printf "%s:%d: %s\n", file, FNR, what }
 
-length($0) > 100 { found("longer than 100 columns") }
 /[ \t]+$/ { found("white space at the end of the line") }
 
 /^#include "/ {
