@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "algorithms/registry.h"
@@ -122,7 +123,12 @@ Replay run_replay(std::vector<CameraStream> streams) {
       if (replay.cameras[i].stream == stream) members.push_back(i);
     }
     if (members.size() < 2) continue;
-    replay.rigs.push_back(replay_rig(replay.cameras, stream, members));
+    std::optional<RigReplay> rig = replay_rig(replay.cameras, stream, members);
+    if (!rig) {
+      replay.warnings.push_back(stream + ": no camera has a frame period: they are not compared");
+      continue;
+    }
+    replay.rigs.push_back(std::move(*rig));
     if (!replay.rigs.back().common_start_plausible) {
       replay.warnings.push_back(
           stream +

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <tuple>
 
@@ -46,13 +47,13 @@ class SetScore {
   std::vector<std::int64_t> workspace_;
 };
 
-Nanoseconds period_of(const Members& members) {
+std::optional<Nanoseconds> period_of(const Members& members) {
   std::vector<double> periods;
   for (const CameraReplay* camera : members) {
     const Nanoseconds period = median_period(camera->frames);
-    if (period > Nanoseconds::zero()) periods.push_back(to_ms(period));
+    if (period >= Microseconds(1)) periods.push_back(to_ms(period));
   }
-  return periods.empty() ? Nanoseconds(1) : from_ms(median(periods));
+  return periods.empty() ? std::nullopt : std::optional(from_ms(median(periods)));
 }
 
 DeviceTime device_time_of(const StampedFrame& frame) {
@@ -176,11 +177,14 @@ Nanoseconds first_arrival_range(const Members& members) {
 
 }  // namespace
 
-RigReplay replay_rig(const std::vector<CameraReplay>& cameras, const std::string& stream,
-                     const std::vector<std::size_t>& members) {
+std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
+                                    const std::string& stream,
+                                    const std::vector<std::size_t>& members) {
   Members sources;
   for (const std::size_t index : members) sources.push_back(&cameras[index]);
-  const Nanoseconds period = period_of(sources);
+  const std::optional<Nanoseconds> known_period = period_of(sources);
+  if (!known_period) return std::nullopt;
+  const Nanoseconds period = *known_period;
   const Nanoseconds range = first_arrival_range(sources);
   const std::vector<FrameId> complete = complete_pulses(sources, period);
   const std::vector<FrameId> order = order_of_arrival(sources);

@@ -3,6 +3,7 @@
 #define SIMBENCH_EVALUATION_REPLAY_RIG_H_
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,11 @@
 
 namespace simbench::evaluation {
 
-// `members` are the cameras (two or more) that have `stream`; their rows are complete.
-RigReplay replay_rig(const std::vector<CameraReplay>& cameras, const std::string& stream,
-                     const std::vector<std::size_t>& members);
+// `members` are the cameras (two or more) that have `stream`; their rows are complete. Nothing if
+// no camera has a frame period, of a microsecond at least: there is nothing to match frames by.
+std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
+                                    const std::string& stream,
+                                    const std::vector<std::size_t>& members);
 
 }  // namespace simbench::evaluation
 

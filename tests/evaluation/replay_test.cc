@@ -170,6 +170,13 @@ TEST(Replay, WithoutACommonStartItSaysSo) {
   EXPECT_NEAR(gathering(row(replay.rigs[0], "raw_arrival"), "yoon2021").amd_ms, 0, 1e-6);
 }
 
+TEST(Replay, WithoutAPeriodCamerasAreNotCompared) {
+  const Replay replay = run_replay({camera("a", 1, 0, no_latency), camera("b", 1, 0, no_latency)});
+  EXPECT_TRUE(replay.rigs.empty());
+  ASSERT_EQ(replay.warnings.size(), 3U);
+  EXPECT_NE(replay.warnings[2].find("no camera has a frame period"), std::string::npos);
+}
+
 TEST(Replay, StreamsOfDifferentKindsAreNotCompared) {
   CameraStream colour = camera("a", 30, 0, no_latency);
   colour.stream = "Color 0";
