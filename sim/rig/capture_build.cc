@@ -85,9 +85,12 @@ void Capture::build_streams(TrueTime at) {
     const std::uint32_t place = cameras_on_host[host]++ % per_controller;
     if (place == 0) {
       controller_of_host[host] = static_cast<std::uint32_t>(controllers_.size());
-      controllers_.push_back({UsbController(
-          {sharing_of(usb), bytes_per_ns(usb), static_cast<std::uint32_t>(usb.buffered_frames)},
-          per_controller * kinds)});
+      controllers_.push_back(
+          {UsbController({.sharing = sharing_of(usb),
+                          .bytes_per_ns = bytes_per_ns(usb),
+                          .buffered_frames = static_cast<std::uint32_t>(usb.buffered_frames),
+                          .streams_per_camera = static_cast<std::uint32_t>(kinds)},
+                         per_controller * kinds)});
     }
     for (std::size_t which = 0; which < kinds; ++which) {
       Stream stream = make_stream(camera, which, at);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/ports/assert.h"
 
@@ -17,12 +18,22 @@ double as_ns(TrueTime t) { return static_cast<double>(t.time_since_epoch().count
 }  // namespace
 
 UsbController::UsbController(const UsbSettings& settings, std::size_t streams)
-    : settings_(settings), pending_of_stream_(streams, 0) {
+    : settings_(settings),
+      pending_of_stream_(streams, 0),
+      lane_free_at_ns_(streams / settings.streams_per_camera + 1,
+                       std::numeric_limits<double>::lowest()) {
   SIMBENCH_ASSERT(settings.bytes_per_ns > 0, "a USB controller needs bandwidth");
 }
 
 bool UsbController::later(const Transfer& a, const Transfer& b) {
   return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
+}
+
+// When a frame is through that waits for the frames before it on its lane.
+double UsbController::queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
+  double& free_at_ns = lane_free_at_ns_[lane];
+  free_at_ns = std::max(free_at_ns, as_ns(now)) + bytes / settings_.bytes_per_ns;
+  return free_at_ns;
 }
 
 void UsbController::serve_until(TrueTime now) {
@@ -40,11 +51,10 @@ bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::
   double done_at = 0;
   switch (settings_.sharing) {
     case UsbSharing::kDedicated:
-      done_at = as_ns(now) + bytes / settings_.bytes_per_ns;
+      done_at = queue_on_lane(stream / settings_.streams_per_camera, now, bytes);
       break;
     case UsbSharing::kFifo:
-      bus_free_at_ns_ = std::max(bus_free_at_ns_, as_ns(now)) + bytes / settings_.bytes_per_ns;
-      done_at = bus_free_at_ns_;
+      done_at = queue_on_lane(0, now, bytes);
       break;
     case UsbSharing::kFair:
       serve_until(now);

@@ -1,8 +1,9 @@
 // A USB controller: how long a frame's bytes take to reach the host when cameras share the bus.
 //
 // Three ways of sharing:
-//  - dedicated: every stream has the whole bandwidth to itself (a calibrated world, or one camera);
-//  - fifo: frames are transferred one after the other, in the order in which they were submitted;
+//  - dedicated: every camera has the whole bandwidth to itself (a calibrated world, or one camera),
+//    and transfers its frames one after the other;
+//  - fifo: all frames are transferred one after the other, in the order of their submission;
 //  - fair: all pending frames advance at an equal share (processor sharing).
 //
 // A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
@@ -30,7 +31,8 @@ enum class UsbSharing : std::uint8_t { kDedicated, kFifo, kFair };
 struct UsbSettings {
   UsbSharing sharing = UsbSharing::kDedicated;
   double bytes_per_ns = 0;
-  std::uint32_t buffered_frames = 1;  // per stream
+  std::uint32_t buffered_frames = 1;     // per stream
+  std::uint32_t streams_per_camera = 1;  // streams c * this ... belong to camera c
 };
 
 class UsbController {
@@ -57,15 +59,16 @@ class UsbController {
     std::uint32_t stream;
   };
   static bool later(const Transfer& a, const Transfer& b);
+  double queue_on_lane(std::size_t lane, TrueTime now, double bytes);
   void serve_until(TrueTime now);
 
   UsbSettings settings_;
   std::vector<Transfer> pending_;  // a min-heap by (done_at, order)
   std::vector<std::uint32_t> pending_of_stream_;
   std::uint64_t submissions_ = 0;
-  double bus_free_at_ns_ = 0;  // fifo
-  double served_bytes_ = 0;    // fair: to each pending transfer
-  TrueTime served_until_{};    // fair
+  std::vector<double> lane_free_at_ns_;  // fifo: one lane; dedicated: one per camera
+  double served_bytes_ = 0;              // fair: to each pending transfer
+  TrueTime served_until_{};              // fair
 };
 
 }  // namespace simbench::sim

@@ -20,7 +20,7 @@ struct Offer {
 // Offers frames 0, 1, ... and collects the completions as an owner would.
 std::vector<Completion> run(UsbSharing sharing, const std::vector<Offer>& offers,
                             std::uint32_t buffered_frames = 16) {
-  UsbController bus({sharing, 1.0, buffered_frames}, 8);
+  UsbController bus({sharing, 1.0, buffered_frames, 1}, 8);
   std::vector<Completion> completions;
   const auto collect_before = [&](TrueTime limit) {
     while (bus.next_completion() < limit) {
@@ -40,9 +40,25 @@ std::vector<Completion> run(UsbSharing sharing, const std::vector<Offer>& offers
   return completions;
 }
 
-TEST(UsbController, DedicatedStreamsDoNotDisturbEachOther) {
+TEST(UsbController, DedicatedCamerasDoNotDisturbEachOther) {
   EXPECT_EQ(run(UsbSharing::kDedicated, {{0, 0, 300}, {0, 1, 300}, {10, 2, 100}}),
             (std::vector<Completion>{{2, 110}, {0, 300}, {1, 300}}));
+}
+
+TEST(UsbController, ADedicatedCameraTransfersItsOwnFramesOneAfterTheOther) {
+  EXPECT_EQ(run(UsbSharing::kDedicated, {{0, 0, 300}, {10, 0, 100}, {10, 1, 100}}),
+            (std::vector<Completion>{{2, 110}, {0, 300}, {1, 400}}));
+}
+
+TEST(UsbController, StreamsOfACameraShareItsDedicatedBandwidth) {
+  UsbController bus({UsbSharing::kDedicated, 1.0, 4, 2}, 4);
+  EXPECT_TRUE(bus.submit(TrueTime{}, 0, 100, 0));
+  EXPECT_TRUE(bus.submit(TrueTime{}, 1, 100, 1));
+  EXPECT_TRUE(bus.submit(TrueTime{}, 2, 150, 2));
+  EXPECT_EQ(bus.take_completed(TrueTime(Nanoseconds(100))), 0u);
+  EXPECT_EQ(bus.next_completion(), TrueTime(Nanoseconds(150)));
+  EXPECT_EQ(bus.take_completed(TrueTime(Nanoseconds(200))), 2u);
+  EXPECT_EQ(bus.take_completed(TrueTime(Nanoseconds(200))), 1u);
 }
 
 TEST(UsbController, FifoTransfersOneAfterTheOther) {
@@ -64,7 +80,7 @@ TEST(UsbController, FairSharingOfLateComersIsProcessorSharing) {
 }
 
 TEST(UsbController, LosesWhatAStreamCannotBuffer) {
-  UsbController bus({UsbSharing::kFifo, 1.0, 2}, 2);
+  UsbController bus({UsbSharing::kFifo, 1.0, 2, 1}, 2);
   EXPECT_TRUE(bus.submit(TrueTime{}, 0, 100, 0));
   EXPECT_TRUE(bus.submit(TrueTime{}, 0, 100, 1));
   EXPECT_FALSE(bus.submit(TrueTime{}, 0, 100, 2));
