@@ -127,8 +127,8 @@ class Evaluation {
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
       results.rows.push_back(row(pipeline, setting));
       add_cost(results.rows.back(), results.performance);
-      add_warnings(results.rows.back(), results.warnings);
     }
+    add_genlock_warning(results);
     Performance& performance = results.performance;
     performance.cpu_seconds = cpu_seconds_;
     performance.wall_seconds = wall_seconds;
@@ -160,19 +160,24 @@ class Evaluation {
     }
   }
 
-  static void add_warnings(const Row& row, std::vector<std::string>& warnings) {
+  // One warning for all pipelines: they see the same frames.
+  static void add_genlock_warning(Results& results) {
     std::int64_t errors = 0;
-    std::int64_t seeds = 0;
-    for (const SeedScore& seed : row.seeds) {
-      if (seed.genlock_index_errors == 0 || seed.frames.dropped > 0) continue;
-      errors += seed.genlock_index_errors;
-      ++seeds;
+    std::vector<std::uint64_t> seeds;
+    for (const Row& row : results.rows) {
+      for (const SeedScore& seed : row.seeds) {
+        if (seed.frames.dropped > 0) continue;
+        errors = std::max(errors, seed.genlock_index_errors);
+        if (seed.genlock_index_errors > 0) seeds.push_back(seed.seed);
+      }
     }
-    if (seeds == 0) return;
-    warnings.push_back(fmt::format(
-        "{}: GenLock order differs from the pulses of {} frames in {} seeds, though no evaluated "
-        "frame was lost; did all cameras start with the same pulse?",
-        row.pipeline, errors, seeds));
+    if (seeds.empty()) return;
+    std::sort(seeds.begin(), seeds.end());
+    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+    results.warnings.push_back(fmt::format(
+        "GenLock order differs from the pulses of up to {} frames a run, in {} of {} seeds, though "
+        "no evaluated frame was lost; did all cameras start with the same pulse?",
+        errors, seeds.size(), results.seed_count));
   }
 
   const Scenario& scenario_;

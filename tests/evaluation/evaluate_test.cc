@@ -27,7 +27,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsNan;
 using ::testing::Pointwise;
-using ::testing::StartsWith;
 
 std::unique_ptr<RecordingSource> test_source() { return std::make_unique<TestSource>(); }
 
@@ -230,8 +229,7 @@ TEST(EvaluateTest, WarnsWhenGenlockOrderIsNotTheTruth) {
       scenario, [] { return std::make_unique<LateStartSource>(); },
       {.seeds = 2, .pipelines = {"arrival"}}, nullptr);
   ASSERT_EQ(results.warnings.size(), 1U);
-  EXPECT_THAT(results.warnings[0],
-              AllOf(StartsWith("arrival:"), HasSubstr("24 frames in 2 seeds")));
+  EXPECT_THAT(results.warnings[0], HasSubstr("up to 12 frames a run, in 2 of 2 seeds"));
   EXPECT_EQ(results.rows[0].seeds[0].genlock_index_errors, 12);
 }
 
