@@ -120,6 +120,13 @@ TEST(SystemClockTest, AnotherSlewReplacesTheRestOfTheFirst) {
   EXPECT_EQ(clock.read(at_ms(9000)), host_ms(8999.5));
 }
 
+TEST(SystemClockTest, ASlewOfNothingEndsTheOneBefore) {
+  SystemClock clock(1, OscillatorModel(0));
+  clock.slew(at_ms(1000), from_ms(2), 500'000);
+  clock.slew(at_ms(3000), from_ms(0), 0);
+  EXPECT_EQ(clock.read(at_ms(60'000)), host_ms(60'001));
+}
+
 TEST(SystemClockTest, AStepEndsASlewAndKeepsTheRate) {
   SystemClock clock(1, OscillatorModel(0));
   clock.adjust_frequency(at_ms(0), 1e6);
