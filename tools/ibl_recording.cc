@@ -79,7 +79,7 @@ std::optional<Nanoseconds> iso_time(std::string_view text) {
                                          std::chrono::month(*month), std::chrono::day(*day)};
   if (!date.ok() || *hour > 23 || *minute > 59 || *second > 60) return std::nullopt;
   const Nanoseconds zone = hours(*zone_hour) + minutes(*zone_minute);
-  const Nanoseconds local = std::chrono::sys_days(date).time_since_epoch() + hours(*hour) +
+  const Nanoseconds local = std::chrono::sys_days{date}.time_since_epoch() + hours(*hour) +
                             minutes(*minute) + seconds(*second) +
                             Nanoseconds(*fraction * kNsPerTick);
   return sign == '-' ? local + zone : local - zone;
@@ -135,7 +135,7 @@ std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std
   CycleClock clock;
   std::optional<std::uint64_t> first_ticks;
   for (std::size_t row = 0; row * kRowBytes < bytes.size(); ++row) {
-    std::array<double, 4> cells;
+    std::array<double, 4> cells = {};
     std::memcpy(cells.data(), bytes.data() + row * kRowBytes, kRowBytes);
     const auto ticks = whole_float(cells[0], 0x1p62);
     const auto reading = whole_float(cells[1], std::numeric_limits<std::uint32_t>::max());

@@ -26,7 +26,7 @@ class InterruptHandler {
   static bool raised();
 
  private:
-  struct sigaction previous_;
+  struct sigaction previous_ = {};
 };
 
 class Interrupted : public std::exception {

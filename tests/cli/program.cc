@@ -39,6 +39,7 @@ void redirect(const fs::path& path, int descriptor) {
     setrlimit(RLIMIT_FSIZE, &limit);
   }
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   execv(SIMBENCH_PROGRAM, argv.data());

@@ -30,10 +30,11 @@ struct ProgramOptions {
 
 // A test with a folder of its own, which is also the program's working directory.
 class ProgramTest : public testing::Test {
- protected:
+ public:
   ProgramTest();
   ~ProgramTest() override;
 
+ protected:
   ProgramResult run(const std::vector<std::string>& arguments,
                     const ProgramOptions& options = {}) const;
 

@@ -187,16 +187,16 @@ TEST(Replay, DamagedStampsGiveNoUndefinedNumbers) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    const auto any = [&](std::int64_t low) {
-      const std::int64_t limit = kLargestStampMs * 1'000'000;
-      return Nanoseconds(std::uniform_int_distribution<std::int64_t>(low * limit, limit)(random));
+    const auto any = [&](int sign) {
+      const std::uint64_t limit = kLargestStampMs * 1'000'000;
+      return Nanoseconds(static_cast<std::int64_t>(random() % limit) * sign);
     };
     std::vector<CameraStream> streams;
     for (const char* name : {"a", "b"}) {
       CameraStream stream = camera(name, 60, 0, no_latency);
       for (StampedFrame& frame : stream.frames) {
-        if (random() % 4 == 0) frame.sensor = any(0);
-        if (random() % 4 == 0) frame.arrival = any(-1);
+        if (random() % 4 == 0) frame.sensor = any(1);
+        if (random() % 4 == 0) frame.arrival = any(random() % 2 ? 1 : -1);
         if (random() % 4 == 0) frame.counter = random();
       }
       streams.push_back(stream);

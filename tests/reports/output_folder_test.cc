@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
 class OutputFolderTest : public testing::Test {
- protected:
+ public:
   OutputFolderTest() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     root_ = fs::temp_directory_path() /
@@ -26,6 +26,7 @@ class OutputFolderTest : public testing::Test {
   }
   ~OutputFolderTest() override { fs::remove_all(root_); }
 
+ protected:
   static std::vector<std::string> names_in(const fs::path& folder) {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder)) {
