@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 7> kColumns = {
 constexpr std::size_t kRequiredColumns = 5;
 
 struct Header {
-  std::array<std::size_t, kColumns.size()> position;
+  std::array<std::size_t, kColumns.size()> position = {};
   std::size_t cells_needed = 0;  // a line with fewer is truncated
 };
 
