@@ -49,8 +49,8 @@ class HostClock {
   virtual Task<void> set(HostTime value) = 0;
   // Rate correction against the oscillator, replacing the previous one.
   virtual Task<void> adjust_frequency(double ppb) = 0;
-  // Adds `offset` gradually, at no more than `max_rate_ppb`, replacing an unfinished slew; an offset
-  // of 0 only ends that.
+  // Adds `offset` gradually, at no more than `max_rate_ppb`, replacing an unfinished slew; an
+  // offset of 0 only ends that.
   virtual Task<void> slew(Nanoseconds offset, double max_rate_ppb) = 0;
 };
 

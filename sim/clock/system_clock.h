@@ -66,8 +66,8 @@ class SystemClock {
   void set(TrueTime at, HostTime value);
   // Rate of the system clock against the oscillator, replacing the one before. |ppb| < 5e8.
   void adjust_frequency(TrueTime at, double ppb);
-  // Adds `offset` gradually by a rate of +-max_rate_ppb, which is > 0 and < 5e8. An offset of 0 ends
-  // an unfinished slew, whatever the rate.
+  // Adds `offset` gradually by a rate of +-max_rate_ppb, which is > 0 and < 5e8. An offset of 0
+  // ends an unfinished slew, whatever the rate.
   void slew(TrueTime at, Nanoseconds offset, double max_rate_ppb);
 
   // When the planned end of a slew will be reached, if there is one that was not yet reported.
