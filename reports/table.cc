@@ -15,6 +15,7 @@ using evaluation::Claim;
 using evaluation::PublishedComparison;
 using evaluation::Results;
 using evaluation::Row;
+using evaluation::SeedScore;
 
 bool any_published(const Results& results) {
   return std::any_of(results.rows.begin(), results.rows.end(),
@@ -141,9 +142,17 @@ std::string cost_line(const Results& results) {
       short_text(cost.events_per_second), short_text(cost.simulated_seconds_per_second));
 }
 
+// With the first reason, which is mostly the reason of all.
 std::string unsynchronised_line(const Row& row) {
-  return fmt::format("{}: host synchronisation failed {} times over all seeds.", row.pipeline,
-                     count_text(row.unsynchronised_hosts));
+  const std::string times =
+      row.unsynchronised_hosts == 1 ? "once" : count_text(row.unsynchronised_hosts) + " times";
+  std::string line =
+      fmt::format("{}: host synchronisation failed {} over all seeds.", row.pipeline, times);
+  for (const SeedScore& seed : row.seeds) {
+    if (seed.failures.empty()) continue;
+    return line + fmt::format(" Seed {}: {}.", seed.seed, seed.failures.front().message);
+  }
+  return line;
 }
 
 struct Layout {

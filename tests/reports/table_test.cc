@@ -35,7 +35,7 @@ pipeline            median ms            5-95 %       ms         median ms      
 yoon2021_both          29.000  [28.000, 30.000]  -29.000             0.500    [0.250, 0.750]      0.062      100 %  75.0 %   8.500        3     960
 free_running                -                 -        -                 -                 -          -          -     0 %       -        0       0
 
-yoon2021_both: host synchronisation failed 1 times over all seeds.
+yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 
 How to read it
   Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, [a, b] their band from 5 to 95 %.
@@ -79,7 +79,7 @@ A fit, stated as such.
 | yoon2021_both | 29.000 | [28.000, 30.000] | -29.000 | 0.500 | [0.250, 0.750] | 0.062 | 100 % | 75.0 % | 8.500 | 3 | 960 |
 | free_running | - | - | - | - | - | - | - | 0 % | - | 0 | 0 |
 
-yoon2021_both: host synchronisation failed 1 times over all seeds.
+yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 
 ### How to read it
 
