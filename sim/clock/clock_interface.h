@@ -19,7 +19,8 @@
 namespace simbench::sim {
 
 // The largest phase + n * unit that is not after t; t itself if the unit is 0.
-constexpr HostTime round_down(HostTime t, Nanoseconds unit, Nanoseconds phase = {}) {
+template <class Time>
+constexpr Time round_down(Time t, Nanoseconds unit, Nanoseconds phase = {}) {
   if (unit.count() == 0) return t;
   const std::int64_t since_phase = (t.time_since_epoch() - phase).count();
   const std::int64_t part = since_phase % unit.count();

@@ -3,19 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/clock/clock_interface.h"
+
 namespace simbench::sim {
-namespace {
-
-template <class Time>
-Time quantised(Time t, std::int64_t quantum_ns) {
-  if (quantum_ns <= 1) return t;
-  const std::int64_t ns = t.time_since_epoch().count();
-  const std::int64_t rest = ((ns % quantum_ns) + quantum_ns) % quantum_ns;
-  return t - Nanoseconds(rest);
-}
-
-}  // namespace
-
 void Capture::handle(const Event& event) {
   switch (event.kind) {
     case kPulse:
@@ -175,9 +165,9 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   SystemClock& clock = *clocks_[streams_[frame.stream].host];
   const TrueTime now = engine_.now();
   const TrueTime middle = frame.truth.mid_exposure();
-  frame.record.backend = quantised(clock.read(frame.copied), arrival_quantum_ns_);
-  frame.record.arrival = quantised(clock.read(now), arrival_quantum_ns_);
-  frame.record.arrival_steady = quantised(clock.steady(now), arrival_quantum_ns_);
+  frame.record.backend = round_down(clock.read(frame.copied), arrival_quantum_);
+  frame.record.arrival = round_down(clock.read(now), arrival_quantum_);
+  frame.record.arrival_steady = round_down(clock.steady(now), arrival_quantum_);
   frame.truth.own_host = clock.read(middle);
   frame.truth.reference = clocks_[0]->read(middle);
   sink_.on_frame(frame.record, &frame.truth);

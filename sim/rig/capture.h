@@ -90,9 +90,9 @@ class Capture final : public EventHandler {
   struct FrameInFlight {
     FrameRecord record;
     FrameTruth truth;
-    std::uint32_t stream;
-    double kernel_copy_ns;
-    double delivery_ns;
+    std::uint32_t stream = 0;
+    double kernel_copy_ns = 0;
+    double delivery_ns = 0;
     TrueTime copied;
   };
 
@@ -141,7 +141,7 @@ class Capture final : public EventHandler {
   std::int64_t first_slot_ = 0;
   std::int64_t last_slot_ = 0;
   TrueTime end_{};  // no exposure begins after this
-  std::int64_t arrival_quantum_ns_;
+  Nanoseconds arrival_quantum_;
   bool pulses_over_ = false;
   std::function<void()> on_end_;
 };

@@ -34,7 +34,7 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       late_frame_seen_(scenario.faults.size(), false),
       host_errors_(clocks_.size()),
-      arrival_quantum_ns_(std::llround(scenario.hosts.clock.arrival_quantum_ms * 1e6)) {
+      arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)) {
   first_slot_ = trigger_.first_slot_from(TrueTime(from_ms(scenario.timeline.warm_up_ms)));
   last_slot_ = first_slot_ + scenario.timeline.frames - 1;
 }
