@@ -6,6 +6,7 @@
 #include "sim/clock/clock_interface.h"
 
 namespace simbench::sim {
+
 void Capture::handle(const Event& event) {
   switch (event.kind) {
     case kPulse:
