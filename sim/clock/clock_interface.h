@@ -24,7 +24,8 @@ constexpr Time round_down(Time t, Nanoseconds unit, Nanoseconds phase = {}) {
   if (unit.count() == 0) return t;
   const std::int64_t since_phase = (t.time_since_epoch() - phase).count();
   const std::int64_t part = since_phase % unit.count();
-  return t - Nanoseconds(part < 0 ? part + unit.count() : part);
+  const Nanoseconds above{part < 0 ? part + unit.count() : part};
+  return t - above;
 }
 
 class ClockInterface {
