@@ -10,6 +10,7 @@
 #include "evaluation/evaluate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tools/freed_memory.h"
 
 namespace simbench {
 namespace {
@@ -38,3 +39,11 @@ BENCHMARK_CAPTURE(full_run, genlock, std::string("genlock"))->Unit(benchmark::kM
 
 }  // namespace
 }  // namespace simbench
+
+int main(int argc, char** argv) {
+  simbench::tools::keep_freed_memory();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

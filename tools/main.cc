@@ -1,3 +1,7 @@
 #include "tools/command_line.h"
+#include "tools/freed_memory.h"
 
-int main(int argc, char** argv) { return simbench::run_command_line(argc, argv); }
+int main(int argc, char** argv) {
+  simbench::tools::keep_freed_memory();
+  return simbench::run_command_line(argc, argv);
+}
