@@ -15,6 +15,7 @@
 #ifndef SIMBENCH_ALGORITHMS_REGISTRY_H_
 #define SIMBENCH_ALGORITHMS_REGISTRY_H_
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,12 +28,24 @@
 
 namespace simbench {
 
+// What an algorithm asks of the world beyond messages and clocks. A world that lacks it is refused
+// before anything runs.
+enum class Need : std::uint8_t {
+  kHardwareStamps,  // Host::hardware_clock() and the stamps of the network card
+  kPps,             // Host::pulse_input(PulseLine::kPps)
+  kTriggerLine,     // Host::pulse_input(PulseLine::kTrigger)
+  kFrames,          // Host::frame_feed()
+  kPolls,           // polls of the cameras' clocks in the recording
+  kTruth,           // the truth: simulation only
+};
+
 struct AlgorithmInfo {
   std::string name;
   std::string family;   // algorithms of one family share the scenario's parameters
   std::string summary;  // one line
   std::string source;
   std::vector<ParameterSpec> parameters;
+  std::vector<Need> needs{};
 };
 
 struct HostSyncEntry {

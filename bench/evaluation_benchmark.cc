@@ -91,6 +91,7 @@ void play_only(benchmark::State& state) {
     }
     void on_pulse(const simbench::PulseTruth&) override {}
     void on_adjustment(const simbench::ClockAdjustment&) override {}
+    void on_poll(const simbench::DevicePoll&) override {}
     void on_exchange(std::uint32_t, const simbench::Exchange&) override {}
     void on_outcome(const simbench::SyncOutcome&) override {}
   };

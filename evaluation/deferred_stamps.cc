@@ -10,9 +10,13 @@ void DeferredStamps::stamp(
 
   std::vector<std::unique_ptr<DeviceTimeEstimator>> estimators;
   estimators.reserve(sources_);
-  for (const std::vector<DeviceSample>& recording : recordings) {
-    estimators.push_back(make());
-    if (!recording.empty()) estimators.back()->learn(recording);
+  for (std::size_t source = 0; source < sources_; ++source) estimators.push_back(make());
+  for (const auto& [source, adjustment] : adjustments_) {
+    estimators[source]->on_adjustment(adjustment);
+  }
+  for (const auto& [source, poll] : polls_) estimators[source]->on_poll(poll);
+  for (std::size_t source = 0; source < sources_; ++source) {
+    if (!recordings[source].empty()) estimators[source]->learn(recordings[source]);
   }
   for (const DeferredFrame& frame : frames_) {
     stamped(frame, estimators[frame.source]->stamp(frame.sample));

@@ -1,6 +1,6 @@
 // Runs an estimator that must see the whole recording before its first stamp.
 //
-// Frames are held back (48 bytes each) until the capture has ended; then each source's estimator
+// Frames are held back (56 bytes each) until the capture has ended; then each source's estimator
 // learns from all of them and stamps them, in order of delivery. An online estimator may be run
 // this way too; it gives the stamps it would have given at once.
 //
@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/device_time.h"
@@ -24,6 +25,7 @@ struct DeferredFrame {
   std::uint32_t source = 0;
   std::int64_t pulse = 0;
   DeviceSample sample;
+  GlobalTime delivered{};
 };
 
 using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>()>;
@@ -34,6 +36,11 @@ class DeferredStamps {
 
   void add(const DeferredFrame& frame) { frames_.push_back(frame); }
 
+  void add_poll(std::uint32_t source, const PollSample& poll) { polls_.push_back({source, poll}); }
+  void add_adjustment(std::uint32_t source, const ClockAdjustment& adjustment) {
+    adjustments_.push_back({source, adjustment});
+  }
+
   // Calls `stamped` for every frame, in the order they were added.
   void stamp(const EstimatorFactory& make,
              const std::function<void(const DeferredFrame&, GlobalTime)>& stamped) const;
@@ -41,6 +48,8 @@ class DeferredStamps {
  private:
   std::size_t sources_;
   std::vector<DeferredFrame> frames_;
+  std::vector<std::pair<std::uint32_t, PollSample>> polls_;
+  std::vector<std::pair<std::uint32_t, ClockAdjustment>> adjustments_;
 };
 
 }  // namespace simbench::evaluation

@@ -54,6 +54,7 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   }
   if (setup_.make_estimator && !sources_.empty()) {
     relative_ = sources_.front().estimator->relative();
+    stamp_warm_up_ = relative_ || sources_.front().estimator->from_first_frame();
     if (sources_.front().estimator->offline()) deferred_.emplace(cameras);
   }
 }
@@ -66,12 +67,13 @@ void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth)
     const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
     return DeferredFrame{frame.camera,
                          pulse_of(source, truth, sensor),
-                         {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us}};
+                         {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
+                         on_global_scale(truth != nullptr ? truth->delivered : frame.arrival)};
   }();
   note_anchor(frame);
   if (in_warm_up(delivered.pulse)) {
     GlobalTime global = on_global_scale(frame.arrival);
-    if (relative_ && !deferred_) global = estimate(source, delivered.sample, truth);
+    if (stamp_warm_up_ && !deferred_) global = estimate(source, delivered.sample, truth);
     if (gather_warm_up_) gather(delivered, global);
     return;
   }
@@ -119,6 +121,7 @@ GlobalTime PipelineScorer::estimate(Source& source, const DeviceSample& sample,
 void PipelineScorer::gather(const DeferredFrame& frame, GlobalTime global) {
   gatherer_->push({.source = frame.source,
                    .stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global))),
+                   .arrival = frame.delivered,
                    .sensor = frame.sample.sensor,
                    .tag = frame.pulse},
                   *sets_);
@@ -133,7 +136,23 @@ void PipelineScorer::on_pulse(const PulseTruth& truth) {
   if (table_->holds(truth.pulse)) host_errors_->add(truth.host_errors);
 }
 
-void PipelineScorer::on_adjustment(const ClockAdjustment&) {}
+void PipelineScorer::on_adjustment(const ClockAdjustment& adjustment) {
+  for (std::uint32_t source = 0; source < sources_.size(); ++source) {
+    if (layout_.cameras[source].host != adjustment.host) continue;
+    if (sources_[source].estimator) sources_[source].estimator->on_adjustment(adjustment);
+    if (deferred_) deferred_->add_adjustment(source, adjustment);
+    if (second_deferred_) second_deferred_->add_adjustment(source, adjustment);
+  }
+}
+
+void PipelineScorer::on_poll(const DevicePoll& poll) {
+  Source& source = sources_[poll.camera];
+  const PollSample sample = {source.unwrapper.unwrap(poll.device), poll.t0, poll.t1, poll.t0_steady,
+                             poll.t1_steady};
+  if (source.estimator) source.estimator->on_poll(sample);
+  if (deferred_) deferred_->add_poll(poll.camera, sample);
+  if (second_deferred_) second_deferred_->add_poll(poll.camera, sample);
+}
 
 void PipelineScorer::on_exchange(std::uint32_t, const Exchange&) {}
 

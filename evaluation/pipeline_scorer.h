@@ -10,7 +10,7 @@
 //    real genlock rig, from GenLock order. Other captures without truth have no pulses: every score
 //    that needs them is NaN.
 //  - device_time and gathering begin where the warm-up ends, with the first evaluated pulse. Only
-//    those that count from a camera's first frame (relative(), from_first_frame()) see all of it.
+//    those that ask for it (relative(), from_first_frame()) see all of it.
 //    Frames that no pulse exposed (free-running) are taken from the moment another source's
 //    evaluated pulse shows that the warm-up is over; they are part of the stream, but never scored.
 //  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame
@@ -65,6 +65,7 @@ class PipelineScorer final : public RecordingSink {
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_pulse(const PulseTruth& truth) override;
   void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_poll(const DevicePoll& poll) override;
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
 
@@ -92,6 +93,7 @@ class PipelineScorer final : public RecordingSink {
   std::vector<Source> sources_;
   std::unique_ptr<Gatherer> gatherer_;
   bool relative_ = false;
+  bool stamp_warm_up_ = false;
   bool gather_warm_up_ = false;
   bool warm_up_over_ = false;
   std::optional<std::uint32_t> anchor_camera_;  // the master's first

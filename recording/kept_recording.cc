@@ -21,6 +21,8 @@ void KeptRecording::on_adjustment(const ClockAdjustment& adjustment) {
   events_.emplace_back(adjustment);
 }
 
+void KeptRecording::on_poll(const DevicePoll& poll) { events_.emplace_back(poll); }
+
 void KeptRecording::on_exchange(std::uint32_t host, const Exchange& exchange) {
   events_.emplace_back(HostExchange{host, exchange});
 }
@@ -45,6 +47,8 @@ void KeptRecording::give(const Pulse& pulse, RecordingSink& sink) {
 void KeptRecording::give(const ClockAdjustment& adjustment, RecordingSink& sink) {
   sink.on_adjustment(adjustment);
 }
+
+void KeptRecording::give(const DevicePoll& poll, RecordingSink& sink) { sink.on_poll(poll); }
 
 void KeptRecording::give(const HostExchange& exchange, RecordingSink& sink) {
   sink.on_exchange(exchange.host, exchange.exchange);

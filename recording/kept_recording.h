@@ -28,6 +28,7 @@ class KeptRecording final : public RecordingSink {
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_pulse(const PulseTruth& truth) override;
   void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_poll(const DevicePoll& poll) override;
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
 
@@ -51,11 +52,12 @@ class KeptRecording final : public RecordingSink {
     std::uint32_t host;
     Exchange exchange;
   };
-  using Event = std::variant<Frame, Pulse, ClockAdjustment, HostExchange, SyncOutcome>;
+  using Event = std::variant<Frame, Pulse, ClockAdjustment, DevicePoll, HostExchange, SyncOutcome>;
 
   static void give(const Frame& frame, RecordingSink& sink);
   static void give(const Pulse& pulse, RecordingSink& sink);
   static void give(const ClockAdjustment& adjustment, RecordingSink& sink);
+  static void give(const DevicePoll& poll, RecordingSink& sink);
   static void give(const HostExchange& exchange, RecordingSink& sink);
   static void give(const SyncOutcome& outcome, RecordingSink& sink);
 

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
@@ -55,6 +56,7 @@ struct FrameTruth {
   TrueTime exposure_end{};
   HostTime reference{};  // master's clock at mid-exposure: what the global stamp should be
   HostTime own_host{};   // the camera's own host's clock at mid-exposure
+  HostTime delivered{};  // master's clock when the host had the frame
 
   TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
 };
@@ -66,13 +68,15 @@ struct PulseTruth {
   std::span<const Nanoseconds> host_errors;  // system clock minus the master's, per host; [0] is 0
 };
 
-// A change of a host's system clock: it read `before`, and from that instant on reads `after`.
-struct ClockAdjustment {
-  std::uint32_t host = 0;
-  SteadyTime at{};
-  HostTime before{};
-  HostTime after{};
-  double rate_ppb = 0;  // of the system clock against the steady clock, from now on
+// One reading of a camera's clock over its control interface, between two readings of the host's
+// clocks: it was read at some instant from t0 to t1.
+struct DevicePoll {
+  std::uint32_t camera = 0;
+  DeviceStamp device;
+  HostTime t0{};
+  HostTime t1{};
+  SteadyTime t0_steady{};
+  SteadyTime t1_steady{};
 };
 
 struct CameraLayout {
@@ -96,6 +100,7 @@ class RecordingSink {
   virtual void on_frame(const FrameRecord& frame, const FrameTruth* truth) = 0;
   virtual void on_pulse(const PulseTruth& truth) = 0;
   virtual void on_adjustment(const ClockAdjustment& adjustment) = 0;
+  virtual void on_poll(const DevicePoll& poll) = 0;
   virtual void on_exchange(std::uint32_t host, const Exchange& exchange) = 0;
   virtual void on_outcome(const SyncOutcome& outcome) = 0;
 };

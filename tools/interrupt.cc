@@ -26,6 +26,7 @@ class InterruptibleSink : public RecordingSink {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     sink_.on_adjustment(adjustment);
   }
+  void on_poll(const DevicePoll& poll) override { sink_.on_poll(poll); }
   void on_exchange(std::uint32_t host, const Exchange& exchange) override {
     throw_if_interrupted();
     sink_.on_exchange(host, exchange);

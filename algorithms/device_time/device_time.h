@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench {
@@ -26,6 +27,15 @@ struct DeviceSample {
   std::uint32_t exposure_us = 0;
 };
 
+// The camera's clock, read over its control interface at some instant from t0 to t1.
+struct PollSample {
+  DeviceTime device{};  // unwrapped with the camera's frames
+  HostTime t0{};
+  HostTime t1{};
+  SteadyTime t0_steady{};
+  SteadyTime t1_steady{};
+};
+
 class DeviceTimeEstimator {
  public:
   virtual ~DeviceTimeEstimator() = default;
@@ -35,6 +45,13 @@ class DeviceTimeEstimator {
   // it is then given to learn() once, in order, before stamp() is called for each frame again.
   virtual bool offline() const { return false; }
   virtual void learn(std::span<const DeviceSample> /*recording*/) {}
+  // True for an estimator that is given the capture's warm-up too, as software on a rig is; the
+  // others begin with the first evaluated frame, as the paper's figures do.
+  virtual bool from_first_frame() const { return false; }
+  // A poll of the camera's clock, or a change of its host's system clock, in order with the frames.
+  // An offline estimator is given all of them before learn().
+  virtual void on_poll(const PollSample& /*poll*/) {}
+  virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
   // True if stamps count from the camera's own first frame instead of a host's zero; whoever
   // combines cameras adds one common anchor.
   virtual bool relative() const { return false; }

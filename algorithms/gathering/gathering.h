@@ -21,6 +21,7 @@ namespace simbench {
 struct GatherFrame {
   std::uint32_t source = 0;
   GlobalTime stamp{};
+  GlobalTime arrival{};  // when its host had it, on the global scale
   DeviceTime sensor{};   // unwrapped, for gatherers that order by device time
   std::int64_t tag = 0;  // the caller's name for the frame; carried, not interpreted
 };
@@ -30,6 +31,8 @@ class FrameSetSink {
   virtual ~FrameSetSink() = default;
   // One frame per source, in order of source. The span is valid during the call only.
   virtual void on_set(std::span<const GatherFrame> set) = 0;
+  // A set that lacks some sources, from policies that emit such; in order of source.
+  virtual void on_partial_set(std::span<const GatherFrame> /*set*/) {}
 };
 
 struct GatheringSetup {

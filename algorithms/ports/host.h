@@ -72,6 +72,8 @@ struct ReceivedMessage {
   Bytes bytes;
   HostTime received{};  // receive stamp, from the point of the stack that stamps
   SteadyTime received_steady{};
+  // When the message's start passed the network card, on the card's clock; if the card stamps.
+  std::optional<HardwareTime> received_hardware{};
 };
 
 // A two-way channel to one peer. At most one receive may be pending on a channel.
@@ -84,6 +86,67 @@ class MessageChannel {
   virtual Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) = 0;
   // When message `id` left, if the host can tell; asking does not change any timing.
   virtual Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) = 0;
+  // The same on the network card's clock, taken where the message passed the card.
+  virtual Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId id,
+                                                                    SteadyTime deadline) = 0;
+};
+
+// A reading of the network card's clock between two readings of the system clock.
+struct CrossStamp {
+  HostTime before{};
+  HardwareTime hardware{};
+  HostTime after{};
+};
+
+// The network card's own clock (PTP hardware clock), with an oscillator of its own.
+class HardwareClock {
+ public:
+  virtual ~HardwareClock() = default;
+  virtual Task<CrossStamp> cross_stamp() = 0;
+  // Adds `offset` at once.
+  virtual Task<void> step(Nanoseconds offset) = 0;
+  // Rate correction against its oscillator, replacing the previous one.
+  virtual Task<void> adjust_frequency(double ppb) = 0;
+};
+
+// An electrical pulse that interrupts the host; its stamps are late by the interrupt's latency.
+enum class PulseLine : std::uint8_t {
+  kPps,      // one pulse at each full second of GNSS time, from a receiver beside the host
+  kTrigger,  // the trigger pulses of the cameras
+};
+
+struct PulseStamp {
+  HostTime system{};
+  SteadyTime steady{};
+  // What the receiver's message says the time was at the pulse (kPps only); GNSS time has a zero of
+  // its own, the same for all hosts.
+  std::optional<Nanoseconds> gnss{};
+};
+
+class PulseInput {
+ public:
+  virtual ~PulseInput() = default;
+  // The next pulse, or nothing once the deadline has passed. Pulses that came while nobody waited
+  // are kept, the last 1024 of them.
+  virtual Task<std::optional<PulseStamp>> next(SteadyTime deadline) = 0;
+};
+
+// A frame that one of the host's own cameras delivered, as the host sees it.
+struct FrameArrival {
+  std::uint32_t camera = 0;
+  std::uint32_t counter = 0;
+  std::uint32_t exposure_us = 0;
+  DeviceStamp sensor;
+  HostTime arrival{};
+  SteadyTime arrival_steady{};
+};
+
+class FrameFeed {
+ public:
+  virtual ~FrameFeed() = default;
+  // The next frame, or nothing once the deadline has passed. Frames that came while nobody waited
+  // are kept, the last 1024 of them. Only the scored stream of each camera.
+  virtual Task<std::optional<FrameArrival>> next(SteadyTime deadline) = 0;
 };
 
 class Host {
@@ -92,6 +155,11 @@ class Host {
   virtual PeerId id() const = 0;
   virtual HostClock& clock() = 0;
   virtual const SteadyClock& steady_clock() const = 0;
+  // What the host has beyond that; null if it has not. Asking again returns the same object, and
+  // at most one coroutine may wait on it at a time.
+  virtual HardwareClock* hardware_clock() { return nullptr; }
+  virtual PulseInput* pulse_input(PulseLine /*line*/) { return nullptr; }
+  virtual FrameFeed* frame_feed() { return nullptr; }
   // The channel to `peer`; both ends open it. Asking again returns the same channel.
   virtual MessageChannel& open_channel(PeerId peer, Transport transport) = 0;
   virtual Task<void> sleep_for(Nanoseconds interval) = 0;

@@ -65,7 +65,8 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
   co_return ReceivedMessage{
       .bytes = std::move(message.bytes),
       .received = stamps_in_kernel_ ? interface.tick_of(exact) : interface.read(exact),
-      .received_steady = clock.steady(stamped)};
+      .received_steady = clock.steady(stamped),
+      .received_hardware = std::nullopt};
 }
 
 Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
@@ -76,6 +77,10 @@ Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTim
   }
   if (id < first_stamp_) co_return std::nullopt;
   co_return transmit_stamps_[static_cast<std::size_t>(id - first_stamp_)];
+}
+
+Task<std::optional<HardwareTime>> SimChannel::hardware_transmit_stamp(MessageId, SteadyTime) {
+  co_return std::nullopt;
 }
 
 void SimChannel::on_left(MessageId first, std::size_t count) {

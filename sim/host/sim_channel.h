@@ -42,6 +42,8 @@ class SimChannel final : public MessageChannel, private Endpoint {
   Task<MessageId> send(Bytes message) override;
   Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) override;
   Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) override;
+  Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId id,
+                                                            SteadyTime deadline) override;
 
  private:
   void on_arrival() override { arrived_.notify(); }

@@ -171,6 +171,7 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   frame.record.arrival_steady = round_down(clock.steady(now), arrival_quantum_);
   frame.truth.own_host = clock.read(middle);
   frame.truth.reference = clocks_[0]->read(middle);
+  frame.truth.delivered = clocks_[0]->read(now);
   sink_.on_frame(frame.record, &frame.truth);
   release_frame(frame_id);
   end_if_done();

@@ -26,6 +26,9 @@ class Transcript final : public RecordingSink {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     add("adjustment", adjustment.host, nanoseconds_of(adjustment.after));
   }
+  void on_poll(const DevicePoll& poll) override {
+    add("poll", poll.camera, poll.device.us, nanoseconds_of(poll.t0), nanoseconds_of(poll.t1));
+  }
   void on_exchange(std::uint32_t host, const Exchange& exchange) override {
     add("exchange", host, exchange.peer, exchange.t1 ? "t1" : "", exchange.t2 ? "t2" : "");
   }
@@ -54,6 +57,12 @@ void record_something(RecordingSink& sink) {
   sink.on_start({.hosts = 2, .cameras = {{0}, {1}}, .frame_rate_hz = 50});
   sink.on_exchange(1, {.peer = 0, .t1 = {}, .t2 = HostTime(Nanoseconds(7)), .t3 = {}, .t4 = {}});
   sink.on_adjustment({.host = 1, .at = {}, .before = {}, .after = HostTime(Nanoseconds(9))});
+  sink.on_poll({.camera = 1,
+                .device = {77},
+                .t0 = HostTime(Nanoseconds(3)),
+                .t1 = HostTime(Nanoseconds(4)),
+                .t0_steady = {},
+                .t1_steady = {}});
   sink.on_outcome({.slave = 1, .synchronised = false, .passes = 200, .message = "no answer"});
   FrameTruth truth;
   truth.pulse = 4;

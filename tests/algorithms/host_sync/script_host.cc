@@ -171,6 +171,10 @@ class ScriptHost::Channel : public MessageChannel {
   Task<std::optional<HostTime>> transmit_stamp(MessageId /*id*/, SteadyTime /*deadline*/) override {
     co_return std::nullopt;
   }
+  Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId /*id*/,
+                                                            SteadyTime /*deadline*/) override {
+    co_return std::nullopt;
+  }
 
  private:
   ScriptHost& host_;

@@ -32,6 +32,7 @@ class KeptRecord : public RecordingSink {
   void on_adjustment(const ClockAdjustment& adjustment) override {
     adjustments.push_back(adjustment);
   }
+  void on_poll(const DevicePoll&) override {}
   void on_exchange(std::uint32_t host, const Exchange& exchange) override {
     exchanges.emplace_back(host, exchange);
   }

@@ -25,6 +25,7 @@ class Frames final : public RecordingSink {
   }
   void on_pulse(const PulseTruth& truth) override { pulses.push_back(truth.pulse); }
   void on_adjustment(const ClockAdjustment&) override {}
+  void on_poll(const DevicePoll&) override {}
   void on_exchange(std::uint32_t, const Exchange&) override {}
   void on_outcome(const SyncOutcome&) override {}
 

@@ -33,6 +33,7 @@ class Collector final : public RecordingSink {
     }
   }
   void on_adjustment(const ClockAdjustment&) override { ++adjustments; }
+  void on_poll(const DevicePoll&) override {}
   void on_exchange(std::uint32_t, const Exchange&) override { ++exchanges; }
   void on_outcome(const SyncOutcome& outcome) override { outcomes.push_back(outcome); }
 

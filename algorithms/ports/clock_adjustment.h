@@ -1,0 +1,26 @@
+// A change of a host's system clock, as the host's log of adjustments has it.
+//
+// It read `before`, and from that instant on reads `after` and runs at `rate_ppb` against the
+// host's steady clock. The log begins with an adjustment that changes nothing, so the log alone
+// maps steady time to system time at any instant (algorithms/device_time/clock_map.h).
+// Source: DESIGN section 2.
+#ifndef SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
+#define SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
+
+#include <cstdint>
+
+#include "algorithms/ports/time.h"
+
+namespace simbench {
+
+struct ClockAdjustment {
+  std::uint32_t host = 0;
+  SteadyTime at{};
+  HostTime before{};
+  HostTime after{};
+  double rate_ppb = 0;  // of the system clock against the steady clock, from now on
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
