@@ -7,6 +7,7 @@
 #include "algorithms/host_sync/limits.h"
 #include "algorithms/host_sync/w32time.h"
 #include "algorithms/host_sync/yoon2021.h"
+#include "algorithms/parameter_specs.h"
 
 namespace simbench {
 namespace {
@@ -14,49 +15,31 @@ namespace {
 const char* const kNotPublished = "not published; a fit (calibration.md section 1, FIT-C)";
 const char* const kRepair = "assumption; not part of the printed algorithm";
 
-ParameterSpec number(std::string name, double fallback, double low, double high,
-                     std::string meaning, std::string source) {
-  ParameterSpec spec;
-  spec.name = std::move(name);
-  spec.fallback = fallback;
-  spec.low = low;
-  spec.high = high;
-  spec.meaning = std::move(meaning);
-  spec.source = std::move(source);
-  return spec;
-}
-
-ParameterSpec choice(std::string name, std::vector<std::string> choices, std::string meaning,
-                     std::string source) {
-  ParameterSpec spec;
-  spec.name = std::move(name);
-  spec.fallback = choices.front();
-  spec.choices = std::move(choices);
-  spec.meaning = std::move(meaning);
-  spec.source = std::move(source);
-  return spec;
-}
-
 std::vector<ParameterSpec> yoon2021_parameters() {
   return {
-      number("stamps", 100, 1, 1e6, "n_d, stamps that t_l is the mean of", kNotPublished),
-      number("clock_calls", 100, 1, 1e6, "n_c, calls of get and set that t_t is the mean of",
-             kNotPublished),
-      number("threshold_ms", 100, 0, 1e6, "T_th, largest accepted delay", kNotPublished),
-      number("send_interval_ms", 0, 0, 1e5, "pace of the stamps; 0: as fast as they can be sent",
-             "Yoon et al. 2021, Algorithm 1"),
-      number("pass_limit", 200, 1, 1e6, "passes after which a slave is given up", kRepair),
-      number("session_gap_ms", 1000, 0, 1e6, "pause between the sessions of two slaves",
-             "calibration.md section 1 (gap)"),
-      number("parallel_sessions", 1, 1, 1e4, "groups of slaves that are synchronised concurrently",
-             "Yoon et al. 2021, section 3: slaves in turn"),
-      choice("latency_estimate", {"literal", "intended"},
-             "t_l as printed (mean spacing of the stamps), or half the mean round trip",
-             "paper.md section 4, defect 1"),
-      choice("transport", {"stream", "datagram"}, "what the messages travel over", kNotPublished),
-      number("receive_timeout_ms", 5000, 1, 1e7,
-             "silence that ends a pass; must cover the slave's clock_calls", kRepair),
-      number("turn_timeout_s", 86400, 1, 1e7, "how long a slave waits for its turn", kRepair),
+      number_parameter("stamps", 100, 1, 1e6, "n_d, stamps that t_l is the mean of", kNotPublished),
+      number_parameter("clock_calls", 100, 1, 1e6,
+                       "n_c, calls of get and set that t_t is the mean of", kNotPublished),
+      number_parameter("threshold_ms", 100, 0, 1e6, "T_th, largest accepted delay", kNotPublished),
+      number_parameter("send_interval_ms", 0, 0, 1e5,
+                       "pace of the stamps; 0: as fast as they can be sent",
+                       "Yoon et al. 2021, Algorithm 1"),
+      number_parameter("pass_limit", 200, 1, 1e6, "passes after which a slave is given up",
+                       kRepair),
+      number_parameter("session_gap_ms", 1000, 0, 1e6, "pause between the sessions of two slaves",
+                       "calibration.md section 1 (gap)"),
+      number_parameter("parallel_sessions", 1, 1, 1e4,
+                       "groups of slaves that are synchronised concurrently",
+                       "Yoon et al. 2021, section 3: slaves in turn"),
+      choice_parameter("latency_estimate", {"literal", "intended"},
+                       "t_l as printed (mean spacing of the stamps), or half the mean round trip",
+                       "paper.md section 4, defect 1"),
+      choice_parameter("transport", {"stream", "datagram"}, "what the messages travel over",
+                       kNotPublished),
+      number_parameter("receive_timeout_ms", 5000, 1, 1e7,
+                       "silence that ends a pass; must cover the slave's clock_calls", kRepair),
+      number_parameter("turn_timeout_s", 86400, 1, 1e7, "how long a slave waits for its turn",
+                       kRepair),
   };
 }
 
@@ -102,16 +85,20 @@ HostSyncEntry w32time() {
   entry.info.summary = "SNTP in the manner of stand-alone Windows Time, as documented";
   entry.info.source = documentation + "; RFC 4330";
   entry.info.parameters = {
-      number("poll_interval_s", 32768, 16, 604800,
-             "time between polls: SpecialPollInterval, bounded by MaxPollInterval", documentation),
-      number("phase_correct_rate", 7, 1, 1e3, "PhaseCorrectRate, divides the slew rate",
-             documentation),
-      number("max_allowed_phase_offset_s", 1, 0, 1e6,
-             "MaxAllowedPhaseOffset, from which on the clock is set, not slewed", documentation),
-      number("service_hours", 20, 0, 1e4, "how long the service has run when the capture starts",
-             "assumption: at least two polls"),
-      number("start_spread_s", 32768, 0, 1e6, "the services start at random times within this span",
-             "assumption: one poll interval, so that the hosts' polls are spread evenly"),
+      number_parameter("poll_interval_s", 32768, 16, 604800,
+                       "time between polls: SpecialPollInterval, bounded by MaxPollInterval",
+                       documentation),
+      number_parameter("phase_correct_rate", 7, 1, 1e3, "PhaseCorrectRate, divides the slew rate",
+                       documentation),
+      number_parameter("max_allowed_phase_offset_s", 1, 0, 1e6,
+                       "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
+                       documentation),
+      number_parameter("service_hours", 20, 0, 1e4,
+                       "how long the service has run when the capture starts",
+                       "assumption: at least two polls"),
+      number_parameter("start_spread_s", 32768, 0, 1e6,
+                       "the services start at random times within this span",
+                       "assumption: one poll interval, so that the hosts' polls are spread evenly"),
   };
   entry.make = [](const Parameters& parameters) {
     W32TimeSettings settings;
