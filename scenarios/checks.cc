@@ -77,6 +77,8 @@ void check_faults(const Scenario& scenario) {
       {"camera_vanishes", {"camera", "at_ms", "duration_ms"}},
       {"late_first_frame", {"camera", "duration_ms"}},
       {"clock_step", {"host", "at_ms", "step_ms"}},
+      {"host_stops", {"host", "at_ms", "duration_ms"}},
+      {"link_stops", {"host", "at_ms", "duration_ms"}},
   };
   const auto stated = nlohmann::json::parse(scenario.resolved_json).at("faults");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {

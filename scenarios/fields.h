@@ -33,35 +33,48 @@ namespace simbench::scenarios {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timeline, wait_before_capture_ms, warm_up_ms, frames)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Oscillator, skew_sigma_ppm, white_frequency_ppb,
-                                   random_walk_ppb_per_sqrt_s, wander_step_ms)
+                                   random_walk_ppb_per_sqrt_s, wander_step_ms, flicker_floor_ppb,
+                                   ramp_ppm_per_hour, self_heating_ppm,
+                                   self_heating_time_constant_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LastSet, hours_ago, skew_sigma_ppm, minutes_since_baseline)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostClock, oscillator, initial_offset_sigma_ms, tick_ms,
                                    resolution_ms, read_cost_ms, set_cost_ms,
                                    set_cost_session_log_sigma, set_cost_call_log_sigma,
                                    set_effective_fraction, arrival_quantum_ms, last_set)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Burst, rate_hz, duration_exponential_ms, latency_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Nic, hardware_stamps, skew_sigma_ppm, stamp_resolution_ns,
+                                   stamp_jitter_sigma_ns, cross_stamp_cost_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PulseLines, pps, gnss, trigger, pps_jitter_sigma_us,
+                                   interrupt_latency_us, interrupt_latency_exponential_us)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Hosts, count, clock, send_cost_ms, send_cost_exponential_ms,
                                    send_cost_session_exponential_ms, receive_wake_up_ms,
-                                   load_log_sigma)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Burst, rate_hz, duration_exponential_ms, latency_ms)
+                                   load_log_sigma, nic, pulse_lines, load_burst)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Network, latency_fixed_ms, latency_exponential_ms,
                                    latency_session_exponential_ms, asymmetry_sigma_ms,
                                    spike_probability, spike_max_ms, burst, bandwidth_mbit_per_s,
                                    overhead_bytes, loss_probability, duplicate_probability,
                                    reorder_probability, reorder_max_ms, retransmit_timeout_ms,
-                                   nagle, delayed_ack_ms, stamp_point)
+                                   nagle, delayed_ack_ms, stamp_point, capture_traffic_share,
+                                   switch_clock, switch_clock_error_ns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,
-                                   start_delay_ms, missed_pulse_probability, pauses)
+                                   start_delay_ms, daisy_chain_delay_us, missed_pulse_probability,
+                                   pauses)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stream, kind, width, height, bytes_per_pixel, mode_rate_hz,
-                                   pipeline_latency_ms, latency_mode_periods)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, sync_mode,
-                                   common_start, start_spread_ms, streams, oscillator,
+                                   pipeline_latency_ms, latency_mode_periods, shutter, readout_ms,
+                                   calibrated_delay_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClockPoll, interval_ms, request_ms, request_exponential_ms,
+                                   reply_ms, reply_exponential_ms, tail_probability, tail_max_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, model,
+                                   sync_mode, common_start, start_spread_ms, streams, oscillator,
                                    clock_epoch_max_ms, exposure_ms, exposure_camera_periods,
                                    exposure_host_periods, trigger_to_exposure_us,
                                    genlock_guard_fraction, slave_free_run_after_periods,
                                    sensor_stamp_jitter_sigma_us, drop_probability,
-                                   unstable_start_ms, unstable_start_jitter_sigma_ms)
+                                   unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll,
+                                   auto_exposure)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per_controller,
                                    buffered_frames, kernel_copy_exponential_ms,
                                    delivery_jitter_transfers, host_jitter_transfers,
@@ -70,7 +83,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Fault, kind, camera, host, at_ms, duration_ms,
                                                 step_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathering)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, gathering_interval_periods, rmdv_median)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
+                                   rmdv_median)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, amd_ms, rmdv_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Scenario, name, summary, timeline, hosts, network, trigger,
                                    cameras, usb, faults, evaluation, algorithms, pipelines,

@@ -32,12 +32,17 @@ struct Timeline {
   std::int64_t frames = 0;            // trigger pulses evaluated after the warm-up
 };
 
-// A free-running oscillator. Its frequency error is skew + white noise + random walk.
+// A free-running oscillator. Its frequency error is skew + white noise + flicker + random walk +
+// ramp + self-heating.
 struct Oscillator {
   double skew_sigma_ppm = 0;              // one draw per oscillator and seed
   double white_frequency_ppb = 0;         // Allan deviation of the white part at tau = 1 s
   double random_walk_ppb_per_sqrt_s = 0;  // random walk: Allan deviation = this * sqrt(tau / 3)
   double wander_step_ms = 0;              // fixed grid on which the noise is sampled
+  double flicker_floor_ppb = 0;           // flicker: Allan deviation from 0.1 s to 1000 s
+  double ramp_ppm_per_hour = 0;           // from true zero
+  double self_heating_ppm = 0;            // approached exponentially after switching on
+  double self_heating_time_constant_s = 0;
 };
 
 // A system clock that was set long ago and has run free since (host_sync "ntp_last_set").
@@ -61,6 +66,32 @@ struct HostClock {
   LastSet last_set;
 };
 
+// Bursts begin as a Poisson process in true time.
+struct Burst {
+  double rate_hz = 0;  // 0: none
+  double duration_exponential_ms = 0;
+  double latency_ms = 0;  // network: extra latency; host: extra delay U(0, twice this)
+};
+
+// The network card's own clock.
+struct Nic {
+  bool hardware_stamps = false;
+  double skew_sigma_ppm = 0;
+  double stamp_resolution_ns = 0;
+  double stamp_jitter_sigma_ns = 0;
+  double cross_stamp_cost_ms = 0;
+};
+
+// Electrical pulses wired into every host.
+struct PulseLines {
+  bool pps = false;
+  bool gnss = false;  // the receiver also tells the time of its pulses
+  bool trigger = false;
+  double pps_jitter_sigma_us = 0;
+  double interrupt_latency_us = 0;
+  double interrupt_latency_exponential_us = 0;
+};
+
 struct Hosts {
   std::int64_t count = 0;  // host 0 is the master
   HostClock clock;
@@ -69,12 +100,9 @@ struct Hosts {
   double send_cost_session_exponential_ms = 0;  // additional, per session: Exp(this * M)
   double receive_wake_up_ms = 0;  // from availability of a message to the receiver's return
   double load_log_sigma = 0;      // run load M
-};
-
-struct Burst {
-  double rate_hz = 0;  // bursts begin as a Poisson process in true time (0: none)
-  double duration_exponential_ms = 0;
-  double latency_ms = 0;  // extra latency of messages sent during a burst
+  Nic nic;
+  PulseLines pulse_lines;
+  Burst load_burst;  // frames are delivered and messages noticed later
 };
 
 struct Network {
@@ -95,6 +123,9 @@ struct Network {
   bool nagle = false;         // streams: a small segment waits for the previous one's ACK
   double delayed_ack_ms = 0;  // streams: ACK of a single segment waits this long (0: at once)
   std::string stamp_point;    // "application" or "kernel": where receive stamps are taken
+  double capture_traffic_share = 0;  // of each frame's bytes, sent on through the host's port
+  std::string switch_clock;          // "none", "transparent" or "boundary" (PTP)
+  double switch_clock_error_ns = 0;
 };
 
 struct TriggerPause {
@@ -109,7 +140,8 @@ struct Trigger {
   double branch_delay_max_us = 0;  // per sub-trigger: U(0, this)
   double cable_delay_max_us = 0;   // per camera: U(0, this)
   std::int64_t cameras_per_sub_trigger = 0;
-  double start_delay_ms = 0;  // first pulse after the cameras have started
+  double start_delay_ms = 0;        // first pulse after the cameras have started
+  double daisy_chain_delay_us = 0;  // from camera to camera (0: a star)
   double missed_pulse_probability = 0;
   std::vector<TriggerPause> pauses;
 };
@@ -123,12 +155,33 @@ struct Stream {
   double mode_rate_hz = 0;          // of the profile; genlock delivers at most half of it
   double pipeline_latency_ms = 0;   // fixed, from end of exposure to the start of the transfer
   double latency_mode_periods = 0;  // plus this many mode periods
+  std::string shutter;              // "global" or "rolling"
+  double readout_ms = 0;            // rolling: from the first row's exposure to the last row's
+  double calibrated_delay_ms = 0;   // end of exposure to arrival, as a user measured it once
+};
+
+// Readings of a camera's clock over its control interface.
+struct ClockPoll {
+  double interval_ms = 0;  // 0: none
+  double request_ms = 0;   // from the host's first reading to the camera's
+  double request_exponential_ms = 0;
+  double reply_ms = 0;  // from the camera's reading to the host's second
+  double reply_exponential_ms = 0;
+  double tail_probability = 0;  // of a request that takes U(0, tail_max_ms) longer
+  double tail_max_ms = 0;
+};
+
+struct AutoExposure {
+  double step_interval_exponential_ms = 0;  // 0: the exposure does not change
+  double min_ms = 0;                        // a step goes to U(min_ms, max_ms)
+  double max_ms = 0;
 };
 
 struct Cameras {
   std::int64_t count = 0;
   std::int64_t cameras_per_host = 0;         // camera j is on host j / cameras_per_host, unless
   std::vector<std::int64_t> host_of_camera;  // this names a host for each camera (else empty)
+  std::string model;                         // a profile of scenarios/cameras
   std::string sync_mode;  // "default", "master", "slave", "full_slave", "genlock"
   // genlock: trigger off, start all, trigger on; else the cameras start one by one
   bool common_start = false;
@@ -146,6 +199,8 @@ struct Cameras {
   double drop_probability = 0;              // frame lost inside the camera
   double unstable_start_ms = 0;             // exposures are unsteady after the start of the camera
   double unstable_start_jitter_sigma_ms = 0;
+  ClockPoll clock_poll;
+  AutoExposure auto_exposure;
 };
 
 struct Usb {
@@ -164,11 +219,12 @@ struct Usb {
 // Something that goes wrong, at a time after the start of the capture. Members that the kind does
 // not use may not be stated and are 0 here.
 struct Fault {
-  std::string kind;         // "camera_vanishes", "clock_step", "late_first_frame"
+  // "camera_vanishes", "clock_step", "late_first_frame", "host_stops", "link_stops"
+  std::string kind;
   std::int64_t camera = 0;  // camera_vanishes, late_first_frame
-  std::int64_t host = 0;    // clock_step
-  double at_ms = 0;         // camera_vanishes, clock_step
-  double duration_ms = 0;   // camera_vanishes: until it returns; late_first_frame: its delay
+  std::int64_t host = 0;    // clock_step, host_stops, link_stops
+  double at_ms = 0;         // all but late_first_frame
+  double duration_ms = 0;   // until it returns; late_first_frame: its delay
   double step_ms = 0;       // clock_step
 };
 
@@ -187,6 +243,7 @@ using AlgorithmParameters = std::map<std::string, std::map<std::string, Paramete
 
 struct Evaluation {
   std::string stream;                     // which stream is scored: "depth" or "colour"
+  std::string table;                      // "pipelines" or "leaderboard"
   double gathering_interval_periods = 0;  // T_int as a share of the frame period
   std::string rmdv_median;                // "upper_middle" or "mean_of_middle_two"
 };

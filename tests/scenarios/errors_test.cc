@@ -95,7 +95,8 @@ TEST(Checks, CamerasAndHosts) {
 std::string stream(const std::string& kind, int width, int height, int rate_hz) {
   return fmt::format(
       R"({{"kind": "{}", "width": {}, "height": {}, "bytes_per_pixel": 2, "mode_rate_hz": {},
-           "pipeline_latency_ms": 8, "latency_mode_periods": 0}})",
+           "pipeline_latency_ms": 8, "latency_mode_periods": 0, "shutter": "global", "readout_ms": 0,
+           "calibrated_delay_ms": 10}})",
       kind, width, height, rate_hz);
 }
 
