@@ -54,9 +54,10 @@ struct FrameTruth {
   std::int64_t pulse = -1;  // index of the trigger pulse that exposed it; -1: free-running
   TrueTime exposure_start{};
   TrueTime exposure_end{};
-  HostTime reference{};  // master's clock at mid-exposure: what the global stamp should be
-  HostTime own_host{};   // the camera's own host's clock at mid-exposure
-  HostTime delivered{};  // master's clock when the host had the frame
+  HostTime reference{};     // master's clock at mid-exposure: what the global stamp should be
+  HostTime own_host{};      // the camera's own host's clock at mid-exposure
+  SteadyTime own_steady{};  // the same host's steady clock at mid-exposure
+  HostTime delivered{};     // master's clock when the host had the frame
 
   TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
 };

@@ -10,6 +10,13 @@ namespace {
 std::string begin_below(const std::string& pointer) { return pointer + '/'; }
 std::string end_below(const std::string& pointer) { return pointer + static_cast<char>('/' + 1); }
 
+// A key may hold anything; a message is one line.
+std::string printable(std::string text) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
+
 }  // namespace
 
 const Place& Places::nearest(const std::string& pointer) const {
@@ -23,7 +30,7 @@ const Place& Places::nearest(const std::string& pointer) const {
 std::string Places::describe(const std::string& pointer) const {
   const Place& place = nearest(pointer);
   if (pointer.empty() || (place.is_set && place.set_pointer == pointer)) return place.label;
-  return place.label + ": " + pointer;
+  return place.label + ": " + printable(pointer);
 }
 
 void Places::set(const std::string& pointer, Place place) { places_[pointer] = std::move(place); }

@@ -170,6 +170,7 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   frame.record.arrival = round_down(clock.read(now), arrival_quantum_);
   frame.record.arrival_steady = round_down(clock.steady(now), arrival_quantum_);
   frame.truth.own_host = clock.read(middle);
+  frame.truth.own_steady = clock.steady(middle);
   frame.truth.reference = clocks_[0]->read(middle);
   frame.truth.delivered = clocks_[0]->read(now);
   sink_.on_frame(frame.record, &frame.truth);
