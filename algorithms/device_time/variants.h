@@ -1,0 +1,57 @@
+// Variants of any device_time estimator, made by wrapping it, and the names that ask for them.
+//
+//   <base>_steady               works on the host's steady clock, where no step or slew of the
+//                               system clock can enter a fit; its result is mapped to the system
+//                               clock by the host's log of adjustments (clock_map.h)
+//   <base>_exposure_corrected   takes half of each frame's exposure from its arrival first
+//   <base>_calibrated           the same, and a constant delay from exposure's end to arrival
+//
+// Suffixes combine in any order; "calibrated" includes the exposure. A wrapper passes everything
+// else on: learn(), polls, adjustments, offline(), relative() and from_first_frame().
+//
+//   const DeviceTimeName name = parse_device_time_name("hull_300_steady_exposure_corrected");
+//   auto estimator = make_variant(name, find_device_time(name.base)->make(parameters), {});
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "algorithms/device_time/device_time.h"
+
+namespace simbench {
+
+// The inner estimator sees steady times as arrivals and polls. Until the log of adjustments has
+// begun, its result moves to the system clock by the offset of the frame's own two arrivals. A
+// relative() inner estimator's stamps are on no host's clock and stay as they are.
+std::unique_ptr<DeviceTimeEstimator> on_steady_clock(std::unique_ptr<DeviceTimeEstimator> inner);
+
+// Arrivals, on both clocks, less half of the exposure: what remains of the latency does not depend
+// on the exposure if the camera stamps mid-exposure and delivers a fixed time after its end.
+std::unique_ptr<DeviceTimeEstimator> exposure_corrected(std::unique_ptr<DeviceTimeEstimator> inner);
+
+// The same, less `delay` too: the fixed part of the latency, one constant per model and profile.
+std::unique_ptr<DeviceTimeEstimator> delay_corrected(std::unique_ptr<DeviceTimeEstimator> inner,
+                                                     Nanoseconds delay);
+
+struct DeviceTimeName {
+  std::string base;  // a registered name, if the whole name is valid
+  bool steady = false;
+  bool exposure_corrected = false;  // true if calibrated is
+  bool calibrated = false;
+  friend bool operator==(const DeviceTimeName&, const DeviceTimeName&) = default;
+};
+
+// Takes the suffixes off the end, each once: a second "_steady" stays in the base, which then is no
+// registered name.
+DeviceTimeName parse_device_time_name(std::string_view name);
+
+// `inner` with the variants that `name` asks for; `delay` counts only if it is calibrated.
+std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
+                                                  std::unique_ptr<DeviceTimeEstimator> inner,
+                                                  Nanoseconds delay);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_VARIANTS_H_
