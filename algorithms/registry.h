@@ -33,6 +33,7 @@ namespace simbench {
 enum class Need : std::uint8_t {
   kHardwareStamps,  // Host::hardware_clock() and the stamps of the network card
   kPps,             // Host::pulse_input(PulseLine::kPps)
+  kGnss,            // PulseStamp::gnss on that line
   kTriggerLine,     // Host::pulse_input(PulseLine::kTrigger)
   kFrames,          // Host::frame_feed()
   kPolls,           // polls of the cameras' clocks in the recording

@@ -118,6 +118,48 @@ Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
   return check_parameters(info.parameters, given);
 }
 
+// What the scenario lacks of what an algorithm needs; empty if nothing.
+std::string lacking(const Scenario& scenario, Need need) {
+  const scenarios::PulseLines& lines = scenario.hosts.pulse_lines;
+  switch (need) {
+    case Need::kHardwareStamps:
+      return scenario.hosts.nic.hardware_stamps
+                 ? ""
+                 : "network cards with a clock (/hosts/nic/hardware_stamps is false)";
+    case Need::kPps:
+      return lines.pps ? "" : "a pulse per second (/hosts/pulse_lines/pps is false)";
+    case Need::kGnss:
+      return lines.gnss ? "" : "a receiver that tells the time (/hosts/pulse_lines/gnss is false)";
+    case Need::kTriggerLine:
+      return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
+    case Need::kPolls:
+      return scenario.cameras.clock_poll.interval_ms > 0
+                 ? ""
+                 : "polls of the cameras' clocks (/cameras/clock_poll/interval_ms is 0)";
+    case Need::kFrames:
+    case Need::kTruth:
+      return "";
+  }
+  return "";
+}
+
+void check_needs(const Scenario& scenario, std::size_t pipeline, const char* stage,
+                 const AlgorithmInfo& info) {
+  for (const Need need : info.needs) {
+    const std::string missing = lacking(scenario, need);
+    if (missing.empty()) continue;
+    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
+                       fmt::format("found \"{}\", which needs {}", info.name, missing));
+  }
+}
+
+Nanoseconds calibrated_delay(const Scenario& scenario) {
+  for (const scenarios::Stream& stream : scenario.cameras.streams) {
+    if (stream.kind == scenario.evaluation.stream) return from_ms(stream.calibrated_delay_ms);
+  }
+  return {};
+}
+
 template <class Entry>
 const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const char* stage,
                           const std::string& name, const std::vector<Entry>& entries) {
@@ -134,14 +176,24 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
   const HostSyncEntry& host_sync =
       algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
+  const DeviceTimeName variants = parse_device_time_name(pipeline.device_time);
   const DeviceTimeEntry& device_time =
-      algorithm_at(scenario, index, "device_time", pipeline.device_time, device_time_algorithms());
+      algorithm_at(scenario, index, "device_time", variants.base, device_time_algorithms());
   const GatheringEntry& gathering =
       algorithm_at(scenario, index, "gathering", pipeline.gathering, gathering_algorithms());
+  check_needs(scenario, index, "host_sync", host_sync.info);
+  check_needs(scenario, index, "device_time", device_time.info);
+  check_needs(scenario, index, "gathering", gathering.info);
+  if (!device_time.make && variants.base != pipeline.device_time) {
+    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/device_time", index),
+                       fmt::format("found \"{}\", but \"{}\" has no variants", pipeline.device_time,
+                                   variants.base));
+  }
   return {.pipeline = pipeline,
           .host_sync = host_sync,
           .host_sync_parameters = parameters_of(scenario, host_sync.info),
           .device_time = device_time,
+          .device_time_variants = variants,
           .device_time_parameters = parameters_of(scenario, device_time.info),
           .gathering = gathering,
           .gathering_parameters = parameters_of(scenario, gathering.info)};
@@ -186,10 +238,11 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
     return make(parameters, gathering);
   };
   if (choice.device_time.make) {
-    setup.make_estimator = [make = choice.device_time.make,
-                            parameters = choice.device_time_parameters] {
-      return make(parameters);
-    };
+    setup.make_estimator =
+        [make = choice.device_time.make, parameters = choice.device_time_parameters,
+         variants = choice.device_time_variants, delay = calibrated_delay(scenario)] {
+          return make_variant(variants, make(parameters), delay);
+        };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
   if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&

@@ -2,7 +2,9 @@
 //
 // An algorithm's parameters are looked up in the scenario under /algorithms/<its family> and,
 // before that, /algorithms/<its name>; several algorithms may share a family and each takes what it
-// declares. A parameter that no algorithm of that name declares is refused.
+// declares. A parameter that no algorithm of that name declares is refused, and so is an algorithm
+// that needs what the scenario's world does not have (AlgorithmInfo::needs). A device_time may be
+// named with the suffixes of its variants (algorithms/device_time/variants.h).
 //
 //   for (const PipelineChoice& choice : choose_pipelines(scenario, {"yoon2021_both"})) {
 //     PipelineScorer scorer(scorer_setup(scenario, choice));
@@ -13,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
 #include "evaluation/pipeline_scorer.h"
 #include "scenarios/scenario.h"
@@ -23,7 +26,8 @@ struct PipelineChoice {
   scenarios::Pipeline pipeline;
   HostSyncEntry host_sync;
   Parameters host_sync_parameters;
-  DeviceTimeEntry device_time;
+  DeviceTimeEntry device_time;          // of the base name
+  DeviceTimeName device_time_variants;  // what the pipeline's name adds to it
   Parameters device_time_parameters;
   GatheringEntry gathering;
   Parameters gathering_parameters;
