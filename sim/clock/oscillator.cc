@@ -6,54 +6,69 @@
 #include "algorithms/ports/assert.h"
 
 namespace simbench::sim {
+namespace {
+
+constexpr double kPerPpmPerHour = 1e-6 / 3600;  // as a fraction per second
+
+}  // namespace
 
 OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::uint64_t run_seed,
-                                 std::string_view component)
+                                 std::string_view component, TrueTime switched_on)
     : skew_(RandomStream(run_seed, std::string(component) + ": skew")
                 .normal(parameters.skew_sigma_ppm * 1e-6)),
       run_seed_(run_seed),
-      wander_key_(std::string(component) + ": wander") {
+      wander_key_(std::string(component) + ": wander"),
+      ramp_per_s_(parameters.ramp_ppm_per_hour * kPerPpmPerHour),
+      heating_(parameters.self_heating_ppm * 1e-6),
+      heating_time_constant_s_(parameters.self_heating_time_constant_s),
+      switched_on_(switched_on) {
+  SIMBENCH_ASSERT(heating_ == 0 || heating_time_constant_s_ > 0, "heating takes time");
+  if (parameters.flicker_floor_ppb > 0) {
+    SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
+    flicker_.emplace(parameters.flicker_floor_ppb, parameters.wander_step_ms, run_seed, component);
+  }
   const double white_ppb = parameters.white_frequency_ppb;
   const double walk_ppb = parameters.random_walk_ppb_per_sqrt_s;
-  if (white_ppb == 0 && walk_ppb == 0) return;
-  SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
-  step_ns_ = from_ms(parameters.wander_step_ms).count();
-  step_s_ = static_cast<double>(step_ns_) * 1e-9;
-  walk_sigma_ppb_ = walk_ppb * std::sqrt(step_s_);
-  // Given the frequency at both ends of a step, the integral of a random walk is normal around the
-  // trapezium with variance K^2 step^3 / 12 (a Brownian bridge).
-  phase_sigma_ns_ = std::sqrt(white_ppb * white_ppb * step_s_ +
-                              walk_ppb * walk_ppb * step_s_ * step_s_ * step_s_ / 12);
-}
-
-double OscillatorModel::noise_ns(std::int64_t since_zero_ns) const {
-  std::int64_t index = since_zero_ns / step_ns_;
-  if (since_zero_ns % step_ns_ < 0) --index;
-  const double part =
-      static_cast<double>(since_zero_ns - index * step_ns_) / static_cast<double>(step_ns_);
-  const double before_ns = grid_phase_ns(index);
-  return before_ns + part * (grid_phase_ns(index + 1) - before_ns);
-}
-
-double OscillatorModel::grid_phase_ns(std::int64_t index) const {
-  const bool forward = index >= 0;
-  Walk& walk = forward ? forward_ : backward_;
-  const auto place = static_cast<std::size_t>(forward ? index : -index);
-  while (walk.phases_ns.size() <= place) {
-    const auto last = static_cast<std::int64_t>(walk.phases_ns.size()) - 1;
-    extend(walk, forward ? last : -last - 1, forward);
+  if (white_ppb != 0 || walk_ppb != 0) {
+    SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
+    walk_ = GridWalk<double>(from_ms(parameters.wander_step_ms).count(), 0.0);
+    step_s_ = static_cast<double>(walk_.step_ns()) * 1e-9;
+    walk_sigma_ppb_ = walk_ppb * std::sqrt(step_s_);
+    // Given the frequency at both ends of a step, the integral of a random walk is normal around
+    // the trapezium with variance K^2 step^3 / 12 (a Brownian bridge).
+    phase_sigma_ns_ = std::sqrt(white_ppb * white_ppb * step_s_ +
+                                walk_ppb * walk_ppb * step_s_ * step_s_ * step_s_ / 12);
   }
-  return walk.phases_ns[place];
+  is_steady_ = walk_.step_ns() == 0 && !flicker_ && ramp_per_s_ == 0 && heating_ == 0;
 }
 
-void OscillatorModel::extend(Walk& walk, std::int64_t index, bool forward) const {
+double OscillatorModel::unsteady_ns(TrueTime t) const {
+  const std::int64_t since_zero_ns = t.time_since_epoch().count();
+  double ns = 0;
+  if (walk_.step_ns() != 0) {
+    ns += walk_.phase_ns(since_zero_ns, [this](double& ppb, std::int64_t index, double sign) {
+      return step(ppb, index, sign);
+    });
+  }
+  if (flicker_) ns += flicker_->phase_ns(since_zero_ns);
+  if (ramp_per_s_ != 0 && since_zero_ns > 0) {
+    const double s = static_cast<double>(since_zero_ns) * 1e-9;
+    ns += ramp_per_s_ * s * s / 2 * 1e9;
+  }
+  if (heating_ != 0 && t > switched_on_) {
+    const double s = static_cast<double>((t - switched_on_).count()) * 1e-9;
+    // expm1: soon after switching on the two terms nearly cancel.
+    ns +=
+        heating_ * (s + heating_time_constant_s_ * std::expm1(-s / heating_time_constant_s_)) * 1e9;
+  }
+  return ns;
+}
+
+double OscillatorModel::step(double& frequency_ppb, std::int64_t index, double sign) const {
   RandomStream draw(run_seed_, wander_key_, static_cast<std::uint64_t>(index));
-  const double sign = forward ? 1.0 : -1.0;
-  const double before_ppb = walk.frequency_ppb;
-  walk.frequency_ppb += sign * draw.normal(walk_sigma_ppb_);
-  const double change_ns =
-      (before_ppb + walk.frequency_ppb) / 2 * step_s_ + draw.normal(phase_sigma_ns_);
-  walk.phases_ns.push_back(walk.phases_ns.back() + sign * change_ns);
+  const double before_ppb = frequency_ppb;
+  frequency_ppb += sign * draw.normal(walk_sigma_ppb_);
+  return (before_ppb + frequency_ppb) / 2 * step_s_ + draw.normal(phase_sigma_ns_);
 }
 
 }  // namespace simbench::sim

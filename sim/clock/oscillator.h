@@ -1,20 +1,29 @@
 // The oscillator of a host or of a camera: how far its count is ahead of true time.
 //
-// An oscillator counts true time with a frequency error y(t) = skew + white noise + random walk.
+// An oscillator counts true time with a frequency error
+//
+//   y(t) = skew + white noise + flicker + random walk + ramp + self-heating
+//
 // What a clock built on it needs is the phase, the integral of y:
 //
 //   local(t) = t + deviation_ns(t),   deviation_ns(0) = 0
 //
 // White frequency noise of Allan deviation W at tau = 1 s makes the phase a random walk of variance
 // W^2 tau; a random walk of the frequency of K per sqrt(s) has the Allan deviation K sqrt(tau / 3).
-// Both are sampled on a fixed grid of true time, exactly (the joint law of the two at the grid
-// points); between them the phase is linear. Each step of the grid has random numbers of its own,
-// keyed by its index, and the walk starts at true zero in both directions: the values depend
-// neither on the order of the queries nor on when the world starts.
+// Both are sampled exactly (the joint law of the two) on a fixed grid of true time of
+// wander_step_ms, and the phase is linear in between: the Allan deviation is the configured one
+// from that step on. Flicker has a grid of its own (sim/clock/flicker_noise.h): its floor is flat
+// from 0.1 s to 1000 s. Each step of a grid has random numbers of its own, keyed by its index, and
+// the walks start at true zero in both directions: values depend neither on the order of the
+// queries nor on when the world starts.
+//
+// The ramp R begins at true zero: R t^2 / 2. Self-heating of H with time constant T begins when the
+// device is switched on, s seconds before t: y = H (1 - exp(-s / T)).
 //
 // Units: nanoseconds; skew as a fraction. The phase is exact to well below 1 ns over days: a rate
 // of 1e-9 survives. Complexity: O(1) without noise; otherwise a look-up, after each step of the
-// grid between true zero and the query has once been sampled (8 bytes and some 20 ns each).
+// grid between true zero and the query has once been sampled (8 bytes and some 20 ns each, some
+// 120 ns with flicker).
 // Source: DESIGN sections 5 to 7; Riley, "Handbook of Frequency Stability Analysis", NIST SP 1065.
 //
 //   const OscillatorModel oscillator(scenario.hosts.clock.oscillator, seed, "host3/oscillator");
@@ -23,11 +32,13 @@
 #define SIMBENCH_SIM_CLOCK_OSCILLATOR_H_
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
+#include "sim/clock/flicker_noise.h"
+#include "sim/clock/grid_walk.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
@@ -36,7 +47,7 @@ class OscillatorModel {
  public:
   // Draws the skew and the noise of the component with this name.
   OscillatorModel(const scenarios::Oscillator& parameters, std::uint64_t run_seed,
-                  std::string_view component);
+                  std::string_view component, TrueTime switched_on = TrueTime{});
   // An oscillator of this frequency error and no noise.
   explicit OscillatorModel(double skew) : skew_(skew) {}
 
@@ -45,32 +56,28 @@ class OscillatorModel {
 
   // Local minus true time elapsed since true zero.
   double deviation_ns(TrueTime t) const {
-    const auto since_zero_ns = static_cast<double>(t.time_since_epoch().count());
-    const double linear_ns = skew_ * since_zero_ns;
-    return step_ns_ == 0 ? linear_ns : linear_ns + noise_ns(t.time_since_epoch().count());
+    const double linear_ns = skew_ * static_cast<double>(t.time_since_epoch().count());
+    return is_steady_ ? linear_ns : linear_ns + unsteady_ns(t);
   }
 
  private:
-  // The noise sampled in one direction of time; phases_ns[i] belongs to grid point i or -i.
-  struct Walk {
-    std::vector<double> phases_ns{0.0};
-    double frequency_ppb = 0;  // at the last of these points
-  };
-
-  double noise_ns(std::int64_t since_zero_ns) const;
-  double grid_phase_ns(std::int64_t index) const;
-  // Adds one point to the walk: the step of the grid that begins at grid point `index`.
-  void extend(Walk& walk, std::int64_t index, bool forward) const;
+  double unsteady_ns(TrueTime t) const;
+  // White noise and random walk over one step of their grid, as GridWalk asks for it.
+  double step(double& frequency_ppb, std::int64_t index, double sign) const;
 
   double skew_ = 0;
-  std::int64_t step_ns_ = 0;  // of the grid; 0: no noise
+  bool is_steady_ = true;  // skew is all there is
   double step_s_ = 0;
   double walk_sigma_ppb_ = 0;  // of the frequency's change in one step
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
   std::uint64_t run_seed_ = 0;
   ComponentKey wander_key_{""};
-  mutable Walk forward_;  // a cache: values are functions of the index alone
-  mutable Walk backward_;
+  GridWalk<double> walk_;  // the state is the walking frequency in ppb
+  std::optional<FlickerNoise> flicker_;
+  double ramp_per_s_ = 0;
+  double heating_ = 0;
+  double heating_time_constant_s_ = 0;
+  TrueTime switched_on_{};
 };
 
 }  // namespace simbench::sim
