@@ -29,6 +29,14 @@ double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
   return draw.normal(clock.initial_offset_sigma_ms);
 }
 
+std::vector<bool> hosts_with_cameras(const scenarios::Scenario& scenario) {
+  std::vector<bool> with_cameras(static_cast<std::size_t>(scenario.hosts.count), false);
+  for (std::int64_t camera = 0; camera < scenario.cameras.count; ++camera) {
+    with_cameras.at(static_cast<std::size_t>(scenario.host_of(camera))) = true;
+  }
+  return with_cameras;
+}
+
 }  // namespace
 
 HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed,
@@ -41,9 +49,10 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                load_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
   const HostWorld world{context, scenario.hosts, scenario.network, network_, load_, sink, run_seed};
+  const std::vector<bool> with_cameras = hosts_with_cameras(scenario);
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
     make_clock(scenario.hosts.clock, run_seed, initial_clocks);
-    hosts_.emplace_back(world, id, clocks_.back());
+    hosts_.emplace_back(world, id, clocks_.back(), with_cameras[id]);
   }
 }
 

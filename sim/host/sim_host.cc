@@ -1,6 +1,7 @@
 #include "sim/host/sim_host.h"
 
 #include "sim/host/sim_channel.h"
+#include "sim/host/sim_frame_feed.h"
 
 namespace simbench::sim {
 namespace {
@@ -21,7 +22,7 @@ ClockInterface interface_of(const HostWorld& world, PeerId id) {
 
 }  // namespace
 
-SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock)
+SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock, bool has_cameras)
     : world_(world),
       id_(id),
       system_clock_(system_clock),
@@ -32,11 +33,18 @@ SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock)
                   host_name(id)),
       steady_port_(world.context.engine(), system_clock),
       algorithm_draws_(world.run_seed, name("algorithm")),
+      has_cameras_(has_cameras),
       sleep_label_(name("sleep")) {
   system_clock_.observe([this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
 }
 
 SimHost::~SimHost() { system_clock_.observe(nullptr); }
+
+FrameFeed* SimHost::frame_feed() {
+  if (!has_cameras_) return nullptr;
+  if (frame_feed_ == nullptr) frame_feed_ = std::make_unique<SimFrameFeed>(*this);
+  return frame_feed_.get();
+}
 
 MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {
   std::unique_ptr<SimChannel>& channel = channels_[{peer, transport}];

@@ -39,6 +39,7 @@
 namespace simbench::sim {
 
 class SimChannel;
+class SimFrameFeed;
 
 // What the hosts of a world have in common. Everything referred to must outlive them.
 struct HostWorld {
@@ -54,7 +55,7 @@ struct HostWorld {
 class SimHost final : public Host {
  public:
   // `system_clock` must outlive the host, which becomes its observer.
-  SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock);
+  SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock, bool has_cameras);
   SimHost(const SimHost&) = delete;
   SimHost& operator=(const SimHost&) = delete;
   ~SimHost() override;
@@ -62,6 +63,7 @@ class SimHost final : public Host {
   PeerId id() const override { return id_; }
   HostClock& clock() override { return clock_port_; }
   const SteadyClock& steady_clock() const override { return steady_port_; }
+  FrameFeed* frame_feed() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
   Task<void> sleep_for(Nanoseconds interval) override;
   Task<void> sleep_until(HostTime at) override;
@@ -69,7 +71,10 @@ class SimHost final : public Host {
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
 
-  // For its channels.
+  // The feed if somebody has asked for it.
+  SimFrameFeed* opened_frame_feed() const { return frame_feed_.get(); }
+
+  // For its ports.
   const HostWorld& world() const { return world_; }
   const SystemClock& system_clock() const { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
@@ -102,7 +107,9 @@ class SimHost final : public Host {
   ClockPort clock_port_;
   SteadyPort steady_port_;
   RandomStream algorithm_draws_;
+  bool has_cameras_;
   std::string sleep_label_;
+  std::unique_ptr<SimFrameFeed> frame_feed_;
   std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;
 };

@@ -163,7 +163,8 @@ void Capture::deliver_later(std::uint32_t frame_id) {
 
 void Capture::on_delivery(std::uint32_t frame_id) {
   FrameInFlight& frame = frames_[frame_id];
-  SystemClock& clock = *clocks_[streams_[frame.stream].host];
+  const Stream& stream = streams_[frame.stream];
+  SystemClock& clock = *clocks_[stream.host];
   const TrueTime now = engine_.now();
   const TrueTime middle = frame.truth.mid_exposure();
   frame.record.backend = round_down(clock.read(frame.copied), arrival_quantum_);
@@ -174,6 +175,9 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   frame.truth.reference = clocks_[0]->read(middle);
   frame.truth.delivered = clocks_[0]->read(now);
   sink_.on_frame(frame.record, &frame.truth);
+  if (frame_observer_ != nullptr) {
+    frame_observer_->on_delivery(stream.host, frame.record, stream.bytes);
+  }
   release_frame(frame_id);
   end_if_done();
 }

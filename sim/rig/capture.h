@@ -32,6 +32,7 @@
 #include "sim/clock/system_clock.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/random.h"
+#include "sim/rig/frame_observer.h"
 #include "sim/trigger/trigger_tree.h"
 #include "sim/usb/host_stack.h"
 #include "sim/usb/usb_controller.h"
@@ -46,6 +47,10 @@ class Capture final : public EventHandler {
 
   // What will be captured; known from the beginning.
   RigLayout layout() const;
+
+  // From now on `observer`, which must outlive the capture's run, is told of every delivered frame,
+  // after the recording.
+  void observe_frames(FrameObserver& observer) { frame_observer_ = &observer; }
 
   // The cameras are started at `at`, not before the engine's present. `on_end` is called when the
   // last frame has been delivered.
@@ -127,6 +132,7 @@ class Capture final : public EventHandler {
   HandlerId id_;
   std::vector<SystemClock*> clocks_;
   RecordingSink& sink_;
+  FrameObserver* frame_observer_ = nullptr;
   TriggerTree trigger_;
   std::vector<DeviceClock> device_clocks_;
   std::vector<Stream> streams_;

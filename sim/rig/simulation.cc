@@ -12,6 +12,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
 #include "sim/rig/capture.h"
+#include "sim/rig/frame_feeds.h"
 
 namespace simbench::sim {
 namespace {
@@ -27,7 +28,10 @@ class Run {
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
-        capture_(scenario, request.seed, engine_, hosts_.clocks(), sink) {}
+        capture_(scenario, request.seed, engine_, hosts_.clocks(), sink),
+        frame_feeds_(scenario, hosts_) {
+    capture_.observe_frames(frame_feeds_);
+  }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
   // Coroutines that still wait go first: they use the hosts.
@@ -102,6 +106,7 @@ class Run {
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;
   Capture capture_;
+  FrameFeeds frame_feeds_;
   std::exception_ptr failure_;
   bool captured_ = false;
 };

@@ -36,7 +36,10 @@ inline scenarios::Scenario ideal_scenario() {
                         .bytes_per_pixel = 2,
                         .mode_rate_hz = 90,
                         .pipeline_latency_ms = 8,
-                        .latency_mode_periods = 0}};
+                        .latency_mode_periods = 0,
+                        .shutter = "global",
+                        .readout_ms = 0,
+                        .calibrated_delay_ms = 0}};
   s.cameras.oscillator = exact;
   s.cameras.exposure_ms = 4;
   s.cameras.genlock_guard_fraction = 0.02;
@@ -51,8 +54,10 @@ inline scenarios::Scenario ideal_scenario() {
            .host_jitter_correlation = 0,
            .spike_probability = 0,
            .spike_max_transfers = 0};
-  s.evaluation = {
-      .stream = "depth", .gathering_interval_periods = 0.5, .rmdv_median = "upper_middle"};
+  s.evaluation = {.stream = "depth",
+                  .table = "pipelines",
+                  .gathering_interval_periods = 0.5,
+                  .rmdv_median = "upper_middle"};
   return s;
 }
 
