@@ -1,0 +1,19 @@
+// The NTP family of host_sync algorithms, with their parameters and the sources of their defaults.
+//
+//   ntp, ntp_broadcast_volley, ntp_broadcast_fixed   (family ntp)
+//   w32time_domain                                   (family w32time_domain)
+//   chrony                                           (family chrony)
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_REGISTRATION_NTP_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_REGISTRATION_NTP_H_
+
+#include <vector>
+
+#include "algorithms/registry.h"
+
+namespace simbench {
+
+std::vector<HostSyncEntry> ntp_host_syncs();
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_REGISTRATION_NTP_H_
