@@ -203,6 +203,7 @@ std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
     result.amd_ms = score.amd_ms();
     result.rmdv_ms = score.rmdv_ms();
     for (const GatheringEntry& entry : gathering_algorithms()) {
+      if (std::ranges::count(entry.info.needs, Need::kTruth) > 0) continue;
       result.gatherings.push_back(replay_gatherer(entry, sources, row, period, order));
     }
     rig.rows.push_back(std::move(result));

@@ -35,7 +35,10 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
   EXPECT_THAT(device_time, ElementsAre("regression_30", "regression_offline", "eq1_printed",
                                        "eq1_interval_previous", "eq1_interval_current",
                                        "raw_arrival", "sensor_normalised", "oracle"));
-  EXPECT_THAT(names(gathering_algorithms()), ElementsAre("yoon2021", "genlock", "genlock_printed"));
+  EXPECT_THAT(names(gathering_algorithms()),
+              ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
+                          "approximate_time_bounded", "epsilon", "librealsense", "k4a",
+                          "phase_binning", "oracle"));
 }
 
 TEST(Registry, MakesEveryBuiltInAlgorithm) {

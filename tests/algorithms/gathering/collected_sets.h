@@ -14,16 +14,21 @@ class CollectedSets : public FrameSetSink {
  public:
   void on_set(std::span<const GatherFrame> set) override {
     sets.emplace_back(set.begin(), set.end());
+    all.push_back(sets.back());
+  }
+  void on_partial_set(std::span<const GatherFrame> set) override {
+    partial.emplace_back(set.begin(), set.end());
+    all.push_back(partial.back());
   }
 
   // The tags of each set, in order of source.
   std::vector<std::vector<std::int64_t>> tags() const {
-    std::vector<std::vector<std::int64_t>> all;
+    std::vector<std::vector<std::int64_t>> result;
     for (const std::vector<GatherFrame>& set : sets) {
-      all.emplace_back();
-      for (const GatherFrame& frame : set) all.back().push_back(frame.tag);
+      result.emplace_back();
+      for (const GatherFrame& frame : set) result.back().push_back(frame.tag);
     }
-    return all;
+    return result;
   }
 
   // Sets whose frames all have one tag.
@@ -38,6 +43,8 @@ class CollectedSets : public FrameSetSink {
   }
 
   std::vector<std::vector<GatherFrame>> sets;
+  std::vector<std::vector<GatherFrame>> partial;
+  std::vector<std::vector<GatherFrame>> all;  // both, in order of emission
 };
 
 inline GatherFrame frame_at(std::uint32_t source, double stamp_ms, std::int64_t tag) {

@@ -1,0 +1,229 @@
+#include "algorithms/gathering/approximate_time.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/gathering/front_tournament.h"
+#include "algorithms/ports/assert.h"
+
+namespace simbench {
+namespace {
+
+class ApproximateTimeGatherer final : public Gatherer {
+ public:
+  ApproximateTimeGatherer(const GatheringSetup& setup, const ApproximateTimeOptions& options)
+      : sources_(setup.sources),
+        limit_(std::min(options.queue, setup.queue_limit)),
+        age_factor_(1 + options.age_penalty),
+        max_interval_(options.max_interval.count()),
+        queues_(setup.sources, limit_ + 1),
+        fronts_(setup.sources),
+        aside_(setup.sources),
+        has_dropped_(setup.sources) {
+    SIMBENCH_ASSERT(limit_ > 0, "a queue needs room for one frame");
+    SIMBENCH_ASSERT(options.age_penalty >= 0, "an older candidate is no worse than a later one");
+    for (std::uint32_t source = 0; source < sources_; ++source) {
+      const bool own = source < options.lower_bounds.size();
+      lower_bounds_.push_back((own ? options.lower_bounds[source] : options.lower_bound).count());
+    }
+    steps_.reserve(sources_);
+    dropped_.reserve(sources_);
+  }
+
+  void push(const GatherFrame& frame, FrameSetSink& sink) override {
+    const std::uint32_t source = frame.source;
+    queues_.push(frame);
+    if (has_front_one(source)) {
+      ++with_front_;
+      fronts_.set(source, front_key(source));
+      if (with_front_ == sources_) search(sink);
+    }
+    if (queues_.size(source) > limit_) drop_oldest(source, sink);
+  }
+
+  std::uint64_t discarded() const override { return discarded_; }
+
+ private:
+  struct Candidate {
+    std::int64_t start = 0;
+    std::int64_t end = 0;
+    std::uint32_t pivot = 0;
+    std::int64_t pivot_time = 0;
+  };
+
+  // A queue is the frames that stepped aside, then those still ahead; the first of these is its
+  // front. The frames of the candidate are the oldest of their queues.
+  bool has_front(std::uint32_t source) const { return queues_.size(source) > aside_[source]; }
+  bool has_front_one(std::uint32_t source) const {
+    return queues_.size(source) == aside_[source] + 1;
+  }
+  std::int64_t front_key(std::uint32_t source) const {
+    return gather_key(queues_.at(source, aside_[source]));
+  }
+
+  void search(FrameSetSink& sink) {
+    while (with_front_ == sources_) {
+      const std::uint32_t first = fronts_.earliest();
+      const std::uint32_t last = fronts_.latest();
+      const std::int64_t start = fronts_.key(first);
+      const std::int64_t end = fronts_.key(last);
+      forgive_drops(last);
+      if (!candidate_) {
+        if ((max_interval_ > 0 && end - start > max_interval_) || has_dropped_[last] != 0) {
+          give_up_front(first);
+          continue;
+        }
+        candidate_ = {.start = start, .end = end, .pivot = last, .pivot_time = end};
+      } else if (is_better(start, end)) {
+        give_up_stepped_aside();
+        candidate_->start = start;
+        candidate_->end = end;
+      }
+      step_aside(first);
+      if (first == candidate_->pivot || is_best(end)) {
+        emit(sink);
+      } else if (with_front_ < sources_) {
+        if (search_virtually()) emit(sink);
+      }
+    }
+  }
+
+  double later_by(std::int64_t end) const {
+    return static_cast<double>(end - candidate_->end) * age_factor_;
+  }
+  bool is_better(std::int64_t start, std::int64_t end) const {
+    return later_by(end) < static_cast<double>(start - candidate_->start);
+  }
+  // Whether no later set can be better: all hold the pivot, and end here or later.
+  bool is_best(std::int64_t end) const {
+    return later_by(end) >= static_cast<double>(candidate_->pivot_time - candidate_->start);
+  }
+
+  // Goes on as if every frame to come came as early as it can. True if the candidate is the best
+  // even so; else all steps are taken back.
+  bool search_virtually() {
+    const std::size_t real_steps = steps_.size();
+    note_virtual_front(steps_.back());
+    for (;;) {
+      const std::uint32_t first = fronts_.earliest();
+      const std::int64_t end = fronts_.key(fronts_.latest());
+      if (is_best(end)) return true;
+      if (is_better(fronts_.key(first), end)) break;
+      step_aside(first);
+      note_virtual_front(first);
+    }
+    take_back_steps(real_steps);
+    return false;
+  }
+
+  void note_virtual_front(std::uint32_t source) {
+    if (has_front(source)) return;
+    const std::int64_t newest = gather_key(queues_.at(source, queues_.size(source) - 1));
+    const std::int64_t next = std::min(newest + lower_bounds_[source], kFarthestKey);
+    fronts_.set(source, std::max(next, candidate_->pivot_time));
+  }
+
+  void step_aside(std::uint32_t source) {
+    ++aside_[source];
+    steps_.push_back(source);
+    settle_front(source);
+  }
+
+  // After the front of a source has changed.
+  void settle_front(std::uint32_t source) {
+    if (has_front(source)) {
+      fronts_.set(source, front_key(source));
+    } else {
+      --with_front_;
+    }
+  }
+
+  void take_back_steps(std::size_t left) {
+    while (steps_.size() > left) {
+      const std::uint32_t source = steps_.back();
+      steps_.pop_back();
+      if (!has_front(source)) ++with_front_;
+      --aside_[source];
+      fronts_.set(source, front_key(source));
+    }
+  }
+
+  void give_up_front(std::uint32_t source) {
+    queues_.pop(source);
+    ++discarded_;
+    settle_front(source);
+  }
+
+  // The frames that stepped aside are older than a new candidate's.
+  void give_up_stepped_aside() {
+    for (const std::uint32_t source : steps_) {
+      queues_.pop(source);
+      --aside_[source];
+      ++discarded_;
+    }
+    steps_.clear();
+  }
+
+  void emit(FrameSetSink& sink) {
+    candidate_.reset();
+    steps_.clear();
+    sink.on_set(queues_.take_fronts());
+    fronts_.forget();
+    with_front_ = 0;
+    for (std::uint32_t source = 0; source < sources_; ++source) {
+      aside_[source] = 0;
+      if (!has_front(source)) continue;
+      ++with_front_;
+      fronts_.set(source, front_key(source));
+    }
+  }
+
+  void drop_oldest(std::uint32_t source, FrameSetSink& sink) {
+    take_back_steps(0);
+    give_up_front(source);
+    if (has_dropped_[source] == 0) dropped_.push_back(source);
+    has_dropped_[source] = 1;
+    if (!candidate_) return;
+    candidate_.reset();
+    search(sink);
+  }
+
+  // Sources other than the one with the latest front have shown that no frame they dropped was a
+  // better one: these may be pivots again.
+  void forgive_drops(std::uint32_t latest) {
+    if (dropped_.empty()) return;
+    const bool keep = has_dropped_[latest] != 0;
+    for (const std::uint32_t source : dropped_) has_dropped_[source] = 0;
+    dropped_.clear();
+    if (!keep) return;
+    has_dropped_[latest] = 1;
+    dropped_.push_back(latest);
+  }
+
+  std::uint32_t sources_;
+  std::uint32_t limit_;
+  double age_factor_;
+  std::int64_t max_interval_;
+  std::vector<std::int64_t> lower_bounds_;  // by source
+  FrameQueues queues_;
+  FrontTournament fronts_;
+  std::uint32_t with_front_ = 0;      // sources that have a front
+  std::vector<std::uint32_t> aside_;  // by source: frames that stepped aside
+  std::vector<std::uint32_t> steps_;  // the sources of these, in order
+  std::optional<Candidate> candidate_;
+  std::vector<char> has_dropped_;       // by source: an overflow since it last was harmless
+  std::vector<std::uint32_t> dropped_;  // the sources of which that is true
+  std::uint64_t discarded_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Gatherer> make_approximate_time_gatherer(const GatheringSetup& setup,
+                                                         const ApproximateTimeOptions& options) {
+  return std::make_unique<ApproximateTimeGatherer>(setup, options);
+}
+
+}  // namespace simbench

@@ -1,0 +1,76 @@
+#include "algorithms/gathering/k4a_capture_sync.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "algorithms/device_time/saturate.h"
+#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/ports/assert.h"
+
+namespace simbench {
+namespace {
+
+constexpr std::uint32_t kReference = 0;
+
+class K4aGatherer final : public Gatherer {
+ public:
+  K4aGatherer(const GatheringSetup& setup, Nanoseconds delay)
+      : period_(setup.period.count()),
+        begin_(delay.count() - period_ / 4),
+        limit_(setup.queue_limit),
+        queues_(setup.sources, setup.queue_limit) {
+    SIMBENCH_ASSERT(period_ > 0, "the frame period must be positive");
+  }
+
+  void push(const GatherFrame& frame, FrameSetSink& sink) override {
+    SIMBENCH_ASSERT(frame.source < queues_.sources(), "a frame of a source that does not exist");
+    if (queues_.size(frame.source) == limit_) give_up_front(frame.source);
+    queues_.push(frame);
+    match(sink);
+  }
+
+  std::uint64_t discarded() const override { return discarded_; }
+
+ private:
+  // Compares source after source with the reference's front, as far as there are fronts.
+  void match(FrameSetSink& sink) {
+    while (!queues_.empty(kReference)) {
+      if (fitting_ == queues_.sources()) {
+        sink.on_set(queues_.take_fronts());
+        fitting_ = 1;
+        continue;
+      }
+      if (queues_.empty(fitting_)) return;
+      const Int128 into_window = Int128{gather_key(queues_.front(fitting_))} -
+                                 gather_key(queues_.front(kReference)) - begin_;
+      if (into_window > period_) {
+        give_up_front(kReference);
+      } else if (into_window < 0) {
+        give_up_front(fitting_);
+      } else {
+        ++fitting_;
+      }
+    }
+  }
+
+  void give_up_front(std::uint32_t source) {
+    queues_.pop(source);
+    ++discarded_;
+    fitting_ = source == kReference ? 1 : std::min(fitting_, source);
+  }
+
+  std::int64_t period_;
+  std::int64_t begin_;  // of a window, after the reference's stamp
+  std::uint32_t limit_;
+  FrameQueues queues_;
+  std::uint32_t fitting_ = 1;  // the fronts of sources below this are in their windows
+  std::uint64_t discarded_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup, Nanoseconds delay) {
+  return std::make_unique<K4aGatherer>(setup, delay);
+}
+
+}  // namespace simbench

@@ -1,0 +1,137 @@
+#include "algorithms/gathering/phase_binning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/ports/assert.h"
+
+namespace simbench {
+namespace {
+
+// phase + k * period, following the stamps.
+class PhaseGrid {
+ public:
+  PhaseGrid(std::int64_t period, double decay) : period_(period), least_weight_(1 - decay) {}
+
+  // The slot of a stamp, which then has its part in the phase.
+  std::int64_t slot_of(std::int64_t key) {
+    if (frames_ == 0) point_ = key;
+    std::int64_t slots = (key - point_) / period_;
+    std::int64_t residual = (key - point_) % period_;
+    if (residual > period_ / 2) {
+      residual -= period_;
+      ++slots;
+    } else if (residual < -(period_ / 2)) {
+      residual += period_;
+      --slots;
+    }
+    slot_ += slots;
+    const double weight = std::max(least_weight_, 1 / (frames_ + 1));
+    frames_ += 1;
+    const std::int64_t shift = std::llround(weight * static_cast<double>(residual));
+    point_ = std::clamp(key - residual + shift, -kFarthestKey, kFarthestKey);
+    return slot_;
+  }
+
+ private:
+  std::int64_t period_;
+  double least_weight_;
+  double frames_ = 0;
+  std::int64_t point_ = 0;  // of the grid, near the last stamp
+  std::int64_t slot_ = 0;   // its number
+};
+
+class PhaseBinningGatherer final : public Gatherer {
+ public:
+  PhaseBinningGatherer(const GatheringSetup& setup, double decay)
+      : grid_(setup.period.count(), decay),
+        sources_(setup.sources),
+        places_(setup.queue_limit),
+        frames_(std::size_t{setup.sources} * setup.queue_limit),
+        is_filled_(frames_.size()) {
+    SIMBENCH_ASSERT(setup.sources > 0, "gathering needs a source");
+    SIMBENCH_ASSERT(setup.queue_limit > 0, "gathering needs room for one slot");
+    SIMBENCH_ASSERT(setup.period >= Microseconds(1), "a frame period is a microsecond or more");
+    SIMBENCH_ASSERT(decay >= 0 && decay < 1, "a frame weighs less than its successor");
+  }
+
+  void push(const GatherFrame& frame, FrameSetSink& sink) override {
+    SIMBENCH_ASSERT(frame.source < sources_, "a frame of a source that does not exist");
+    const std::int64_t slot = grid_.slot_of(gather_key(frame));
+    const auto places = static_cast<std::int64_t>(places_.size());
+    if (last_set_ && slot <= *last_set_) {
+      if (*last_set_ - slot < places) {
+        ++discarded_;
+        return;
+      }
+      last_set_.reset();
+    }
+    const auto index = static_cast<std::size_t>(((slot % places) + places) % places);
+    Place& place = places_[index];
+    if (place.slot != slot) {
+      give_up(index);
+      place.slot = slot;
+    }
+    const std::size_t cell = index * sources_ + frame.source;
+    if (is_filled_[cell] != 0) {
+      ++discarded_;
+      return;
+    }
+    frames_[cell] = frame;
+    is_filled_[cell] = 1;
+    if (place.frames++ == 0) ++open_;
+    if (place.frames == sources_) emit(index, sink);
+  }
+
+  std::uint64_t discarded() const override { return discarded_; }
+
+ private:
+  struct Place {
+    std::int64_t slot = 0;
+    std::uint32_t frames = 0;
+  };
+
+  void emit(std::size_t index, FrameSetSink& sink) {
+    sink.on_set({frames_.data() + index * sources_, sources_});
+    last_set_ = places_[index].slot;
+    clear(index);
+    for (std::size_t other = 0; open_ > 0 && other < places_.size(); ++other) {
+      if (places_[other].slot < *last_set_) give_up(other);
+    }
+  }
+
+  void give_up(std::size_t index) {
+    if (places_[index].frames == 0) return;
+    discarded_ += places_[index].frames;
+    clear(index);
+  }
+
+  void clear(std::size_t index) {
+    const auto first = is_filled_.begin() + static_cast<std::ptrdiff_t>(index * sources_);
+    std::fill_n(first, sources_, char{0});
+    places_[index].frames = 0;
+    --open_;
+  }
+
+  PhaseGrid grid_;
+  std::uint32_t sources_;
+  std::vector<Place> places_;             // slot k is at k modulo their number
+  std::vector<GatherFrame> frames_;       // a row per place, a column per source
+  std::vector<char> is_filled_;           // likewise
+  std::size_t open_ = 0;                  // places that have a frame
+  std::optional<std::int64_t> last_set_;  // its slot
+  std::uint64_t discarded_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setup, double decay) {
+  return std::make_unique<PhaseBinningGatherer>(setup, decay);
+}
+
+}  // namespace simbench
