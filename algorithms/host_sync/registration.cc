@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "algorithms/host_sync/limits.h"
+#include "algorithms/host_sync/registration_ntp.h"
+#include "algorithms/host_sync/registration_two_way.h"
 #include "algorithms/host_sync/w32time.h"
 #include "algorithms/host_sync/yoon2021.h"
 #include "algorithms/parameter_specs.h"
@@ -126,10 +128,14 @@ HostSyncEntry limit(std::string name, std::string summary, std::string source,
   return entry;
 }
 
+void append(std::vector<HostSyncEntry>& entries, std::vector<HostSyncEntry> more) {
+  for (HostSyncEntry& entry : more) entries.push_back(std::move(entry));
+}
+
 }  // namespace
 
 std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
-  return {
+  std::vector<HostSyncEntry> entries = {
       yoon2021("yoon2021_network", "the paper's row Network: t_d = t_l", true, false),
       yoon2021("yoon2021_time", "the paper's row Time: t_d = t_t", false, true),
       yoon2021("yoon2021_both", "the paper's proposal: t_d = t_l + t_t", true, true),
@@ -143,6 +149,9 @@ std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
       limit("oracle", "every host reads the master's clock", "a limit, for comparison",
             InitialClocks::kMaster),
   };
+  append(entries, two_way_host_syncs());
+  append(entries, ntp_host_syncs());
+  return entries;
 }
 
 }  // namespace simbench

@@ -1,0 +1,102 @@
+// The own system clock: knowing it better than one reading tells, and steering it along a line.
+//
+// Knowing. A reading is rounded down to the clock's granularity (100 ns to 15.6 ms), but between
+// adjustments the clock is an exact line over the steady clock, and this object makes all the
+// adjustments itself. Of many readings, the one that lies highest above the predicted line is
+// the one that was rounded least: N readings find a line that is late by 1 / N of the granularity.
+// The highest of the last kMemory to 2 kMemory counts. Somebody else's step is noticed at once: a
+// forward one is a higher reading, a backward one a reading that falls further below than rounding
+// has been seen to explain (twice that and kSmallestFall; kLargestGranularity for a start).
+//
+// Steering. steer() makes the clock follow a ClockLine: it steps if the clock is further off than
+// step_threshold (the step aims at the instant at which the last set call took effect, and what is
+// left is slewed the next time), else sets the rate to the line's and slews the rest within
+// `settle`, at most at max_slew_ppm. So offset and rate are both right, without a loop gain. Less
+// than kIgnored is left alone: each adjustment is a call that costs time.
+//
+// Not for two coroutines at a time to steer; observing meanwhile is fine.
+// Complexity: O(1). Source: DESIGN section 4; calibration.md section 2 (coarse read, cost of set).
+//
+//   SteeredClock clock(host, {});
+//   clock.observe(message.received, message.received_steady);
+//   co_await clock.steer(line);
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
+
+#include <algorithm>
+
+#include "algorithms/host_sync/clock_line.h"
+#include "algorithms/ports/host.h"
+
+namespace simbench {
+
+struct SteeringSettings {
+  Nanoseconds step_threshold = from_ms(5);
+  double max_slew_ppm = 500;
+  Nanoseconds settle = from_ms(1000);
+};
+
+class SteeredClock {
+ public:
+  static constexpr Nanoseconds kMemory{30'000'000'000};
+  static constexpr Nanoseconds kLargestGranularity{20'000'000};
+  static constexpr Nanoseconds kSmallestFall{10'000};
+  static constexpr int kFirstReadings = 16;
+  static constexpr Nanoseconds kIgnored{20};
+
+  // The host must outlive this.
+  SteeredClock(Host& host, SteeringSettings settings) : host_(host), settings_(settings) {}
+
+  // A reading of the system clock, and of the steady clock at the same instant.
+  void observe(HostTime reading, SteadyTime at);
+  // Reads both clocks.
+  Task<void> look();
+  bool is_known() const { return is_known_; }
+  // The system clock at a recent or near instant, and back; before the first observation they take
+  // the two clocks for the same.
+  HostTime at(SteadyTime when) const;
+  SteadyTime when(HostTime reading) const;
+
+  Task<void> steer(ClockLine line);
+  // How far the clock is ahead of a line now.
+  Nanoseconds lead_over(const ClockLine& line) const;
+
+ private:
+  // The clock without observations: from `since` on it goes on at `rate`, plus a slew.
+  struct Prediction {
+    SteadyTime since{};
+    HostTime value{};
+    double part_ns = 0;  // on top of value
+    double rate = 0;     // against the steady clock
+    double slew_rate = 0;
+    double slew_ns = 0;  // what is left of it
+
+    // Nanoseconds gained on the steady clock since `since`.
+    double gained_ns(SteadyTime when) const;
+  };
+
+  HostTime predicted(SteadyTime when) const;
+  // Starts a new prediction where the old one is at `when`.
+  void go_on_from(SteadyTime when);
+  Nanoseconds highest() const { return std::max(highest_, highest_before_); }
+  Nanoseconds largest_plausible_fall() const;
+  void forget();
+  Task<void> step_to(ClockLine line);
+
+  Host& host_;
+  SteeringSettings settings_;
+  Prediction prediction_;
+  bool is_known_ = false;
+  // Readings above the prediction: the highest of the present and the last period of kMemory.
+  SteadyTime period_begin_{};
+  Nanoseconds highest_{0};
+  Nanoseconds highest_before_{0};
+  int readings_ = 0;
+  Nanoseconds largest_fall_{0};
+  // From the beginning of a set call to the instant at which it takes effect.
+  Nanoseconds set_delay_{0};
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
