@@ -69,12 +69,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClockPoll, interval_ms, request_ms, request_e
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, model,
                                    sync_mode, common_start, start_spread_ms, streams, oscillator,
-                                   clock_epoch_max_ms, exposure_ms, exposure_camera_periods,
-                                   exposure_host_periods, trigger_to_exposure_us,
-                                   genlock_guard_fraction, slave_free_run_after_periods,
-                                   sensor_stamp_jitter_sigma_us, drop_probability,
-                                   unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll,
-                                   auto_exposure)
+                                   clock_epoch_max_ms, latency_camera_max_ms, exposure_ms,
+                                   exposure_camera_periods, exposure_host_periods,
+                                   trigger_to_exposure_us, genlock_guard_fraction,
+                                   slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
+                                   drop_probability, unstable_start_ms,
+                                   unstable_start_jitter_sigma_ms, clock_poll, auto_exposure)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per_controller,
                                    buffered_frames, kernel_copy_exponential_ms,
                                    delivery_jitter_transfers, host_jitter_transfers,

@@ -188,7 +188,8 @@ struct Cameras {
   double start_spread_ms = 0;  // without a common start: each camera starts after U(0, this)
   std::vector<Stream> streams;
   Oscillator oscillator;
-  double clock_epoch_max_ms = 0;  // device clock at the start: U(0, this)
+  double clock_epoch_max_ms = 0;     // device clock at the start: U(0, this)
+  double latency_camera_max_ms = 0;  // plus U(0, this), fixed per camera
   double exposure_ms = 0;
   double exposure_camera_periods = 0;  // plus this * trigger period * U(0,1) per camera
   double exposure_host_periods = 0;    // plus this * trigger period * U(0,1) per host

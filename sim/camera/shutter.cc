@@ -20,7 +20,7 @@ Nanoseconds Shutter::periods(double count) const {
 
 Exposure Shutter::end_aligned(TrueTime period_start, std::int64_t pulse) const {
   const TrueTime end = period_start + settings_.trigger_to_exposure + periods(1.0);
-  return {pulse, end - settings_.exposure, end};
+  return {pulse, end - settings_.exposure - settings_.readout, end};
 }
 
 std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
@@ -34,7 +34,7 @@ std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
     return end_aligned(at, pulse);
   }
   const TrueTime start = at + settings_.trigger_to_exposure;
-  const TrueTime end = start + settings_.exposure;
+  const TrueTime end = start + settings_.exposure + settings_.readout;
   ignore_until_ = std::max(at + periods(2.0 * unguarded), end);
   return Exposure{pulse, start, end};
 }

@@ -12,6 +12,12 @@
 //  - free-running (default and master mode, and streams the mode does not synchronise): exposures
 //    end at a fixed phase of the camera's own mode period.
 //
+// A rolling shutter exposes its rows one after the other, each for the exposure time; the last row
+// begins `readout` after the first. An Exposure then lasts from the first row's start to the last
+// row's end, so that its middle is that of the middle row, and "start" and "end" above are these
+// two. While it lasts, reading out included, genlock ignores pulses; a slave does so for its mode
+// period as ever. A global shutter has readout 0.
+//
 // A frame of a free-running exposure belongs to no pulse (kNoPulse).
 //
 //   Shutter shutter(settings, camera_start);
@@ -35,6 +41,7 @@ struct ShutterSettings {
   ShutterMode mode = ShutterMode::kFreeRunning;
   double mode_period_ns = 0;  // of true time: the camera's oscillator makes its periods
   Nanoseconds exposure{};
+  Nanoseconds readout{};
   Nanoseconds trigger_to_exposure{};
   double guard_fraction = 0;
   double free_run_after_periods = 0;
@@ -42,14 +49,17 @@ struct ShutterSettings {
 
 struct Exposure {
   std::int64_t pulse = kNoPulse;
-  TrueTime start{};
-  TrueTime end{};
+  TrueTime start{};  // of the first row
+  TrueTime end{};    // of the last row
 };
 
 class Shutter {
  public:
   // The stream is started at `start`, and knows nothing of pulses before that.
   Shutter(const ShutterSettings& settings, TrueTime start);
+
+  // The exposure time from the next exposure on, as auto-exposure changes it.
+  void set_exposure(Nanoseconds exposure) { settings_.exposure = exposure; }
 
   // A pulse reaches the camera at `at`: the exposure it causes, if any.
   std::optional<Exposure> on_pulse(TrueTime at, std::int64_t pulse);

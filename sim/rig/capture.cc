@@ -39,7 +39,9 @@ void Capture::on_pulse(std::int64_t slot) {
     const TrueTime now = engine_.now();
     for (const std::uint32_t id : triggered_streams_) {
       Stream& stream = streams_[id];
-      const auto exposure = stream.shutter.on_pulse(now + trigger_.delay_to(stream.camera), slot);
+      const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
+      stream.shutter.set_exposure(exposures_[stream.camera].at(at_camera));
+      const auto exposure = stream.shutter.on_pulse(at_camera, slot);
       if (exposure) expose(id, *exposure);
     }
   }
@@ -58,6 +60,7 @@ void Capture::report_pulse(std::int64_t slot) {
 void Capture::on_shutter_timer(std::uint32_t stream_id) {
   if (engine_.now() >= end_) return;
   Shutter& shutter = streams_[stream_id].shutter;
+  shutter.set_exposure(exposures_[streams_[stream_id].camera].at(engine_.now()));
   const auto exposure = shutter.on_timer(engine_.now());
   if (exposure) expose(stream_id, *exposure);
   engine_.schedule(shutter.next_timer(), id_, kShutterTimer, stream_id);
@@ -93,9 +96,10 @@ void Capture::expose(std::uint32_t stream_id, const Exposure& planned) {
   frame.record.stream = stream.kind;
   frame.record.counter = counter;
   frame.record.exposure_us =
-      static_cast<std::uint32_t>((exposure.end - exposure.start).count() / 1000);
+      static_cast<std::uint32_t>((exposure.end - stream.readout - exposure.start).count() / 1000);
   frame.record.sensor = clock.stamp(frame.truth.mid_exposure(), stamp_noise_ns);
-  frame.record.frame = clock.stamp(exposure.end, stamp_noise_ns);
+  // Readout begins with the first row.
+  frame.record.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
   engine_.schedule(exposure.end + stream.latency, id_, kReadout, frame_id);
 }
 

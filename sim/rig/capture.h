@@ -27,6 +27,7 @@
 
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
+#include "sim/camera/auto_exposure.h"
 #include "sim/camera/device_clock.h"
 #include "sim/camera/shutter.h"
 #include "sim/clock/system_clock.h"
@@ -56,6 +57,14 @@ class Capture final : public EventHandler {
   // last frame has been delivered.
   void start(TrueTime at, std::function<void()> on_end);
 
+  // What other parts of the rig may know of a capture that has been started.
+  const TriggerTree& trigger() const { return trigger_; }
+  std::int64_t last_slot() const { return last_slot_; }
+  TrueTime end() const { return end_; }
+  TrueTime camera_start(std::size_t camera) const { return camera_start(camera, start_); }
+  DeviceClock& device_clock(std::size_t camera) { return device_clocks_[camera]; }
+  bool vanished(std::uint32_t camera, TrueTime at) const;
+
   void handle(const Event& event) override;
 
  private:
@@ -79,6 +88,7 @@ class Capture final : public EventHandler {
     double bytes;
     double transfer_ns;  // alone on the bus
     Nanoseconds latency;
+    Nanoseconds readout;  // of a rolling shutter
     TrueTime started;
     Shutter shutter;
     FrameDelays delays;
@@ -114,7 +124,6 @@ class Capture final : public EventHandler {
   void report_pulse(std::int64_t slot);
   void on_shutter_timer(std::uint32_t stream_id);
   void expose(std::uint32_t stream_id, const Exposure& exposure);
-  bool vanished(std::uint32_t camera, TrueTime at) const;
   double late_first_frame_ns(std::uint32_t camera, TrueTime at);
   void on_readout(std::uint32_t frame_id);
   void on_transfer_done(std::uint32_t controller_id);
@@ -135,6 +144,7 @@ class Capture final : public EventHandler {
   FrameObserver* frame_observer_ = nullptr;
   TriggerTree trigger_;
   std::vector<DeviceClock> device_clocks_;
+  std::vector<AutoExposure> exposures_;  // of the cameras
   std::vector<Stream> streams_;
   std::vector<std::uint32_t> triggered_streams_;
   std::vector<Controller> controllers_;

@@ -63,9 +63,12 @@ void Capture::build_clocks(TrueTime at) {
   device_clocks_.reserve(static_cast<std::size_t>(cameras.count));
   for (std::size_t camera = 0; camera < static_cast<std::size_t>(cameras.count); ++camera) {
     RandomStream epoch(seed_, "camera/epoch", camera);
+    const TrueTime started = camera_start(camera, at);
     device_clocks_.emplace_back(
-        OscillatorModel(cameras.oscillator, seed_, "camera/oscillator/" + std::to_string(camera)),
+        OscillatorModel(cameras.oscillator, seed_, "camera/oscillator/" + std::to_string(camera),
+                        started),
         epoch.uniform(0, cameras.clock_epoch_max_ms), at);
+    exposures_.emplace_back(cameras.auto_exposure, exposure_of(camera), seed_, camera, started);
   }
   for (std::size_t host = 0; host < clocks_.size(); ++host) {
     host_jitter_.emplace_back(scenario_.usb, seed_, host, at, trigger_.period_ns());
@@ -112,10 +115,13 @@ Capture::Stream Capture::make_stream(std::size_t camera, std::size_t which, True
       static_cast<double>(profile.width * profile.height) * profile.bytes_per_pixel;
   const double mode_period_ns =
       1e9 / profile.mode_rate_hz * device_clocks_[camera].true_per_device();
+  const Nanoseconds readout = from_ms(profile.shutter == "rolling" ? profile.readout_ms : 0);
+  RandomStream latency(seed_, "camera/latency", camera);
   const ShutterSettings shutter{
       .mode = shutter_mode(kind),
       .mode_period_ns = mode_period_ns,
       .exposure = exposure_of(camera),
+      .readout = readout,
       .trigger_to_exposure = from_us(scenario_.cameras.trigger_to_exposure_us),
       .guard_fraction = scenario_.cameras.genlock_guard_fraction,
       .free_run_after_periods = scenario_.cameras.slave_free_run_after_periods};
@@ -135,7 +141,9 @@ Capture::Stream Capture::make_stream(std::size_t camera, std::size_t which, True
       .bytes = bytes,
       .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
       .latency = from_ms(profile.pipeline_latency_ms +
-                         profile.latency_mode_periods * 1e3 / profile.mode_rate_hz),
+                         profile.latency_mode_periods * 1e3 / profile.mode_rate_hz +
+                         latency.uniform(0, scenario_.cameras.latency_camera_max_ms)),
+      .readout = readout,
       .started = start,
       .shutter = Shutter(shutter, start),
       .delays = FrameDelays(scenario_.usb, seed_, id),

@@ -19,11 +19,14 @@ TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras
       period_ns_(1e9 / (settings.rate_hz * (1.0 + settings.rate_error_ppm * 1e-6))) {
   delays_.reserve(cameras);
   for (std::size_t camera = 0; camera < cameras; ++camera) {
-    const std::size_t branch = camera / static_cast<std::size_t>(settings.cameras_per_sub_trigger);
+    const auto per_branch = static_cast<std::size_t>(settings.cameras_per_sub_trigger);
+    const std::size_t branch = camera / per_branch;
+    const auto cameras_before = static_cast<double>(camera % per_branch);
     RandomStream branch_stream(seed, "trigger/branch", branch);
     RandomStream cable_stream(seed, "trigger/cable", camera);
     delays_.push_back(from_us(branch_stream.uniform(0, settings.branch_delay_max_us) +
-                              cable_stream.uniform(0, settings.cable_delay_max_us)));
+                              cable_stream.uniform(0, settings.cable_delay_max_us) +
+                              cameras_before * settings.daisy_chain_delay_us));
   }
   start(TrueTime{});
 }

@@ -5,6 +5,10 @@
 // first. Missed and paused pulses leave their slot empty, so that a slot number means the same to
 // every camera and to the ground truth.
 //
+// The cameras of a sub-trigger are a star, or a daisy chain in which each camera passes the pulse
+// on to the next one after daisy_chain_delay_us (Azure Kinect; one sub-trigger for all cameras then
+// stands for the master, whose oscillator the trigger's rate is).
+//
 // All randomness is drawn per slot or per branch from streams of its own, so pulses are the same
 // for every pipeline of a seed.
 //
@@ -37,7 +41,8 @@ class TriggerTree {
   TrueTime due(std::int64_t slot) const;
   // When the main trigger's pulse for `slot` leaves; nothing if it is missed or paused.
   std::optional<TrueTime> pulse(std::int64_t slot) const;
-  // Propagation from the main trigger to camera `camera`, through its branch and cable.
+  // Propagation from the main trigger to camera `camera`, through its branch, the cameras before
+  // it in a daisy chain, and its cable.
   Nanoseconds delay_to(std::size_t camera) const { return delays_[camera]; }
   // Mean time between pulses, with the trigger's own rate error.
   double period_ns() const { return period_ns_; }

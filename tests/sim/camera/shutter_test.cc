@@ -15,6 +15,7 @@ ShutterSettings settings_of(ShutterMode mode, double mode_period_ns, double expo
   return {.mode = mode,
           .mode_period_ns = mode_period_ns,
           .exposure = from_ms(exposure_ms),
+          .readout = Nanoseconds(0),
           .trigger_to_exposure = Nanoseconds(0),
           .guard_fraction = 0.02,
           .free_run_after_periods = 3};
@@ -111,6 +112,46 @@ TEST(SlaveShutter, RunsFreeWithoutPulsesAndIsTakenBack) {
   EXPECT_EQ(taken_back->pulse, 2);
   EXPECT_FALSE(shutter.on_timer(at_ms(75)));
   EXPECT_EQ(shutter.next_timer(), at_ms(104.9));
+}
+
+// Exposure 4 ms, and the last row begins 9 ms after the first.
+TEST(RollingShutter, LastsFromTheFirstRowsStartToTheLastRowsEnd) {
+  ShutterSettings settings = settings_of(ShutterMode::kGenlock, kModePeriod90);
+  settings.readout = from_ms(9);
+  Shutter genlock(settings, TrueTime{});
+  const auto started = genlock.on_pulse(at_ms(100), 0);
+  ASSERT_TRUE(started);
+  EXPECT_EQ(started->start, at_ms(100));
+  EXPECT_EQ(started->end, at_ms(113));
+
+  settings.mode = ShutterMode::kSlave;
+  Shutter slave(settings, TrueTime{});
+  const auto ended = slave.on_pulse(at_ms(100), 0);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->end, at_ms(100) + Nanoseconds(11111111));
+  EXPECT_EQ(ended->end - ended->start, from_ms(13));
+
+  settings.mode = ShutterMode::kFreeRunning;
+  Shutter free_running(settings, at_ms(50));
+  const auto unbound = free_running.on_timer(at_ms(50));
+  ASSERT_TRUE(unbound);
+  EXPECT_EQ(unbound->end, at_ms(50) + Nanoseconds(11111111));
+  EXPECT_EQ(unbound->end - unbound->start, from_ms(13));
+}
+
+TEST(RollingShutter, GenlockIgnoresPulsesWhileItReadsOut) {
+  ShutterSettings settings = settings_of(ShutterMode::kGenlock, kModePeriod90);
+  settings.readout = from_ms(18.2);  // 22.2 ms in all: just within the period
+  EXPECT_EQ(answered(settings, 2 * kModePeriod90, 4), (std::vector<std::int64_t>{0, 1, 2, 3}));
+  settings.readout = from_ms(18.3);
+  EXPECT_EQ(answered(settings, 2 * kModePeriod90, 5), (std::vector<std::int64_t>{0, 2, 4}));
+}
+
+TEST(Shutter, ANewExposureTimeCountsFromTheNextExposureOn) {
+  Shutter shutter(settings_of(ShutterMode::kGenlock, kModePeriod90), TrueTime{});
+  ASSERT_EQ(shutter.on_pulse(at_ms(0), 0)->end, at_ms(4));
+  shutter.set_exposure(from_ms(6));
+  EXPECT_EQ(shutter.on_pulse(at_ms(30), 1)->end, at_ms(36));
 }
 
 TEST(FreeRunningShutter, KeepsItsOwnRateWithoutAccumulatingRoundingErrors) {

@@ -16,6 +16,7 @@ scenarios::Trigger ideal(double rate_hz) {
           .cable_delay_max_us = 0,
           .cameras_per_sub_trigger = 6,
           .start_delay_ms = 0,
+          .daisy_chain_delay_us = 0,
           .missed_pulse_probability = 0,
           .pauses = {}};
 }
@@ -104,6 +105,16 @@ TEST(TriggerTree, CamerasOfOneBranchShareItsDelay) {
     branches.insert(tree.delay_to(camera));
   }
   EXPECT_EQ(branches.size(), 3u);
+}
+
+TEST(TriggerTree, EachCameraOfADaisyChainPassesThePulseOn) {
+  scenarios::Trigger settings = ideal(30);
+  settings.cameras_per_sub_trigger = 9;
+  settings.daisy_chain_delay_us = 1.5;
+  TriggerTree tree(settings, 18, 11);
+  for (std::size_t camera = 0; camera < 18; ++camera) {
+    EXPECT_EQ(tree.delay_to(camera), Nanoseconds(1500 * static_cast<int>(camera % 9))) << camera;
+  }
 }
 
 TEST(TriggerTree, EveryCableHasItsOwnDelay) {
