@@ -1,7 +1,11 @@
 #include "algorithms/device_time/registration.h"
 
+#include <utility>
+
 #include "algorithms/device_time/equation1.h"
 #include "algorithms/device_time/raw_arrival.h"
+#include "algorithms/device_time/registration_clock_models.h"
+#include "algorithms/device_time/registration_hull.h"
 #include "algorithms/device_time/regression.h"
 #include "algorithms/device_time/sensor_normalised.h"
 
@@ -19,14 +23,15 @@ DeviceTimeEntry equation1(const char* name, Equation1Reading reading, const char
           .make = [reading](const Parameters&) { return make_equation1(reading); }};
 }
 
-}  // namespace
+DeviceTimeEntry regression(const char* name, std::size_t frames, const char* summary) {
+  return {.info = info(name, "regression", summary, kEquation1Source),
+          .make = [frames](const Parameters&) { return make_regression({frames}); }};
+}
 
-std::vector<DeviceTimeEntry> builtin_device_time_algorithms() {
+std::vector<DeviceTimeEntry> papers_estimators() {
   return {
-      {.info = info("regression_30", "regression",
-                    "regression of arrival on sensor stamp over the last 30 frames (R3, default)",
-                    kEquation1Source),
-       .make = [](const Parameters&) { return make_regression(RegressionWindow{30}); }},
+      regression("regression_30", 30,
+                 "regression of arrival on sensor stamp over the last 30 frames (R3, default)"),
       {.info = info("regression_offline", "regression",
                     "regression of arrival on sensor stamp over the whole recording (R3)",
                     kEquation1Source),
@@ -47,7 +52,23 @@ std::vector<DeviceTimeEntry> builtin_device_time_algorithms() {
                     "the camera's own host's clock at the true mid-exposure: simulation only",
                     "the truth"),
        .make = nullptr},
+      regression("regression_300", 300,
+                 "regression of arrival on sensor stamp over the last 300 frames (R3)"),
+      {.info = info("regression_all", "regression",
+                    "regression of arrival on sensor stamp over all frames so far (R3)",
+                    kEquation1Source),
+       .make = [](const Parameters&) { return make_expanding_regression(); }},
   };
+}
+
+}  // namespace
+
+std::vector<DeviceTimeEntry> builtin_device_time_algorithms() {
+  std::vector<DeviceTimeEntry> all = papers_estimators();
+  for (auto more : {hull_device_times(), clock_model_device_times()}) {
+    for (DeviceTimeEntry& entry : more) all.push_back(std::move(entry));
+  }
+  return all;
 }
 
 }  // namespace simbench

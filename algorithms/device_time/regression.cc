@@ -3,55 +3,54 @@
 #include <optional>
 
 #include "algorithms/device_time/line_fit.h"
-#include "algorithms/device_time/saturate.h"
+#include "algorithms/device_time/sample_anchor.h"
 #include "algorithms/ports/assert.h"
 
 namespace simbench {
 namespace {
-
-// The first sample: stamps count from it, so that the numbers to fit are small.
-class Base {
- public:
-  explicit Base(const DeviceSample& first)
-      : sensor_us_(first.sensor.time_since_epoch().count()),
-        arrival_ns_(nanoseconds_of(first.arrival)) {}
-
-  // x: sensor stamp in us; y: offset of arrival to sensor in ns.
-  LinePoint point(const DeviceSample& sample) const {
-    const Int128 x = elapsed_us(sample);
-    const Int128 y = Int128{nanoseconds_of(sample.arrival)} - arrival_ns_ - 1000 * x;
-    return {saturate(x), saturate(y)};
-  }
-
-  // The host's reading when the offset is that of the line.
-  GlobalTime on_line(const DeviceSample& sample, const Line& line) const {
-    const Int128 x = elapsed_us(sample);
-    const std::int64_t offset_ns = saturate_round(line.at(saturate(x)));
-    return GlobalTime(Nanoseconds(saturate(arrival_ns_ + 1000 * x + offset_ns)));
-  }
-
- private:
-  Int128 elapsed_us(const DeviceSample& sample) const {
-    return Int128{sample.sensor.time_since_epoch().count()} - sensor_us_;
-  }
-
-  std::int64_t sensor_us_;
-  std::int64_t arrival_ns_;
-};
 
 class OnlineRegression final : public DeviceTimeEstimator {
  public:
   explicit OnlineRegression(RegressionWindow window) : window_(window.frames) {}
 
   GlobalTime stamp(const DeviceSample& sample) override {
-    if (!base_) base_.emplace(sample);
-    window_.push(base_->point(sample));
-    return base_->on_line(sample, window_.line());
+    if (!anchor_) anchor_.emplace(sample);
+    const LinePoint point = anchor_->point(sample);
+    window_.push(point);
+    return anchor_->stamp(sample.sensor, window_.line().at(point.x));
   }
 
  private:
-  std::optional<Base> base_;
+  std::optional<SampleAnchor> anchor_;
   LineWindow window_;
+};
+
+// Least squares over all points so far, from means and sums of squared deviations (Welford), which
+// lose nothing however many points there are.
+class ExpandingRegression final : public DeviceTimeEstimator {
+ public:
+  GlobalTime stamp(const DeviceSample& sample) override {
+    if (!anchor_) anchor_.emplace(sample);
+    const LinePoint point = anchor_->point(sample);
+    const auto x = static_cast<double>(point.x);
+    const auto y = static_cast<double>(point.y);
+    ++count_;
+    const double from_old_mean_x = x - mean_x_;
+    mean_x_ += from_old_mean_x / count_;
+    mean_y_ += (y - mean_y_) / count_;
+    spread_ += from_old_mean_x * (x - mean_x_);
+    common_ += from_old_mean_x * (y - mean_y_);
+    const double slope = spread_ > 0 ? common_ / spread_ : 0;
+    return anchor_->stamp(sample.sensor, mean_y_ + slope * (x - mean_x_));
+  }
+
+ private:
+  std::optional<SampleAnchor> anchor_;
+  double count_ = 0;
+  double mean_x_ = 0;
+  double mean_y_ = 0;
+  double spread_ = 0;
+  double common_ = 0;
 };
 
 class OfflineRegression final : public DeviceTimeEstimator {
@@ -60,19 +59,19 @@ class OfflineRegression final : public DeviceTimeEstimator {
 
   void learn(std::span<const DeviceSample> recording) override {
     if (recording.empty()) return;
-    base_.emplace(recording.front());
+    anchor_.emplace(recording.front());
     LineSums sums(recording.size());
-    for (const DeviceSample& sample : recording) sums.add(base_->point(sample));
+    for (const DeviceSample& sample : recording) sums.add(anchor_->point(sample));
     line_ = sums.line();
   }
 
   GlobalTime stamp(const DeviceSample& sample) override {
-    SIMBENCH_ASSERT(base_.has_value(), "an offline estimator learns the recording first");
-    return base_->on_line(sample, line_);
+    SIMBENCH_ASSERT(anchor_.has_value(), "an offline estimator learns the recording first");
+    return anchor_->stamp(sample.sensor, line_.at(anchor_->x(sample.sensor)));
   }
 
  private:
-  std::optional<Base> base_;
+  std::optional<SampleAnchor> anchor_;
   Line line_;
 };
 
@@ -80,6 +79,10 @@ class OfflineRegression final : public DeviceTimeEstimator {
 
 std::unique_ptr<DeviceTimeEstimator> make_regression(RegressionWindow window) {
   return std::make_unique<OnlineRegression>(window);
+}
+
+std::unique_ptr<DeviceTimeEstimator> make_expanding_regression() {
+  return std::make_unique<ExpandingRegression>();
 }
 
 std::unique_ptr<DeviceTimeEstimator> make_offline_regression() {

@@ -5,7 +5,7 @@
 //
 // Fitted is the offset arrival - sensor over the sensor stamp, which is the same line with small
 // numbers. Online, over the last n frames including the current one (until n exist, all so far);
-// offline, over all frames of the recording.
+// expanding, over all frames so far; offline, over all frames of the recording.
 //
 // Properties: white arrival noise of standard deviation sigma leaves 2*sigma/sqrt(n) in an online
 // stamp; a constant latency stays in the stamp, as it does in every one-way method. Fewer than two
@@ -13,7 +13,7 @@
 // points like any others. Stamps stay finite and within 64 bits for any input.
 //
 // Arrivals are those on the system clock. O(1) and no allocation per frame. Sums are exact
-// (line_fit.h), so hours cost no precision.
+// (line_fit.h) or of deviations from the mean, so hours cost no precision.
 //
 // Source: reference/paper.md section 3 (R3); reference/device_time.md section 2.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_REGRESSION_H_
@@ -31,6 +31,7 @@ struct RegressionWindow {
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_regression(RegressionWindow window);
+std::unique_ptr<DeviceTimeEstimator> make_expanding_regression();
 // Must be given the recording with learn() before the first stamp().
 std::unique_ptr<DeviceTimeEstimator> make_offline_regression();
 

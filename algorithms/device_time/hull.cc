@@ -1,0 +1,131 @@
+#include "algorithms/device_time/hull.h"
+
+#include <cstdint>
+#include <vector>
+
+#include "algorithms/device_time/lower_hull.h"
+#include "algorithms/device_time/offset_stream.h"
+#include "algorithms/device_time/saturate.h"
+#include "algorithms/device_time/switching_hull.h"
+#include "algorithms/device_time/window_hull.h"
+#include "algorithms/ports/assert.h"
+
+namespace simbench {
+namespace {
+
+using Sample = OffsetStream::Sample;
+
+// Slopes are in ns per us.
+double slope_of_ppm(double ppm) { return ppm * 1e-3; }
+
+class WindowHullEstimator final : public DeviceTimeEstimator {
+ public:
+  explicit WindowHullEstimator(WindowHullSettings settings)
+      : max_slope_(slope_of_ppm(settings.max_skew_ppm)), window_(settings.frames) {}
+
+  bool from_first_frame() const override { return true; }
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const Sample kind = stream_.push(sample);
+    if (kind == Sample::kFirst) window_.clear();
+    if (kind != Sample::kLate) {
+      if (window_.full()) window_.pop();
+      window_.push(stream_.point());
+      line_ = middle_line(window_.hull(), max_slope_);
+    }
+    return stream_.stamp(line_.at(stream_.point().x));
+  }
+
+ private:
+  double max_slope_;
+  OffsetStream stream_;
+  WindowHull window_;
+  SupportLine line_;
+};
+
+class SwitchingHullEstimator final : public DeviceTimeEstimator {
+ public:
+  explicit SwitchingHullEstimator(SwitchingHullSettings settings)
+      : max_slope_(slope_of_ppm(settings.max_skew_ppm)),
+        hull_(saturate_round(settings.period_s * 1e6)) {}
+
+  bool from_first_frame() const override { return true; }
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const Sample kind = stream_.push(sample);
+    if (kind == Sample::kFirst) hull_.clear();
+    if (kind != Sample::kLate) {
+      hull_.add(stream_.point());
+      line_ = middle_line(hull_.current(), max_slope_);
+    }
+    return stream_.stamp(line_.at(stream_.point().x));
+  }
+
+ private:
+  double max_slope_;
+  OffsetStream stream_;
+  SwitchingHull hull_;
+  SupportLine line_;
+};
+
+// A recording in which a clock was set or restarted is several, each with its own line.
+class OfflineHullEstimator final : public DeviceTimeEstimator {
+ public:
+  explicit OfflineHullEstimator(double max_skew_ppm) : max_slope_(slope_of_ppm(max_skew_ppm)) {}
+
+  bool offline() const override { return true; }
+  bool from_first_frame() const override { return true; }
+
+  void learn(std::span<const DeviceSample> recording) override {
+    OffsetStream stream;
+    LowerHull hull;
+    Int128 sum_x = 0;
+    std::int64_t points = 0;
+    const auto close = [&] {
+      if (points == 0) return;
+      const std::int64_t twice_mean_x = saturate(2 * sum_x / points);
+      lines_.push_back(support_line(hull.vertices(), twice_mean_x, max_slope_));
+      hull.clear();
+      sum_x = 0;
+      points = 0;
+    };
+    for (const DeviceSample& sample : recording) {
+      const Sample kind = stream.push(sample);
+      if (kind == Sample::kLate) continue;
+      if (kind == Sample::kFirst) close();
+      hull.add(stream.point());
+      sum_x += stream.point().x;
+      ++points;
+    }
+    close();
+  }
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    SIMBENCH_ASSERT(!lines_.empty(), "an offline estimator learns the recording first");
+    if (stream_.push(sample) == Sample::kFirst && next_line_ < lines_.size()) ++next_line_;
+    return stream_.stamp(lines_[next_line_ - 1].at(stream_.point().x));
+  }
+
+ private:
+  double max_slope_;
+  std::vector<SupportLine> lines_;
+  OffsetStream stream_;
+  std::size_t next_line_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceTimeEstimator> make_window_hull(WindowHullSettings settings) {
+  return std::make_unique<WindowHullEstimator>(settings);
+}
+
+std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings settings) {
+  SIMBENCH_ASSERT(settings.period_s > 0, "a hull grows for some time");
+  return std::make_unique<SwitchingHullEstimator>(settings);
+}
+
+std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm) {
+  return std::make_unique<OfflineHullEstimator>(max_skew_ppm);
+}
+
+}  // namespace simbench

@@ -1,0 +1,74 @@
+// The lower convex hull of a growing set of points, and lines that lie under all of them.
+//
+// Delays are one-sided: an arrival is never early. So the line of a clock lies under all points
+// (sensor stamp, offset) and touches some of them, and the edge of the lower hull over the middle
+// of the data is the highest line there that does so. Moon's linear programme and Zhang's hull give
+// the same line.
+//
+// Points come with strictly increasing x; |x| and |y| up to 2^61. Arithmetic is exact. Points on an
+// edge are not kept. Only vertices are kept, about 2 ln n of n random points; data that is convex
+// all the way would keep every point, so beyond kMaxVertices every second vertex is dropped, which
+// lifts the hull there by less than the points lie above the line between their neighbours.
+//
+// Complexity: add amortised O(1), support_line O(log vertices).
+// Source: Zhang, Liu, Xia 2002; reference/device_time.md section 1. The midpoint is taken anew for
+// each line, also of two points (the reference implementation keeps a stale one there).
+//
+//   LowerHull hull;
+//   hull.add({.x = 0, .y = 3}); hull.add({.x = 2, .y = 9}); hull.add({.x = 4, .y = 5});
+//   support_line(hull.vertices(), hull.vertices().front().x + hull.vertices().back().x).at(4);  //
+//   5
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_LOWER_HULL_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_LOWER_HULL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "algorithms/device_time/line_fit.h"
+
+namespace simbench {
+
+class LowerHull {
+ public:
+  static constexpr std::size_t kMaxVertices = 4096;
+
+  void add(LinePoint point);
+  void clear() { vertices_.clear(); }
+  std::span<const LinePoint> vertices() const { return vertices_; }
+
+ private:
+  std::vector<LinePoint> vertices_;  // x increases, and so do the slopes between them
+};
+
+// Whether b lies strictly below the line from a to c, for a.x < b.x < c.x: a vertex between them.
+inline bool is_vertex(LinePoint a, LinePoint b, LinePoint c) {
+  return Int128{c.y - a.y} * (b.x - a.x) > Int128{b.y - a.y} * (c.x - a.x);
+}
+
+// A line through a point, of a hull that it supports.
+struct SupportLine {
+  LinePoint touches;
+  double slope = 0;
+  double at(std::int64_t x) const {
+    return static_cast<double>(touches.y) + slope * static_cast<double>(x - touches.x);
+  }
+};
+
+// The edge of the hull over x = twice_x / 2, the earlier one at a vertex (of a single vertex the
+// level line). If it is steeper than max_slope, the line of that slope that touches the hull from
+// below. `vertices` is not empty.
+SupportLine support_line(std::span<const LinePoint> vertices, std::int64_t twice_x,
+                         double max_slope = std::numeric_limits<double>::infinity());
+
+// The same over the middle of the hull.
+inline SupportLine middle_line(std::span<const LinePoint> vertices,
+                               double max_slope = std::numeric_limits<double>::infinity()) {
+  return support_line(vertices, vertices.front().x + vertices.back().x, max_slope);
+}
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_LOWER_HULL_H_

@@ -1,0 +1,82 @@
+// A camera's samples as a clean series of (sensor stamp, offset) for the estimators that assume
+// one: strictly increasing sensor stamps and two clocks that are nearly alike.
+//
+// Each sample is one of
+//   kFirst  the first, or the first after a clock was set or restarted: forget all before it
+//   kNext   later than all before: learn it
+//   kLate   not later than the newest (reordered, or equal): stamp it, do not learn it
+//
+// A sample begins anew if its sensor stamp lies more than 1 s before the newest (the camera was
+// restarted), or if its offset differs from the newest's by more than 1 s + 0.1 % of the sensor
+// time in between (a clock was set). Smaller steps go to the estimator, which has its own memory.
+// Gaps of any length are no reason: a drift of up to 1000 ppm stays within the bound.
+//
+//   OffsetStream stream;
+//   switch (stream.push(sample)) {...}
+//   return stream.stamp(offset_ns);
+#ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
+#define SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "algorithms/device_time/sample_anchor.h"
+
+namespace simbench {
+
+class OffsetStream {
+ public:
+  enum class Sample : std::uint8_t { kFirst, kNext, kLate };
+
+  // |x| and |y| of a point stay within this, so that products of differences fit 128 bits.
+  static constexpr std::int64_t kReach = std::int64_t{1} << 61;
+
+  Sample push(const DeviceSample& sample) {
+    sensor_ = sample.sensor;
+    if (anchor_) point_ = reachable(anchor_->point(sample));
+    if (!anchor_ || !continues(point_)) {
+      anchor_.emplace(sample);
+      newest_ = point_ = {};
+      return Sample::kFirst;
+    }
+    if (point_.x <= newest_.x) return Sample::kLate;
+    newest_ = point_;
+    return Sample::kNext;
+  }
+
+  bool empty() const { return !anchor_.has_value(); }
+
+  // Of the sample pushed last: x the sensor stamp in us, y the offset in ns, from kFirst's.
+  LinePoint point() const { return point_; }
+
+  // The global stamp of the sample pushed last if its offset is `offset_ns`.
+  GlobalTime stamp(double offset_ns) const { return anchor_->stamp(sensor_, offset_ns); }
+
+  // For samples that are not pushed, such as the frames where polls are. Not if empty().
+  const SampleAnchor& anchor() const { return *anchor_; }
+
+  // Whether a point may belong to the same two clocks, see above. Not if empty().
+  bool continues(LinePoint point) const {
+    const std::int64_t dx_us = point.x - newest_.x;
+    const std::int64_t dy_ns = point.y - newest_.y;
+    return dx_us >= -kLatestUs && std::abs(dy_ns) <= kLargestStepNs + std::abs(dx_us);
+  }
+
+  static LinePoint reachable(LinePoint point) {
+    return {std::clamp(point.x, -kReach, kReach), std::clamp(point.y, -kReach, kReach)};
+  }
+
+ private:
+  static constexpr std::int64_t kLatestUs = 1'000'000;
+  static constexpr std::int64_t kLargestStepNs = 1'000'000'000;
+
+  std::optional<SampleAnchor> anchor_;
+  DeviceTime sensor_{};
+  LinePoint point_;
+  LinePoint newest_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
