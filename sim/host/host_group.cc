@@ -48,7 +48,14 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
       network_(engine_, scenario.network, run_seed, static_cast<std::size_t>(scenario.hosts.count),
                load_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
-  const HostWorld world{context, scenario.hosts, scenario.network, network_, load_, sink, run_seed};
+  const HostWorld world{.context = context,
+                        .hosts = scenario.hosts,
+                        .network_parameters = scenario.network,
+                        .network = network_,
+                        .load = load_,
+                        .trigger_line = trigger_line_,
+                        .sink = sink,
+                        .run_seed = run_seed};
   const std::vector<bool> with_cameras = hosts_with_cameras(scenario);
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
     make_clock(scenario.hosts.clock, run_seed, initial_clocks);
@@ -76,6 +83,11 @@ std::vector<SystemClock*> HostGroup::clocks() {
   std::vector<SystemClock*> all;
   for (SystemClock& clock : clocks_) all.push_back(&clock);
   return all;
+}
+
+void HostGroup::start_trigger(const TriggerTree& tree, std::int64_t last) {
+  trigger_line_.start(tree, last);
+  for (SimHost& host : hosts_) host.trigger_started();
 }
 
 void HostGroup::report_clocks() {

@@ -33,9 +33,11 @@
 #include "scenarios/scenario.h"
 #include "sim/clock/system_clock.h"
 #include "sim/engine/virtual_executor.h"
+#include "sim/host/pulse_sources.h"
 #include "sim/host/sim_host.h"
 #include "sim/network/network.h"
 #include "sim/network/run_load.h"
+#include "sim/trigger/trigger_tree.h"
 
 namespace simbench::sim {
 
@@ -53,6 +55,9 @@ class HostGroup {
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
 
+  // The capture's trigger has started, with pulses up to slot `last`.
+  void start_trigger(const TriggerTree& tree, std::int64_t last);
+
   // Puts the present setting of every clock on record, which all later adjustments start from.
   void report_clocks();
 
@@ -64,6 +69,7 @@ class HostGroup {
   RecordingSink& sink_;
   RunLoad load_;
   Network network_;
+  TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;
   std::deque<SimHost> hosts_;
 };

@@ -2,6 +2,7 @@
 
 #include "sim/host/sim_channel.h"
 #include "sim/host/sim_frame_feed.h"
+#include "sim/host/sim_pulse_input.h"
 
 namespace simbench::sim {
 namespace {
@@ -34,11 +35,28 @@ SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock, b
       steady_port_(world.context.engine(), system_clock),
       algorithm_draws_(world.run_seed, name("algorithm")),
       has_cameras_(has_cameras),
-      sleep_label_(name("sleep")) {
+      sleep_label_(name("sleep")),
+      receiver_(world.hosts.pulse_lines, world.run_seed, id) {
   system_clock_.observe([this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
 }
 
 SimHost::~SimHost() { system_clock_.observe(nullptr); }
+
+PulseInput* SimHost::pulse_input(PulseLine line) {
+  const bool is_pps = line == PulseLine::kPps;
+  const scenarios::PulseLines& lines = world_.hosts.pulse_lines;
+  if (!(is_pps ? lines.pps : lines.trigger)) return nullptr;
+  std::unique_ptr<SimPulseInput>& input = is_pps ? pps_ : trigger_;
+  if (input == nullptr) {
+    input = is_pps ? std::make_unique<SimPulseInput>(*this, receiver_, "pps")
+                   : std::make_unique<SimPulseInput>(*this, world_.trigger_line, "trigger");
+  }
+  return input.get();
+}
+
+void SimHost::trigger_started() {
+  if (trigger_ != nullptr) trigger_->source_changed();
+}
 
 FrameFeed* SimHost::frame_feed() {
   if (!has_cameras_) return nullptr;

@@ -33,6 +33,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/clock_port.h"
 #include "sim/host/cpu.h"
+#include "sim/host/pulse_sources.h"
 #include "sim/network/network.h"
 #include "sim/network/run_load.h"
 
@@ -40,6 +41,7 @@ namespace simbench::sim {
 
 class SimChannel;
 class SimFrameFeed;
+class SimPulseInput;
 
 // What the hosts of a world have in common. Everything referred to must outlive them.
 struct HostWorld {
@@ -48,6 +50,7 @@ struct HostWorld {
   const scenarios::Network& network_parameters;
   Network& network;
   const RunLoad& load;
+  const TriggerLine& trigger_line;
   RecordingSink& sink;
   std::uint64_t run_seed;
 };
@@ -63,6 +66,7 @@ class SimHost final : public Host {
   PeerId id() const override { return id_; }
   HostClock& clock() override { return clock_port_; }
   const SteadyClock& steady_clock() const override { return steady_port_; }
+  PulseInput* pulse_input(PulseLine line) override;
   FrameFeed* frame_feed() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
   Task<void> sleep_for(Nanoseconds interval) override;
@@ -73,6 +77,9 @@ class SimHost final : public Host {
 
   // The feed if somebody has asked for it.
   SimFrameFeed* opened_frame_feed() const { return frame_feed_.get(); }
+
+  // The trigger line has come alive.
+  void trigger_started();
 
   // For its ports.
   const HostWorld& world() const { return world_; }
@@ -109,6 +116,9 @@ class SimHost final : public Host {
   RandomStream algorithm_draws_;
   bool has_cameras_;
   std::string sleep_label_;
+  PpsReceiver receiver_;
+  std::unique_ptr<SimPulseInput> pps_;
+  std::unique_ptr<SimPulseInput> trigger_;
   std::unique_ptr<SimFrameFeed> frame_feed_;
   std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;

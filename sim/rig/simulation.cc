@@ -12,6 +12,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
 #include "sim/rig/capture.h"
+#include "sim/rig/clock_polls.h"
 #include "sim/rig/frame_feeds.h"
 
 namespace simbench::sim {
@@ -29,7 +30,8 @@ class Run {
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
         capture_(scenario, request.seed, engine_, hosts_.clocks(), sink),
-        frame_feeds_(scenario, hosts_) {
+        frame_feeds_(scenario, hosts_),
+        clock_polls_(scenario, request.seed, engine_, hosts_, capture_, sink) {
     capture_.observe_frames(frame_feeds_);
   }
   Run(const Run&) = delete;
@@ -90,6 +92,8 @@ class Run {
         captured_ = true;
         engine_.stop();
       });
+      hosts_.start_trigger(capture_.trigger(), capture_.last_slot());
+      clock_polls_.start();
     });
   }
 
@@ -107,6 +111,7 @@ class Run {
   HostGroup hosts_;
   Capture capture_;
   FrameFeeds frame_feeds_;
+  ClockPolls clock_polls_;
   std::exception_ptr failure_;
   bool captured_ = false;
 };

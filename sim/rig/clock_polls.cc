@@ -1,0 +1,76 @@
+#include "sim/rig/clock_polls.h"
+
+#include <algorithm>
+
+#include "sim/engine/random.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kPhase("camera: phase of the clock polls");
+constexpr ComponentKey kDelays("camera: delays of a clock poll");
+
+}  // namespace
+
+ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
+                       HostGroup& hosts, Capture& capture, RecordingSink& sink)
+    : scenario_(scenario),
+      seed_(seed),
+      engine_(engine),
+      hosts_(hosts),
+      capture_(capture),
+      sink_(sink),
+      interval_(from_ms(scenario.cameras.clock_poll.interval_ms)) {}
+
+void ClockPolls::start() {
+  if (interval_.count() == 0) return;
+  id_ = engine_.attach(*this);
+  const auto cameras = static_cast<std::uint32_t>(scenario_.cameras.count);
+  polls_.resize(cameras);
+  for (std::uint32_t camera = 0; camera < cameras; ++camera) {
+    RandomStream draw(seed_, kPhase, camera);
+    polls_[camera].first = capture_.camera_start(camera) +
+                           from_ms(draw.uniform(0, scenario_.cameras.clock_poll.interval_ms));
+    send(camera, 0);
+  }
+}
+
+void ClockPolls::send(std::uint32_t camera, std::int64_t number) {
+  const scenarios::ClockPoll& parameters = scenario_.cameras.clock_poll;
+  Poll& poll = polls_[camera];
+  poll.number = number;
+  poll.begin = poll.first + number * interval_;
+  if (poll.begin >= capture_.end()) return;
+  RandomStream draw(seed_, kDelays, camera, static_cast<std::uint64_t>(number));
+  double request_ms = parameters.request_ms + draw.exponential(parameters.request_exponential_ms);
+  const double reply_ms = parameters.reply_ms + draw.exponential(parameters.reply_exponential_ms);
+  if (draw.chance(parameters.tail_probability))
+    request_ms += draw.uniform(0, parameters.tail_max_ms);
+  poll.read = poll.begin + from_ms(request_ms);
+  engine_.schedule(poll.read + from_ms(reply_ms), id_, 0, camera);
+}
+
+void ClockPolls::handle(const Event& event) {
+  const std::uint32_t camera = event.subject;
+  report(camera);
+  const Poll& poll = polls_[camera];
+  // The first that begins now or later.
+  const std::int64_t due = (event.time - poll.first + interval_ - Nanoseconds(1)) / interval_;
+  send(camera, std::max(poll.number + 1, due));
+}
+
+void ClockPolls::report(std::uint32_t camera) {
+  const Poll& poll = polls_[camera];
+  if (capture_.vanished(camera, poll.read)) return;
+  const SimHost& host = hosts_.host(static_cast<std::size_t>(scenario_.host_of(camera)));
+  const SystemClock& clock = host.system_clock();
+  const ClockInterface& interface = host.clock_interface();
+  sink_.on_poll({.camera = camera,
+                 .device = capture_.device_clock(camera).stamp(poll.read, 0),
+                 .t0 = interface.read(clock.read(poll.begin)),
+                 .t1 = interface.read(clock.read(engine_.now())),
+                 .t0_steady = clock.steady(poll.begin),
+                 .t1_steady = clock.steady(engine_.now())});
+}
+
+}  // namespace simbench::sim
