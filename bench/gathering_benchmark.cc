@@ -1,16 +1,20 @@
-// Time per emitted set of the gatherers, by number of sources.
+// Time per pulse of every registered gatherer, by number of sources.
+//
+// "clean": one frame of every source per pulse, so a set per pulse. "lossy": about one pulse in
+// five lacks a frame. "noisy": stamps over half a period, so that fronts must be searched.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
 
-#include "algorithms/gathering/genlock.h"
-#include "algorithms/gathering/yoon2021.h"
+#include "algorithms/registry.h"
 
 namespace {
 
 using simbench::GatherFrame;
-using simbench::GatheringSetup;
+using simbench::GatheringEntry;
 
 constexpr std::int64_t kPeriodUs = 22'222;
 
@@ -20,60 +24,76 @@ class CountSets : public simbench::FrameSetSink {
     benchmark::DoNotOptimize(set.data());
     ++sets;
   }
+  void on_partial_set(std::span<const GatherFrame> set) override {
+    benchmark::DoNotOptimize(set.data());
+    ++partial_sets;
+  }
   std::int64_t sets = 0;
+  std::int64_t partial_sets = 0;
 };
 
-// Source `source`'s frame of a pulse, up to 3 ms from it.
-GatherFrame frame_of(std::int64_t pulse, std::uint32_t source) {
-  const std::int64_t at_us = pulse * kPeriodUs + (pulse * 31 + source * 7919) % 3000;
+struct Stream {
+  std::int64_t noise_us = 3000;
+  std::int64_t lost_every = 0;  // pulses that lack a frame: one in so many; 0: none
+};
+
+// Source `source`'s frame of a pulse, up to `noise_us` from it.
+GatherFrame frame_of(std::int64_t pulse, std::uint32_t source, std::int64_t noise_us) {
+  const std::int64_t at_us = pulse * kPeriodUs + (pulse * 31 + source * 7919) % noise_us;
   return {.source = source,
           .stamp = simbench::GlobalTime(simbench::Microseconds(at_us)),
-          .sensor = simbench::DeviceTime(simbench::Microseconds(at_us)),
+          .arrival = simbench::GlobalTime(simbench::Microseconds(at_us)),
+          .sensor = simbench::DeviceTime(simbench::Microseconds(pulse * kPeriodUs)),
           .tag = pulse};
 }
 
-GatheringSetup setup_for(std::uint32_t sources) {
-  return {.sources = sources,
-          .period = simbench::Microseconds(kPeriodUs),
-          .interval = simbench::Microseconds(kPeriodUs / 2)};
-}
-
-// Every iteration pushes the frames of one pulse; `lost_every` > 0: a frame in so many is lost.
-void gather(benchmark::State& state, simbench::Gatherer& gatherer, std::int64_t lost_every) {
+// Every iteration pushes the frames of one pulse.
+void gather(benchmark::State& state, const GatheringEntry& entry, const Stream& stream) {
   const auto sources = static_cast<std::uint32_t>(state.range(0));
+  const auto gatherer = entry.make(simbench::check_parameters(entry.info.parameters, {}),
+                                   {.sources = sources,
+                                    .period = simbench::Microseconds(kPeriodUs),
+                                    .interval = simbench::Microseconds(kPeriodUs / 2)});
   CountSets sink;
   std::int64_t pulse = 0;
-  std::int64_t frames = 0;
   for (auto iteration : state) {
+    const bool lossy = stream.lost_every > 0 && pulse % stream.lost_every == 0;
+    const std::int64_t lost = lossy ? pulse % sources : -1;
     for (std::uint32_t source = 0; source < sources; ++source) {
-      if (lost_every > 0 && ++frames % lost_every == 0) continue;
-      gatherer.push(frame_of(pulse, source), sink);
+      if (source != lost) gatherer->push(frame_of(pulse, source, stream.noise_us), sink);
     }
     ++pulse;
   }
+  const auto per_pulse = [&](std::int64_t count) {
+    return static_cast<double>(count) / static_cast<double>(state.iterations());
+  };
   state.SetItemsProcessed(state.iterations() * sources);
-  state.counters["sets_per_pulse"] =
-      static_cast<double>(sink.sets) / static_cast<double>(state.iterations());
+  state.counters["sets_per_pulse"] = per_pulse(sink.sets);
+  state.counters["partial_per_pulse"] = per_pulse(sink.partial_sets);
 }
 
-void yoon2021(benchmark::State& state) {
-  const auto sources = static_cast<std::uint32_t>(state.range(0));
-  gather(state, *simbench::make_yoon2021_gatherer(setup_for(sources)), 0);
+void add_benchmarks() {
+  const struct {
+    const char* name;
+    Stream stream;
+  } streams[] = {{"clean", {}}, {"lossy", {.lost_every = 5}}, {"noisy", {.noise_us = 10'000}}};
+  for (const GatheringEntry& entry : simbench::gathering_algorithms()) {
+    for (const auto& [name, stream] : streams) {
+      benchmark::RegisterBenchmark(
+          (entry.info.name + "/" + name).c_str(),
+          [&entry, stream](benchmark::State& state) { gather(state, entry, stream); })
+          ->Arg(18)
+          ->Arg(1000);
+    }
+  }
 }
-BENCHMARK(yoon2021)->Arg(18)->Arg(1000)->Arg(18000);
-
-void yoon2021_lossy(benchmark::State& state) {
-  const auto sources = static_cast<std::uint32_t>(state.range(0));
-  gather(state, *simbench::make_yoon2021_gatherer(setup_for(sources)), 5 * state.range(0) + 1);
-}
-BENCHMARK(yoon2021_lossy)->Arg(18)->Arg(1000);
-
-void genlock(benchmark::State& state) {
-  const auto sources = static_cast<std::uint32_t>(state.range(0));
-  const auto gatherer = simbench::make_genlock_gatherer(
-      setup_for(sources), simbench::GenlockOrder::Variant::kReanchored);
-  gather(state, *gatherer, 0);
-}
-BENCHMARK(genlock)->Arg(18)->Arg(1000);
 
 }  // namespace
+
+int main(int argc, char** argv) {
+  add_benchmarks();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
