@@ -29,6 +29,11 @@ double thread_cpu_seconds() {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
+bool is_offline(const PipelineChoice& choice) {
+  return choice.device_time.make &&
+         choice.device_time.make(choice.device_time_parameters)->offline();
+}
+
 // The jobs of one evaluation and what has come of them.
 class Evaluation {
  public:
@@ -123,6 +128,8 @@ class Evaluation {
     results.scenario = scenario_.name;
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
+    results.asymmetry_floor =
+        asymmetry_floor(scenario_.network.asymmetry_sigma_ms, scenario_.hosts.count);
     const RowSetting setting = row_setting(scenario_);
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
       results.rows.push_back(row(pipeline, setting));
@@ -143,6 +150,7 @@ class Evaluation {
       if (scores_[job]) seeds.push_back(std::move(*scores_[job]));
     }
     Row row = make_row(choices_[pipeline].pipeline, std::move(seeds), setting);
+    row.offline = is_offline(choices_[pipeline]);
     const auto published = scenario_.published.find(row.pipeline);
     if (published != scenario_.published.end()) {
       row.published = compare(published->second, row, setting);

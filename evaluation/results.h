@@ -6,10 +6,12 @@
 #define SIMBENCH_EVALUATION_RESULTS_H_
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "evaluation/asymmetry_floor.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
@@ -43,6 +45,9 @@ struct SeedScore {
   double bias_ms = 0;
   double host_error_ms = 0;
   double exposure_spread_ms = 0;
+  // Over the complete sets that gathering emitted; NaN: it emitted none (or there is no truth).
+  double set_amd_ms = std::numeric_limits<double>::quiet_NaN();  // mean range of a set's stamps
+  double set_absolute_error_ms = std::numeric_limits<double>::quiet_NaN();
   // Beyond the table; the paper's claims rest on these.
   double offline_amd_ms = 0;  // AMD of regression_offline over the same recording; NaN if not asked
   double spread_in_host_ms = 0;        // mean over pulses and hosts of the range inside one host
@@ -90,6 +95,7 @@ struct Row {
   std::string host_sync;
   std::string device_time;
   std::string gathering;
+  bool offline = false;  // device_time needs the whole recording
   Series amd_ms;
   Series rmdv_ms;
   Series absolute_error_ms;
@@ -128,6 +134,7 @@ struct Results {
   std::uint64_t seed_count = 0;
   std::vector<Row> rows;
   std::vector<Claim> claims;
+  std::optional<AsymmetryFloor> asymmetry_floor;  // if the scenario's links are asymmetric
   std::vector<std::string> warnings;
   Performance performance;
 };

@@ -36,6 +36,7 @@ Json row_json(const evaluation::Row& row) {
           {"host_sync", row.host_sync},
           {"device_time", row.device_time},
           {"gathering", row.gathering},
+          {"offline", row.offline},
           {"amd_ms", series_json(row.amd_ms)},
           {"rmdv_ms", series_json(row.rmdv_ms)},
           {"absolute_error_ms", series_json(row.absolute_error_ms)},
@@ -51,6 +52,13 @@ Json row_json(const evaluation::Row& row) {
           {"evaluated_pulses", row.evaluated_pulses},
           {"unsynchronised_hosts", row.unsynchronised_hosts},
           {"published", published_json(row.published)}};
+}
+
+Json floor_json(const std::optional<evaluation::AsymmetryFloor>& floor) {
+  if (!floor) return nullptr;
+  return {{"sigma_ms", floor->sigma_ms},
+          {"host_error_ms", floor->host_error_ms},
+          {"amd_ms", floor->amd_ms}};
 }
 
 Json claim_json(const evaluation::Claim& claim) {
@@ -70,6 +78,7 @@ std::string json(const evaluation::Results& results) {
                {"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
                {"rows", Json::array()},
                {"claims", Json::array()},
+               {"asymmetry_floor", floor_json(results.asymmetry_floor)},
                {"warnings", results.warnings}};
   for (const evaluation::Row& row : results.rows) root["rows"].push_back(row_json(row));
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));

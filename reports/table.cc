@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "reports/leaderboard_report.h"
 #include "reports/number_text.h"
 #include "reports/text_table.h"
 
@@ -184,6 +185,8 @@ std::string report(const Results& results, std::string_view summary, const Layou
   }
   out += layout.heading("How to read it");
   for (const std::string& text : legend(results)) out += layout.line(text);
+  const std::string asymmetry = asymmetry_line(results);
+  if (!asymmetry.empty()) out += layout.line(asymmetry);
   out += layout.heading("Pipelines = host_sync + device_time + gathering");
   for (const Row& row : results.rows) out += layout.line(stages_text(row));
   if (!results.claims.empty()) {

@@ -8,15 +8,19 @@
 #include <memory>
 #include <optional>
 
+#include "evaluation/budget.h"
 #include "evaluation/evaluate.h"
+#include "evaluation/pipeline_choice.h"
 #include "reports/archive.h"
+#include "reports/budget_report.h"
 #include "reports/csv.h"
 #include "reports/json.h"
+#include "reports/leaderboard_report.h"
 #include "reports/table.h"
 #include "sim/rig/simulation.h"
 #include "tools/exit_status.h"
 #include "tools/interrupt.h"
-#include "tools/progress.h"
+#include "tools/watched.h"
 
 namespace simbench::tools {
 namespace {
@@ -27,6 +31,7 @@ Examples:
   simbench run --scenario 18cam_6host_45fps --seeds 1000 --pipelines yoon2021_both,genlock
   simbench run --scenario my_rig.json --set /network/latency_fixed_ms=0.2 --format markdown
   simbench run --scenario 3cam_1host_30fps --format json > results.json
+  simbench run --scenario 18cam_6host_45fps_lan --pipelines yoon2021_both --budget
   simbench run --scenario 3cam_1host_30fps --output results/monday
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
@@ -37,42 +42,78 @@ struct RunOptions {
   std::vector<std::string> sets;
   std::string format;
   std::string output;
+  bool budget = false;
   std::vector<std::string> command;
 };
 
-std::string formatted(const evaluation::Results& results, const std::string& summary,
+std::string formatted(const evaluation::Results& results, const scenarios::Scenario& scenario,
                       const std::string& format) {
+  const std::string& summary = scenario.summary;
+  if (scenario.evaluation.table == "leaderboard") {
+    if (format == "json") return reports::leaderboard_json(results);
+    if (format == "markdown") return reports::leaderboard_markdown(results, summary);
+    if (format == "table") return reports::leaderboard_table(results, summary);
+  }
   if (format == "json") return reports::json(results);
   if (format == "csv") return reports::csv(results);
   if (format == "markdown") return reports::markdown(results, summary);
   return reports::table(results, summary);
 }
 
-// Runs until done or interrupted: then there are no results.
+evaluation::WorldFactory make_world() {
+  return [](const scenarios::Scenario& scenario) {
+    return interruptible(sim::make_simulation(scenario));
+  };
+}
+
 std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
                                             const evaluation::EvaluationOptions& options) {
-  const InterruptHandler handler;
-  Progress progress(std::cerr, terminal_style(), "runs");
-  std::uint64_t finished = 0;
-  std::uint64_t all = 0;
-  try {
+  return watched<evaluation::Results>([&](const evaluation::Progress& progress) {
     return evaluation::evaluate(
-        scenario, [&] { return interruptible(sim::make_simulation(scenario)); }, options,
-        [&](std::uint64_t done, std::uint64_t total) {
-          finished = done;
-          all = total;
-          progress.update(done, total);
+        scenario, [&] { return make_world()(scenario); }, options, progress);
+  });
+}
+
+// An error budget of every pipeline in place of the table.
+int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) {
+  reports::BudgetReport report = {.scenario = scenario.name,
+                                  .first_seed = options.evaluation.first_seed,
+                                  .seeds = options.evaluation.seeds,
+                                  .budgets = {}};
+  for (const evaluation::PipelineChoice& choice :
+       evaluation::choose_pipelines(scenario, options.evaluation.pipelines)) {
+    std::optional<evaluation::Budget> budget =
+        watched<evaluation::Budget>([&](const evaluation::Progress& progress) {
+          return evaluation::error_budget(scenario, choice.pipeline, make_world(),
+                                          options.evaluation, progress);
         });
-  } catch (const std::exception&) {
-    if (!InterruptHandler::raised()) throw;
+    if (!budget) return kInterrupted;
+    report.budgets.push_back(std::move(*budget));
   }
-  progress.finish();
-  std::cerr << fmt::format("interrupted after {} of {} runs; no result was written\n", finished,
-                           all ? std::to_string(all) : "all");
-  return std::nullopt;
+  if (options.format == "json") {
+    print_result(reports::budget_json(report));
+  } else if (options.format == "markdown") {
+    print_result(reports::budget_markdown(report));
+  } else {
+    print_result(reports::budget_table(report));
+  }
+  return kOk;
+}
+
+// What --budget cannot be combined with.
+void check_budget_options(const RunOptions& options) {
+  if (!options.budget) return;
+  if (options.format == "csv") {
+    throw scenarios::InputError(
+        "--format: found 'csv', allowed with --budget: table, markdown, json");
+  }
+  if (!options.output.empty()) {
+    throw scenarios::InputError("--output: a result archive holds no budget; use --format json");
+  }
 }
 
 int run(const RunOptions& options) {
+  check_budget_options(options);
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
@@ -80,6 +121,7 @@ int run(const RunOptions& options) {
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
+  if (options.budget) return run_budgets(options, scenario);
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
 
@@ -93,7 +135,7 @@ int run(const RunOptions& options) {
     reports::write_archive(*output, *results, scenario, provenance);
     std::cerr << "results written to " << options.output << '\n';
   }
-  print_result(formatted(*results, scenario.summary, options.format));
+  print_result(formatted(*results, scenario, options.format));
   return kOk;
 }
 
@@ -134,6 +176,9 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
                    "Write a result archive to this folder: manifest.json, results.json,\n"
                    "frames.csv, hosts.csv. An earlier archive there is replaced")
       ->type_name("DIR");
+  command->add_flag("--budget", options->budget,
+                    "Instead of the table, divide each pipeline's error among the stages that\n"
+                    "cause it (128 runs for every seed)");
   command->footer(kExamples);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

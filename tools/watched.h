@@ -1,0 +1,51 @@
+// Runs work that reports its progress and may be interrupted, the way every long command does.
+//
+// Progress goes to standard error. After the first Ctrl-C the work ends at its next run; then a
+// line says how far it got, and there is no result.
+//
+//   const auto results = watched<Results>([&](const evaluation::Progress& progress) {
+//     return evaluation::evaluate(scenario, make_source, options, progress);
+//   });
+//   if (!results) return kInterrupted;
+#ifndef SIMBENCH_TOOLS_WATCHED_H_
+#define SIMBENCH_TOOLS_WATCHED_H_
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "evaluation/evaluate.h"
+#include "tools/interrupt.h"
+#include "tools/progress.h"
+
+namespace simbench::tools {
+
+// Everything that `work` throws passes through, unless it was interrupted.
+template <class Result, class Work>
+std::optional<Result> watched(const Work& work) {
+  const InterruptHandler handler;
+  Progress progress(std::cerr, terminal_style(), "runs");
+  std::uint64_t finished = 0;
+  std::uint64_t all = 0;
+  try {
+    return work([&](std::uint64_t done, std::uint64_t total) {
+      finished = done;
+      all = total;
+      progress.update(done, total);
+    });
+  } catch (const std::exception&) {
+    if (!InterruptHandler::raised()) throw;
+  }
+  progress.finish();
+  std::cerr << fmt::format("interrupted after {} of {} runs; no result was written\n", finished,
+                           all ? std::to_string(all) : "all");
+  return std::nullopt;
+}
+
+}  // namespace simbench::tools
+
+#endif  // SIMBENCH_TOOLS_WATCHED_H_
