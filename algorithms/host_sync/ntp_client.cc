@@ -121,7 +121,7 @@ Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
   if (!sample || filter_.distance_s() + root_distance_s_ > NtpClockFilter::kMaxDistance) {
     co_return NtpAction::kIgnore;
   }
-  const NtpAction action = discipline_.update(sample->offset_s, seconds(now()));
+  const NtpAction action = discipline_.update(sample->offset_s, sample->at_s);
   if (action == NtpAction::kPanic) {
     panicked_ = true;
     report(false, "the clock is off by " + text(sample->offset_s) + ", more than the panic limit " +
