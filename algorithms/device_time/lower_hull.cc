@@ -7,10 +7,14 @@
 namespace simbench {
 namespace {
 
-// The first and the last vertex stay.
-void drop_every_second(std::vector<LinePoint>& vertices) {
+// Leaves at most half of them and the two ends, none much closer together than another.
+void thin(std::vector<LinePoint>& vertices) {
+  const std::int64_t span = vertices.back().x - vertices.front().x;
+  const std::int64_t gap = span / static_cast<std::int64_t>(LowerHull::kMaxVertices / 2);
   std::size_t kept = 1;
-  for (std::size_t i = 2; i + 1 < vertices.size(); i += 2) vertices[kept++] = vertices[i];
+  for (std::size_t i = 1; i + 1 < vertices.size(); ++i) {
+    if (vertices[i].x - vertices[kept - 1].x > gap) vertices[kept++] = vertices[i];
+  }
   vertices[kept++] = vertices.back();
   vertices.resize(kept);
 }
@@ -27,7 +31,7 @@ void LowerHull::add(LinePoint point) {
   std::size_t size = vertices_.size();
   while (size >= 2 && !is_vertex(vertices_[size - 2], vertices_[size - 1], point)) --size;
   vertices_.resize(size);
-  if (size == kMaxVertices) drop_every_second(vertices_);
+  if (size == kMaxVertices) thin(vertices_);
   vertices_.push_back(point);
 }
 

@@ -7,8 +7,8 @@
 //
 // Points come with strictly increasing x; |x| and |y| up to 2^61. Arithmetic is exact. Points on an
 // edge are not kept. Only vertices are kept, about 2 ln n of n random points; data that is convex
-// all the way would keep every point, so beyond kMaxVertices every second vertex is dropped, which
-// lifts the hull there by less than the points lie above the line between their neighbours.
+// all the way would keep every point, so at kMaxVertices those closer together than 1/2048 of the
+// span are thinned out, which lifts the hull by no more than a chord of that length does.
 //
 // Complexity: add amortised O(1), support_line O(log vertices).
 // Source: Zhang, Liu, Xia 2002; reference/device_time.md section 1. The midpoint is taken anew for
