@@ -12,7 +12,7 @@ namespace simbench {
 namespace {
 
 constexpr std::int64_t kGapsUntilInactive = 7;
-constexpr std::int64_t kInactive = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kNeverSeen = std::numeric_limits<std::int64_t>::max();
 
 class LibrealsenseGatherer final : public Gatherer {
  public:
@@ -20,7 +20,7 @@ class LibrealsenseGatherer final : public Gatherer {
       : gap_(setup.period.count()),
         limit_(setup.queue_limit),
         queues_(setup.sources, setup.queue_limit),
-        expected_(setup.sources, kInactive) {
+        expected_(setup.sources, kNeverSeen) {
     SIMBENCH_ASSERT(gap_ > 0, "the frame period must be positive");
     group_.reserve(setup.sources);
   }
@@ -61,14 +61,10 @@ class LibrealsenseGatherer final : public Gatherer {
     return false;
   }
 
-  bool is_expected(std::uint32_t source) {
+  bool is_expected(std::uint32_t source) const {
     const std::int64_t expected = expected_[source];
-    if (expected == kInactive) return false;
-    if (newest_ > expected) {
-      if (newest_ - expected < kGapsUntilInactive * gap_) return true;
-      expected_[source] = kInactive;
-      return false;
-    }
+    if (expected == kNeverSeen) return false;
+    if (newest_ > expected) return newest_ - expected < kGapsUntilInactive * gap_;
     return are_equivalent(std::min(earliest_, expected), std::max(earliest_, expected));
   }
 
@@ -103,7 +99,7 @@ class LibrealsenseGatherer final : public Gatherer {
   std::int64_t gap_;
   std::uint32_t limit_;
   FrameQueues queues_;
-  std::vector<std::int64_t> expected_;  // by source: stamp of its next frame, or kInactive
+  std::vector<std::int64_t> expected_;  // by source: stamp of its next frame, or kNeverSeen
   std::uint32_t fronts_ = 0;            // sources that have one
   std::int64_t earliest_ = 0;           // of the fronts
   std::int64_t latest_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -13,14 +14,19 @@
 namespace simbench {
 namespace {
 
+constexpr double kTurnsPerRadian = 0.5 / std::numbers::pi;
+
 // phase + k * period, following the stamps.
+//
+// The circular mean is the direction of a sum of unit vectors, one per frame. The grid is turned to
+// that direction after each frame, so that only the length of the sum need be kept.
 class PhaseGrid {
  public:
-  PhaseGrid(std::int64_t period, double decay) : period_(period), least_weight_(1 - decay) {}
+  PhaseGrid(std::int64_t period, double decay) : period_(period), decay_(decay) {}
 
   // The slot of a stamp, which then has its part in the phase.
   std::int64_t slot_of(std::int64_t key) {
-    if (frames_ == 0) point_ = key;
+    if (length_ == 0) point_ = key;
     std::int64_t slots = (key - point_) / period_;
     std::int64_t residual = (key - point_) % period_;
     if (residual > period_ / 2) {
@@ -31,17 +37,24 @@ class PhaseGrid {
       --slots;
     }
     slot_ += slots;
-    const double weight = std::max(least_weight_, 1 / (frames_ + 1));
-    frames_ += 1;
-    const std::int64_t shift = std::llround(weight * static_cast<double>(residual));
-    point_ = std::clamp(key - residual + shift, -kFarthestKey, kFarthestKey);
+    point_ = std::clamp(key - residual + turn(residual), -kFarthestKey, kFarthestKey);
     return slot_;
   }
 
  private:
+  // Adds a frame that is `residual` from the grid; by how much this moves the grid.
+  std::int64_t turn(std::int64_t residual) {
+    const double scale = static_cast<double>(period_) * kTurnsPerRadian;  // of a radian
+    const double angle = static_cast<double>(residual) / scale;
+    const double along = decay_ * length_ + std::cos(angle);
+    const double across = std::sin(angle);
+    length_ = std::sqrt(along * along + across * across);
+    return std::llround(std::atan2(across, along) * scale);
+  }
+
   std::int64_t period_;
-  double least_weight_;
-  double frames_ = 0;
+  double decay_;
+  double length_ = 0;       // of the sum of vectors
   std::int64_t point_ = 0;  // of the grid, near the last stamp
   std::int64_t slot_ = 0;   // its number
 };

@@ -3,7 +3,7 @@
 // The stamps of all sources together define a grid, phase + k * period: a frame belongs to slot
 // k = round((t - phase) / period), and a slot that has a frame of every source is a set. The phase
 // is the running circular mean of the stamps modulo the period, in which a frame weighs `decay`
-// times its successor; the first ones all weigh the same. The grid is
+// times its successor. The grid is
 // carried on from frame to frame, so a period that is a little wrong never adds up.
 //
 // What to expect: the best policy for noisy stamps, as up to half a period from the *mean* is
