@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/chrony_service.h"
 #include "algorithms/host_sync/ntp_service.h"
 #include "algorithms/parameter_specs.h"
 
@@ -11,6 +12,14 @@ namespace simbench {
 namespace {
 
 const char* const kReferenceNtp = "reference implementation (host_sync.md section 2)";
+
+void check_poll_bounds(int low, int high) {
+  if (low > high) throw ParameterError("max_poll", "max_poll must not be below min_poll");
+}
+
+NtpStamps stamps_of(const Parameters& parameters) {
+  return parameters.text("stamps") == "kernel" ? NtpStamps::kKernel : NtpStamps::kApplication;
+}
 
 std::vector<ParameterSpec> ntp_parameters() {
   return {
@@ -54,17 +63,78 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode) {
     settings.discipline.panic_s = parameters.number("panic_s");
     settings.discipline.poll_min = static_cast<int>(parameters.number("min_poll"));
     settings.discipline.poll_max = static_cast<int>(parameters.number("max_poll"));
-    if (settings.discipline.poll_min > settings.discipline.poll_max) {
-      throw ParameterError("max_poll", "max_poll must not be below min_poll");
-    }
+    check_poll_bounds(settings.discipline.poll_min, settings.discipline.poll_max);
     settings.initial_burst = parameters.flag("iburst");
-    settings.stamps =
-        parameters.text("stamps") == "kernel" ? NtpStamps::kKernel : NtpStamps::kApplication;
+    settings.stamps = stamps_of(parameters);
     settings.broadcast_interval = from_ms(parameters.number("broadcast_interval_s") * 1e3);
     settings.broadcast_delay_s = parameters.number("broadcast_delay_ms") * 1e-3;
     settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
     return std::make_unique<NtpService>(settings);
   };
+  return entry;
+}
+
+const char* const kChronyDocumentation = "chrony.conf documentation (host_sync.md section 2)";
+
+std::vector<ParameterSpec> chrony_parameters() {
+  return {
+      number_parameter("min_poll", 6, 0, 17, "shortest poll interval, log2 s",
+                       kChronyDocumentation),
+      number_parameter("max_poll", 10, 0, 17, "longest poll interval, log2 s",
+                       kChronyDocumentation),
+      number_parameter("poll_target", 8, 3, 60, "samples that the poll interval aims at",
+                       kChronyDocumentation),
+      flag_parameter("iburst", true, "four good exchanges at 2 s to begin with",
+                     "usual configuration (iburst)"),
+      number_parameter("min_samples", 6, 3, 64, "samples that the runs test leaves",
+                       kChronyDocumentation),
+      number_parameter("max_samples", 64, 4, 64, "samples that are kept", kChronyDocumentation),
+      number_parameter("max_delay_ratio", 10, 0.1, 1e6,
+                       "largest delay above the minimum, in standard deviations of the samples",
+                       kChronyDocumentation),
+      number_parameter("correction_ratio", 3, 0.01, 100,
+                       "duration of a slew over the time between updates (corrtimeratio)",
+                       kChronyDocumentation),
+      number_parameter("max_slew_ppm", 83333.333, 1, 100000, "fastest slew (maxslewrate)",
+                       kChronyDocumentation),
+      number_parameter("max_update_skew_ppm", 1000, 0.001, 1e6,
+                       "skew above which a frequency is not used (maxupdateskew)",
+                       kChronyDocumentation),
+      choice_parameter("stamps", {"application", "kernel"},
+                       "t1 before the send, or from the kernel where it tells",
+                       "the other stamps are the application's"),
+      number_parameter("service_hours", 6, 0, 1e4,
+                       "how long the service has run when the capture starts",
+                       "assumption: start-up transients are over"),
+  };
+}
+
+std::unique_ptr<HostSync> make_chrony(const Parameters& parameters) {
+  ChronySettings settings;
+  settings.poll_min = static_cast<int>(parameters.number("min_poll"));
+  settings.poll_max = static_cast<int>(parameters.number("max_poll"));
+  check_poll_bounds(settings.poll_min, settings.poll_max);
+  settings.poll_target = parameters.number("poll_target");
+  settings.initial_burst = parameters.flag("iburst");
+  settings.stats.min_samples = static_cast<std::size_t>(parameters.number("min_samples"));
+  settings.stats.max_samples = static_cast<std::size_t>(parameters.number("max_samples"));
+  settings.stats.max_delay_ratio = parameters.number("max_delay_ratio");
+  settings.reference.correction_ratio = parameters.number("correction_ratio");
+  settings.reference.max_slew_rate = parameters.number("max_slew_ppm") * 1e-6;
+  settings.reference.max_update_skew = parameters.number("max_update_skew_ppm") * 1e-6;
+  settings.stamps = stamps_of(parameters);
+  settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
+  return std::make_unique<ChronyService>(settings);
+}
+
+HostSyncEntry chrony() {
+  HostSyncEntry entry;
+  entry.info.name = "chrony";
+  entry.info.family = "chrony";
+  entry.info.summary = "NTP client in the manner of chronyd: weighted regression, slews only";
+  entry.info.source = "chrony (host_sync.md sections 1 and 2); RFC 5905";
+  entry.info.parameters = chrony_parameters();
+  entry.make = make_chrony;
   return entry;
 }
 
@@ -78,6 +148,7 @@ std::vector<HostSyncEntry> ntp_host_syncs() {
           NtpMode::kBroadcastVolley),
       ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay of 4 ms",
           NtpMode::kBroadcastFixed),
+      chrony(),
   };
 }
 
