@@ -45,8 +45,9 @@ class DeviceTimeEstimator {
   // it is then given to learn() once, in order, before stamp() is called for each frame again.
   virtual bool offline() const { return false; }
   virtual void learn(std::span<const DeviceSample> /*recording*/) {}
-  // True for an estimator that is given the capture's warm-up too, as software on a rig is; the
-  // others begin with the first evaluated frame, as the paper's figures do.
+  // True for an estimator that is given the frames of the capture's warm-up too. The others begin
+  // with the first evaluated frame, as the paper's do: cameras that are still unsteady do not share
+  // the bus as they will later, and what is learned from their arrivals is wrong then.
   virtual bool from_first_frame() const { return false; }
   // A poll of the camera's clock, or a change of its host's system clock, in order with the frames.
   // An offline estimator is given all of them before learn().

@@ -23,7 +23,6 @@ class WindowHullEstimator final : public DeviceTimeEstimator {
   explicit WindowHullEstimator(WindowHullSettings settings)
       : max_slope_(slope_of_ppm(settings.max_skew_ppm)), window_(settings.frames) {}
 
-  bool from_first_frame() const override { return true; }
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const Sample kind = stream_.push(sample);
@@ -49,7 +48,6 @@ class SwitchingHullEstimator final : public DeviceTimeEstimator {
       : max_slope_(slope_of_ppm(settings.max_skew_ppm)),
         hull_(saturate_round(settings.period_s * 1e6)) {}
 
-  bool from_first_frame() const override { return true; }
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const Sample kind = stream_.push(sample);
@@ -74,7 +72,6 @@ class OfflineHullEstimator final : public DeviceTimeEstimator {
   explicit OfflineHullEstimator(double max_skew_ppm) : max_slope_(slope_of_ppm(max_skew_ppm)) {}
 
   bool offline() const override { return true; }
-  bool from_first_frame() const override { return true; }
 
   void learn(std::span<const DeviceSample> recording) override {
     OffsetStream stream;

@@ -63,7 +63,6 @@ class Kalman final : public DeviceTimeEstimator {
   explicit Kalman(const KalmanSettings& settings)
       : filter_(settings), rejections_to_restart_(settings.rejections_to_restart) {}
 
-  bool from_first_frame() const override { return true; }
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);

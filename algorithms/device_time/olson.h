@@ -6,7 +6,7 @@
 // alpha must exceed the skew, or the estimate cannot follow; what exceeds it leaks into the stamps.
 // Two numbers of state, O(1). A downward step of the host is followed at once, an upward one at
 // alpha. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned. Given the warm-up.
+// arrival; a frame not later than the newest is stamped and not learned..
 //
 // Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010;
 // reference/device_time.md section 1.

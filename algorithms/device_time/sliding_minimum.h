@@ -3,7 +3,7 @@
 //
 // A skew of r leaves up to r * W; a downward step of the host is followed at once, an upward one
 // after W. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned. Given the warm-up.
+// arrival; a frame not later than the newest is stamped and not learned..
 //
 // Complexity: amortised O(1) with a queue of increasing offsets. It holds at most kMaxQueued; if
 // offsets keep increasing for longer than that within W, the newest takes the place of the one
