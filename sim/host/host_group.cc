@@ -45,14 +45,16 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
     : engine_(context.engine()),
       sink_(sink),
       load_(run_seed, load_key, scenario.hosts, scenario.network),
+      outages_(scenario.faults),
       network_(engine_, scenario.network, run_seed, static_cast<std::size_t>(scenario.hosts.count),
-               load_) {
+               load_, outages_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
   const HostWorld world{.context = context,
                         .hosts = scenario.hosts,
                         .network_parameters = scenario.network,
                         .network = network_,
                         .load = load_,
+                        .outages = outages_,
                         .trigger_line = trigger_line_,
                         .sink = sink,
                         .run_seed = run_seed};
@@ -85,8 +87,9 @@ std::vector<SystemClock*> HostGroup::clocks() {
   return all;
 }
 
-void HostGroup::start_trigger(const TriggerTree& tree, std::int64_t last) {
-  trigger_line_.start(tree, last);
+void HostGroup::on_capture_start(const TriggerTree& trigger, std::int64_t last) {
+  outages_.start(engine_.now());
+  trigger_line_.start(trigger, last);
   for (SimHost& host : hosts_) host.trigger_started();
 }
 

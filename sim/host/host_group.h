@@ -36,6 +36,7 @@
 #include "sim/host/pulse_sources.h"
 #include "sim/host/sim_host.h"
 #include "sim/network/network.h"
+#include "sim/network/outages.h"
 #include "sim/network/run_load.h"
 #include "sim/trigger/trigger_tree.h"
 
@@ -55,8 +56,11 @@ class HostGroup {
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
 
-  // The capture's trigger has started, with pulses up to slot `last`.
-  void start_trigger(const TriggerTree& tree, std::int64_t last);
+  // The capture begins now: its trigger has pulses up to slot `last`, and faults count from here.
+  void on_capture_start(const TriggerTree& trigger, std::int64_t last);
+
+  Network& network() { return network_; }
+  const Outages& outages() const { return outages_; }
 
   // Puts the present setting of every clock on record, which all later adjustments start from.
   void report_clocks();
@@ -68,6 +72,7 @@ class HostGroup {
   Engine& engine_;
   RecordingSink& sink_;
   RunLoad load_;
+  Outages outages_;
   Network network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "sim/host/nic_clock.h"
 #include "sim/host/sim_host.h"
 
 namespace simbench::sim {
@@ -11,6 +12,9 @@ namespace {
 
 constexpr ComponentKey kStreamSendCost("host: cost of sending on a stream");
 constexpr ComponentKey kDatagramSendCost("host: cost of sending a datagram");
+constexpr ComponentKey kHardwareReceipt("host: hardware receive stamp");
+constexpr ComponentKey kHardwareTransmission("host: hardware transmit stamp");
+constexpr ComponentKey kLateWakeUp("host: late wake-up");
 constexpr std::size_t kStampsKept = 4096;
 
 }  // namespace
@@ -24,7 +28,9 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
       send_cost_ms_(host.world().hosts.send_cost_ms +
                     host.world().load.session(host.id(), peer).send_cost_ms),
       arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))),
-      left_(host.world().context, host.name("transmit stamp to host" + std::to_string(peer))) {}
+      left_(host.world().context, host.name("transmit stamp to host" + std::to_string(peer))),
+      passed_(host.world().context,
+              host.name("hardware transmit stamp to host" + std::to_string(peer))) {}
 
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
@@ -51,7 +57,9 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
     if (host_.is_past(deadline)) co_return std::nullopt;
     co_await arrived_.wait(host_.next_look(deadline));
   }
-  const Nanoseconds wake_up = from_ms(host_.world().hosts.receive_wake_up_ms);
+  const Nanoseconds wake_up =
+      from_ms(host_.world().hosts.receive_wake_up_ms) +
+      host_.load_delay(kLateWakeUp, direction_of(peer_, host_.id()), key_of(inbox.front().id));
   if (wake_up.count() > 0) {
     co_await sleep_until(host_.world().context, host_.true_now() + wake_up, "receive: wake up");
   }
@@ -62,11 +70,17 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
   const TrueTime stamped = stamps_in_kernel_ ? message.at : host_.true_now();
   const HostTime exact = clock.read(stamped);
   const ClockInterface& interface = host_.clock_interface();
+  std::optional<HardwareTime> hardware;
+  if (const NicClock* nic = host_.nic()) {
+    RandomStream draw(host_.world().run_seed, kHardwareReceipt, direction_of(peer_, host_.id()),
+                      key_of(message.id));
+    hardware = nic->stamp(message.at, draw);
+  }
   co_return ReceivedMessage{
       .bytes = std::move(message.bytes),
       .received = stamps_in_kernel_ ? interface.tick_of(exact) : interface.read(exact),
       .received_steady = clock.steady(stamped),
-      .received_hardware = std::nullopt};
+      .received_hardware = hardware};
 }
 
 Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
@@ -75,26 +89,51 @@ Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTim
     if (host_.is_past(deadline)) co_return std::nullopt;
     co_await left_.wait(host_.next_look(deadline));
   }
-  if (id < first_stamp_) co_return std::nullopt;
-  co_return transmit_stamps_[static_cast<std::size_t>(id - first_stamp_)];
+  const Sent* message = sent(id);
+  if (message == nullptr) co_return std::nullopt;
+  co_return message->left;
 }
 
-Task<std::optional<HardwareTime>> SimChannel::hardware_transmit_stamp(MessageId, SteadyTime) {
-  co_return std::nullopt;
+Task<std::optional<HardwareTime>> SimChannel::hardware_transmit_stamp(MessageId id,
+                                                                      SteadyTime deadline) {
+  const NicClock* nic = host_.nic();
+  if (nic == nullptr) co_return std::nullopt;
+  while (!has_left(id)) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await passed_.wait(host_.next_look(deadline));
+  }
+  const Sent* message = sent(id);
+  if (message == nullptr) co_return std::nullopt;
+  const TrueTime passed = message->passed;
+  while (passed > host_.true_now()) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    const std::optional<TrueTime> look = host_.next_look(deadline);
+    co_await passed_.wait(look ? std::min(*look, passed) : passed);
+  }
+  RandomStream draw(host_.world().run_seed, kHardwareTransmission, direction_of(host_.id(), peer_),
+                    key_of(id));
+  co_return nic->stamp(passed, draw);
 }
 
-void SimChannel::on_left(MessageId first, std::size_t count) {
-  if (!stamps_in_kernel_) return;
+const SimChannel::Sent* SimChannel::sent(MessageId id) const {
+  if (id < first_sent_) return nullptr;
+  const Sent& message = sent_[static_cast<std::size_t>(id - first_sent_)];
+  return message.has_left ? &message : nullptr;
+}
+
+void SimChannel::on_left(MessageId first, std::size_t count, TrueTime passed) {
+  if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
   const HostTime stamp =
       host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
   // A send that was cancelled has left a gap.
-  transmit_stamps_.resize(static_cast<std::size_t>(first - first_stamp_));
-  transmit_stamps_.insert(transmit_stamps_.end(), count, stamp);
-  while (transmit_stamps_.size() > kStampsKept) {
-    transmit_stamps_.pop_front();
-    ++first_stamp_;
+  sent_.resize(static_cast<std::size_t>(first - first_sent_));
+  sent_.insert(sent_.end(), count, {.has_left = true, .left = stamp, .passed = passed});
+  while (sent_.size() > kStampsKept) {
+    sent_.pop_front();
+    ++first_sent_;
   }
   left_.notify();
+  passed_.notify();
 }
 
 }  // namespace simbench::sim

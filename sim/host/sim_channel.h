@@ -17,6 +17,9 @@
 // when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
 // resolution. Stamps of the last 4096 messages are kept.
 //
+// Hardware stamps, where the host's card takes them, are of sim/host/nic_clock.h. A burst of load
+// (sim/host/host_load.h) makes the wake-up longer.
+//
 // Source: reference/calibration.md section 2 (steps 1, 2 and 4); DESIGN section 4.
 #ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
 #define SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
@@ -46,11 +49,23 @@ class SimChannel final : public MessageChannel, private Endpoint {
                                                             SteadyTime deadline) override;
 
  private:
+  struct Sent {
+    bool has_left = false;  // false: the send was cancelled
+    HostTime left{};        // the kernel's stamp
+    TrueTime passed{};      // when its last bit passes the card
+  };
+
   void on_arrival() override { arrived_.notify(); }
-  void on_left(MessageId first, std::size_t count) override;
+  void on_left(MessageId first, std::size_t count, TrueTime passed) override;
 
   Nanoseconds occupancy(MessageId id) const;
-  bool has_left(MessageId id) const { return id < first_stamp_ + transmit_stamps_.size(); }
+  bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
+  // What is known of a message that has left; nothing if it never did or that is forgotten.
+  const Sent* sent(MessageId id) const;
+  // The numbers of the message for draws of its own.
+  std::uint64_t key_of(MessageId id) const {
+    return 2 * id + (transport_ == Transport::kStream ? 1 : 0);
+  }
 
   SimHost& host_;
   PeerId peer_;
@@ -61,8 +76,9 @@ class SimChannel final : public MessageChannel, private Endpoint {
   MessageId next_id_ = 0;
   WaitPoint arrived_;
   WaitPoint left_;
-  MessageId first_stamp_ = 0;  // the message of the first of
-  std::deque<std::optional<HostTime>> transmit_stamps_;
+  WaitPoint passed_;
+  MessageId first_sent_ = 0;  // the message of the first of
+  std::deque<Sent> sent_;
 };
 
 }  // namespace simbench::sim

@@ -1,5 +1,6 @@
 #include "sim/host/sim_host.h"
 
+#include "sim/host/nic_clock.h"
 #include "sim/host/sim_channel.h"
 #include "sim/host/sim_frame_feed.h"
 #include "sim/host/sim_pulse_input.h"
@@ -36,11 +37,15 @@ SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock, b
       algorithm_draws_(world.run_seed, name("algorithm")),
       has_cameras_(has_cameras),
       sleep_label_(name("sleep")),
+      host_load_(world.hosts.load_burst, world.run_seed, id),
       receiver_(world.hosts.pulse_lines, world.run_seed, id) {
+  if (world.hosts.nic.hardware_stamps) nic_ = std::make_unique<NicClock>(*this);
   system_clock_.observe([this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });
 }
 
 SimHost::~SimHost() { system_clock_.observe(nullptr); }
+
+HardwareClock* SimHost::hardware_clock() { return nic_.get(); }
 
 PulseInput* SimHost::pulse_input(PulseLine line) {
   const bool is_pps = line == PulseLine::kPps;

@@ -33,12 +33,15 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/clock_port.h"
 #include "sim/host/cpu.h"
+#include "sim/host/host_load.h"
 #include "sim/host/pulse_sources.h"
 #include "sim/network/network.h"
+#include "sim/network/outages.h"
 #include "sim/network/run_load.h"
 
 namespace simbench::sim {
 
+class NicClock;
 class SimChannel;
 class SimFrameFeed;
 class SimPulseInput;
@@ -50,6 +53,7 @@ struct HostWorld {
   const scenarios::Network& network_parameters;
   Network& network;
   const RunLoad& load;
+  const Outages& outages;
   const TriggerLine& trigger_line;
   RecordingSink& sink;
   std::uint64_t run_seed;
@@ -66,6 +70,7 @@ class SimHost final : public Host {
   PeerId id() const override { return id_; }
   HostClock& clock() override { return clock_port_; }
   const SteadyClock& steady_clock() const override { return steady_port_; }
+  HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
   FrameFeed* frame_feed() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
@@ -86,6 +91,12 @@ class SimHost final : public Host {
   const SystemClock& system_clock() const { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
+  // Null if the card takes no stamps.
+  const NicClock* nic() const { return nic_.get(); }
+  // What a burst of load adds to the wake-up for something known as (what, a, b).
+  Nanoseconds load_delay(ComponentKey what, std::uint64_t a, std::uint64_t b) {
+    return host_load_.delay(true_now(), what, a, b);
+  }
   TrueTime true_now() const { return world_.context.engine().now(); }
   bool is_past(SteadyTime deadline) const { return steady_clock().now() >= deadline; }
   // When a wait for `deadline` should look at the clock again: at the deadline's instant, or on the
@@ -116,6 +127,8 @@ class SimHost final : public Host {
   RandomStream algorithm_draws_;
   bool has_cameras_;
   std::string sleep_label_;
+  HostLoad host_load_;
+  std::unique_ptr<NicClock> nic_;
   PpsReceiver receiver_;
   std::unique_ptr<SimPulseInput> pps_;
   std::unique_ptr<SimPulseInput> trigger_;

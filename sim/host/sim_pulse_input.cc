@@ -48,7 +48,8 @@ std::optional<TrueTime> SimPulseInput::next_interrupt() {
                       static_cast<std::uint64_t>(*number_));
     const double latency_us =
         lines.interrupt_latency_us + draw.exponential(lines.interrupt_latency_exponential_us);
-    return std::max(*pulse + from_ms(latency_us * 1e-3), last_interrupt_);
+    const TrueTime interrupt = std::max(*pulse + from_ms(latency_us * 1e-3), last_interrupt_);
+    if (!host_.world().outages.host_stopped(host_.id(), interrupt)) return interrupt;
   }
   return std::nullopt;
 }

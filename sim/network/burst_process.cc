@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/engine/random.h"
-
 namespace simbench::sim {
 namespace {
 
 constexpr double kDurationsPerCell = 20;
-constexpr ComponentKey kBursts("network: bursts");
 
 }  // namespace
 
 BurstProcess::BurstProcess(const scenarios::Burst& parameters, std::uint64_t run_seed,
-                           std::uint64_t link)
+                           ComponentKey kind, std::uint64_t number)
     : run_seed_(run_seed),
-      link_(link),
+      kind_(kind),
+      number_(number),
       mean_gap_ms_(1e3 / parameters.rate_hz),
       mean_duration_ms_(parameters.duration_exponential_ms) {
   if (parameters.rate_hz == 0 || parameters.duration_exponential_ms == 0) return;
@@ -40,7 +38,7 @@ bool BurstProcess::active(TrueTime t) {
 }
 
 void BurstProcess::sample_cell(std::int64_t cell) {
-  RandomStream draw(run_seed_, kBursts, link_, static_cast<std::uint64_t>(cell));
+  RandomStream draw(run_seed_, kind_, number_, static_cast<std::uint64_t>(cell));
   for (double at_ms = draw.exponential(mean_gap_ms_); at_ms < cell_ms_;
        at_ms += draw.exponential(mean_gap_ms_)) {
     const TrueTime begin = TrueTime(Nanoseconds(cell * cell_ns_)) + from_ms(at_ms);

@@ -1,4 +1,4 @@
-// Bursts of foreign traffic on one direction of a link: when is it slow?
+// Bursts of foreign traffic on one direction of a link, or of load on a host: when is it slow?
 //
 // Bursts begin as a Poisson process in true time and last an exponential time each; they may
 // overlap. The process exists independently of the messages: it is sampled on a fixed grid of true
@@ -8,7 +8,8 @@
 //
 // Complexity: O(1), cheap while the instants asked for stay in one cell.
 //
-//   BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 20, .latency_ms = 3}, seed, 7);
+//   BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 20, .latency_ms = 3}, seed,
+//                       kLinkBursts, 7);
 //   double extra_ms = bursts.active(engine.now()) ? 3 : 0;
 #ifndef SIMBENCH_SIM_NETWORK_BURST_PROCESS_H_
 #define SIMBENCH_SIM_NETWORK_BURST_PROCESS_H_
@@ -18,13 +19,15 @@
 
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
+#include "sim/engine/random.h"
 
 namespace simbench::sim {
 
 class BurstProcess {
  public:
-  // `link` tells the processes of a run apart.
-  BurstProcess(const scenarios::Burst& parameters, std::uint64_t run_seed, std::uint64_t link);
+  // `kind` and `number` tell the processes of a run apart.
+  BurstProcess(const scenarios::Burst& parameters, std::uint64_t run_seed, ComponentKey kind,
+               std::uint64_t number);
 
   bool active(TrueTime t);
 
@@ -37,7 +40,8 @@ class BurstProcess {
   void sample_cell(std::int64_t cell);
 
   std::uint64_t run_seed_;
-  std::uint64_t link_;
+  ComponentKey kind_;
+  std::uint64_t number_;
   double mean_gap_ms_;  // between beginnings
   double mean_duration_ms_;
   double cell_ms_ = 0;

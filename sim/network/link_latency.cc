@@ -19,7 +19,10 @@ LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_se
     : network_(&network),
       fixed_ms_(network.latency_fixed_ms + session_latency_ms +
                 asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2),
-      bursts_(network.burst, run_seed, direction_of(from, to)) {}
+      cable_(from_ms(
+          std::max(0.0, network.latency_fixed_ms +
+                            asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2))),
+      bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {}
 
 Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
   double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);

@@ -19,6 +19,9 @@
 
 namespace simbench::sim {
 
+// Names the bursts of the directions of links.
+inline constexpr ComponentKey kLinkBursts("network: bursts");
+
 // Numbers the directions of all links.
 constexpr std::uint64_t direction_of(PeerId from, PeerId to) {
   return (static_cast<std::uint64_t>(from) << 32) | to;
@@ -30,12 +33,16 @@ class LinkLatency {
   LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
               double session_latency_ms);
 
+  // What of it is the cable's: the fixed latency and the asymmetry.
+  Nanoseconds cable() const { return cable_; }
+
   // The latency of a message that leaves at `left`; `draw` is the message's own stream.
   Nanoseconds draw(RandomStream& draw, TrueTime left);
 
  private:
   const scenarios::Network* network_;
   double fixed_ms_;
+  Nanoseconds cable_;
   BurstProcess bursts_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -17,6 +18,8 @@ constexpr ComponentKey kAckDraws("network: acknowledgement");
 constexpr double kFullSegmentBytes = 1460;
 // As Linux' tcp_retries2.
 constexpr int kMaxRetransmissions = 15;
+// The sending program's patience and buffers end somewhere.
+constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -32,11 +35,13 @@ Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Tr
 }
 
 Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
-                 std::size_t hosts, const RunLoad& load)
+                 std::size_t hosts, const RunLoad& load, const Outages& outages)
     : engine_(engine),
       parameters_(parameters),
       run_seed_(run_seed),
       load_(load),
+      outages_(outages),
+      switch_clock_(parameters, run_seed),
       rate_(parameters.bandwidth_mbit_per_s),
       handler_id_(engine.attach(*this)),
       host_ports_(hosts),
@@ -81,10 +86,13 @@ void Network::send(PathId path_id, MessageId id, Bytes message) {
 void Network::send_segment(Segment segment) {
   const PathId path_id = segment.path;
   Path& path = paths_[path_id];
+  const TrueTime passed = rate_.is_infinite()
+                              ? engine_.now()
+                              : host_ports_[path.from].pass(engine_.now(), on_the_line(segment));
   segment.left = engine_.now();
+  segment.at_switch = passed;
   const MessageId first = segment.first;
   const std::size_t count = segment.messages.size();
-  const Nanoseconds duration = on_the_line(segment);
   const SegmentId id = keep(std::move(segment));
   if (path.nagle != nullptr) {
     ++path.nagle->sent;
@@ -92,12 +100,18 @@ void Network::send_segment(Segment segment) {
     if (paths_[path_id ^ 1].nagle->owes_ack) acknowledge(path_id ^ 1);
   }
   if (rate_.is_infinite()) {
-    travel(id, engine_.now());
+    travel(id, passed);
   } else {
-    engine_.schedule(host_ports_[path.from].pass(engine_.now(), duration), handler_id_, kAtSwitch,
-                     id);
+    engine_.schedule(passed, handler_id_, kAtSwitch, id);
   }
-  path.sender->on_left(first, count);
+  path.sender->on_left(first, count, passed);
+}
+
+void Network::send_capture_traffic(PeerId from, double bytes) {
+  if (rate_.is_infinite() || outages_.unreachable(from, engine_.now())) return;
+  Port& port = host_ports_[from];
+  if (port.backlog(engine_.now()) > kMaxCaptureBacklog) return;
+  port.pass(engine_.now(), rate_.duration(bytes));
 }
 
 void Network::handle(const Event& event) {
@@ -140,31 +154,49 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   const bool is_duplicated = draw.chance(parameters_.duplicate_probability);
   const bool is_reordered = draw.chance(parameters_.reorder_probability);
   const double detour_ms = draw.uniform(0, parameters_.reorder_max_ms);
-  if (is_lost) {
+  if (is_lost || outages_.unreachable(path.from, segment.left)) {
     release(id);
     return;
   }
   const TrueTime in_order = std::max(arrival, path.last_arrival);
+  // Before the message itself is corrected.
+  const std::optional<SegmentId> duplicate =
+      is_duplicated ? std::optional(keep(segment)) : std::nullopt;
   if (is_reordered) {
-    engine_.schedule(in_order + from_ms(detour_ms), handler_id_, kArrival, id);
+    deliver(id, in_order + from_ms(detour_ms), 0);
   } else {
     path.last_arrival = in_order;
-    engine_.schedule(in_order, handler_id_, kArrival, id);
+    deliver(id, in_order, 0);
   }
-  if (is_duplicated) {
-    engine_.schedule(std::max(copy_arrival, in_order), handler_id_, kArrival, keep(segment));
+  if (duplicate) deliver(*duplicate, std::max(copy_arrival, in_order), 1);
+}
+
+// A datagram will arrive then, corrected for the time it spends in the switch.
+void Network::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
+  Segment& segment = segments_[id];
+  const Path& path = paths_[segment.path];
+  Bytes& message = segment.messages.front();
+  if (switch_clock_.corrects(message)) {
+    const Nanoseconds residence = arrival - segment.at_switch - path.latency.cable();
+    switch_clock_.correct(message,
+                          {.from = path.from, .to = path.to, .id = segment.first, .copy = copy},
+                          residence, arrival);
   }
+  engine_.schedule(arrival, handler_id_, kArrival, id);
 }
 
 void Network::travel_on_stream(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
   RandomStream draw = draws_of(path, segment.first);
-  TrueTime arrival = at + path.latency.draw(draw, segment.left);
+  TrueTime left = segment.left;
+  TrueTime arrival = at + path.latency.draw(draw, left);
   double timeout_ms = parameters_.retransmit_timeout_ms;
-  for (int losses = 0; draw.chance(parameters_.loss_probability); timeout_ms *= 2) {
+  for (int losses = 0; draw.chance(parameters_.loss_probability) || is_cut(path, left, arrival);
+       timeout_ms *= 2) {
     if (++losses > kMaxRetransmissions) path.is_broken = true;
     if (path.is_broken) break;
+    left += from_ms(timeout_ms);
     arrival += from_ms(timeout_ms);
   }
   if (path.is_broken) {
@@ -178,8 +210,12 @@ void Network::travel_on_stream(SegmentId id, TrueTime at) {
 void Network::arrive(SegmentId id) {
   Segment segment = release(id);
   Path& path = paths_[segment.path];
+  if (path.transport == Transport::kDatagram && outages_.unreachable(path.to, engine_.now())) {
+    return;
+  }
+  MessageId message_id = segment.first;
   for (Bytes& message : segment.messages) {
-    path.inbox.push_back({std::move(message), engine_.now()});
+    path.inbox.push_back({std::move(message), engine_.now(), message_id++});
   }
   if (path.nagle != nullptr) on_segment_delivered(segment.path);
   if (path.receiver != nullptr) path.receiver->on_arrival();
@@ -202,7 +238,14 @@ void Network::acknowledge(PathId path_id) {
   Path& way_back = paths_[path_id ^ 1];
   nagle.owes_ack = false;
   RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to), nagle.acks++);
-  const TrueTime arrival = engine_.now() + way_back.latency.draw(draw, engine_.now());
+  TrueTime left = engine_.now();
+  TrueTime arrival = left + way_back.latency.draw(draw, left);
+  double timeout_ms = parameters_.retransmit_timeout_ms;
+  for (int losses = 0; losses < kMaxRetransmissions && is_cut(way_back, left, arrival);
+       ++losses, timeout_ms *= 2) {
+    left += from_ms(timeout_ms);
+    arrival += from_ms(timeout_ms);
+  }
   nagle.last_ack = std::max(nagle.last_ack, arrival);
   nagle.acks_on_the_way.push_back(nagle.delivered);
   engine_.schedule(nagle.last_ack, handler_id_, kAckArrival, path_id);

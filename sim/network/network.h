@@ -17,11 +17,20 @@
 // the latency of their direction and no size; without Nagle they change nothing and are not
 // simulated.
 //
+// Hosts and links may stop (sim/network/outages.h): datagrams to or from them are lost, streams
+// retransmit. A switch may know PTP (sim/network/switch_clock.h): it corrects datagrams that are
+// event messages for the time they spent in it.
+//
+// Capture traffic: what a host sends on of its cameras' frames passes its port like messages, in
+// the order of the frames' delivery and each frame in one piece, towards a storage whose own port
+// is not modelled. Messages of the host wait behind it; those to the host do not. What finds more
+// than a second of traffic queued is not sent, so that the queue stays bounded.
+//
 // Links are made when first used: memory grows with the links in use, not with hosts squared.
 // Cost: one event per message, two with a bandwidth; no allocation of its own in steady state.
 // Source: DESIGN section 7; reference/calibration.md sections 2 and 5 (H9).
 //
-//   Network network(engine, scenario.network, seed, host_count, load);
+//   Network network(engine, scenario.network, seed, host_count, load, outages);
 //   PathId path = network.open(0, 3, Transport::kStream, endpoint_of_host_0);
 //   network.send(path, 0, std::move(bytes));  // leaves host 0 now
 #ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
@@ -39,8 +48,10 @@
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
 #include "sim/network/link_latency.h"
+#include "sim/network/outages.h"
 #include "sim/network/port.h"
 #include "sim/network/run_load.h"
+#include "sim/network/switch_clock.h"
 
 namespace simbench::sim {
 
@@ -51,6 +62,7 @@ using PathId = std::uint32_t;
 struct ArrivedMessage {
   Bytes bytes;
   TrueTime at;
+  MessageId id = 0;
 };
 using Inbox = std::deque<ArrivedMessage>;
 
@@ -60,15 +72,16 @@ class Endpoint {
   virtual ~Endpoint() = default;
   // A message has been added to the inbox.
   virtual void on_arrival() = 0;
-  // Messages `first` to `first + count - 1` have left the host.
-  virtual void on_left(MessageId first, std::size_t count) = 0;
+  // Messages `first` to `first + count - 1` have left the host; their last bit passes its port at
+  // `passed`, now or later.
+  virtual void on_left(MessageId first, std::size_t count, TrueTime passed) = 0;
 };
 
 class Network : private EventHandler {
  public:
-  // `engine` and `parameters` must outlive the network.
+  // `engine`, `parameters` and `outages` must outlive the network.
   Network(Engine& engine, const scenarios::Network& parameters, std::uint64_t run_seed,
-          std::size_t hosts, const RunLoad& load);
+          std::size_t hosts, const RunLoad& load, const Outages& outages);
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
   ~Network() override = default;
@@ -81,6 +94,9 @@ class Network : private EventHandler {
   // Message `id` leaves the host now; ids count from 0 on each path.
   void send(PathId path, MessageId id, Bytes message);
 
+  // `from` sends this much capture traffic now.
+  void send_capture_traffic(PeerId from, double bytes);
+
   // What has arrived at the host that opened `path`, sent by its peer.
   Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
 
@@ -90,6 +106,7 @@ class Network : private EventHandler {
     PathId path = 0;
     MessageId first = 0;  // number of the first message
     TrueTime left{};
+    TrueTime at_switch{};
     double bytes = 0;  // of the messages, without headers
     boost::container::small_vector<Bytes, 1> messages{};
   };
@@ -129,6 +146,12 @@ class Network : private EventHandler {
     return rate_.duration(segment.bytes + parameters_.overhead_bytes);
   }
 
+  // A message between the two is lost if it leaves and would arrive then.
+  bool is_cut(const Path& path, TrueTime left, TrueTime arrival) const {
+    return outages_.unreachable(path.from, left) || outages_.unreachable(path.to, arrival);
+  }
+  void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
+
   SegmentId keep(Segment segment);
   Segment release(SegmentId id);
 
@@ -146,6 +169,8 @@ class Network : private EventHandler {
   const scenarios::Network& parameters_;
   std::uint64_t run_seed_;
   RunLoad load_;
+  const Outages& outages_;
+  SwitchClock switch_clock_;
   LineRate rate_;
   HandlerId handler_id_;
   std::vector<Port> host_ports_;

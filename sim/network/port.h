@@ -29,6 +29,8 @@ class LineRate {
 
 class Port {
  public:
+  // How long what arrives at `at` would have to wait.
+  Nanoseconds backlog(TrueTime at) const { return free_at_ > at ? free_at_ - at : Nanoseconds(0); }
   // When a message has passed that arrives at `at`, not before the one before it.
   TrueTime pass(TrueTime at, Nanoseconds duration) {
     free_at_ = std::max(free_at_, at) + duration;

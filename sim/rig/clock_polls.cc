@@ -61,8 +61,9 @@ void ClockPolls::handle(const Event& event) {
 
 void ClockPolls::report(std::uint32_t camera) {
   const Poll& poll = polls_[camera];
-  if (capture_.vanished(camera, poll.read)) return;
   const SimHost& host = hosts_.host(static_cast<std::size_t>(scenario_.host_of(camera)));
+  if (capture_.vanished(camera, poll.read)) return;
+  if (hosts_.outages().host_stopped(host.id(), engine_.now())) return;
   const SystemClock& clock = host.system_clock();
   const ClockInterface& interface = host.clock_interface();
   sink_.on_poll({.camera = camera,

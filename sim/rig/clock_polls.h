@@ -5,13 +5,13 @@
 // whole microseconds, and reads the host's clocks again at t1 after the reply's delay. It is on
 // record at t1. The arrival quantum is no matter of polls.
 //
-// Polls of a camera begin at start of the camera + phase + n * interval_ms of true time, the phase
-// anywhere in the interval, and before the end of the capture. A poll that takes longer than the
-// interval skips those that should have begun meanwhile. A camera that has vanished does not
-// answer.
+// Polls of a camera begin at its start + phase + n * interval_ms of true time, the phase anywhere
+// in the interval, and before the end of the capture. A poll that takes longer than the interval
+// skips those that should have begun meanwhile. A camera that has vanished does not answer, and a
+// host that has stopped does not ask.
 //
-// All delays are keyed by (camera, number of the poll). Cost: one event per poll, some five hundred
-// instructions; with an interval of 0 there is nothing at all, not even a handler.
+// All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns;
+// with an interval of 0 there is nothing at all, not even a handler.
 //
 // Source: scenario /cameras/clock_poll; reference/d455.md section 5.
 //

@@ -1,8 +1,11 @@
-// Passes delivered frames on to the programs of their hosts that asked for them.
+// What hosts do with the frames that were delivered to them, besides recording them.
 //
-// Only frames of the scored stream (scenario /evaluation/stream), and only to hosts that have
-// opened their feed (sim/host/sim_frame_feed.h). Cost of a frame that nobody wants: two
-// comparisons.
+//  - Programs that asked for them get the frames of the scored stream (scenario /evaluation/stream)
+//    through their host's feed (sim/host/sim_frame_feed.h).
+//  - capture_traffic_share of every frame's bytes, of all streams, leaves through the host's switch
+//    port (sim/network/network.h), in phase with the trigger as the frames are.
+//
+// Cost of a frame that nobody wants: a few comparisons; neither use of frames costs an event.
 //
 //   FrameFeeds feeds(scenario, hosts);
 //   capture.observe_frames(feeds);
@@ -25,6 +28,7 @@ class FrameFeeds final : public FrameObserver {
  private:
   HostGroup& hosts_;
   StreamKind scored_;
+  double traffic_share_;
 };
 
 }  // namespace simbench::sim

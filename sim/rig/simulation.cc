@@ -92,7 +92,7 @@ class Run {
         captured_ = true;
         engine_.stop();
       });
-      hosts_.start_trigger(capture_.trigger(), capture_.last_slot());
+      hosts_.on_capture_start(capture_.trigger(), capture_.last_slot());
       clock_polls_.start();
     });
   }

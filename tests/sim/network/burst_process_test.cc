@@ -9,18 +9,20 @@ namespace simbench::sim {
 namespace {
 
 constexpr std::uint64_t kSeed = 99;
+constexpr ComponentKey kLinkBursts("network: bursts");
 constexpr scenarios::Burst kBursts{.rate_hz = 4, .duration_exponential_ms = 50, .latency_ms = 1};
 
 TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 TEST(BurstProcessTest, NoBurstsWithoutARate) {
-  BurstProcess bursts({.rate_hz = 0, .duration_exponential_ms = 50, .latency_ms = 1}, kSeed, 0);
+  BurstProcess bursts({.rate_hz = 0, .duration_exponential_ms = 50, .latency_ms = 1}, kSeed,
+                      kLinkBursts, 0);
   for (int ms = -1000; ms < 1000; ++ms) EXPECT_FALSE(bursts.active(at_ms(ms)));
 }
 
 // Bursts that overlap make one: the process is busy for 1 - exp(-rate * duration) of the time.
 TEST(BurstProcessTest, IsActiveForTheShareOfABusyServer) {
-  BurstProcess bursts(kBursts, kSeed, 0);
+  BurstProcess bursts(kBursts, kSeed, kLinkBursts, 0);
   constexpr int kSeconds = 4000;
   int active = 0;
   for (int i = 0; i < kSeconds * 100; ++i) active += bursts.active(at_ms(i * 10)) ? 1 : 0;
@@ -32,7 +34,8 @@ TEST(BurstProcessTest, IsActiveForTheShareOfABusyServer) {
 }
 
 TEST(BurstProcessTest, BeginsAtItsRate) {
-  BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 10, .latency_ms = 1}, kSeed, 0);
+  BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 10, .latency_ms = 1}, kSeed,
+                      kLinkBursts, 0);
   constexpr int kSeconds = 2000;
   int begins = 0;
   bool before = false;
@@ -47,8 +50,8 @@ TEST(BurstProcessTest, BeginsAtItsRate) {
 }
 
 TEST(BurstProcessTest, DoesNotDependOnTheOrderOfQueries) {
-  BurstProcess forwards(kBursts, kSeed, 3);
-  BurstProcess backwards(kBursts, kSeed, 3);
+  BurstProcess forwards(kBursts, kSeed, kLinkBursts, 3);
+  BurstProcess backwards(kBursts, kSeed, kLinkBursts, 3);
   std::vector<bool> seen;
   for (int ms = -20'000; ms < 20'000; ms += 7) seen.push_back(forwards.active(at_ms(ms)));
   std::size_t i = seen.size();
@@ -58,8 +61,8 @@ TEST(BurstProcessTest, DoesNotDependOnTheOrderOfQueries) {
 }
 
 TEST(BurstProcessTest, LinksDiffer) {
-  BurstProcess one(kBursts, kSeed, 1);
-  BurstProcess two(kBursts, kSeed, 2);
+  BurstProcess one(kBursts, kSeed, kLinkBursts, 1);
+  BurstProcess two(kBursts, kSeed, kLinkBursts, 2);
   int different = 0;
   for (int ms = 0; ms < 20'000; ms += 7) {
     if (one.active(at_ms(ms)) != two.active(at_ms(ms))) ++different;

@@ -28,7 +28,7 @@ class NagleTest : public testing::Test {
       network_.inbox(path_).clear();
       if (replies) send(8);
     }
-    void on_left(MessageId, std::size_t count) override {
+    void on_left(MessageId, std::size_t count, TrueTime) override {
       left_ms.insert(left_ms.end(), count, ms_of(engine_.now()));
     }
 
@@ -55,7 +55,7 @@ class NagleTest : public testing::Test {
   explicit NagleTest(double delayed_ack_ms = 200)
       : parameters_(parameters(delayed_ack_ms)),
         load_(1, "load", scenarios::Hosts{}, parameters_),
-        network_(engine_, parameters_, 1, 2, load_),
+        network_(engine_, parameters_, 1, 2, load_, outages_),
         a_(network_, engine_, 0, 1),
         b_(network_, engine_, 1, 0) {}
 
@@ -66,6 +66,7 @@ class NagleTest : public testing::Test {
   scenarios::Network parameters_;
   Engine engine_;
   RunLoad load_;
+  Outages outages_{std::vector<scenarios::Fault>{}};
   Network network_;
   End a_;
   End b_;

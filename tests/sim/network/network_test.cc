@@ -47,7 +47,7 @@ class Probe : public Endpoint {
     }
     network_.inbox(path_).clear();
   }
-  void on_left(MessageId first, std::size_t count) override {
+  void on_left(MessageId first, std::size_t count, TrueTime) override {
     EXPECT_EQ(first, left_ms.size());
     left_ms.insert(left_ms.end(), count, ms_of(engine_.now()));
   }
@@ -68,7 +68,7 @@ class World {
   explicit World(const scenarios::Network& parameters, std::uint64_t seed = kSeed)
       : parameters_(parameters),
         load_(seed, "load", scenarios::Hosts{}, parameters_),
-        network_(engine_, parameters_, seed, 8, load_) {}
+        network_(engine_, parameters_, seed, 8, load_, outages_) {}
 
   Probe& probe(PeerId from, PeerId to, Transport transport = Transport::kStream) {
     probes_.push_back(std::make_unique<Probe>(network_, engine_, from, to, transport));
@@ -83,6 +83,7 @@ class World {
   scenarios::Network parameters_;
   Engine engine_;
   RunLoad load_;
+  Outages outages_{std::vector<scenarios::Fault>{}};
   Network network_;
   std::vector<std::unique_ptr<Probe>> probes_;
 };
@@ -333,7 +334,8 @@ TEST(NetworkTest, MessagesWaitForAReceiverThatOpensLate) {
   Engine engine;
   const scenarios::Network parameters = plain_network();
   const RunLoad load(kSeed, "load", scenarios::Hosts{}, parameters);
-  Network network(engine, parameters, kSeed, 2, load);
+  const Outages outages(std::vector<scenarios::Fault>{});
+  Network network(engine, parameters, kSeed, 2, load, outages);
   Probe a(network, engine, 0, 1, Transport::kStream);
   a.send(1);
   engine.run();
