@@ -18,7 +18,7 @@
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival. A
 // frame not later than the newest is stamped from the line and not learned.
 //
-//. Complexity a frame: switching O(log vertices), window O(vertices), of which
+// Complexity a frame: switching O(log vertices), window O(vertices), of which
 // there are some 10. Memory: vertices only (at most LowerHull::kMaxVertices a hull), the window's
 // frames. Source: reference/device_time.md sections 1 and 2; Harrison, Newman: TICSync, 2011.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_

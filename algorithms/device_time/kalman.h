@@ -12,8 +12,8 @@
 // wide sigmas do worse on frames.
 //
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
-// frame not later than the newest is stamped from the state and not learned. O(1). Given the
-// warm-up. Source: reference/device_time.md section 1.
+// frame not later than the newest is stamped from the state and not learned. O(1).
+// Source: reference/device_time.md section 1.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_KALMAN_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_KALMAN_H_
 
