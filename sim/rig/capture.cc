@@ -6,6 +6,11 @@
 #include "sim/clock/clock_interface.h"
 
 namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kLateFrame("host: late delivery of a frame");
+
+}  // namespace
 
 void Capture::handle(const Event& event) {
   switch (event.kind) {
@@ -159,8 +164,9 @@ void Capture::deliver_later(std::uint32_t frame_id) {
   const TrueTime now = engine_.now();
   const double host_jitter_ns = host_jitter_[stream.host].at(now) * stream.transfer_ns;
   frame.copied = now + Nanoseconds(std::llround(frame.kernel_copy_ns));
-  const TrueTime arrival =
-      frame.copied + Nanoseconds(std::llround(frame.delivery_ns + host_jitter_ns));
+  TrueTime arrival = frame.copied + Nanoseconds(std::llround(frame.delivery_ns + host_jitter_ns));
+  arrival +=
+      host_loads_[stream.host].delay(arrival, kLateFrame, frame.stream, frame.record.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
   engine_.schedule(stream.last_arrival, id_, kDelivery, frame_id);
 }
@@ -170,6 +176,10 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   const Stream& stream = streams_[frame.stream];
   SystemClock& clock = *clocks_[stream.host];
   const TrueTime now = engine_.now();
+  if (outages_.host_stopped(stream.host, now)) {
+    release_frame(frame_id);
+    return end_if_done();
+  }
   const TrueTime middle = frame.truth.mid_exposure();
   frame.record.backend = round_down(clock.read(frame.copied), arrival_quantum_);
   frame.record.arrival = round_down(clock.read(now), arrival_quantum_);

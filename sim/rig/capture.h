@@ -33,6 +33,8 @@
 #include "sim/clock/system_clock.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/random.h"
+#include "sim/host/host_load.h"
+#include "sim/network/outages.h"
 #include "sim/rig/frame_observer.h"
 #include "sim/trigger/trigger_tree.h"
 #include "sim/usb/host_stack.h"
@@ -149,6 +151,8 @@ class Capture final : public EventHandler {
   std::vector<std::uint32_t> triggered_streams_;
   std::vector<Controller> controllers_;
   std::vector<HostJitter> host_jitter_;
+  std::vector<HostLoad> host_loads_;
+  Outages outages_;
   std::vector<FrameInFlight> frames_;
   std::vector<std::uint32_t> free_frames_;
   std::vector<bool> late_frame_seen_;  // per fault

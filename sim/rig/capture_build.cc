@@ -32,6 +32,7 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
       clocks_(std::move(clocks)),
       sink_(sink),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
+      outages_(scenario.faults),
       late_frame_seen_(scenario.faults.size(), false),
       host_errors_(clocks_.size()),
       arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)) {
@@ -43,6 +44,7 @@ void Capture::start(TrueTime at, std::function<void()> on_end) {
   start_ = at;
   on_end_ = std::move(on_end);
   trigger_.start(at);
+  outages_.start(at);
   end_ = trigger_.due(last_slot_ + 2);
   build_clocks(at);
   build_streams(at);
@@ -72,6 +74,7 @@ void Capture::build_clocks(TrueTime at) {
   }
   for (std::size_t host = 0; host < clocks_.size(); ++host) {
     host_jitter_.emplace_back(scenario_.usb, seed_, host, at, trigger_.period_ns());
+    host_loads_.emplace_back(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host));
   }
 }
 
