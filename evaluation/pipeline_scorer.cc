@@ -43,7 +43,7 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   gather_warm_up_ = gatherer_->from_first_frame();
   anchor_camera_ = first_camera_of_master(layout);
   table_.emplace(layout.first_pulse, layout.pulses, cameras);
-  sets_.emplace(layout.first_pulse, layout.pulses);
+  sets_.emplace(*table_);
   host_errors_.emplace(layout.hosts);
   if (setup_.make_second_estimator) second_deferred_.emplace(cameras);
   sources_.reserve(cameras);
@@ -118,7 +118,14 @@ GlobalTime PipelineScorer::estimate(Source& source, const DeviceSample& sample,
   return on_global_scale(truth->own_host);
 }
 
+// The anchor is known before the first complete set is: that has a frame of the anchor's camera.
+Nanoseconds PipelineScorer::anchor_shift() const {
+  if (!relative_ || !first_arrival_) return Nanoseconds::zero();
+  return anchor_.value_or(*first_arrival_).time_since_epoch();
+}
+
 void PipelineScorer::gather(const DeferredFrame& frame, GlobalTime global) {
+  sets_->before_push(frame.delivered, anchor_shift());
   gatherer_->push({.source = frame.source,
                    .stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global))),
                    .arrival = frame.delivered,
@@ -167,9 +174,7 @@ SeedScore PipelineScorer::finish() {
       settle(frame, global);
     });
   }
-  if (relative_ && first_arrival_) {
-    table_->shift(anchor_.value_or(*first_arrival_).time_since_epoch());
-  }
+  if (relative_) table_->shift(anchor_shift());
   SeedScore score;
   PulseScoring scoring;
   scoring.median = setup_.median;
@@ -177,8 +182,7 @@ SeedScore PipelineScorer::finish() {
   scoring.hosts = layout_.hosts;
   for (const CameraLayout& camera : layout_.cameras) scoring.host_of_source.push_back(camera.host);
   score_pulses(*table_, scoring, score);
-  score.sets.emitted = sets_->emitted();
-  score.sets.pure = sets_->pure();
+  sets_->score(score);
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
   score.host_error_ms = host_errors_->mean_absolute_ms();
   score.host_errors_ms = host_errors_->signed_means_ms();

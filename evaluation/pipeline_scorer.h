@@ -85,6 +85,8 @@ class PipelineScorer final : public RecordingSink {
   GlobalTime estimate(Source& source, const DeviceSample& sample, const FrameTruth* truth);
   void gather(const DeferredFrame& frame, GlobalTime global);
   void settle(const DeferredFrame& frame, GlobalTime global);
+  // What a relative estimator's stamps lack.
+  Nanoseconds anchor_shift() const;
   double second_amd_ms() const;
   Nanoseconds period() const;
 

@@ -62,11 +62,16 @@ class PulseTable {
   std::int64_t pulse_of(std::size_t row) const {
     return first_pulse_ + static_cast<std::int64_t>(row);
   }
+  // `pulse` must be held.
+  std::size_t row_of(std::int64_t pulse) const {
+    return static_cast<std::size_t>(pulse - first_pulse_);
+  }
   bool complete(std::size_t row) const { return rows_[row].delivered == sources_; }
   std::size_t delivered(std::size_t row) const { return rows_[row].delivered; }
   bool has_truth() const { return has_truth_; }
 
-  // By source; of a complete row. The second and third only with truth.
+  // By source; of a complete row, the second also of sources that delivered. The second and third
+  // only with truth.
   std::span<const std::int64_t> global_ns(std::size_t row) const {
     return {global_ns_.data() + row * sources_, sources_};
   }
@@ -91,10 +96,6 @@ class PulseTable {
     TrueTime earliest = TrueTime::max();  // mid-exposure
     TrueTime latest = TrueTime::min();
   };
-
-  std::size_t row_of(std::int64_t pulse) const {
-    return static_cast<std::size_t>(pulse - first_pulse_);
-  }
 
   std::int64_t first_pulse_;
   std::size_t sources_;

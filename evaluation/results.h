@@ -29,11 +29,14 @@ struct FrameCounts {
   std::int64_t dropped = 0;
 };
 
+// Sets count if one of their members is among the evaluated pulses.
 struct SetCounts {
-  std::int64_t emitted = 0;          // complete sets with a member among the evaluated pulses
+  std::int64_t emitted = 0;          // complete sets
   std::int64_t pure = 0;             // of those, all members from one pulse
   std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
   std::int64_t discarded_frames = 0;
+  std::int64_t partial = 0;       // sets that lack a source
+  std::int64_t index_errors = 0;  // members of emitted sets that are not of most members' pulse
 };
 
 // One pipeline, one seed.
@@ -48,6 +51,9 @@ struct SeedScore {
   // Over the complete sets that gathering emitted; NaN: it emitted none (or there is no truth).
   double set_amd_ms = std::numeric_limits<double>::quiet_NaN();  // mean range of a set's stamps
   double set_absolute_error_ms = std::numeric_limits<double>::quiet_NaN();
+  // From the last member's arrival to that of the frame which made the gatherer emit.
+  double emission_latency_ms = std::numeric_limits<double>::quiet_NaN();  // mean over these sets
+  double emission_latency_max_ms = std::numeric_limits<double>::quiet_NaN();
   // Beyond the table; the paper's claims rest on these.
   double offline_amd_ms = 0;  // AMD of regression_offline over the same recording; NaN if not asked
   double spread_in_host_ms = 0;        // mean over pulses and hosts of the range inside one host
@@ -105,6 +111,11 @@ struct Row {
   double precision = 0;  // over all seeds
   double recall = 0;
   double margin_ms = 0;
+  SetCounts sets;  // over all seeds
+  Series set_amd_ms;
+  Series set_absolute_error_ms;
+  Series emission_latency_ms;
+  double emission_latency_max_ms = std::numeric_limits<double>::quiet_NaN();  // of all seeds
   FrameCounts frames;
   std::int64_t evaluated_pulses = 0;
   std::int64_t unsynchronised_hosts = 0;  // over all seeds

@@ -1,5 +1,6 @@
 #include "evaluation/rows.h"
 
+#include <cmath>
 #include <utility>
 
 #include "evaluation/statistics.h"
@@ -52,11 +53,20 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   row.host_error_ms = series_of(seeds, &SeedScore::host_error_ms);
   row.exposure_spread_ms = series_of(seeds, &SeedScore::exposure_spread_ms);
 
-  SetCounts sets;
+  row.set_amd_ms = series_of(seeds, &SeedScore::set_amd_ms);
+  row.set_absolute_error_ms = series_of(seeds, &SeedScore::set_absolute_error_ms);
+  row.emission_latency_ms = series_of(seeds, &SeedScore::emission_latency_ms);
+
+  SetCounts& sets = row.sets;
   for (const SeedScore& seed : seeds) {
     sets.emitted += seed.sets.emitted;
     sets.pure += seed.sets.pure;
     sets.complete_pulses += seed.sets.complete_pulses;
+    sets.discarded_frames += seed.sets.discarded_frames;
+    sets.partial += seed.sets.partial;
+    sets.index_errors += seed.sets.index_errors;
+    row.emission_latency_max_ms =
+        std::fmax(row.emission_latency_max_ms, seed.emission_latency_max_ms);
     row.frames.expected += seed.frames.expected;
     row.frames.delivered += seed.frames.delivered;
     row.frames.dropped += seed.frames.dropped;

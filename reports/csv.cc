@@ -40,6 +40,9 @@ std::vector<std::string> header() {
                 "frames_dropped", "evaluated_pulses", "unsynchronised_hosts", "published_amd_ms",
                 "published_amd_inside", "published_amd_percentile", "published_rmdv_ms",
                 "published_rmdv_inside", "published_rmdv_attainable"});
+  names.insert(names.end(), {"sets", "pure_sets", "partial_sets", "index_errors",
+                             "discarded_frames", "set_amd_ms", "set_absolute_error_ms",
+                             "emission_latency_ms", "emission_latency_max_ms"});
   return names;
 }
 
@@ -92,6 +95,14 @@ std::string csv(const evaluation::Results& results) {
     }
     const std::vector<std::string> published = published_cells(row);
     cells.insert(cells.end(), published.begin(), published.end());
+    for (const std::int64_t count : {row.sets.emitted, row.sets.pure, row.sets.partial,
+                                     row.sets.index_errors, row.sets.discarded_frames}) {
+      cells.push_back(std::to_string(count));
+    }
+    for (const double value : {row.set_amd_ms.median, row.set_absolute_error_ms.median,
+                               row.emission_latency_ms.median, row.emission_latency_max_ms}) {
+      cells.push_back(csv_cell(value));
+    }
     out += line(cells);
   }
   return out;

@@ -11,7 +11,8 @@
 
 namespace simbench::reports {
 
-// One line per pipeline: medians and bands, published values, gathering score, frames.
+// One line per pipeline: medians and bands, gathering score, frames, published values, scores over
+// the gathered sets (medians).
 std::string csv(const evaluation::Results& results);
 
 // frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.

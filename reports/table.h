@@ -1,7 +1,8 @@
 // Results for people: the table that `simbench run` prints, for a terminal or as markdown.
 //
 // Two blocks, each with a row per pipeline: the paper's metrics beside the published values, and
-// what only a bench with true time can tell. Below them a legend that a newcomer can start from,
+// what only a bench with true time can tell; a third about the gathered sets if the pipelines
+// gather in different ways. Below them a legend that a newcomer can start from,
 // the paper's claims with the fraction of seeds in which each holds, and what the run cost. About
 // 145 columns wide. Source of the definitions: DESIGN section 8.
 //

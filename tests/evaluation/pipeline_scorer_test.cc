@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -272,6 +273,41 @@ TEST(PipelineScorerTest, CountsSetsWithAnEvaluatedMember) {
   EXPECT_EQ(given.sources, 2U);
   EXPECT_EQ(given.period, from_ms(20));
   EXPECT_EQ(given.interval, from_ms(5));
+}
+
+TEST(PipelineScorerTest, GatheredSetsHaveScoresOfTheirOwn) {
+  TestCapture capture(1, 3);
+  capture.late_by = staircase;
+  capture.lost = [](std::uint32_t camera, std::int64_t pulse) { return camera == 0 && pulse == 5; };
+  const SeedScore seed = score(capture, arrival_setup());
+  EXPECT_EQ(seed.sets.emitted, 9);
+  EXPECT_EQ(seed.sets.index_errors, 0);
+  EXPECT_EQ(seed.sets.partial, 0);
+  EXPECT_NEAR(seed.set_amd_ms, 2, kTolerance);
+  EXPECT_NEAR(seed.set_absolute_error_ms, 11, kTolerance);
+  // Algorithm 3 emits as soon as the last member is there.
+  EXPECT_NEAR(seed.emission_latency_ms, 0, kTolerance);
+  EXPECT_NEAR(seed.emission_latency_max_ms, 0, kTolerance);
+}
+
+TEST(PipelineScorerTest, SetsOfARelativeEstimatorAreComparedOnItsAnchor) {
+  ScorerSetup setup = arrival_setup();
+  class SensorTime final : public DeviceTimeEstimator {
+   public:
+    GlobalTime stamp(const DeviceSample& sample) override {
+      if (!first_) first_ = sample.sensor;
+      return GlobalTime(sample.sensor - *first_);
+    }
+    bool relative() const override { return true; }
+
+   private:
+    std::optional<DeviceTime> first_;
+  };
+  setup.make_estimator = [] { return std::make_unique<SensorTime>(); };
+  const SeedScore seed = score(TestCapture(2, 2), setup);
+  EXPECT_EQ(seed.sets.pure, 10);
+  EXPECT_NEAR(seed.absolute_error_ms, 10, kTolerance);
+  EXPECT_NEAR(seed.set_absolute_error_ms, 10, kTolerance);
 }
 
 TEST(PipelineScorerTest, HostsFurtherApartThanTheIntervalGiveNoSet) {

@@ -26,14 +26,20 @@ TEST(ResultsJson, ARowHasEverything) {
   const Json row = Json::parse(json(sample_results()))["rows"][0];
   EXPECT_EQ(row, Json::parse(R"({
     "pipeline": "yoon2021_both", "host_sync": "yoon2021_both",
-    "device_time": "regression_30", "gathering": "yoon2021",
+    "device_time": "regression_30", "gathering": "yoon2021", "offline": false,
     "amd_ms": {"median": 2.0, "p05": 1.5, "p95": 2.5, "values": [1.5, 2.5]},
     "rmdv_ms": {"median": 0.75, "p05": 0.5, "p95": 1.0, "values": [0.5, 1.0]},
     "absolute_error_ms": {"median": 29.0, "p05": 28.0, "p95": 30.0, "values": [28.0, 30.0]},
     "bias_ms": {"median": -29.0, "p05": -28.0, "p95": -30.0, "values": [-28.0, -30.0]},
     "host_error_ms": {"median": 0.5, "p05": 0.25, "p95": 0.75, "values": [0.25, 0.75]},
     "exposure_spread_ms": {"median": 0.0625, "p05": 0.0, "p95": 0.125, "values": [0.0, 0.125]},
-    "gathering_score": {"precision": 1.0, "recall": 0.75, "margin_ms": 8.5},
+    "gathering_score": {
+      "precision": 1.0, "recall": 0.75, "margin_ms": 8.5, "sets": 720, "pure_sets": 720,
+      "partial_sets": 4, "index_errors": 0, "discarded_frames": 21,
+      "set_amd_ms": {"median": 1.75, "p05": 1.25, "p95": 2.25, "values": [1.25, 2.25]},
+      "set_absolute_error_ms": {"median": 28.0, "p05": 27.0, "p95": 29.0, "values": [27.0, 29.0]},
+      "emission_latency_ms": {"median": 0.25, "p05": 0.0, "p95": 0.5, "values": [0.0, 0.5]},
+      "emission_latency_max_ms": 6.0},
     "frames": {"expected": 34560, "delivered": 34557, "dropped": 3},
     "evaluated_pulses": 960, "unsynchronised_hosts": 1,
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
@@ -48,8 +54,15 @@ TEST(ResultsJson, WhatDoesNotExistIsNull) {
   EXPECT_TRUE(row["published"].is_null());
   EXPECT_EQ(row["host_error_ms"],
             Json::parse(R"({"median": null, "p05": null, "p95": null, "values": [null, null]})"));
-  EXPECT_EQ(row["gathering_score"],
-            Json::parse(R"({"precision": null, "recall": 0.0, "margin_ms": null})"));
+  const Json nothing =
+      Json::parse(R"({"median": null, "p05": null, "p95": null, "values": [null, null]})");
+  const Json gathering = row["gathering_score"];
+  EXPECT_TRUE(gathering["precision"].is_null());
+  EXPECT_EQ(gathering["recall"], 0.0);
+  EXPECT_TRUE(gathering["margin_ms"].is_null());
+  EXPECT_EQ(gathering["set_amd_ms"], nothing);
+  EXPECT_EQ(gathering["emission_latency_ms"], nothing);
+  EXPECT_TRUE(gathering["emission_latency_max_ms"].is_null());
 }
 
 TEST(ResultsJson, ClaimsThatNeedAnotherScenarioHoldInNone) {

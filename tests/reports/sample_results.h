@@ -44,6 +44,16 @@ inline evaluation::Results sample_results() {
   both.precision = 1;
   both.recall = 0.75;
   both.margin_ms = 8.5;
+  both.sets = {.emitted = 720,
+               .pure = 720,
+               .complete_pulses = 960,
+               .discarded_frames = 21,
+               .partial = 4,
+               .index_errors = 0};
+  both.set_amd_ms = series(1.25, 2.25);
+  both.set_absolute_error_ms = series(27, 29);
+  both.emission_latency_ms = series(0, 0.5);
+  both.emission_latency_max_ms = 6;
   both.frames = {.expected = 34560, .delivered = 34557, .dropped = 3};
   both.evaluated_pulses = 960;
   both.unsynchronised_hosts = 1;
@@ -69,6 +79,9 @@ inline evaluation::Results sample_results() {
   none.precision = kNaN;
   none.recall = 0;
   none.margin_ms = kNaN;
+  none.set_amd_ms = no_series();
+  none.set_absolute_error_ms = no_series();
+  none.emission_latency_ms = no_series();
 
   evaluation::Results results;
   results.scenario = "sample";

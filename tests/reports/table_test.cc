@@ -60,6 +60,21 @@ Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated se
 )");
 }
 
+TEST(Table, GatheringHasABlockOnlyIfThePipelinesDiffer) {
+  EXPECT_THAT(table(sample_results(), ""), Not(HasSubstr("What gathering made")));
+  evaluation::Results results = sample_results();
+  results.rows[1].gathering = "epsilon";
+  EXPECT_THAT(table(results, ""), HasSubstr(
+                                      R"(What gathering made of the stamps, over all seeds
+
+                          complete      sets:   sets:   index  partial     frames   AMD of  abs. error  emitted after  emitted after
+pipeline       gathering      sets  precision  recall  errors     sets  discarded  sets ms  of sets ms        mean ms     largest ms
+-------------  ---------  --------  ---------  ------  ------  -------  ---------  -------  ----------  -------------  -------------
+yoon2021_both  yoon2021        720      100 %  75.0 %       0        4         21    1.750      28.000          0.250          6.000
+free_running   epsilon           0          -     0 %       0        0          0        -           -              -              -
+)"));
+}
+
 TEST(Table, Markdown) {
   EXPECT_EQ(markdown(sample_results(), "A fit, stated as such."), R"(## sample: 2 seeds (1-2)
 
