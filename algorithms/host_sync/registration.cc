@@ -6,6 +6,7 @@
 
 #include "algorithms/host_sync/limits.h"
 #include "algorithms/host_sync/registration_ntp.h"
+#include "algorithms/host_sync/registration_ptp.h"
 #include "algorithms/host_sync/registration_two_way.h"
 #include "algorithms/host_sync/w32time.h"
 #include "algorithms/host_sync/yoon2021.h"
@@ -150,6 +151,7 @@ std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
             InitialClocks::kMaster),
   };
   append(entries, two_way_host_syncs());
+  append(entries, ptp_host_syncs());
   append(entries, ntp_host_syncs());
   return entries;
 }
