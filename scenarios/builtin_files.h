@@ -1,4 +1,5 @@
-// The files of scenarios/*.json as they are built into the program (written by embed.cmake).
+// The files of scenarios/*.json and scenarios/cameras/*.json as they are built into the program
+// (written by embed.cmake).
 #ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 #define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 
@@ -8,7 +9,7 @@
 namespace simbench::scenarios {
 
 struct BuiltinFile {
-  std::string_view name;  // of the scenario: the file's name without ".json"
+  std::string_view name;  // the file's name without ".json"
   std::string_view text;
 };
 
@@ -17,6 +18,12 @@ const std::vector<BuiltinFile>& builtin_files();
 
 // scenarios/schema.json.
 std::string_view schema_text();
+
+// The profiles of camera models in alphabetical order; their schema is not among them.
+const std::vector<BuiltinFile>& camera_files();
+
+// scenarios/cameras/schema.json.
+std::string_view camera_schema_text();
 
 }  // namespace simbench::scenarios
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -5,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "scenarios/places.h"
@@ -45,10 +48,29 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
+// What the profile of the camera model says about a value below /cameras; "" if nothing.
+std::string profile_source(const Cameras& cameras, const std::string& pointer) {
+  const CameraProfile* camera = find_camera_profile(cameras.model);
+  if (camera == nullptr) return "";
+  if (pointer == "/cameras/model") {
+    return fmt::format("profile of the {} (simbench list cameras)", camera->name);
+  }
+  if (pointer == "/cameras/sync_mode") return camera->sync_source;
+  for (std::size_t i = 0; i < cameras.streams.size(); ++i) {
+    const StreamProfile* stream = camera->stream(cameras.streams[i].kind);
+    if (stream == nullptr) continue;
+    for (const std::string_view member :
+         {"width", "height", "bytes_per_pixel", "mode_rate_hz", "shutter"}) {
+      if (pointer == fmt::format("/cameras/streams/{}/{}", i, member)) return stream->source;
+    }
+  }
+  return "";
+}
+
 class Walker {
  public:
   explicit Walker(const Scenario& scenario)
-      : places_(dynamic_cast<const Places&>(*scenario.origin)) {}
+      : cameras_(scenario.cameras), places_(dynamic_cast<const Places&>(*scenario.origin)) {}
 
   void walk(const std::string& pointer, std::string_view name, const ordered_json* node,
             const ordered_json& value) {
@@ -75,12 +97,18 @@ class Walker {
       line.meaning = node->value("description", "");
       line.source = node->value("x-source", "");
     }
+    const std::string profile = profile_source(cameras_, pointer);
+    if (!profile.empty()) line.source = profile;
     // The source of the distribution's own figures does not speak for the user's.
     const Place& place = places_.nearest(pointer);
-    if (!place.is_builtin) line.source = place.label;
+    if (!place.is_builtin) {
+      line.source =
+          profile.empty() ? place.label : fmt::format("{}; offered: {}", place.label, profile);
+    }
     lines_.push_back(std::move(line));
   }
 
+  const Cameras& cameras_;
   const Places& places_;
   std::vector<ParameterLine> lines_;
 };

@@ -1,16 +1,24 @@
-# Writes OUTPUT: the schema and the scenarios of FOLDER as the C++ source behind
+# Writes OUTPUT: the schemas, the scenarios and the camera profiles of FOLDER as the C++ source behind
 # scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
-file(GLOB files ${FOLDER}/*.json)
-list(REMOVE_ITEM files ${FOLDER}/schema.json)
-list(SORT files)
 
-set(scenarios "")
-foreach(path IN LISTS files)
-  cmake_path(GET path STEM LAST_ONLY name)
-  file(READ ${path} text)
-  string(APPEND scenarios "      {\"${name}\", R\"json(${text})json\"},\n")
-endforeach()
-file(READ ${FOLDER}/schema.json schema)
+# Sets `result` to the initializers of the files of a folder, and `schema` to the text of its schema.
+function(read_folder folder result schema)
+  file(GLOB files ${folder}/*.json)
+  list(REMOVE_ITEM files ${folder}/schema.json)
+  list(SORT files)
+  set(entries "")
+  foreach(path IN LISTS files)
+    cmake_path(GET path STEM LAST_ONLY name)
+    file(READ ${path} text)
+    string(APPEND entries "      {\"${name}\", R\"json(${text})json\"},\n")
+  endforeach()
+  file(READ ${folder}/schema.json schema_text)
+  set(${result} "${entries}" PARENT_SCOPE)
+  set(${schema} "${schema_text}" PARENT_SCOPE)
+endfunction()
+
+read_folder(${FOLDER} scenarios schema)
+read_folder(${FOLDER}/cameras cameras camera_schema)
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #include "scenarios/builtin_files.h"
@@ -24,6 +32,14 @@ const std::vector<BuiltinFile>& builtin_files() {
 }
 
 std::string_view schema_text() { return R"json(@schema@)json"; }
+
+const std::vector<BuiltinFile>& camera_files() {
+  static const std::vector<BuiltinFile> files = {
+@cameras@  };
+  return files;
+}
+
+std::string_view camera_schema_text() { return R"json(@camera_schema@)json"; }
 
 }  // namespace simbench::scenarios
 ]])

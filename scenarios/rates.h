@@ -1,9 +1,9 @@
-// At which rates the cameras of a scenario deliver, and whether their sync mode allows them.
+// At which rates the cameras of a scenario deliver, and whether their model and its sync mode allow
+// them.
 //
-// Sources: librealsense, option Inter Cam Sync Mode and issues #12560 (genlock takes a pulse every
-// two frame times at most), #15119 (only depth is genlocked); Intel's page on external
-// synchronisation (which mode rates slaves accept, in a window "so strict" that its size is not
-// given: 1 % is an assumption).
+// Sources: the model's profile (scenarios/camera_profile.h); librealsense #12560 (genlock takes a
+// pulse every two frame times at most); Intel's page on external synchronisation (slaves accept
+// pulses in a window "so strict" that its size is not given: 1 % is an assumption).
 #ifndef SIMBENCH_SCENARIOS_RATES_H_
 #define SIMBENCH_SCENARIOS_RATES_H_
 
@@ -11,8 +11,8 @@
 
 namespace simbench::scenarios {
 
-// Whether the sync mode lets the trigger decide when the stream exposes: in slave and genlock for
-// depth only, in full_slave for both, in default and master for none.
+// Whether the sync mode lets the trigger decide when the stream exposes, by the model's profile.
+// Throws std::invalid_argument if there is no such model, which a loaded scenario cannot have.
 bool follows_trigger(const Cameras& cameras, const Stream& stream);
 
 // The rate of the pulses, with the trigger's own rate error.
@@ -21,8 +21,8 @@ double pulse_rate_hz(const Trigger& trigger);
 // The rate at which a stream delivers frames if none is lost.
 double frame_rate_hz(const Scenario& scenario, const Stream& stream);
 
-// Throws InputError about the first profile that a D455 does not offer, or rate that the sync mode
-// does not allow.
+// Throws InputError about a model or sync mode that does not exist, the first image size or rate
+// that the model does not offer, or the first rate that its sync mode does not allow.
 void check_rates(const Scenario& scenario);
 
 }  // namespace simbench::scenarios

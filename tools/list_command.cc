@@ -7,6 +7,8 @@
 
 #include "algorithms/registry.h"
 #include "reports/text_table.h"
+#include "scenarios/camera_profile.h"
+#include "tools/camera_list.h"
 #include "tools/exit_status.h"
 
 namespace simbench::tools {
@@ -19,11 +21,13 @@ constexpr const char* kExamples = R"(
 Examples:
   simbench list                                       everything by name
   simbench list algorithms                            with parameters and sources
+  simbench list cameras                               what each camera model can do
   simbench list pipelines --scenario 18cam_6host_45fps)";
 
 struct ListOptions {
   std::string what;
   std::string scenario;
+  std::string format;
 };
 
 std::string value_text(const ParameterValue& value) {
@@ -90,6 +94,9 @@ std::string pipelines_text(const std::string& scenario) {
 
 std::string listing(const ListOptions& options) {
   if (options.what == "scenarios") return scenarios_text();
+  if (options.what == "cameras") {
+    return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
+  }
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
@@ -109,17 +116,21 @@ void add_list_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ListOptions>();
   command
       ->add_option("what", options->what,
-                   "scenarios, pipelines or algorithms (with parameters and sources).\n"
+                   "scenarios, pipelines, algorithms (with parameters and sources) or cameras.\n"
                    "Default: scenarios and algorithms by name")
       ->type_name("WHAT")
-      ->check(one_of({"scenarios", "pipelines", "algorithms"}));
+      ->check(one_of({"scenarios", "pipelines", "algorithms", "cameras"}));
   options->scenario = "18cam_6host_45fps";
   command
       ->add_option("--scenario", options->scenario,
                    "Whose pipelines to list. Default: " + options->scenario)
       ->type_name("SCENARIO");
+  add_format_option(*command, options->format, {"text", "json"});
   command->footer(kExamples);
   command->callback([options, &action] {
+    if (options->format == "json" && options->what != "cameras") {
+      throw CLI::ValidationError("--format", "found 'json', allowed: with cameras only");
+    }
     action = [options] {
       print_result(listing(*options));
       return static_cast<int>(kOk);

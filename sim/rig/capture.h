@@ -118,7 +118,7 @@ class Capture final : public EventHandler {
   void build_streams(TrueTime at);
   Stream make_stream(std::size_t camera, std::size_t which, TrueTime at);
   Nanoseconds exposure_of(std::size_t camera) const;
-  ShutterMode shutter_mode(StreamKind kind) const;
+  ShutterMode shutter_mode(const scenarios::Stream& stream) const;
   TrueTime camera_start(std::size_t camera, TrueTime at) const;
 
   void schedule_pulse(std::int64_t slot);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "algorithms/ports/assert.h"
+#include "scenarios/rates.h"
 #include "sim/rig/capture.h"
 
 namespace simbench::sim {
@@ -103,7 +104,7 @@ void Capture::build_streams(TrueTime at) {
       stream.host = static_cast<std::uint32_t>(host);
       stream.controller = controller_of_host[host];
       stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
-      if (shutter_mode(stream.kind) != ShutterMode::kFreeRunning) {
+      if (shutter_mode(scenario_.cameras.streams[which]) != ShutterMode::kFreeRunning) {
         triggered_streams_.push_back(static_cast<std::uint32_t>(streams_.size()));
       }
       streams_.push_back(std::move(stream));
@@ -121,7 +122,7 @@ Capture::Stream Capture::make_stream(std::size_t camera, std::size_t which, True
   const Nanoseconds readout = from_ms(profile.shutter == "rolling" ? profile.readout_ms : 0);
   RandomStream latency(seed_, "camera/latency", camera);
   const ShutterSettings shutter{
-      .mode = shutter_mode(kind),
+      .mode = shutter_mode(profile),
       .mode_period_ns = mode_period_ns,
       .exposure = exposure_of(camera),
       .readout = readout,
@@ -168,13 +169,9 @@ Nanoseconds Capture::exposure_of(std::size_t camera) const {
   return from_ms(cameras.exposure_ms + periods * trigger_period_ms(scenario_.trigger));
 }
 
-// Depth follows the trigger in genlock, slave and full slave mode; colour in full slave only.
-ShutterMode Capture::shutter_mode(StreamKind kind) const {
-  const std::string& mode = scenario_.cameras.sync_mode;
-  const bool depth = kind == StreamKind::kDepth;
-  if (mode == "genlock" && depth) return ShutterMode::kGenlock;
-  if (mode == "full_slave" || (mode == "slave" && depth)) return ShutterMode::kSlave;
-  return ShutterMode::kFreeRunning;
+ShutterMode Capture::shutter_mode(const scenarios::Stream& stream) const {
+  if (!scenarios::follows_trigger(scenario_.cameras, stream)) return ShutterMode::kFreeRunning;
+  return scenario_.cameras.sync_mode == "genlock" ? ShutterMode::kGenlock : ShutterMode::kSlave;
 }
 
 TrueTime Capture::camera_start(std::size_t camera, TrueTime at) const {

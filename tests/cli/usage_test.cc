@@ -64,7 +64,10 @@ TEST_F(Usage, ListsWhatThereIs) {
   EXPECT_THAT(run({"list", "algorithms"}).out, HasSubstr("source: "));
   EXPECT_THAT(run({"list", "pipelines"}).out, HasSubstr("ntp_last_set"));
   EXPECT_THAT(run({"list", "scenarios"}).out, HasSubstr("18cam_6host_15fps"));
-  refuses({"list", "cameras"}, {"found 'cameras'", "scenarios, pipelines, algorithms"});
+  EXPECT_THAT(run({"list", "cameras"}).out, HasSubstr("d455: RealSense D455"));
+  EXPECT_THAT(run({"list", "cameras", "--format", "json"}).out, HasSubstr("\"model\": \"d435\""));
+  refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
+  refuses({"list", "fish"}, {"found 'fish'", "scenarios, pipelines, algorithms, cameras"});
 }
 
 TEST_F(Usage, DescribesEveryParameter) {

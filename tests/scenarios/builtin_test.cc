@@ -144,6 +144,8 @@ TEST(Describe, ALineForEveryParameter) {
   EXPECT_EQ(line("/usb/bandwidth_mb_per_s").unit, "MB/s");
   EXPECT_EQ(line("/cameras/streams/0/width").unit, "pixels");
   EXPECT_EQ(line("/cameras/host_of_camera").value, "[]");
+  EXPECT_THAT(line("/cameras/model").source, HasSubstr("profile of the RealSense D455"));
+  EXPECT_THAT(line("/cameras/streams/0/mode_rate_hz").source, HasSubstr("d455.py"));
   EXPECT_EQ(line("/algorithms/yoon2021/latency_estimate").value, "literal");
   for (const ParameterLine& each : lines) {
     EXPECT_FALSE(each.meaning.empty()) << each.pointer;

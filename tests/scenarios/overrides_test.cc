@@ -99,9 +99,10 @@ TEST(Set, WrongValues) {
   EXPECT_EQ(error_of_set("/hosts/clock", "{}"),
             "--set /hosts/clock={}: /hosts/clock/arrival_quantum_ms: found nothing, allowed a "
             "number from 0 to 1000");
-  EXPECT_EQ(error_of_set("/faults", R"([{"kind": "flood"}])"),
-            "--set /faults=[{\"kind\": \"flood\"}]: /faults/0/kind: found \"flood\", allowed "
-            "\"camera_vanishes\", \"late_first_frame\", \"clock_step\"");
+  EXPECT_EQ(
+      error_of_set("/faults", R"([{"kind": "flood"}])"),
+      "--set /faults=[{\"kind\": \"flood\"}]: /faults/0/kind: found \"flood\", allowed "
+      "\"camera_vanishes\", \"late_first_frame\", \"clock_step\", \"host_stops\", \"link_stops\"");
   EXPECT_EQ(error_of_set("/faults", std::string(70, '[')),
             "--set /faults=" + std::string(70, '[') + ": nested more than 64 levels deep");
   EXPECT_LT(error_of_set("/faults", std::string(100000, 'x')).size(), 600U);

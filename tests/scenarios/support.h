@@ -20,6 +20,11 @@ inline Scenario load_derived(const std::string& members,
   return load_scenario_text(derived(members), "my.json", overrides);
 }
 
+// "FILE:LINE: /pointer" of a value of the built-in 18cam_6host_45fps.
+inline std::string place_in_base(const std::string& pointer) {
+  return load_scenario("18cam_6host_45fps").origin->describe(pointer);
+}
+
 // The message with which loading fails, "" if it does not.
 inline std::string error_of_text(const std::string& text,
                                  const std::vector<Override>& overrides = {}) {

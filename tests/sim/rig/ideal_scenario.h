@@ -28,6 +28,7 @@ inline scenarios::Scenario ideal_scenario() {
   s.trigger.cameras_per_sub_trigger = 6;
   s.cameras.count = 2;
   s.cameras.cameras_per_host = 1;
+  s.cameras.model = "d455";
   s.cameras.sync_mode = "genlock";
   s.cameras.common_start = true;
   s.cameras.streams = {{.kind = "depth",

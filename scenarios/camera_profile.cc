@@ -1,0 +1,103 @@
+#include "scenarios/camera_profile.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/builtin_files.h"
+
+namespace simbench::scenarios {
+
+using nlohmann::json;
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ImageSize, width, height, rates_hz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
+                                   bytes_per_pixel, sizes, source)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncMode, mode, triggered)
+
+namespace {
+
+StampProfile stamp_of(const json& in) {
+  const json& wraps = in.at("wraps_after_s");
+  return {.stamp = in.at("stamp"),
+          .clock = in.at("clock"),
+          .unit = in.at("unit"),
+          .wraps_after_s = wraps.is_null() ? std::nullopt : std::optional(wraps.get<double>()),
+          .meaning = in.at("meaning"),
+          .source = in.at("source")};
+}
+
+CameraProfile profile_of(const json& in) {
+  CameraProfile profile;
+  in.at("model").get_to(profile.model);
+  in.at("name").get_to(profile.name);
+  in.at("maker").get_to(profile.maker);
+  in.at("streams").get_to(profile.streams);
+  const json& sync = in.at("sync");
+  sync.at("modes").get_to(profile.sync_modes);
+  sync.at("rates_hz").get_to(profile.sync_rates_hz);
+  sync.at("wiring").get_to(profile.sync_wiring);
+  sync.at("source").get_to(profile.sync_source);
+  for (const json& stamp : in.at("stamps")) profile.stamps.push_back(stamp_of(stamp));
+  const json& latency = in.at("latency");
+  if (!latency.at("typical_ms").is_null()) {
+    latency.at("typical_ms").get_to(profile.typical_latency_ms);
+  }
+  latency.at("source").get_to(profile.latency_source);
+  return profile;
+}
+
+}  // namespace
+
+const ImageSize* StreamProfile::find_size(std::int64_t width, std::int64_t height) const {
+  const auto found = std::find_if(sizes.begin(), sizes.end(), [&](const ImageSize& size) {
+    return size.width == width && size.height == height;
+  });
+  return found == sizes.end() ? nullptr : &*found;
+}
+
+const StreamProfile* CameraProfile::stream(std::string_view kind) const {
+  const auto found = std::find_if(streams.begin(), streams.end(),
+                                  [&](const StreamProfile& each) { return each.kind == kind; });
+  return found == streams.end() ? nullptr : &*found;
+}
+
+const SyncMode* CameraProfile::sync_mode(std::string_view mode) const {
+  const auto found = std::find_if(sync_modes.begin(), sync_modes.end(),
+                                  [&](const SyncMode& each) { return each.mode == mode; });
+  return found == sync_modes.end() ? nullptr : &*found;
+}
+
+bool CameraProfile::triggers(std::string_view mode, std::string_view kind) const {
+  const SyncMode* found = sync_mode(mode);
+  return found != nullptr && std::find(found->triggered.begin(), found->triggered.end(), kind) !=
+                                 found->triggered.end();
+}
+
+const std::vector<CameraProfile>& camera_profiles() {
+  static const std::vector<CameraProfile> profiles = [] {
+    std::vector<CameraProfile> all;
+    for (const BuiltinFile& file : camera_files())
+      all.push_back(profile_of(json::parse(file.text)));
+    return all;
+  }();
+  return profiles;
+}
+
+const CameraProfile* find_camera_profile(std::string_view model) {
+  const std::vector<CameraProfile>& all = camera_profiles();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const CameraProfile& each) { return each.model == model; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::string camera_profiles_json() {
+  auto all = nlohmann::ordered_json::array();
+  for (const BuiltinFile& file : camera_files()) {
+    auto profile = nlohmann::ordered_json::parse(file.text);
+    profile.erase("$schema");
+    all.push_back(std::move(profile));
+  }
+  return all.dump(2) + '\n';
+}
+
+}  // namespace simbench::scenarios

@@ -1,0 +1,87 @@
+// Camera models: what each can do, from one profile file per model (scenarios/cameras/*.json, whose
+// schema documents every member with its range; each section names its source).
+//
+// A scenario names its model in /cameras/model; its streams and sync mode are checked against the
+// profile, and the profile says which streams follow the trigger in which mode. The profiles are
+// built into the program. `simbench list cameras` prints them. What a vendor does not document a
+// profile does not promise: such a camera has the mode "default" alone, in which it runs free.
+//
+// Another model is another file in that folder; nothing else needs to change.
+//
+//   const CameraProfile* camera = find_camera_profile("d455");
+//   camera->triggers("slave", "depth")                      // true
+//   camera->stream("depth")->find_size(848, 480)->rates_hz  // 15, 30, 60, 90
+#ifndef SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
+#define SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace simbench::scenarios {
+
+struct ImageSize {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  std::vector<double> rates_hz;  // ascending
+};
+
+struct StreamProfile {
+  std::string kind;  // "depth" or "colour"
+  std::string format;
+  std::string shutter;         // "global" or "rolling"
+  double readout_periods = 0;  // rolling: readout as a share of the frame period
+  double bytes_per_pixel = 0;
+  std::vector<ImageSize> sizes;
+  std::string source;
+
+  const ImageSize* find_size(std::int64_t width, std::int64_t height) const;  // null: none
+};
+
+struct SyncMode {
+  std::string mode;
+  std::vector<std::string> triggered;  // streams that follow the pulses
+};
+
+struct StampProfile {
+  std::string stamp;  // "sensor", "frame", "backend" or "arrival"
+  std::string clock;  // "camera" or "host"
+  std::string unit;
+  std::optional<double> wraps_after_s;  // nothing: not documented
+  std::string meaning;
+  std::string source;
+};
+
+struct CameraProfile {
+  std::string model;  // by which a scenario calls it
+  std::string name;   // the maker's
+  std::string maker;
+  std::vector<StreamProfile> streams;
+  std::vector<SyncMode> sync_modes;
+  std::vector<double> sync_rates_hz;  // in modes other than default and genlock; empty: all
+  std::string sync_wiring;
+  std::string sync_source;
+  std::vector<StampProfile> stamps;
+  std::vector<double> typical_latency_ms;  // lowest and highest mean; empty: not documented
+  std::string latency_source;
+
+  const StreamProfile* stream(std::string_view kind) const;  // null: the model has none
+  const SyncMode* sync_mode(std::string_view mode) const;    // null: the model does not have it
+  // Whether exposures of that stream follow the pulses in that mode; false where there is none.
+  bool triggers(std::string_view mode, std::string_view kind) const;
+};
+
+// In alphabetical order of the models.
+const std::vector<CameraProfile>& camera_profiles();
+
+// Null if there is no such model.
+const CameraProfile* find_camera_profile(std::string_view model);
+
+// All profiles as one JSON array, as their files have them.
+std::string camera_profiles_json();
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_

@@ -1,0 +1,139 @@
+// The camera profiles of the distribution.
+#include "scenarios/camera_profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "scenarios/builtin_files.h"
+#include "scenarios/json_schema.h"
+
+namespace simbench::scenarios {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+
+// Makes every property required but for those that the schema calls optional, and checks on the way
+// that each has a description and that objects are closed.
+void require_all(json& node) {
+  EXPECT_TRUE(node.contains("description")) << node.dump();
+  if (node.contains("properties")) {
+    EXPECT_EQ(node["additionalProperties"], false) << node.dump();
+    for (auto& [key, child] : node["properties"].items()) {
+      if (!node.contains("x-optional") || node["x-optional"][0] != key) {
+        node["required"].push_back(key);
+      }
+      require_all(child);
+    }
+  }
+  if (node.contains("items")) require_all(node["items"]);
+}
+
+TEST(CameraProfiles, ThoseOfThePaperAreThere) {
+  std::vector<std::string> models;
+  for (const CameraProfile& camera : camera_profiles()) models.push_back(camera.model);
+  EXPECT_THAT(models, ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "l515"));
+}
+
+TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
+  json text = json::parse(camera_schema_text());
+  require_all(text);
+  const JsonSchema schema(text);
+  for (const BuiltinFile& file : camera_files()) {
+    const json profile = json::parse(file.text);
+    const auto refusals = schema.validate(profile);
+    EXPECT_TRUE(refusals.empty()) << file.name << ": " << refusals.front().reason;
+    EXPECT_EQ(profile["model"], file.name);
+  }
+  json broken = json::parse(camera_files().front().text);
+  broken["sync"].erase("wiring");
+  EXPECT_FALSE(schema.validate(broken).empty());
+}
+
+TEST(CameraProfiles, AreConsistent) {
+  for (const CameraProfile& camera : camera_profiles()) {
+    SCOPED_TRACE(camera.model);
+    ASSERT_NE(camera.sync_mode("default"), nullptr);
+    EXPECT_TRUE(camera.sync_mode("default")->triggered.empty());
+    std::set<std::string> modes;
+    for (const SyncMode& mode : camera.sync_modes) {
+      EXPECT_TRUE(modes.insert(mode.mode).second);
+      for (const std::string& kind : mode.triggered) EXPECT_NE(camera.stream(kind), nullptr);
+    }
+    EXPECT_TRUE(std::is_sorted(camera.sync_rates_hz.begin(), camera.sync_rates_hz.end()));
+    for (const StreamProfile& stream : camera.streams) {
+      EXPECT_EQ(camera.stream(stream.kind), &stream) << "one stream of a kind";
+      EXPECT_EQ(stream.shutter == "rolling", stream.readout_periods > 0);
+      for (const ImageSize& size : stream.sizes) {
+        EXPECT_EQ(stream.find_size(size.width, size.height), &size) << "a size once only";
+        EXPECT_TRUE(std::is_sorted(size.rates_hz.begin(), size.rates_hz.end()));
+      }
+    }
+    std::set<std::string> stamps;
+    for (const StampProfile& stamp : camera.stamps) {
+      EXPECT_TRUE(stamps.insert(stamp.stamp).second) << stamp.stamp;
+      EXPECT_EQ(stamp.clock == "camera", stamp.stamp == "sensor" || stamp.stamp == "frame");
+    }
+  }
+}
+
+TEST(CameraProfiles, WhatTheTriggerLeads) {
+  const CameraProfile& d455 = *find_camera_profile("d455");
+  EXPECT_FALSE(d455.triggers("default", "depth"));
+  EXPECT_FALSE(d455.triggers("master", "depth"));
+  EXPECT_TRUE(d455.triggers("slave", "depth"));
+  EXPECT_FALSE(d455.triggers("slave", "colour"));
+  EXPECT_TRUE(d455.triggers("full_slave", "colour"));
+  EXPECT_TRUE(d455.triggers("genlock", "depth"));
+  EXPECT_FALSE(d455.triggers("genlock", "colour"));
+  EXPECT_FALSE(find_camera_profile("d435")->triggers("slave", "colour"));
+  EXPECT_EQ(find_camera_profile("d435")->sync_mode("full_slave"), nullptr);
+  EXPECT_TRUE(find_camera_profile("azure_kinect")->triggers("slave", "colour"));
+  EXPECT_FALSE(find_camera_profile("l515")->triggers("slave", "depth"));
+  EXPECT_EQ(find_camera_profile("D455"), nullptr);
+}
+
+// The specifications of Table 1 of Yoon et al. 2021.
+TEST(CameraProfiles, SizesOfThePapersTable) {
+  const auto rates = [](const char* model, const char* kind, int width, int height) {
+    const ImageSize* size = find_camera_profile(model)->stream(kind)->find_size(width, height);
+    return size == nullptr ? std::vector<double>{} : size->rates_hz;
+  };
+  using testing::Contains;
+  EXPECT_THAT(rates("azure_kinect", "colour", 3840, 2160), Contains(30));
+  EXPECT_THAT(rates("azure_kinect", "depth", 640, 576), Contains(30));
+  EXPECT_THAT(rates("astra_plus", "colour", 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("astra_plus", "depth", 640, 480), Contains(30));
+  EXPECT_THAT(rates("astra_s", "colour", 1280, 720), Contains(30));
+  EXPECT_THAT(rates("astra_s", "depth", 640, 480), Contains(30));
+  EXPECT_THAT(rates("d455", "colour", 1280, 800), Contains(30));
+  EXPECT_THAT(rates("d455", "depth", 1280, 720), Contains(30));
+  EXPECT_THAT(rates("d455", "depth", 848, 480), Contains(90));
+  EXPECT_THAT(rates("d435", "colour", 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("d435", "depth", 1280, 720), Contains(30));
+  EXPECT_THAT(rates("d435", "depth", 848, 480), Contains(90));
+  EXPECT_THAT(rates("l515", "colour", 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("l515", "depth", 1024, 768), Contains(30));
+  for (const char* model : {"azure_kinect", "astra_plus", "astra_s", "l515"}) {
+    for (const ImageSize& size : find_camera_profile(model)->stream("depth")->sizes) {
+      EXPECT_LE(size.rates_hz.back(), 30) << model << " has no 90 Hz";
+    }
+  }
+}
+
+TEST(CameraProfiles, JsonHasThemAll) {
+  const json all = json::parse(camera_profiles_json());
+  ASSERT_EQ(all.size(), camera_profiles().size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i]["model"], camera_profiles()[i].model);
+    EXPECT_FALSE(all[i].contains("$schema"));
+  }
+}
+
+}  // namespace
+}  // namespace simbench::scenarios
