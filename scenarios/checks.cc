@@ -67,6 +67,33 @@ void check_streams(const Scenario& scenario) {
   }
 }
 
+void check_shutters(const Scenario& scenario) {
+  const std::vector<Stream>& streams = scenario.cameras.streams;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    if (streams[i].shutter == "rolling" || streams[i].readout_ms == 0) continue;
+    fail_at(scenario, fmt::format("/cameras/streams/{}/readout_ms", i),
+            fmt::format("found {}, allowed 0: a global shutter exposes all rows at once",
+                        streams[i].readout_ms));
+  }
+}
+
+void check_auto_exposure(const Scenario& scenario) {
+  // Shorter intervals would make more steps than a computer can hold.
+  constexpr double kShortestIntervalMs = 1;
+  const AutoExposure& automatic = scenario.cameras.auto_exposure;
+  const double interval_ms = automatic.step_interval_exponential_ms;
+  if (interval_ms > 0 && interval_ms < kShortestIntervalMs) {
+    fail_at(scenario, "/cameras/auto_exposure/step_interval_exponential_ms",
+            fmt::format("found {}, allowed 0 (no auto-exposure) or at least {}", interval_ms,
+                        kShortestIntervalMs));
+  }
+  if (automatic.min_ms > automatic.max_ms) {
+    fail_at(scenario, "/cameras/auto_exposure/min_ms",
+            fmt::format("found {}, allowed at most /cameras/auto_exposure/max_ms, {}",
+                        automatic.min_ms, automatic.max_ms));
+  }
+}
+
 void check_faults(const Scenario& scenario) {
   // What each kind of fault needs; the rest of a Fault's members it may not state.
   struct Need {
@@ -143,6 +170,8 @@ void check(const Scenario& scenario) {
   check_hosts(scenario);
   check_streams(scenario);
   check_rates(scenario);
+  check_shutters(scenario);
+  check_auto_exposure(scenario);
   check_faults(scenario);
   check_pipelines(scenario);
 }

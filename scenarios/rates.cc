@@ -36,8 +36,8 @@ void check_profile(const Scenario& scenario, const CameraProfile& camera,
       sizes.push_back(fmt::format("{}x{}", size.width, size.height));
     }
     fail_at(scenario, pointer + "/width",
-            fmt::format("found {} {}x{}, allowed {} (profiles of the {})", stream.kind, stream.width,
-                        stream.height, fmt::join(sizes, ", "), camera.name));
+            fmt::format("found {} {}x{}, allowed {} (profiles of the {})", stream.kind,
+                        stream.width, stream.height, fmt::join(sizes, ", "), camera.name));
   }
   const std::vector<double>& rates = offered->rates_hz;
   if (std::find(rates.begin(), rates.end(), stream.mode_rate_hz) == rates.end()) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/camera_profile.h"
 #include "scenarios/loader.h"
 #include "scenarios/rates.h"
 
@@ -34,16 +35,18 @@ std::map<std::int64_t, std::int64_t> cameras_by_host(const Scenario& scenario) {
   return cameras;
 }
 
+std::int64_t most_cameras_on_a_host(const Scenario& scenario) {
+  std::int64_t most = 0;
+  for (const auto& [host, count] : cameras_by_host(scenario)) most = std::max(most, count);
+  return most;
+}
+
 void warn_about_usb(Lines& lines, const Scenario& scenario) {
   const Usb& usb = scenario.usb;
   constexpr std::int64_t kKnownToWork = 3;
   std::int64_t sharers = 1;
   if (usb.sharing != "dedicated") {
-    std::int64_t most_on_a_host = 0;
-    for (const auto& [host, count] : cameras_by_host(scenario)) {
-      most_on_a_host = std::max(most_on_a_host, count);
-    }
-    sharers = std::min(usb.cameras_per_controller, most_on_a_host);
+    sharers = std::min(usb.cameras_per_controller, most_cameras_on_a_host(scenario));
   }
   const double offered = camera_load_mb_per_s(scenario) * static_cast<double>(sharers);
   if (offered > usb.bandwidth_mb_per_s) {
@@ -61,22 +64,59 @@ void warn_about_usb(Lines& lines, const Scenario& scenario) {
   }
 }
 
+// Exposures that do not end before the next pulse make the camera miss it.
 void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const double period_ms = 1e3 / pulse_rate_hz(scenario.trigger);
-  const double longest_ms =
-      cameras.exposure_ms +
-      (cameras.exposure_camera_periods + cameras.exposure_host_periods) * period_ms;
+  const double readout_ms =
+      std::max_element(cameras.streams.begin(), cameras.streams.end(),
+                       [](const Stream& a, const Stream& b) { return a.readout_ms < b.readout_ms; })
+          ->readout_ms;
   const bool is_triggered =
       std::any_of(cameras.streams.begin(), cameras.streams.end(),
                   [&cameras](const Stream& stream) { return follows_trigger(cameras, stream); });
   const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
-  if (start_ms + longest_ms <= period_ms) return;
-  warn(lines, scenario, "/cameras/exposure_ms",
-       fmt::format("exposures of up to {:.2f} ms, beginning {:.2f} ms after the pulse, do not fit "
-                   "into the frame period of {:.2f} ms: expect missed pulses and half the rate "
-                   "(realsense-ros #2612)",
-                   longest_ms, start_ms, period_ms));
+  const auto warn_if_longer = [&](const std::string& pointer, double longest_ms) {
+    if (start_ms + longest_ms <= period_ms) return;
+    warn(
+        lines, scenario, pointer,
+        fmt::format("exposures of up to {:.2f} ms, beginning {:.2f} ms after the pulse, do not fit "
+                    "into the frame period of {:.2f} ms: expect missed pulses and half the rate "
+                    "(realsense-ros #2612)",
+                    longest_ms, start_ms, period_ms));
+  };
+  warn_if_longer("/cameras/exposure_ms",
+                 readout_ms + cameras.exposure_ms +
+                     (cameras.exposure_camera_periods + cameras.exposure_host_periods) * period_ms);
+  if (cameras.auto_exposure.step_interval_exponential_ms > 0) {
+    warn_if_longer("/cameras/auto_exposure/max_ms", readout_ms + cameras.auto_exposure.max_ms);
+  }
+}
+
+void warn_about_shutters(Lines& lines, const Scenario& scenario) {
+  const CameraProfile* camera = find_camera_profile(scenario.cameras.model);
+  for (std::size_t i = 0; i < scenario.cameras.streams.size(); ++i) {
+    const Stream& stream = scenario.cameras.streams[i];
+    const StreamProfile* profile = camera->stream(stream.kind);
+    if (stream.shutter == profile->shutter) continue;
+    warn(lines, scenario, fmt::format("/cameras/streams/{}/shutter", i),
+         fmt::format("{}, but the {} camera of the {} has a {} shutter", stream.shutter,
+                     stream.kind, camera->name, profile->shutter));
+  }
+}
+
+// The cameras' frames on their way through the port of the busiest host.
+void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
+  const Network& network = scenario.network;
+  if (network.bandwidth_mbit_per_s == 0) return;
+  const double offered_mbit_per_s = camera_load_mb_per_s(scenario) * 8 *
+                                    static_cast<double>(most_cameras_on_a_host(scenario)) *
+                                    network.capture_traffic_share;
+  if (offered_mbit_per_s <= network.bandwidth_mbit_per_s) return;
+  warn(lines, scenario, "/network/capture_traffic_share",
+       fmt::format("the frames of a host are {:.0f} Mbit/s on a link that carries {:g}: its queue "
+                   "grows without limit during the capture",
+                   offered_mbit_per_s, network.bandwidth_mbit_per_s));
 }
 
 void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
@@ -109,6 +149,8 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   Lines lines;
   warn_about_usb(lines, scenario);
   warn_about_exposure(lines, scenario);
+  warn_about_shutters(lines, scenario);
+  warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
   return lines;

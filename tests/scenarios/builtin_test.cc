@@ -107,6 +107,34 @@ TEST(Warnings, ExposureLongerThanThePeriod) {
                           "expect missed pulses and half the rate (realsense-ros #2612)"));
 }
 
+TEST(Warnings, AutoExposureAndReadoutLongerThanThePeriod) {
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan",
+                             {{"/cameras/auto_exposure/step_interval_exponential_ms", "500"},
+                              {"/cameras/auto_exposure/max_ms", "22"}})),
+      ElementsAre(StartsWith("--set /cameras/auto_exposure/max_ms=22: exposures of up to "
+                             "22.00 ms, beginning 0.79 ms")));
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan", {{"/cameras/streams/0/shutter", "rolling"},
+                                                       {"/cameras/streams/0/readout_ms", "14"}})),
+      ElementsAre(HasSubstr("exposures of up to 22.00 ms, beginning 0.79 ms"),
+                  "--set /cameras/streams/0/shutter=rolling: rolling, but the depth camera "
+                  "of the RealSense D455 has a global shutter"));
+}
+
+TEST(Warnings, CaptureTrafficAboveTheBandwidth) {
+  // 3 * 848 * 480 * 2 bytes at 45 Hz are 879.2 Mbit/s.
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan", {{"/network/capture_traffic_share", "1"}})),
+      IsEmpty());
+  EXPECT_THAT(
+      warnings(load_scenario("18cam_6host_45fps_lan", {{"/network/capture_traffic_share", "1"},
+                                                       {"/network/bandwidth_mbit_per_s", "800"}})),
+      ElementsAre("--set /network/capture_traffic_share=1: the frames of a host are 879 "
+                  "Mbit/s on a link that carries 800: its queue grows without limit during "
+                  "the capture"));
+}
+
 TEST(Warnings, ScoredFramesThatAreNotTriggered) {
   EXPECT_THAT(
       warnings(load_scenario("18cam_6host_90fps_full_slave",

@@ -166,6 +166,21 @@ TEST(Checks, RatesOfTheSyncModes) {
             "");
 }
 
+TEST(Checks, Shutters) {
+  EXPECT_EQ(error_of_set("/cameras/streams/0/readout_ms", "5"),
+            "--set /cameras/streams/0/readout_ms=5: found 5, allowed 0: a global shutter exposes "
+            "all rows at once");
+}
+
+TEST(Checks, AutoExposure) {
+  EXPECT_EQ(error_of_set("/cameras/auto_exposure/min_ms", "9"),
+            "--set /cameras/auto_exposure/min_ms=9: found 9, allowed at most "
+            "/cameras/auto_exposure/max_ms, 8");
+  EXPECT_EQ(error_of_set("/cameras/auto_exposure/step_interval_exponential_ms", "0.5"),
+            "--set /cameras/auto_exposure/step_interval_exponential_ms=0.5: found 0.5, allowed 0 "
+            "(no auto-exposure) or at least 1");
+}
+
 TEST(Checks, Faults) {
   EXPECT_EQ(error_of("\"faults\": [{\"kind\": \"clock_step\", \"host\": 1,\n \"at_ms\": 1}]"),
             "my.json:3: /faults/0/step_ms: found nothing, \"clock_step\" needs host, at_ms, "
