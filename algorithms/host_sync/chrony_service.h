@@ -39,7 +39,7 @@ struct ChronySettings {
   double poll_target = 8;  // samples
   bool initial_burst = true;
   NtpStamps stamps = NtpStamps::kApplication;
-  Nanoseconds service_time = from_ms(6 * 3600e3);
+  Nanoseconds service_time = from_ms(4 * 3600e3);
 };
 
 class ChronyService : public HostSync {

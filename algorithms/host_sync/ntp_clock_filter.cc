@@ -26,6 +26,7 @@ std::optional<NtpSample> NtpClockFilter::add(const NtpSample& sample, double pol
                   "a sample must be finite");
   NtpSample floored = sample;
   floored.delay_s = std::max(sample.delay_s, precision_s_);
+  floored.dispersion_s = std::clamp(sample.dispersion_s, 0.0, kMaxDispersion);
   shift_in(floored);
   const auto by_delay = ordered(sample.at_s);
   const double jitter_before_s = jitter_s_;

@@ -14,8 +14,9 @@
 //    these two intervals, so a real change passes. Not before the filter's dispersion is below
 //    kMaxDistance (four samples): a jitter of two samples is none.
 //
-// Complexity: O(1), eight stages. Degenerate: delays below the precision count as the precision; a
-// sample with a number that is not finite is refused by an assertion.
+// Complexity: O(1), eight stages. Degenerate: delays below the precision count as the precision, a
+// dispersion of 16 s or more as no sample; a sample with a number that is not finite is refused by
+// an assertion.
 //
 // Source: RFC 5905 section 10; host_sync.md section 2 (gate 3, Allan intercept: ntp.h).
 //

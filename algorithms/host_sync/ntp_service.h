@@ -48,7 +48,7 @@ struct NtpSettings {
   bool initial_burst = true;
   Nanoseconds broadcast_interval = from_ms(64e3);
   double broadcast_delay_s = 0.004;  // one way, of broadcast_fixed
-  Nanoseconds service_time = from_ms(6 * 3600e3);
+  Nanoseconds service_time = from_ms(16 * 3600e3);
 };
 
 class NtpService : public HostSync {

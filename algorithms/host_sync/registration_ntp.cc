@@ -6,6 +6,7 @@
 
 #include "algorithms/host_sync/chrony_service.h"
 #include "algorithms/host_sync/ntp_service.h"
+#include "algorithms/host_sync/w32time.h"
 #include "algorithms/parameter_specs.h"
 
 namespace simbench {
@@ -21,7 +22,7 @@ NtpStamps stamps_of(const Parameters& parameters) {
   return parameters.text("stamps") == "kernel" ? NtpStamps::kKernel : NtpStamps::kApplication;
 }
 
-std::vector<ParameterSpec> ntp_parameters() {
+std::vector<ParameterSpec> ntp_parameters(double service_hours) {
   return {
       number_parameter("step_ms", 128, 0, 1e6, "offset above which the clock is stepped; 0: never",
                        kReferenceNtp),
@@ -42,19 +43,19 @@ std::vector<ParameterSpec> ntp_parameters() {
       number_parameter("broadcast_delay_ms", 4, 0, 1e4,
                        "assumed one-way delay (ntp_broadcast_fixed only)",
                        "older documents of ntpd: 4 ms, 3 to 7 typical"),
-      number_parameter("service_hours", 6, 0, 1e4,
+      number_parameter("service_hours", service_hours, 0, 1e4,
                        "how long the service has run when the capture starts",
-                       "assumption: start-up transients are over"),
+                       "assumption: most of the start-up transient is over"),
   };
 }
 
-HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode) {
+HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double service_hours) {
   HostSyncEntry entry;
   entry.info.name = std::move(name);
   entry.info.family = "ntp";
   entry.info.summary = std::move(summary);
   entry.info.source = "RFC 5905; host_sync.md section 2";
-  entry.info.parameters = ntp_parameters();
+  entry.info.parameters = ntp_parameters(service_hours);
   entry.make = [mode](const Parameters& parameters) {
     NtpSettings settings;
     settings.mode = mode;
@@ -103,7 +104,7 @@ std::vector<ParameterSpec> chrony_parameters() {
       choice_parameter("stamps", {"application", "kernel"},
                        "t1 before the send, or from the kernel where it tells",
                        "the other stamps are the application's"),
-      number_parameter("service_hours", 6, 0, 1e4,
+      number_parameter("service_hours", 4, 0, 1e4,
                        "how long the service has run when the capture starts",
                        "assumption: start-up transients are over"),
   };
@@ -138,16 +139,53 @@ HostSyncEntry chrony() {
   return entry;
 }
 
+HostSyncEntry w32time_domain() {
+  const std::string documentation = "Microsoft documentation of W32Time (host_sync.md section 2)";
+  const W32TimeSettings defaults = w32time_domain_settings();
+  HostSyncEntry entry;
+  entry.info.name = "w32time_domain";
+  entry.info.family = "w32time";
+  entry.info.summary = "SNTP in the manner of Windows Time on a member of a domain, as documented";
+  entry.info.source = documentation + "; RFC 4330";
+  entry.info.parameters = {
+      number_parameter("poll_interval_s", to_seconds(defaults.poll_interval), 16, 604800,
+                       "time between polls: MinPollInterval", documentation),
+      number_parameter("phase_correct_rate", defaults.phase_correct_rate, 1, 1e3,
+                       "PhaseCorrectRate, divides the slew rate", documentation),
+      number_parameter("max_allowed_phase_offset_s", to_seconds(defaults.max_allowed_phase_offset),
+                       0, 1e6, "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
+                       documentation),
+      number_parameter("service_hours", to_seconds(defaults.service_time) / 3600, 0, 1e4,
+                       "how long the service has run when the capture starts",
+                       "assumption: several polls"),
+      number_parameter("start_spread_s", to_seconds(defaults.start_spread), 0, 1e6,
+                       "the services start at random times within this span",
+                       "assumption: one poll interval, so that the hosts' polls are spread evenly"),
+  };
+  entry.make = [](const Parameters& parameters) {
+    W32TimeSettings settings = w32time_domain_settings();
+    settings.poll_interval = from_ms(parameters.number("poll_interval_s") * 1e3);
+    settings.phase_correct_rate = parameters.number("phase_correct_rate");
+    settings.max_allowed_phase_offset =
+        from_ms(parameters.number("max_allowed_phase_offset_s") * 1e3);
+    settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
+    settings.start_spread = from_ms(parameters.number("start_spread_s") * 1e3);
+    return std::make_unique<W32Time>(settings);
+  };
+  return entry;
+}
+
 }  // namespace
 
 std::vector<HostSyncEntry> ntp_host_syncs() {
   return {
       ntp("ntp", "NTP client and server: clock filter, PLL/FLL discipline, adaptive poll",
-          NtpMode::kUnicast),
+          NtpMode::kUnicast, 16),
       ntp("ntp_broadcast_volley", "NTP broadcast, its delay calibrated by one volley of exchanges",
-          NtpMode::kBroadcastVolley),
+          NtpMode::kBroadcastVolley, 6),
       ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay of 4 ms",
-          NtpMode::kBroadcastFixed),
+          NtpMode::kBroadcastFixed, 6),
+      w32time_domain(),
       chrony(),
   };
 }

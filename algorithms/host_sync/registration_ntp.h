@@ -1,7 +1,7 @@
 // The NTP family of host_sync algorithms, with their parameters and the sources of their defaults.
 //
 //   ntp, ntp_broadcast_volley, ntp_broadcast_fixed   (family ntp)
-//   w32time_domain                                   (family w32time_domain)
+//   w32time_domain                                   (family w32time)
 //   chrony                                           (family chrony)
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_REGISTRATION_NTP_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_REGISTRATION_NTP_H_

@@ -6,6 +6,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp_packet.h"
+#include "algorithms/host_sync/w32time_spikes.h"
 
 namespace simbench {
 namespace {
@@ -97,8 +98,8 @@ Task<void> correct(Host& host, Nanoseconds offset, W32TimeSettings settings) {
   co_await host.clock().set(now + offset);
 }
 
-// Asks until there is an answer, and corrects the clock by it.
-Task<SyncOutcome> poll(Host& host, PeerId server, W32TimeSettings settings) {
+// Asks until there is an answer, and corrects the clock by it. `spikes` must outlive the call.
+Task<SyncOutcome> poll(Host& host, PeerId server, W32TimeSettings settings, W32TimeSpikes& spikes) {
   SyncOutcome outcome;
   outcome.slave = host.id();
   for (int request = 0; request < W32Time::kRequestLimit; ++request) {
@@ -106,8 +107,18 @@ Task<SyncOutcome> poll(Host& host, PeerId server, W32TimeSettings settings) {
     const Exchange exchange = co_await exchange_with(host, server);
     if (!exchange.t4) continue;
     host.report_exchange(exchange);
-    co_await correct(host, clock_offset(*exchange.t1, *exchange.t2, *exchange.t3, *exchange.t4),
-                     settings);
+    const Nanoseconds offset = clock_offset(*exchange.t1, *exchange.t2, *exchange.t3, *exchange.t4);
+    if (settings.max_phase_correction && magnitude(offset) > *settings.max_phase_correction) {
+      outcome.message = "slave " + std::to_string(host.id()) + ": the clock is off by " +
+                        std::to_string(to_seconds(offset)) +
+                        " s, more than W32Time corrects (MaxPosPhaseCorrection " +
+                        std::to_string(to_seconds(*settings.max_phase_correction)) +
+                        " s); set it by hand";
+      co_return outcome;
+    }
+    if (spikes.accept(offset, host.steady_clock().now())) {
+      co_await correct(host, offset, settings);
+    }
     outcome.synchronised = true;
     co_return outcome;
   }
@@ -118,6 +129,17 @@ Task<SyncOutcome> poll(Host& host, PeerId server, W32TimeSettings settings) {
 }
 
 }  // namespace
+
+W32TimeSettings w32time_domain_settings() {
+  W32TimeSettings settings;
+  settings.poll_interval = from_ms(1024e3);
+  settings.phase_correct_rate = 1;
+  settings.max_allowed_phase_offset = from_ms(300e3);
+  settings.max_phase_correction.reset();
+  settings.service_time = from_ms(4 * 3600e3);
+  settings.start_spread = from_ms(1024e3);
+  return settings;
+}
 
 W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& settings) {
   const Nanoseconds size = magnitude(offset);
@@ -141,9 +163,10 @@ Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
 Task<void> W32Time::run_slave(Host& host, PeerId master) {
   const double part = host.random_uniform();
   co_await host.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
+  W32TimeSpikes spikes;
   bool reported = false;
   while (true) {
-    const SyncOutcome outcome = co_await poll(host, master, settings_);
+    const SyncOutcome outcome = co_await poll(host, master, settings_, spikes);
     if (!reported) host.report_outcome(outcome);
     reported = true;
     co_await host.sleep_for(settings_.poll_interval);

@@ -1,8 +1,10 @@
-// Windows Time (W32Time) as a stand-alone machine runs it: SNTP, one poll every few hours.
+// Windows Time (W32Time): SNTP, one poll every few hours on a stand-alone machine, at least one
+// every 17 minutes on a member of a domain.
 //
 // W32Time is closed. This follows its public documentation (registry entries and the stated rule
-// for setting or slewing), not its code; jitter filtering, frequency correction, spike detection
-// (LargePhaseOffset, HoldPeriod, SpikeWatchPeriod) and the 15 h limit on corrections are not here.
+// for setting or slewing), not its code. What is not published is not here: jitter filtering,
+// frequency correction (FrequencyCorrectRate, UpdateInterval), and how the poll moves between
+// MinPollInterval and MaxPollInterval; the interval is fixed instead.
 //
 // The master serves (mode 4): it echoes the client's transmit stamp as origin and adds its receive
 // and transmit stamps; it announces itself as a local reference, stratum 1. Each slave is a client
@@ -20,6 +22,8 @@
 // if |offset| < MaxAllowedPhaseOffset and adjustment <= ClockRate / 2; else set. So a slew always
 // takes 16 * PhaseCorrectRate * poll ticks. Example: 0.54 s at a poll of 1024 s and
 // PhaseCorrectRate 7 gives 47 units a tick, 301 ppm, for 1792 s.
+//
+// Spikes are ignored (w32time_spikes.h), and offsets above max_phase_correction refused.
 //
 // A service: it never ends by itself. warm_up() is how long it has run when the capture starts.
 // A slave reports how its first poll ended, and every exchange (t1 to t4).
@@ -41,7 +45,13 @@ struct W32TimeSettings {
   Nanoseconds max_allowed_phase_offset = from_ms(1000);
   Nanoseconds service_time = from_ms(20 * 3600e3);
   Nanoseconds start_spread = from_ms(32768e3);
+  // MaxPosPhaseCorrection and MaxNegPhaseCorrection; nothing: any offset is corrected.
+  std::optional<Nanoseconds> max_phase_correction = from_ms(54000e3);
 };
+
+// The defaults of a member of a domain: MinPollInterval 10, PhaseCorrectRate 1,
+// MaxAllowedPhaseOffset 300 s, corrections without limit.
+W32TimeSettings w32time_domain_settings();
 
 // What is done about an offset.
 struct W32TimeCorrection {
