@@ -106,12 +106,16 @@ ServoAnswer LinearRegressionServo::sample(double offset_ns, std::int64_t local_n
   fit_all();
   choose_window();
   if (window_ == 0) return {.ppb = -frequency_ppb_, .state = ServoState::kUnlocked};
+  if (!is_first_update_ && settings_.step_threshold_ns > 0 &&
+      std::abs(offset_ns) > settings_.step_threshold_ns) {
+    // The reference has jumped: what is known of it is of before.
+    restart();
+    return {.ppb = -frequency_ppb_, .state = ServoState::kJump};
+  }
   Fit& chosen = fit(window_);
   frequency_ppb_ = 1e9 * (chosen.slope - 1);
-  const double first = is_first_update_ ? settings_.first_step_threshold_ns : 0;
-  const bool is_far =
-      (first > 0 && std::abs(offset_ns) > first) ||
-      (settings_.step_threshold_ns > 0 && std::abs(offset_ns) > settings_.step_threshold_ns);
+  const bool is_far = is_first_update_ && settings_.first_step_threshold_ns > 0 &&
+                      std::abs(offset_ns) > settings_.first_step_threshold_ns;
   is_first_update_ = false;
   if (is_far) {
     const std::int64_t step_ns = -std::llround(offset_ns);

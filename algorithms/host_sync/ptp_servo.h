@@ -18,7 +18,7 @@
 // window 16, 2 for 32 and 3 for 64.
 //
 // Steps: on the first update if the offset exceeds first_step_threshold, later only if it exceeds a
-// positive step_threshold.
+// positive step_threshold; the regression then starts afresh.
 // Complexity: O(1); regression O(64). Offsets must be finite.
 // Source: host_sync.md section 1 (linuxptp); outputs agree with vectors/linuxptp_golden.json.
 //
