@@ -23,7 +23,6 @@ class WindowHullEstimator final : public DeviceTimeEstimator {
   explicit WindowHullEstimator(WindowHullSettings settings)
       : max_slope_(slope_of_ppm(settings.max_skew_ppm)), window_(settings.frames) {}
 
-
   GlobalTime stamp(const DeviceSample& sample) override {
     const Sample kind = stream_.push(sample);
     if (kind == Sample::kFirst) window_.clear();
@@ -47,7 +46,6 @@ class SwitchingHullEstimator final : public DeviceTimeEstimator {
   explicit SwitchingHullEstimator(SwitchingHullSettings settings)
       : max_slope_(slope_of_ppm(settings.max_skew_ppm)),
         hull_(saturate_round(settings.period_s * 1e6)) {}
-
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const Sample kind = stream_.push(sample);

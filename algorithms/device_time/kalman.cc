@@ -63,7 +63,6 @@ class Kalman final : public DeviceTimeEstimator {
   explicit Kalman(const KalmanSettings& settings)
       : filter_(settings), rejections_to_restart_(settings.rejections_to_restart) {}
 
-
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);
     const double time_s = static_cast<double>(stream_.point().x) * 1e-6;

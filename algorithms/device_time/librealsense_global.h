@@ -10,8 +10,8 @@
 //
 // The constants are librealsense's and therefore no parameters. Compared with two_way_poll.h it
 // keeps half of the asymmetry too, but also takes reply delays and a late first poll into the fit:
-// constant 0.3 ms out and 1.7 ms back give +0.700 ms exactly; a first poll 20 ms late gives up to
-// +9.9 ms within the first 20 s.
+// constant 0.3 ms out and 1.7 ms back give +0.700 ms exactly; a first poll that takes 20 ms longer,
+// half each way, gives up to +9.9 ms within the first seconds (all in the request: twice that).
 //
 // Ours, not librealsense's: before the first poll, and for a frame of other clocks than the polls,
 // the arrival; bad polls and clocks that were set by more than a second as in poll_stream.h (there,

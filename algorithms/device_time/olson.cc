@@ -11,7 +11,6 @@ class Olson final : public DeviceTimeEstimator {
   explicit Olson(OlsonSettings settings)
       : leak_({.touches = {}, .slope = settings.alpha_ppm * 1e-3}) {}
 
-
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);
     const LinePoint point = stream_.point();

@@ -14,7 +14,6 @@ class SlidingMinimum final : public DeviceTimeEstimator {
   explicit SlidingMinimum(SlidingMinimumSettings settings)
       : window_us_(saturate_round(settings.window_s * 1e6)) {}
 
-
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);
     if (kind == OffsetStream::Sample::kFirst) queue_.clear();

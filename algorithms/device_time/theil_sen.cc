@@ -24,7 +24,6 @@ class TheilSen final : public DeviceTimeEstimator {
     values_.reserve(frames_ * (frames_ + 1) / 2);
   }
 
-
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);
     if (kind == OffsetStream::Sample::kFirst) {

@@ -30,24 +30,34 @@ inline PollSample poll_at(std::int64_t t0_ns, std::int64_t request_ns, std::int6
           .t1_steady = SteadyTime(Nanoseconds(t1_ns))};
 }
 
-// Errors in ms of frames at 30 fps from `from_s` to `to_s`, each stamped as soon as it is exposed,
-// with a poll every 100 ms by delay_ms(): request and reply.
+// Of one poll.
 struct PollDelay {
   double request_ms = 0;
   double reply_ms = 0;
 };
 
+// Errors in ms of frames at 30 fps from `from_s` to `to_s`, each stamped as soon as it is exposed.
+// A poll that takes delay_ms() begins 100 ms after the one before has ended.
 inline std::vector<double> poll_errors_ms(DeviceTimeEstimator& estimator,
                                           const std::function<PollDelay()>& delay_ms,
                                           double fast_ppm, double from_s, double to_s) {
   std::vector<double> errors;
-  std::int64_t poll_ns = 0;
+  PollSample poll;
+  std::int64_t poll_end_ns = -100'000'000;
+  const auto next_poll = [&] {
+    const PollDelay delay = delay_ms();
+    const std::int64_t t0_ns = poll_end_ns + 100'000'000;
+    const std::int64_t request_ns = std::llround(1e6 * delay.request_ms);
+    const std::int64_t reply_ns = std::llround(1e6 * delay.reply_ms);
+    poll = poll_at(t0_ns, request_ns, reply_ns, fast_ppm);
+    poll_end_ns = t0_ns + request_ns + reply_ns;
+  };
+  next_poll();
   for (std::int64_t i = 0; i < std::llround(to_s * 30); ++i) {
     const std::int64_t frame_ns = i * 1'000'000'000 / 30;
-    for (; poll_ns <= frame_ns; poll_ns += 100'000'000) {
-      const PollDelay delay = delay_ms();
-      estimator.on_poll(poll_at(poll_ns, std::llround(1e6 * delay.request_ms),
-                                std::llround(1e6 * delay.reply_ms), fast_ppm));
+    while (poll_end_ns <= frame_ns) {
+      estimator.on_poll(poll);
+      next_poll();
     }
     const GlobalTime stamp =
         estimator.stamp(sample_at(device_us_at(frame_ns, fast_ppm), kHostZeroNs + frame_ns));

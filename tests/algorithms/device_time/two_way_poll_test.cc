@@ -46,7 +46,7 @@ TEST(TwoWayPoll, ConstantAsymmetryLeavesHalf) {
       [] {
         return PollDelay{0.3, 1.7};
       },
-      0, 0, 60);
+      0, 0.1, 60);
   EXPECT_NEAR(statistics(errors).least, 0.7, 2e-3);
   EXPECT_NEAR(statistics(errors).largest, 0.7, 2e-3);
 }
