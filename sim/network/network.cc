@@ -12,12 +12,9 @@ namespace {
 
 constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
-constexpr ComponentKey kAckDraws("network: acknowledgement");
 
 // Ethernet's 1500 bytes less the headers of IP and TCP.
 constexpr double kFullSegmentBytes = 1460;
-// As Linux' tcp_retries2.
-constexpr int kMaxRetransmissions = 15;
 // The sending program's patience and buffers end somewhere.
 constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
@@ -219,45 +216,6 @@ void Network::arrive(SegmentId id) {
   }
   if (path.nagle != nullptr) on_segment_delivered(segment.path);
   if (path.receiver != nullptr) path.receiver->on_arrival();
-}
-
-void Network::on_segment_delivered(PathId path_id) {
-  NagleState& nagle = *paths_[path_id].nagle;
-  ++nagle.delivered;
-  if (nagle.owes_ack || parameters_.delayed_ack_ms == 0) {
-    acknowledge(path_id);
-    return;
-  }
-  nagle.owes_ack = true;
-  nagle.ack_due = engine_.now() + from_ms(parameters_.delayed_ack_ms);
-  engine_.schedule(nagle.ack_due, handler_id_, kAckDue, path_id);
-}
-
-void Network::acknowledge(PathId path_id) {
-  NagleState& nagle = *paths_[path_id].nagle;
-  Path& way_back = paths_[path_id ^ 1];
-  nagle.owes_ack = false;
-  RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to), nagle.acks++);
-  TrueTime left = engine_.now();
-  TrueTime arrival = left + way_back.latency.draw(draw, left);
-  double timeout_ms = parameters_.retransmit_timeout_ms;
-  for (int losses = 0; losses < kMaxRetransmissions && is_cut(way_back, left, arrival);
-       ++losses, timeout_ms *= 2) {
-    left += from_ms(timeout_ms);
-    arrival += from_ms(timeout_ms);
-  }
-  nagle.last_ack = std::max(nagle.last_ack, arrival);
-  nagle.acks_on_the_way.push_back(nagle.delivered);
-  engine_.schedule(nagle.last_ack, handler_id_, kAckArrival, path_id);
-}
-
-void Network::on_ack(PathId path_id) {
-  NagleState& nagle = *paths_[path_id].nagle;
-  nagle.acknowledged = nagle.acks_on_the_way.front();
-  nagle.acks_on_the_way.pop_front();
-  if (nagle.acknowledged == nagle.sent && !nagle.waiting.messages.empty()) {
-    send_segment(std::exchange(nagle.waiting, {}));
-  }
 }
 
 RandomStream Network::draws_of(const Path& path, MessageId id) const {

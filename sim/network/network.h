@@ -137,6 +137,8 @@ class Network : private EventHandler {
     Inbox inbox;
     std::unique_ptr<NagleState> nagle;  // streams under Nagle's algorithm only
   };
+  // As Linux' tcp_retries2.
+  static constexpr int kMaxRetransmissions = 15;
   enum EventKind : std::uint16_t { kAtSwitch, kArrival, kAckDue, kAckArrival };
 
   void handle(const Event& event) override;
