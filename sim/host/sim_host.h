@@ -5,6 +5,10 @@
 // oscillator, sleep_until follows its system clock and is re-armed whenever that is adjusted, by
 // whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen.
 //
+// What else it has is made when the scenario or somebody asks for it: the card's clock
+// (sim/host/nic_clock.h), pulse lines (sim/host/sim_pulse_input.h), the feed of its cameras' frames
+// (sim/host/sim_frame_feed.h). None costs an event while nobody waits.
+//
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //
 // Source: DESIGN section 4; reference/calibration.md section 2.

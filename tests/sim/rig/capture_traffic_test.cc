@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/sim/rig/ideal_scenario.h"
@@ -76,17 +78,20 @@ class Probe final : public HostSync {
  public:
   std::optional<Nanoseconds> warm_up() const override { return from_ms(0); }
   Task<void> run_master(Host& host, std::vector<PeerId>) override {
-    using namespace boost::asio;
-    co_spawn(co_await this_coro::executor, receive_stamps(host, 1, to_master), detached);
+    spawn(co_await boost::asio::this_coro::executor, receive_stamps(host, 1, to_master));
     co_await send_stamps(host, 1, from_ms(7.3));
   }
   Task<void> run_slave(Host& host, PeerId master) override {
-    using namespace boost::asio;
-    co_spawn(co_await this_coro::executor, receive_stamps(host, master, to_slave), detached);
+    spawn(co_await boost::asio::this_coro::executor, receive_stamps(host, master, to_slave));
     co_await send_stamps(host, master, from_ms(7.3));
   }
   Delays to_master;
   Delays to_slave;
+
+ private:
+  static void spawn(const boost::asio::any_io_executor& executor, Task<void> task) {
+    boost::asio::co_spawn(executor, std::move(task), boost::asio::detached);
+  }
 };
 
 // When host 1's port is free of the frames that arrived by then.

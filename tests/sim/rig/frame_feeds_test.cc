@@ -130,7 +130,7 @@ Task<void> give_up(Host& host, std::vector<SteadyTime>& ends) {
   const SteadyTime begin = host.steady_clock().now();
   const auto none = co_await host.frame_feed()->next(begin + from_ms(50));
   EXPECT_FALSE(none.has_value());
-  ends.push_back(SteadyTime(host.steady_clock().now() - begin));
+  ends.emplace_back(host.steady_clock().now() - begin);
 }
 
 TEST(FrameFeeds, AWaitEndsAtItsDeadline) {
