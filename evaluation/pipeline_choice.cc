@@ -153,11 +153,14 @@ void check_needs(const Scenario& scenario, std::size_t pipeline, const char* sta
   }
 }
 
-Nanoseconds calibrated_delay(const Scenario& scenario) {
+CalibratedDelays calibrated_delays(const Scenario& scenario) {
+  CalibratedDelays delays;
+  delays.poll_asymmetry = from_ms(scenario.cameras.clock_poll.calibrated_asymmetry_ms);
   for (const scenarios::Stream& stream : scenario.cameras.streams) {
-    if (stream.kind == scenario.evaluation.stream) return from_ms(stream.calibrated_delay_ms);
+    if (stream.kind != scenario.evaluation.stream) continue;
+    delays.arrival = from_ms(stream.calibrated_delay_ms);
   }
-  return {};
+  return delays;
 }
 
 template <class Entry>
@@ -240,8 +243,8 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   if (choice.device_time.make) {
     setup.make_estimator =
         [make = choice.device_time.make, parameters = choice.device_time_parameters,
-         variants = choice.device_time_variants, delay = calibrated_delay(scenario)] {
-          return make_variant(variants, make(parameters), delay);
+         variants = choice.device_time_variants, delays = calibrated_delays(scenario)] {
+          return make_variant(variants, make(parameters), delays);
         };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");

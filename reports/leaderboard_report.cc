@@ -77,8 +77,9 @@ std::string report(const Results& results, std::string_view summary, bool as_mar
   if (!summary.empty()) text += fmt::format("{}\n", wrapped(summary));
   for (const Board& board : evaluation::leaderboard(results)) {
     const TextTable table = block(board);
-    text += fmt::format("\n{}{}: {}\n\n{}", as_markdown ? "### " : "",
-                        board.name.empty() ? "references" : board.name, composition(board),
+    const std::string heading =
+        board.name.empty() ? "references" : board.name + ": " + composition(board);
+    text += fmt::format("\n{}{}\n\n{}", as_markdown ? "### " : "", heading,
                         as_markdown ? table.markdown() : table.plain());
   }
   text +=

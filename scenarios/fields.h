@@ -65,7 +65,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stream, kind, width, height, bytes_per_pixel,
                                    pipeline_latency_ms, latency_mode_periods, shutter, readout_ms,
                                    calibrated_delay_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClockPoll, interval_ms, request_ms, request_exponential_ms,
-                                   reply_ms, reply_exponential_ms, tail_probability, tail_max_ms)
+                                   reply_ms, reply_exponential_ms, tail_probability, tail_max_ms,
+                                   calibrated_asymmetry_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, model,
                                    sync_mode, common_start, start_spread_ms, streams, oscillator,

@@ -169,6 +169,7 @@ struct ClockPoll {
   double reply_exponential_ms = 0;
   double tail_probability = 0;  // of a request that takes U(0, tail_max_ms) longer
   double tail_max_ms = 0;
+  double calibrated_asymmetry_ms = 0;  // request minus reply, as a user measured it once
 };
 
 struct AutoExposure {

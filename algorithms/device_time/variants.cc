@@ -82,19 +82,29 @@ Time earlier(Time time, Int128 by_ns) {
 
 class DelayCorrected final : public Adapter {
  public:
-  DelayCorrected(std::unique_ptr<DeviceTimeEstimator> inner, Nanoseconds delay)
-      : Adapter(std::move(inner)), delay_(delay) {}
+  DelayCorrected(std::unique_ptr<DeviceTimeEstimator> inner, const CalibratedDelays& delays)
+      : Adapter(std::move(inner)), delays_(delays) {}
+
+  void on_poll(const PollSample& poll) override {
+    const Int128 early_ns = -delays_.poll_asymmetry.count() / 2;
+    PollSample corrected = poll;
+    corrected.t0 = earlier(poll.t0, early_ns);
+    corrected.t1 = earlier(poll.t1, early_ns);
+    corrected.t0_steady = earlier(poll.t0_steady, early_ns);
+    corrected.t1_steady = earlier(poll.t1_steady, early_ns);
+    inner().on_poll(corrected);
+  }
 
  private:
   DeviceSample adapted(const DeviceSample& sample) const override {
-    const Int128 latency_ns = Int128{500} * sample.exposure_us + delay_.count();
+    const Int128 latency_ns = Int128{500} * sample.exposure_us + delays_.arrival.count();
     DeviceSample corrected = sample;
     corrected.arrival = earlier(sample.arrival, latency_ns);
     corrected.arrival_steady = earlier(sample.arrival_steady, latency_ns);
     return corrected;
   }
 
-  Nanoseconds delay_;
+  CalibratedDelays delays_;
 };
 
 // Takes `suffix` off the end of `name` unless it was taken before.
@@ -116,8 +126,8 @@ std::unique_ptr<DeviceTimeEstimator> exposure_corrected(
 }
 
 std::unique_ptr<DeviceTimeEstimator> delay_corrected(std::unique_ptr<DeviceTimeEstimator> inner,
-                                                     Nanoseconds delay) {
-  return std::make_unique<DelayCorrected>(std::move(inner), delay);
+                                                     const CalibratedDelays& delays) {
+  return std::make_unique<DelayCorrected>(std::move(inner), delays);
 }
 
 DeviceTimeName parse_device_time_name(std::string_view name) {
@@ -133,9 +143,9 @@ DeviceTimeName parse_device_time_name(std::string_view name) {
 
 std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
                                                   std::unique_ptr<DeviceTimeEstimator> inner,
-                                                  Nanoseconds delay) {
+                                                  const CalibratedDelays& delays) {
   if (name.calibrated) {
-    inner = delay_corrected(std::move(inner), delay);
+    inner = delay_corrected(std::move(inner), delays);
   } else if (name.exposure_corrected) {
     inner = exposure_corrected(std::move(inner));
   }

@@ -4,7 +4,9 @@
 //                               system clock can enter a fit; its result is mapped to the system
 //                               clock by the host's log of adjustments (clock_map.h)
 //   <base>_exposure_corrected   takes half of each frame's exposure from its arrival first
-//   <base>_calibrated           the same, and a constant delay from exposure's end to arrival
+//   <base>_calibrated           the same, and what a user has measured once for this model and
+//                               profile: the delay from exposure's end to arrival, and by how much
+//                               a poll's request takes longer than its reply
 //
 // Suffixes combine in any order; "calibrated" includes the exposure. A wrapper passes everything
 // else on: learn(), polls, adjustments, offline(), relative() and from_first_frame().
@@ -31,9 +33,16 @@ std::unique_ptr<DeviceTimeEstimator> on_steady_clock(std::unique_ptr<DeviceTimeE
 // on the exposure if the camera stamps mid-exposure and delivers a fixed time after its end.
 std::unique_ptr<DeviceTimeEstimator> exposure_corrected(std::unique_ptr<DeviceTimeEstimator> inner);
 
-// The same, less `delay` too: the fixed part of the latency, one constant per model and profile.
+// Constants of a model and profile, never of one camera.
+struct CalibratedDelays {
+  Nanoseconds arrival{};         // from the end of an exposure to the frame's arrival
+  Nanoseconds poll_asymmetry{};  // fixed delay of a poll's request minus that of its reply
+};
+
+// The same, less `delays.arrival` too; polls later by half of the asymmetry, so that the camera's
+// reading lies in the middle of what remains.
 std::unique_ptr<DeviceTimeEstimator> delay_corrected(std::unique_ptr<DeviceTimeEstimator> inner,
-                                                     Nanoseconds delay);
+                                                     const CalibratedDelays& delays);
 
 struct DeviceTimeName {
   std::string base;  // a registered name, if the whole name is valid
@@ -47,10 +56,10 @@ struct DeviceTimeName {
 // registered name.
 DeviceTimeName parse_device_time_name(std::string_view name);
 
-// `inner` with the variants that `name` asks for; `delay` counts only if it is calibrated.
+// `inner` with the variants that `name` asks for; `delays` count only if it is calibrated.
 std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
                                                   std::unique_ptr<DeviceTimeEstimator> inner,
-                                                  Nanoseconds delay);
+                                                  const CalibratedDelays& delays);
 
 }  // namespace simbench
 

@@ -81,6 +81,7 @@ scenarios::Scenario small_world(const std::string& set_pointer, const std::strin
                                                             {"/cameras/cameras_per_host", "1"},
                                                             {"/timeline/frames", "40"},
                                                             {"/timeline/warm_up_ms", "200"},
+       {"/cameras/unstable_start_jitter_sigma_ms", "0"},
                                                             {set_pointer, value}});
 }
 

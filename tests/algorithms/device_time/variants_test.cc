@@ -85,7 +85,9 @@ TEST(Variants, PassEverythingOn) {
 
 TEST(Variants, CorrectionsMoveBothArrivals) {
   Given given;
-  const auto wrapped = delay_corrected(std::make_unique<Recorder>(given), Nanoseconds(1000));
+  const auto wrapped =
+      delay_corrected(std::make_unique<Recorder>(given),
+                      CalibratedDelays{.arrival = Nanoseconds(1000), .poll_asymmetry = {}});
   wrapped->stamp(sample_on(10'000'000, 20'000'000, 5001));
   EXPECT_EQ(nanoseconds_of(given.stamped[0].arrival), 10'000'000 - 2'500'500 - 1000);
   EXPECT_EQ(nanoseconds_of(given.stamped[0].arrival_steady), 20'000'000 - 2'500'500 - 1000);
@@ -164,7 +166,8 @@ TEST(Variants, AStepOfTheSystemClockEntersNoFit) {
 
 TEST(Variants, AStampBeforeTheStepIsReadBeforeTheStep) {
   // Known latency of 30 ms, so the stamp lies before the step that the arrival lies after.
-  const auto steady = on_steady_clock(delay_corrected(make_raw_arrival(), from_ms(30)));
+  const auto steady = on_steady_clock(
+      delay_corrected(make_raw_arrival(), {.arrival = from_ms(30), .poll_asymmetry = {}}));
   steady->on_adjustment(step(0, 0, 0));
   steady->on_adjustment(step(100'000'000, 100'000'000, 600'000'000));
   EXPECT_EQ(nanoseconds_of(steady->stamp(sample_on(620'000'000, 120'000'000, 0))), 90'000'000);
@@ -202,7 +205,8 @@ TEST(DeviceTimeName, MakesTheVariant) {
   const DeviceSample sample = sample_on(100'000'000, 40'000'000, 2000);
   const auto stamped = [&](const char* suffixes) {
     const DeviceTimeName name = parse_device_time_name(std::string("raw_arrival") + suffixes);
-    const auto estimator = make_variant(name, make_raw_arrival(), from_ms(7));
+    const auto estimator =
+        make_variant(name, make_raw_arrival(), {.arrival = from_ms(7), .poll_asymmetry = {}});
     estimator->on_adjustment(step(0, 1000, 1000));
     return nanoseconds_of(estimator->stamp(sample));
   };
