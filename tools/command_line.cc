@@ -14,6 +14,7 @@
 #include "scenarios/loader.h"
 #include "tools/convert_ibl_command.h"
 #include "tools/describe_command.h"
+#include "tools/diagnose_command.h"
 #include "tools/exit_status.h"
 #include "tools/list_command.h"
 #include "tools/replay_command.h"
@@ -78,6 +79,7 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   tools::add_describe_command(app, action);
   tools::add_validate_command(app, action);
   tools::add_replay_command(app, action, arguments);
+  tools::add_diagnose_command(app, action);
   tools::add_convert_ibl_command(app, action);
 
   const std::vector<std::string> all = with_default_command(arguments);

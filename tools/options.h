@@ -20,6 +20,9 @@ using Action = std::function<int()>;
 // A whole number within [low, high].
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
+// A number within [low, high].
+CLI::Validator number_within(double low, double high);
+
 // One of the given words.
 CLI::Validator one_of(const std::vector<std::string>& words);
 

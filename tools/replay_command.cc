@@ -1,16 +1,15 @@
 #include "tools/replay_command.h"
 
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/replay.h"
-#include "recording/rs_csv.h"
 #include "reports/archive.h"
 #include "reports/replay_report.h"
 #include "tools/exit_status.h"
+#include "tools/recordings.h"
 
 namespace simbench::tools {
 namespace {
@@ -36,15 +35,6 @@ struct ReplayOptions {
   std::vector<std::string> command;
 };
 
-std::vector<CameraStream> read(const std::vector<std::string>& files) {
-  CsvRecordingReader reader;
-  for (auto file = files.begin(); file != files.end(); ++file) {
-    if (std::find(files.begin(), file, *file) != file) throw CsvError(*file + ": given twice");
-    reader.read_file(*file);
-  }
-  return reader.take();
-}
-
 std::string formatted(const evaluation::Replay& replay, const ReplayOptions& options) {
   if (options.format == "json") return reports::replay_json(replay, options.files);
   if (options.format == "csv") return reports::replay_csv(replay);
@@ -55,7 +45,7 @@ int run_replay(const ReplayOptions& options) {
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
-  std::vector<CameraStream> streams = read(options.files);
+  std::vector<CameraStream> streams = read_recordings(options.files);
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
   const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
