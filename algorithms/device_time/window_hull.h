@@ -46,7 +46,7 @@ class WindowHull {
  private:
   struct Older {
     LinePoint point;
-    std::size_t vertices_before;
+    std::size_t vertices_before = 0;
     LinePoint displaced;  // the vertex whose place this point took
   };
 
