@@ -7,6 +7,7 @@
 #include "algorithms/host_sync/limits.h"
 #include "algorithms/host_sync/registration_ntp.h"
 #include "algorithms/host_sync/registration_ptp.h"
+#include "algorithms/host_sync/registration_pulse.h"
 #include "algorithms/host_sync/registration_two_way.h"
 #include "algorithms/host_sync/w32time.h"
 #include "algorithms/host_sync/yoon2021.h"
@@ -152,6 +153,7 @@ std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
   };
   append(entries, two_way_host_syncs());
   append(entries, ptp_host_syncs());
+  append(entries, pulse_host_syncs());
   append(entries, ntp_host_syncs());
   return entries;
 }
