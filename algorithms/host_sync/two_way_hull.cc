@@ -26,21 +26,24 @@ bool TwoWayHull::add(const TwoWayExchange& exchange) {
     zero_offset_ = offset_between(exchange.arrived, exchange.sent);
   }
   add_bounds(exchange);
-  if (!is_contradictory()) return true;
-  rate_ = choose_rate();
-  if (!is_contradictory()) return true;
+  if (!corridor_.is_contradictory()) return true;
+  corridor_ = corridor(rate_);
+  if (!corridor_.is_contradictory()) return true;
+  const double rate = choose_rate();
+  corridor_ = corridor(rate);
+  if (!corridor_.is_contradictory()) {
+    rate_ = rate;
+    return true;
+  }
   ++resets_;
-  rate_ = rate_before_;
   upper_bounds_.clear();
   negated_lower_bounds_.clear();
+  corridor_ = {};
   add_bounds(exchange);
   return true;
 }
 
-bool TwoWayHull::is_contradictory() const {
-  const Corridor found = corridor(rate_);
-  return found.above_ns < found.below_ns - kToleranceNs;
-}
+bool TwoWayHull::Corridor::is_contradictory() const { return above_ns < below_ns - kToleranceNs; }
 
 double TwoWayHull::span_ns() const {
   return std::min(upper_bounds_.span(), negated_lower_bounds_.span());
@@ -49,9 +52,12 @@ double TwoWayHull::span_ns() const {
 void TwoWayHull::add_bounds(const TwoWayExchange& exchange) {
   const Nanoseconds above = offset_between(exchange.arrived, exchange.sent) - zero_offset_;
   const Nanoseconds below = offset_between(exchange.replied, exchange.received) - zero_offset_;
-  upper_bounds_.add(as_ns(exchange.sent - *zero_), as_ns(above));
-  negated_lower_bounds_.add(as_ns(exchange.received - *zero_), -as_ns(below));
+  const double sent_ns = as_ns(exchange.sent - *zero_);
   latest_ns_ = as_ns(exchange.received - *zero_);
+  upper_bounds_.add(sent_ns, as_ns(above));
+  negated_lower_bounds_.add(latest_ns_, -as_ns(below));
+  corridor_.above_ns = std::min(corridor_.above_ns, as_ns(above) - rate_ * sent_ns);
+  corridor_.below_ns = std::max(corridor_.below_ns, as_ns(below) - rate_ * latest_ns_);
 }
 
 double TwoWayHull::choose_rate() const {
@@ -75,21 +81,20 @@ TwoWayHull::Corridor TwoWayHull::corridor(double rate) const {
 
 std::optional<ClockLine> TwoWayHull::line() {
   if (upper_bounds_.empty()) return std::nullopt;
-  rate_ = rate_before_ = choose_rate();
+  rate_ = choose_rate();
   if (span_ns() >= kLaterSpanNs) rate_is_known_ = true;
-  const Corridor found = corridor(rate_);
-  const double offset_ns = (found.above_ns + found.below_ns) / 2 + rate_ * latest_ns_;
+  corridor_ = corridor(rate_);
+  const double offset_ns = (corridor_.above_ns + corridor_.below_ns) / 2 + rate_ * latest_ns_;
   const SteadyTime at = *zero_ + Nanoseconds(std::llround(latest_ns_));
   const Nanoseconds offset = zero_offset_ + Nanoseconds(std::llround(offset_ns));
   return ClockLine{
       .at = at, .value = HostTime(at.time_since_epoch() + offset), .rate_ppb = rate_ * 1e9};
 }
 
-std::optional<Nanoseconds> TwoWayHull::width() {
+std::optional<Nanoseconds> TwoWayHull::width() const {
   if (upper_bounds_.empty()) return std::nullopt;
-  rate_ = rate_before_ = choose_rate();
-  const Corridor found = corridor(rate_);
-  return Nanoseconds(std::llround(found.above_ns - found.below_ns));
+  const Corridor widest = corridor(choose_rate());
+  return Nanoseconds(std::llround(widest.above_ns - widest.below_ns));
 }
 
 }  // namespace simbench

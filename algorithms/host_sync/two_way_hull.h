@@ -18,13 +18,14 @@
 // exchange just added is then forgotten. A jump of less than half the round trip is not seen so; it
 // leaves with the window.
 //
-// Complexity: add() some tens of vertices, line() some tens of vertices times 64 steps of
+// Complexity: add() O(1) amortised, line() some tens of vertices times 64 steps of
 // bisection. Memory bounded (envelope.h). Source: host_sync.md section 1 (MOOS, TICSync: line of
 // maximum separation).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_HULL_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_HULL_H_
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "algorithms/host_sync/envelope.h"
@@ -48,20 +49,20 @@ class TwoWayHull : public TwoWayEstimator {
   // How often the hulls have crossed.
   std::uint64_t resets() const { return resets_; }
   // Smallest possible round trip along the line: the vertical width of the corridor.
-  std::optional<Nanoseconds> width();
+  std::optional<Nanoseconds> width() const;
 
  private:
   // Intercepts, at x = 0, of the two lines of one rate that touch the hulls.
   struct Corridor {
-    double above_ns = 0;
-    double below_ns = 0;
+    double above_ns = std::numeric_limits<double>::infinity();
+    double below_ns = -std::numeric_limits<double>::infinity();
+    // Whether no line of this rate passes between the hulls.
+    bool is_contradictory() const;
   };
 
   void add_bounds(const TwoWayExchange& exchange);
   double span_ns() const;
   double choose_rate() const;
-  // Whether no line of the present rate passes between the hulls.
-  bool is_contradictory() const;
   Corridor corridor(double rate) const;
 
   Settings settings_;
@@ -71,7 +72,8 @@ class TwoWayHull : public TwoWayEstimator {
   Nanoseconds zero_offset_{0};      // y = 0
   double latest_ns_ = 0;
   double rate_ = 0;
-  double rate_before_ = 0;  // the last one that came from a line()
+  // Of rate_. Points that have left the window may still be in it: then it is too narrow.
+  Corridor corridor_;
   bool rate_is_known_ = false;
   std::uint64_t resets_ = 0;
 };
