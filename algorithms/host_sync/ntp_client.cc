@@ -69,7 +69,11 @@ Task<void> NtpClient::calibrate() {
     const std::optional<NtpSample> volley = co_await burst(kBurst);
     if (!volley) continue;
     const NtpAction action = co_await discipline_by(volley);
-    if (action == NtpAction::kStep) continue;
+    if (action == NtpAction::kSlew) {
+      const double slew_s = std::abs(volley->offset_s) / NtpDiscipline::kMaxFrequency;
+      co_await host_.sleep_for(from_seconds(slew_s));
+    }
+    if (action == NtpAction::kSlew || action == NtpAction::kStep) continue;
     const SteadyTime deadline = now() + settings_.broadcast_interval * 2;
     const std::optional<NtpBroadcast> next = co_await association_.next_broadcast(deadline);
     if (!next) continue;
@@ -84,9 +88,8 @@ Task<void> NtpClient::listen() {
   note_reply(broadcast.has_value());
   std::optional<NtpSample> best;
   if (broadcast) {
-    best = filter_.add({broadcast->offset_s() + broadcast_delay_s_, 2 * broadcast_delay_s_,
-                        settings_.discipline.precision_s, seconds(broadcast->received)},
-                       discipline_.poll_interval_s());
+    best = add_sample({broadcast->offset_s() + broadcast_delay_s_, 2 * broadcast_delay_s_,
+                       settings_.discipline.precision_s, seconds(broadcast->received)});
   }
   const NtpAction action = co_await discipline_by(best);
   if (action != NtpAction::kStep) co_await correct_phase();
@@ -106,8 +109,7 @@ Task<std::optional<NtpSample>> NtpClient::burst(int count) {
       const double dispersion_s =
           settings_.discipline.precision_s + NtpClockFilter::kDispersionGrowth * taking_s;
       const std::optional<NtpSample> used =
-          filter_.add({reply->offset_s(), reply->delay_s(), dispersion_s, seconds(reply->received)},
-                      discipline_.poll_interval_s());
+          add_sample({reply->offset_s(), reply->delay_s(), dispersion_s, seconds(reply->received)});
       if (used) best = used;
     }
     const Nanoseconds passed = now() - begin;
@@ -115,6 +117,10 @@ Task<std::optional<NtpSample>> NtpClient::burst(int count) {
   }
   note_reply(replied);
   co_return best;
+}
+
+std::optional<NtpSample> NtpClient::add_sample(const NtpSample& sample) {
+  return filter_.add(sample, discipline_.poll_interval_s(), discipline_.is_starting(sample.at_s));
 }
 
 Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
@@ -129,6 +135,10 @@ Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
     co_return action;
   }
   if (action == NtpAction::kStep) co_await step(sample->offset_s);
+  if (action == NtpAction::kSlew) {
+    is_slewing_ = true;
+    co_await host_.clock().slew(from_seconds(sample->offset_s), NtpDiscipline::kMaxFrequency * 1e9);
+  }
   co_await correct_frequency();
   report(true, "");
   co_return action;
@@ -137,6 +147,7 @@ Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
 Task<void> NtpClient::step(double offset_s) {
   filter_.reset();
   reach_ = 0;
+  is_slewing_ = false;
   co_await host_.clock().slew(Nanoseconds{0}, 1);
   const HostTime before = co_await host_.clock().now();
   co_await host_.clock().set(before + from_seconds(offset_s));
@@ -150,10 +161,14 @@ Task<void> NtpClient::correct_frequency() {
 }
 
 Task<void> NtpClient::correct_phase() {
+  // While the frequency is measured, the first offset is still being added.
+  if (discipline_.state() == NtpState::kFreq) co_return;
   const double at_s = seconds(now());
-  const Nanoseconds residual = from_seconds(discipline_.residual_s(at_s));
-  if (residual == Nanoseconds{0}) co_return;
-  co_await host_.clock().slew(residual, std::abs(discipline_.phase_rate(at_s)) * 1e9);
+  const double rate_ppb = std::abs(discipline_.phase_rate(at_s)) * 1e9;
+  const Nanoseconds residual = from_seconds(rate_ppb > 0 ? discipline_.residual_s(at_s) : 0);
+  if (residual == Nanoseconds{0} && !is_slewing_) co_return;
+  is_slewing_ = residual != Nanoseconds{0};
+  co_await host_.clock().slew(residual, rate_ppb);
 }
 
 void NtpClient::note_reply(bool replied) {

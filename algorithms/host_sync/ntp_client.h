@@ -36,6 +36,7 @@ class NtpClient {
   // Exchanges up to `count`, at burst spacing; ends early when the first is not answered. Returns
   // the sample to discipline the clock by, if any.
   Task<std::optional<NtpSample>> burst(int count);
+  std::optional<NtpSample> add_sample(const NtpSample& sample);
   Task<NtpAction> discipline_by(std::optional<NtpSample> sample);
   Task<void> step(double offset_s);
   Task<void> correct_frequency();
@@ -58,6 +59,7 @@ class NtpClient {
   double applied_frequency_ = 0;
   std::uint8_t reach_ = 0;  // one bit per poll, the last one lowest
   std::uint32_t polls_ = 0;
+  bool is_slewing_ = false;
   bool reported_ = false;
   bool panicked_ = false;
 };

@@ -20,7 +20,8 @@ double preference(const NtpSample& stage, double now_s) {
 
 }  // namespace
 
-std::optional<NtpSample> NtpClockFilter::add(const NtpSample& sample, double poll_interval_s) {
+std::optional<NtpSample> NtpClockFilter::add(const NtpSample& sample, double poll_interval_s,
+                                             bool is_starting) {
   SIMBENCH_ASSERT(std::isfinite(sample.offset_s) && std::isfinite(sample.delay_s) &&
                       std::isfinite(sample.dispersion_s) && std::isfinite(sample.at_s),
                   "a sample must be finite");
@@ -28,11 +29,11 @@ std::optional<NtpSample> NtpClockFilter::add(const NtpSample& sample, double pol
   floored.delay_s = std::max(sample.delay_s, precision_s_);
   floored.dispersion_s = std::clamp(sample.dispersion_s, 0.0, kMaxDispersion);
   shift_in(floored);
-  const auto by_delay = ordered(sample.at_s);
+  const auto by_preference = is_starting ? stages_ : ordered(sample.at_s);
   const double jitter_before_s = jitter_s_;
   const bool was_settled = dispersion_s_ < kMaxDistance;
-  update_statistics(by_delay);
-  const NtpSample& best = by_delay.front();
+  update_statistics(by_preference);
+  const NtpSample& best = by_preference.front();
   if (is_missing(best)) return std::nullopt;
   if (last_used_) {
     if (best.at_s <= last_used_->at_s) return std::nullopt;

@@ -5,6 +5,8 @@
 //
 //  - Order: by delay; a sample older than the Allan intercept (2048 s) counts as slower by its
 //    dispersion, so that recent ones win at long poll intervals (reference implementation).
+//    While the clock is starting (ntp_discipline.h), the newest comes first: an older one tells of
+//    a clock that has moved since.
 //  - Dispersion of the filter: sum of dispersion_i / 2^(i+1) over the eight, in that order; a stage
 //    that is empty or holds a missing sample has 16 s.
 //  - Jitter: RMS difference of the offsets to that of the best sample, at least the precision.
@@ -50,7 +52,8 @@ class NtpClockFilter {
   explicit NtpClockFilter(double precision_s) : precision_s_(precision_s) { reset(); }
 
   // Samples must come in order of time. Returns the sample to discipline the clock by, if any.
-  std::optional<NtpSample> add(const NtpSample& sample, double poll_interval_s);
+  std::optional<NtpSample> add(const NtpSample& sample, double poll_interval_s,
+                               bool is_starting = false);
 
   // A poll went unanswered: takes up a stage.
   void add_missing(double at_s);

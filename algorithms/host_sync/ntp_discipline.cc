@@ -57,8 +57,8 @@ NtpAction NtpDiscipline::update_small(double offset_s, double at_s) {
   const double mu_s = at_s - at_s_;
   switch (state_) {
     case NtpState::kNset:
-      lock(NtpState::kFreq, offset_s, at_s);
-      return NtpAction::kIgnore;
+      lock(NtpState::kFreq, 0, at_s);
+      return NtpAction::kSlew;
     case NtpState::kFreq:
       if (mu_s < settings_.step_out_s) return NtpAction::kIgnore;
       measure_frequency(offset_s, at_s);
@@ -66,18 +66,18 @@ NtpAction NtpDiscipline::update_small(double offset_s, double at_s) {
     case NtpState::kFset:
       break;
     case NtpState::kSync:
-    case NtpState::kSpik: {
+    case NtpState::kSpik:
+      if (is_starting(at_s)) break;
       if (poll_ >= kAllanPoll) {
         frequency_ += (offset_s - residual_s(at_s)) * kFllGain / std::max(poll_interval_s(), mu_s);
       }
-      const double loop_s = 4 * kPllGain * poll_interval_s();
+      const double loop_s = 4 * time_constant_s();
       frequency_ += offset_s * std::min(mu_s, seconds_of_poll(kAllanPoll)) / (loop_s * loop_s);
       break;
-    }
   }
   frequency_ = within_limit(frequency_);
   lock(NtpState::kSync, offset_s, at_s);
-  adapt_poll(offset_s);
+  if (!is_starting(at_s)) adapt_poll(offset_s);
   return NtpAction::kAdjust;
 }
 
@@ -94,6 +94,7 @@ void NtpDiscipline::lock(NtpState state, double offset_s, double at_s) {
   state_ = state;
   offset_s_ = offset_s;
   at_s_ = at_s;
+  if (state == NtpState::kSync && !clamp_end_s_) clamp_end_s_ = at_s + settings_.step_out_s;
 }
 
 void NtpDiscipline::measure_frequency(double offset_s, double at_s) {
@@ -118,13 +119,20 @@ void NtpDiscipline::move_poll(int by) {
 
 double NtpDiscipline::poll_interval_s() const { return seconds_of_poll(poll_); }
 
+double NtpDiscipline::decay(double from_s, double to_s) const {
+  const double clamped_s = std::max(std::min(to_s, clamp_end_s_.value_or(from_s)) - from_s, 0.0);
+  return clamped_s / kClampTime + (to_s - from_s - clamped_s) / time_constant_s();
+}
+
 double NtpDiscipline::residual_s(double at_s) const {
-  if (state_ != NtpState::kSync && state_ != NtpState::kSpik) return 0;
-  return offset_s_ * std::exp(-(at_s - at_s_) / time_constant_s());
+  return state_ == NtpState::kSync ? offset_s_ * std::exp(-decay(at_s_, at_s)) : 0;
 }
 
 double NtpDiscipline::phase_rate(double at_s) const {
-  return residual_s(at_s) * -std::expm1(-1 / kPllGain) / poll_interval_s();
+  const double part = -std::expm1(-decay(at_s, at_s + poll_interval_s()));
+  const double rate = residual_s(at_s) * part / poll_interval_s();
+  const double limit = kMaxFrequency - std::abs(frequency_);
+  return std::clamp(rate, -limit, limit);
 }
 
 }  // namespace simbench

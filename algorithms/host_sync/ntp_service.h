@@ -6,7 +6,8 @@
 //  - broadcast_volley: the server sends a broadcast every interval. The client answers the first
 //    with a burst of exchanges, takes twice the difference between the burst's offset and that of
 //    the next broadcast for the delay, and from then on only listens: offset = (t3 - t4) + delay/2.
-//    A change of the client's clock between the two measurements stays in the delay for good.
+//    A change of the client's clock between the two measurements stays in the delay for good; a
+//    step or slew by the burst itself does not: a new one follows.
 //  - broadcast_fixed: the same without a burst, with an assumed one-way delay.
 //
 // Samples pass the clock filter (ntp_clock_filter.h) and drive the discipline (ntp_discipline.h).

@@ -96,6 +96,15 @@ TEST(NtpClockFilter, BeyondTheAllanInterceptAgeCountsAsDelay) {
   EXPECT_FALSE(young.add(sample(0, 2e-3, 2048), 1024));
 }
 
+TEST(NtpClockFilter, WhileStartingTheNewestIsUsed) {
+  NtpClockFilter filter(kPrecision);
+  filter.add(sample(1e-3, 1e-3, 0), kPoll, true);
+  const std::optional<NtpSample> newest = filter.add(sample(2e-3, 5e-3, 64), kPoll, true);
+  ASSERT_TRUE(newest);
+  EXPECT_EQ(newest->offset_s, 2e-3);
+  EXPECT_FALSE(filter.add(sample(2e-3, 6e-3, 128), kPoll)) << "started: the first is the best";
+}
+
 TEST(NtpClockFilter, ResetForgetsEverything) {
   NtpClockFilter filter = settled_filter();
   filter.reset();

@@ -16,10 +16,11 @@ NtpDisciplineSettings fixed_poll(int poll) {
   return settings;
 }
 
-// In SYNC, with no offset and no frequency, at time 0.
+// In SYNC, with no offset and no frequency, at time 0; the start-up clamp is over.
 NtpDiscipline locked(NtpDisciplineSettings settings) {
   settings.frequency = 0;
   NtpDiscipline discipline(settings);
+  EXPECT_EQ(discipline.update(0, -settings.step_out_s), NtpAction::kAdjust);
   EXPECT_EQ(discipline.update(0, 0), NtpAction::kAdjust);
   EXPECT_EQ(discipline.state(), NtpState::kSync);
   return discipline;
@@ -38,13 +39,35 @@ TEST(NtpDiscipline, ALargeFirstOffsetStepsAndThenTheFrequencyIsMeasured) {
   EXPECT_NEAR(discipline.residual_s(330), 20e-6 * 320, 1e-15);
 }
 
-TEST(NtpDiscipline, ASmallFirstOffsetIsLeftAloneWhileTheFrequencyIsMeasured) {
+TEST(NtpDiscipline, ASmallFirstOffsetIsSlewedAndThenTheFrequencyIsMeasured) {
   NtpDiscipline discipline({});
-  EXPECT_EQ(discipline.update(0.05, 0), NtpAction::kIgnore);
+  EXPECT_EQ(discipline.update(0.05, 0), NtpAction::kSlew);
   EXPECT_EQ(discipline.state(), NtpState::kFreq);
   EXPECT_EQ(discipline.phase_rate(100), 0);
-  EXPECT_EQ(discipline.update(0.05 - 30e-6 * 400, 400), NtpAction::kAdjust);
+  EXPECT_EQ(discipline.update(-30e-6 * 400, 400), NtpAction::kAdjust);
   EXPECT_NEAR(discipline.frequency(), -30e-6, 1e-15);
+}
+
+TEST(NtpDiscipline, TheStartUpClampRemovesTheTransientAndNothingElse) {
+  NtpDiscipline discipline({});
+  discipline.update(0.3, 0);
+  discipline.update(10e-6 * 300, 300);  // 10 ppm, and 3 ms of phase
+  EXPECT_NEAR(discipline.residual_s(332), 3e-3 * std::exp(-1), 1e-15);
+  EXPECT_NEAR(discipline.phase_rate(300) * 64, 3e-3 * (1 - std::exp(-2)), 1e-15);
+  for (double at_s = 364; at_s < 600; at_s += 64) discipline.update(0, at_s);
+  EXPECT_EQ(discipline.frequency(), 10e-6) << "untouched";
+  EXPECT_EQ(discipline.poll(), 6);
+  discipline.update(1e-3, 600);
+  EXPECT_GT(discipline.frequency(), 10e-6) << "over";
+  EXPECT_NEAR(discipline.residual_s(600 + 1024), 1e-3 * std::exp(-1), 1e-15);
+}
+
+TEST(NtpDiscipline, TheSlewIsNeverAbove500Ppm) {
+  NtpDisciplineSettings settings;
+  settings.frequency = -100e-6;
+  NtpDiscipline discipline(settings);
+  discipline.update(0.12, 0);
+  EXPECT_NEAR(discipline.phase_rate(0), 400e-6, 1e-15);
 }
 
 TEST(NtpDiscipline, StartsLockedWithAKnownFrequency) {
@@ -177,11 +200,11 @@ TEST(NtpDiscipline, ThePollShrinksWhenOffsetsStayAboveTheJitter) {
 TEST(NtpDiscipline, TheFrequencyIsCapped) {
   NtpDiscipline discipline({});
   discipline.update(0, 0);
-  discipline.update(0.12, 300 * 0.5 + 150);  // 400 ppm
+  discipline.update(0.12, 300);  // 400 ppm
   EXPECT_NEAR(discipline.frequency(), 400e-6, 1e-12);
   NtpDiscipline fast({});
-  fast.update(-0.12, 0);
-  fast.update(0.12, 300);  // 800 ppm
+  fast.update(0, 0);
+  fast.update(0.27, 300);  // 900 ppm, and a step
   EXPECT_EQ(fast.frequency(), NtpDiscipline::kMaxFrequency);
 }
 
