@@ -20,15 +20,17 @@ using nlohmann::ordered_json;
 
 // Units stand last in names; longer endings come before those they end in.
 std::string unit_of(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kUnits = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits = {{
       {"_ppb_per_sqrt_s", "ppb/sqrt(s)"},
       {"_mbit_per_s", "Mbit/s"},
       {"_mb_per_s", "MB/s"},
+      {"_ppm_per_hour", "ppm/h"},
       {"_ppm", "ppm"},
       {"_ppb", "ppb"},
       {"_hz", "Hz"},
       {"_ms", "ms"},
       {"_us", "us"},
+      {"_ns", "ns"},
       {"_s", "s"},
       {"_hours", "h"},
       {"hours_ago", "h"},

@@ -25,7 +25,8 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
   SIMBENCH_ASSERT(heating_ == 0 || heating_time_constant_s_ > 0, "heating takes time");
   if (parameters.flicker_floor_ppb > 0) {
     SIMBENCH_ASSERT(parameters.wander_step_ms > 0, "noise needs a grid to be sampled on");
-    flicker_.emplace(parameters.flicker_floor_ppb, parameters.wander_step_ms, run_seed, component);
+    flicker_ = std::make_unique<const FlickerNoise>(parameters.flicker_floor_ppb,
+                                                    parameters.wander_step_ms, run_seed, component);
   }
   const double white_ppb = parameters.white_frequency_ppb;
   const double walk_ppb = parameters.random_walk_ppb_per_sqrt_s;

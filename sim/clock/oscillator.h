@@ -32,7 +32,7 @@
 #define SIMBENCH_SIM_CLOCK_OSCILLATOR_H_
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string_view>
 
 #include "recording/true_time.h"
@@ -72,8 +72,8 @@ class OscillatorModel {
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
   std::uint64_t run_seed_ = 0;
   ComponentKey wander_key_{""};
-  GridWalk<double> walk_;  // the state is the walking frequency in ppb
-  std::optional<FlickerNoise> flicker_;
+  GridWalk<double> walk_;                        // the state is the walking frequency in ppb
+  std::unique_ptr<const FlickerNoise> flicker_;  // large, and rarely there
   double ramp_per_s_ = 0;
   double heating_ = 0;
   double heating_time_constant_s_ = 0;

@@ -177,6 +177,8 @@ TEST(Describe, ALineForEveryParameter) {
   EXPECT_EQ(line("/hosts/clock/tick_ms").source, "my.json:3");
   EXPECT_EQ(line("/timeline/frames").source, "--set /timeline/frames=100");
   EXPECT_EQ(line("/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s").unit, "ppb/sqrt(s)");
+  EXPECT_EQ(line("/hosts/clock/oscillator/ramp_ppm_per_hour").unit, "ppm/h");
+  EXPECT_EQ(line("/hosts/nic/stamp_resolution_ns").unit, "ns");
   EXPECT_EQ(line("/hosts/clock/last_set/hours_ago").unit, "h");
   EXPECT_EQ(line("/usb/bandwidth_mb_per_s").unit, "MB/s");
   EXPECT_EQ(line("/cameras/streams/0/width").unit, "pixels");

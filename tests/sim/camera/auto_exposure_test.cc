@@ -53,6 +53,7 @@ TEST(AutoExposure, ValuesDoNotDependOnTheOrderOfQueries) {
   AutoExposure forwards = stepping();
   AutoExposure backwards = stepping();
   std::vector<Nanoseconds> seen;
+  seen.reserve(500);
   for (int i = 0; i < 500; ++i) seen.push_back(forwards.at(at_ms(37.0 * i)));
   for (int i = 499; i >= 0; --i) EXPECT_EQ(backwards.at(at_ms(37.0 * i)), seen.at(i)) << i;
 }

@@ -172,6 +172,21 @@ TEST(Capture, ColourFollowsInFullSlaveOnly) {
   }
 }
 
+TEST(Capture, TheModelSaysWhichStreamsFollowASlavesTrigger) {
+  scenarios::Scenario s = ideal_scenario();
+  s.trigger.rate_hz = 30;
+  s.cameras.streams[0].mode_rate_hz = 30;
+  s.cameras.streams.push_back(s.cameras.streams[0]);
+  s.cameras.streams[1].kind = "colour";
+  s.cameras.sync_mode = "slave";
+  for (const auto& [model, follows] : {std::pair{"azure_kinect", true}, std::pair{"d435", false}}) {
+    s.cameras.model = model;
+    const auto frames = capture(s).of(0, StreamKind::kColour);
+    ASSERT_FALSE(frames.empty());
+    for (const auto& frame : frames) EXPECT_EQ(frame.truth.pulse != kNoPulse, follows) << model;
+  }
+}
+
 TEST(Capture, StaggeredGenlockCamerasStartWithDifferentPulses) {
   scenarios::Scenario s = ideal_scenario();
   s.cameras.common_start = false;
