@@ -85,10 +85,11 @@ void register_benchmarks() {
                 [&entry] { return entry.make(check_parameters(entry.info.parameters, {})); });
     });
   }
-  benchmark::RegisterBenchmark("hull_switch_10s_steady_calibrated", [](benchmark::State& state) {
-    stamp_run(state, minute(),
-              [] { return on_steady_clock(delay_corrected(make_switching_hull({}), from_ms(8))); });
-  });
+  benchmark::RegisterBenchmark(
+      "hull_switch_10s_steady_exposure_corrected", [](benchmark::State& state) {
+        stamp_run(state, minute(),
+                  [] { return on_steady_clock(exposure_corrected(make_switching_hull({}))); });
+      });
   benchmark::RegisterBenchmark("hull_300_convex", [](benchmark::State& state) {
     stamp_run(state, convex_minute(), [] { return make_window_hull({}); });
   });
