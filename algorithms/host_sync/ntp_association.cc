@@ -46,17 +46,18 @@ bool is_valid_ntp_broadcast(const NtpPacket& packet) {
   return packet.mode == kNtpModeBroadcast && is_synchronised_server(packet);
 }
 
-NtpAssociation::NtpAssociation(Host& host, PeerId server, NtpStamps stamps)
+NtpAssociation::NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std::uint8_t version)
     : host_(host),
       server_(server),
       stamps_(stamps),
+      version_(version),
       channel_(host.open_channel(server, Transport::kDatagram)) {}
 
 Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout) {
   NtpMeasurement measurement;
   measurement.t1 = co_await host_.clock().now();
   NtpPacket request;
-  request.version = kVersion;
+  request.version = version_;
   request.transmit = to_ntp(measurement.t1);
   Bytes bytes = encode(request);
   const SteadyTime deadline = host_.steady_clock().now() + timeout;
@@ -96,7 +97,7 @@ Task<std::optional<NtpBroadcast>> NtpAssociation::next_broadcast(SteadyTime dead
   }
 }
 
-Task<void> serve_ntp(Host& host, PeerId client) {
+Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s) {
   MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
   while (true) {
     const std::optional<ReceivedMessage> received =
@@ -107,6 +108,7 @@ Task<void> serve_ntp(Host& host, PeerId client) {
     NtpPacket reply = server_packet(kNtpModeServer, received->received);
     reply.version = request->version;
     reply.poll = request->poll;
+    reply.root_dispersion = static_cast<std::uint32_t>(root_dispersion_s / kShortFormatUnit);
     reply.origin = request->transmit;
     reply.receive = to_ntp(received->received);
     const HostTime t3 = co_await host.clock().now();

@@ -69,8 +69,8 @@ bool is_valid_ntp_broadcast(const NtpPacket& packet);
 
 class NtpAssociation {
  public:
-  // The host must outlive the association.
-  NtpAssociation(Host& host, PeerId server, NtpStamps stamps);
+  // The host must outlive the association. Requests are of `version`.
+  NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std::uint8_t version = 4);
 
   // One request and its reply, put on record; nothing if no valid reply comes within `timeout`.
   Task<std::optional<NtpMeasurement>> exchange(Nanoseconds timeout);
@@ -82,11 +82,13 @@ class NtpAssociation {
   Host& host_;
   PeerId server_;
   NtpStamps stamps_;
+  std::uint8_t version_;
   MessageChannel& channel_;
 };
 
-// Answers the requests of one client, for ever.
-Task<void> serve_ntp(Host& host, PeerId client);
+// Answers the requests of one client, for ever, in the version asked in. `root_dispersion_s`, up to
+// 65535, is what the server claims its own clock may be off by.
+Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s = 0);
 
 // Sends a broadcast to each client every `interval`, for ever.
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval);

@@ -103,7 +103,7 @@ Task<std::optional<NtpSample>> NtpClient::burst(int count) {
     const std::optional<NtpMeasurement> reply = co_await association_.exchange(kBurstSpacing);
     if (!reply && !replied) break;
     replied = true;
-    if (reply && reply->delay_s() < kMaxDelay) {
+    if (reply && std::abs(reply->delay_s()) < kMaxDelay) {
       root_distance_s_ = reply->root_delay_s / 2 + reply->root_dispersion_s;
       const double taking_s = std::max(to_seconds(reply->t4 - reply->t1), 0.0);
       const double dispersion_s =
