@@ -5,6 +5,12 @@
 #include <utility>
 
 namespace simbench {
+namespace {
+
+// A Sync this much older than the last one is no late copy: the master has started again.
+constexpr int kLateSyncs = 64;
+
+}  // namespace
 
 PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
     : host_(host),
@@ -73,7 +79,7 @@ Task<void> PtpSlave::take(ReceivedMessage received) {
                          message->asked_by == host_.id();
   switch (message->type) {
     case PtpType::kSync:
-      if (arrival) sync_ = Half{*message, *arrival};
+      if (arrival && !is_late(message->sequence)) sync_ = Half{*message, *arrival};
       break;
     case PtpType::kFollowUp:
       sync_follow_up_ = *message;
@@ -94,6 +100,12 @@ Task<void> PtpSlave::take(ReceivedMessage received) {
   if (sync_ && sync_follow_up_ && sync_->message.sequence == sync_follow_up_->sequence) {
     co_await take_sync();
   }
+}
+
+bool PtpSlave::is_late(std::uint16_t sequence) const {
+  if (!last_sync_) return false;
+  const auto older_by = static_cast<std::int16_t>(*last_sync_ - sequence);
+  return older_by >= 0 && older_by < kLateSyncs;
 }
 
 void PtpSlave::take_delay_response(const PtpMessage& response) {
@@ -118,6 +130,7 @@ void PtpSlave::take_peer_delay() {
 Task<void> PtpSlave::take_sync() {
   const Nanoseconds correction = correction_of(sync_->message) + correction_of(*sync_follow_up_);
   offset_.add_sync(sync_follow_up_->time_ns + correction.count(), sync_->stamp);
+  last_sync_ = sync_->message.sequence;
   sync_.reset();
   sync_follow_up_.reset();
   co_await correct();

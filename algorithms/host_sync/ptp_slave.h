@@ -32,6 +32,8 @@ class PtpSlave {
   MessageChannel& channel() { return host_.open_channel(master_, Transport::kDatagram); }
   Task<void> ask();
   Task<void> take(ReceivedMessage received);
+  // A copy of a Sync that has been used, or one that another has overtaken.
+  bool is_late(std::uint16_t sequence) const;
   Task<void> take_sync();
   void take_delay_response(const PtpMessage& response);
   void take_peer_delay();
@@ -47,6 +49,7 @@ class PtpSlave {
   PtpOffset offset_;
   std::uint16_t sequence_ = 0;
   std::optional<Half> request_;
+  std::optional<std::uint16_t> last_sync_;  // the last one used
   std::optional<Half> sync_;
   std::optional<PtpMessage> sync_follow_up_;
   std::optional<Half> peer_response_;
