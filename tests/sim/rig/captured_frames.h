@@ -1,0 +1,71 @@
+// Runs a capture by itself and keeps its frames.
+#ifndef SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_
+#define SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim/rig/capture.h"
+
+namespace simbench::sim {
+
+// Keeps what a capture hands over, in the simplest form.
+class CapturedFrames final : public RecordingSink {
+ public:
+  struct Frame {
+    FrameRecord record;
+    FrameTruth truth;
+  };
+  void on_start(const RigLayout& layout) override { layout_ = layout; }
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
+    frames.push_back({frame, *truth});
+  }
+  void on_pulse(const PulseTruth& truth) override { pulses.push_back(truth.pulse); }
+  void on_adjustment(const ClockAdjustment&) override {}
+  void on_poll(const DevicePoll&) override {}
+  void on_exchange(std::uint32_t, const Exchange&) override {}
+  void on_outcome(const SyncOutcome&) override {}
+
+  std::vector<Frame> of(std::uint32_t camera, StreamKind kind = StreamKind::kDepth) const {
+    std::vector<Frame> found;
+    for (const Frame& f : frames) {
+      if (f.record.camera == camera && f.record.stream == kind) found.push_back(f);
+    }
+    return found;
+  }
+  const RigLayout& layout() const { return layout_; }
+
+  std::vector<Frame> frames;
+  std::vector<std::int64_t> pulses;
+
+ private:
+  RigLayout layout_;
+};
+
+// Runs a capture that starts at true zero, with exact host clocks.
+inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t seed = 1) {
+  Engine engine;
+  std::vector<std::unique_ptr<SystemClock>> clocks;
+  std::vector<SystemClock*> views;
+  for (std::uint32_t host = 0; host < static_cast<std::uint32_t>(scenario.hosts.count); ++host) {
+    clocks.push_back(std::make_unique<SystemClock>(host, OscillatorModel(0.0)));
+    views.push_back(clocks.back().get());
+  }
+  CapturedFrames frames;
+  Capture capture(scenario, seed, engine, views, frames);
+  frames.on_start(capture.layout());
+  bool ended = false;
+  capture.start(TrueTime{}, [&] { ended = true; });
+  engine.run();
+  EXPECT_TRUE(ended);
+  return frames;
+}
+
+inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_TESTS_SIM_RIG_CAPTURED_FRAMES_H_
