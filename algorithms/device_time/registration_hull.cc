@@ -34,19 +34,19 @@ DeviceTimeEntry switching(const char* name, double period_s, const char* summary
 }
 
 DeviceTimeEntry two_way_poll() {
-  return {.info = {.name = "two_way_poll",
-                   .family = "two_way_poll",
-                   .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
-                   .source = "reference/host_sync.md section 1 (MOOS, TICSync)",
-                   .parameters = {max_skew(), number_parameter(kWindow, 30, 1, 3600,
-                                                               "polls of this long are used",
-                                                               "reference/device_time.md section "
-                                                               "2: short against wander")},
-                   .needs = {Need::kPolls}},
-          .make = [](const Parameters& parameters) {
-            return make_two_way_poll({.window_s = parameters.number(kWindow),
-                                      .max_skew_ppm = parameters.number(kMaxSkew)});
-          }};
+  return {
+      .info = {.name = "two_way_poll",
+               .family = "two_way_poll",
+               .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
+               .source = "reference/host_sync.md section 1 (MOOS, TICSync)",
+               .parameters = {max_skew(), number_parameter(kWindow, TwoWayPollSettings{}.window_s,
+                                                           1, 3600, "polls of this long are used",
+                                                           "ours: short against wander")},
+               .needs = {Need::kPolls}},
+      .make = [](const Parameters& parameters) {
+        return make_two_way_poll(
+            {.window_s = parameters.number(kWindow), .max_skew_ppm = parameters.number(kMaxSkew)});
+      }};
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(DeviceTimeAccuracy, PollsDoNotSeeTheLatencyAndFollowWander) {
   const std::vector<DeviceTimeRun> runs = runs_of(world_b(), 2);
   const DeviceTimeErrors two_way = errors_of("two_way_poll", runs);
   EXPECT_NEAR(two_way.bias_us, -1e3 * DeviceTimeWorld::kDelayMs, 5);
-  EXPECT_LT(two_way.std_us, 7);
+  EXPECT_LT(two_way.std_us, 4);
   const DeviceTimeErrors librealsense = errors_of("librealsense_global", runs);
   EXPECT_NEAR(librealsense.bias_us, -1e3 * DeviceTimeWorld::kDelayMs + 95, 20);
   EXPECT_LT(librealsense.std_us, 70);

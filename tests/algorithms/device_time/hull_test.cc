@@ -113,6 +113,7 @@ TEST_P(EveryHull, ALateFirstFrameDoesNotTurnTheLine) {
   // stamped 20 us off at most (1000 ppm over a period) instead of 23.88 ms early.
   std::vector<DeviceSample> samples = line(300, 20'000, 0, 8'000'000);
   std::vector<std::int64_t> truth;
+  truth.reserve(samples.size());
   for (const DeviceSample& sample : samples) truth.push_back(nanoseconds_of(sample.arrival));
   samples[0].arrival += from_ms(23.88);
   const std::vector<GlobalTime> all = stamps(*GetParam().make(), samples);
