@@ -33,8 +33,9 @@
 namespace simbench::evaluation {
 
 struct DiagnoseOptions {
-  std::optional<double> rate_hz;  // that the trigger should have; nothing: that of the others
-  bool one_host = false;          // one clock stamped all arrivals, whatever the files say
+  std::optional<double> rate_hz =
+      std::nullopt;       // that the trigger should have; nothing: that of the others
+  bool one_host = false;  // one clock stamped all arrivals, whatever the files say
 };
 
 // One stream of one camera.

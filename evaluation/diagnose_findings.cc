@@ -85,28 +85,29 @@ class Findings {
     const double rate_hz = 1000 / camera_->facts.host_period_ms;
     switch (standing.follows) {
       case Follows::kOwnClock:
-        add("free_running", fmt::format("free-running: its phase {}", moves()));
+        add("free_running", is_standard()
+                                ? std::string("free-running: no other camera has its period")
+                                : "free-running: its phase " + moves());
         break;
       case Follows::kOtherRate:
         add("other_rate", fmt::format("runs at {:.3f} Hz, no part of the common rate", rate_hz));
         break;
       case Follows::kHostOrOwn:
-        add("host_or_free_running",
-            fmt::format("its phase {}; this is its host's clock or its own, one host's cameras "
-                        "agree or it is alone there",
-                        moves()));
+        add_host();
         break;
       case Follows::kUnknown:
-        add("unknown_rate", std::isnan(camera_->facts.host_period_ms)
-                                ? "too few frames to tell its rate in host time"
-                                : "its rate in host time is not known well enough to compare");
+        if (std::isnan(camera_->facts.host_period_ms)) {
+          add("unknown_rate", "too few frames to tell its rate in host time");
+        } else if (group().standard) {  // else the verdict says it, of all
+          add("unknown_rate", "its rate in host time is not known well enough to compare");
+        }
         break;
       case Follows::kTrigger:
         break;
     }
     if (standing.period_multiple > 1 && standing.follows != Follows::kOtherRate) {
       const std::string part =
-          standing.period_multiple == 2 ? "half" : fmt::format("1/{}", standing.period_multiple);
+          standing.period_multiple == 2 ? "half" : fmt::format("1/{} of", standing.period_multiple);
       add("divided_rate",
           fmt::format("{} the rate ({:.3f} Hz): it skips triggers that come while it is busy, as "
                       "with too long an exposure or a trigger faster than half its mode's rate",
@@ -114,21 +115,42 @@ class Findings {
     }
   }
 
+  // One finding for all cameras of a host, as they move together.
+  void add_host() {
+    std::string names;
+    int count = 0;
+    for (const CameraDiagnosis& other : diagnosis_.cameras) {
+      if (other.stream != camera_->stream || other.host != camera_->host) continue;
+      if (count++ == 0 && &other != camera_) return;  // it was said with the first one
+      names += (names.empty() ? "" : ", ") + other.camera;
+    }
+    if (is_standard()) return;  // the others are compared with this host
+    const bool alone = count == 1;
+    findings_.push_back(
+        {.camera = camera_->camera,
+         .stream = camera_->stream,
+         .kind = "host_or_free_running",
+         .text = fmt::format(
+             "host {} ({} of camera{} {}): phase {}; this may be the host's clock as well as {}",
+             camera_->host, camera_->stream, alone ? "" : "s", names, moves(),
+             alone ? "the camera's" : "a trigger of their own")});
+  }
+
+  bool is_standard() const { return standard() == camera_->camera; }
+
   std::string moves() const {
     const Standing& standing = camera_->standing;
-    if (standard() == camera_->camera) {
-      return "has a period that no other camera has";
-    }
-    return fmt::format("against camera {} moves {:.3g} ms per minute ({:+.3g} ppm)", standard(),
-                       standing.moves_ms_per_minute, standing.rate_ppm);
+    return fmt::format("moves {:.3g} ms per minute against camera {} ({:+.3g} ppm)",
+                       standing.moves_ms_per_minute, standard(), standing.rate_ppm);
   }
 
   void add_lost() {
     const StreamFacts& facts = camera_->facts;
     if (facts.lost_frames > 0) {
-      add("lost_frames", fmt::format("{} frames lost between camera and program (USB or host): its "
-                                     "counter has them",
-                                     facts.lost_frames));
+      add("lost_frames",
+          fmt::format(
+              "{} frames lost after the camera had counted them: inside it, on USB or in the host",
+              facts.lost_frames));
     }
     if (facts.skipped_pulses > 0) {
       add("skipped_pulses",

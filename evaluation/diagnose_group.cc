@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "evaluation/statistics.h"
 
@@ -41,6 +41,7 @@ class Group {
   GroupVerdict judge() {
     find_candidates();
     find_standard();
+    if (in_standard_.empty()) return verdict();
     for (const Candidate& candidate : candidates_) place(candidate);
     for (const Candidate& candidate : candidates_) {
       if (in_standard(candidate)) note_phase(candidate);
@@ -54,7 +55,11 @@ class Group {
     return members_[candidate.member].host;
   }
 
-  // Cameras whose period in host time is known well enough, at a multiple of the common one.
+  static bool is_precise(const Candidate& candidate) {
+    return tolerance_ppm(candidate, candidate) <= kResolutionPpm;
+  }
+
+  // Cameras whose period in host time is known, at a multiple of the common one.
   void find_candidates() {
     std::vector<double> periods;
     for (const GroupMember& member : members_) {
@@ -77,15 +82,15 @@ class Group {
       members_[i].standing->period_multiple = static_cast<int>(multiple);
       worst_sd_ppm_ = std::max(worst_sd_ppm_, facts.host_period_sd_ppm);
       longest_s_ = std::max(longest_s_, facts.span_s());
-      const Candidate candidate = {i, facts.host_period_ms / multiple, facts.host_period_sd_ppm};
-      if (tolerance_ppm(candidate, candidate) <= kResolutionPpm) candidates_.push_back(candidate);
+      candidates_.push_back({i, facts.host_period_ms / multiple, facts.host_period_sd_ppm});
     }
   }
 
   // The largest set of candidates that agree; of equal ones the narrowest, then the shortest
   // period.
   void find_standard() {
-    std::vector<Candidate> sorted = candidates_;
+    std::vector<Candidate> sorted;
+    std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(sorted), is_precise);
     std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
       return std::pair(a.period_ms, a.member) < std::pair(b.period_ms, b.member);
     });
@@ -131,6 +136,8 @@ class Group {
   Follows follows(const Candidate& candidate) const {
     const bool has_standard = in_standard_.size() > 1;
     if (has_standard && in_standard(candidate)) return Follows::kTrigger;
+    const Candidate standard = {0, standard_period_ms_, standard_sd_ppm_};
+    if (!is_precise(candidate) && agree(candidate, standard)) return Follows::kUnknown;
     // On one clock with others: if they differ from it, it is the camera that differs; if all on
     // that clock agree, it may be the clock.
     bool others = false;
@@ -189,7 +196,7 @@ class Group {
       verdict.period_ms = standard_period_ms_;
       verdict.standard = in_standard_.front();
     }
-    if (worst_sd_ppm_ > 0) verdict.resolution_ppm = kDeviations * std::sqrt(2) * worst_sd_ppm_;
+    if (worst_sd_ppm_ > 0) verdict.resolution_ppm = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
     const auto say = [&verdict](SyncStatus status, std::string reason) {
       verdict.status = status;
       verdict.reason = std::move(reason);
@@ -208,13 +215,13 @@ class Group {
                  fmt::format("at a rate that is no part of {:.3f} Hz: {}", 1000 / common_ms_,
                              names(Follows::kOtherRate)));
     }
-    if (count(Follows::kUnknown) > 0) return say(SyncStatus::kCannotBeTold, too_little());
     if (count(Follows::kHostOrOwn) > 0) {
       return say(SyncStatus::kCannotBeTold,
-                 fmt::format("frame periods differ between hosts, not within them ({}): the hosts' "
-                             "clocks are not synchronised, or the cameras are not",
+                 fmt::format("frame periods differ between hosts, not within them: the clocks of "
+                             "the hosts of {} are not synchronised, or these cameras are not",
                              names(Follows::kHostOrOwn)));
     }
+    if (count(Follows::kUnknown) > 0) return say(SyncStatus::kCannotBeTold, too_little());
     return say(SyncStatus::kWorks,
                fmt::format("all {} cameras have one frame period, to {:.2g} ppm", members_.size(),
                            verdict.resolution_ppm));
@@ -223,13 +230,17 @@ class Group {
   std::string too_little() const {
     std::string text =
         fmt::format("too few or too unsteady frames of: {}", names(Follows::kUnknown));
-    if (worst_sd_ppm_ > 0 && longest_s_ > 0) {
-      const double resolution = kDeviations * std::sqrt(2) * worst_sd_ppm_;
+    const bool imprecise = kDeviations * std::sqrt(2.0) * worst_sd_ppm_ > kResolutionPpm;
+    if (imprecise && longest_s_ > 0) {
+      const double resolution = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
       const double needed_s = longest_s_ * std::pow(resolution / kResolutionPpm, 2.0 / 3);
       text += fmt::format(
           "; periods are known to {:.2g} ppm and {:.0f} are needed, as free-running cameras differ "
           "by tens: record about {:.0f} s",
           resolution, kResolutionPpm, std::ceil(needed_s));
+    }
+    if (count(Follows::kTrigger) > 0) {
+      text += fmt::format("; the other {} have one frame period", count(Follows::kTrigger));
     }
     return text;
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <optional>
+#include <utility>
 
 #include "evaluation/replay_camera.h"
 #include "evaluation/statistics.h"
@@ -18,10 +20,12 @@ constexpr std::ptrdiff_t kJumpWindow = 15;  // frames on either side
 constexpr std::ptrdiff_t kLeastJumpWindow = 5;
 constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods a slip may be
 constexpr double kMostPeriods = 1000;
+constexpr std::size_t kLongestSpan = 30;  // frames
 constexpr double kLeastFutureMs = 5;
 constexpr std::size_t kLeastBatchFrames = 5;
 constexpr std::size_t kFewBatches = 8;
 constexpr std::size_t kBatches = 16;
+constexpr std::size_t kManyFrames = 160;
 
 std::int64_t count_wraps(std::span<const StampedFrame> frames) {
   constexpr Nanoseconds kRegister = Microseconds(std::int64_t{1} << 32);
@@ -59,17 +63,45 @@ void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   }
 }
 
-// Intervals in whole periods: what they lack, and how far they are from whole. False if the stamps
-// do not advance.
-bool note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
+// Two frames in a row, `periods` apart: frames that the counter has and we do not, and periods that
+// the counter does not have.
+void note_counter(std::uint64_t before, std::uint64_t now, double periods, StreamFacts& facts) {
+  if (now <= before || now - before > (std::uint64_t{1} << 32)) {
+    ++facts.counter_restarts;
+    return;
+  }
+  const auto counted = static_cast<std::int64_t>(now - before);
+  facts.lost_frames += counted - 1;
+  if (periods > kMostPeriods) return;  // a clock was set, or a pause
+  facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
+}
+
+// The period by the camera's clock; nothing if the stamps do not advance. The median interval, then
+// the median over longer spans: of intervals that alternate, the first is one of the two kinds.
+std::optional<double> period_of(std::span<const StampedFrame> frames) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    const double interval = interval_ms(frames, i);
-    if (interval > 0) intervals.push_back(interval);
-    if (interval < 0) ++facts.backward_stamps;
+    if (interval_ms(frames, i) > 0) intervals.push_back(interval_ms(frames, i));
   }
-  if (intervals.empty()) return false;
-  facts.period_ms = median(intervals);
+  if (intervals.empty()) return std::nullopt;
+  const double interval = median(intervals);
+  const std::size_t span = std::min<std::size_t>(kLongestSpan, frames.size() / 4);
+  if (span < 2) return interval;
+  std::vector<double> periods(1);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    periods.push_back(periods.back() + std::round(interval_ms(frames, i) / interval));
+  }
+  std::vector<double> means;
+  for (std::size_t i = span; i < frames.size(); ++i) {
+    const double count = periods[i] - periods[i - span];
+    const double length = difference_ms(frames[i].sensor.count(), frames[i - span].sensor.count());
+    if (count > 0 && length > 0) means.push_back(length / count);
+  }
+  return means.empty() ? interval : median(std::move(means));
+}
+
+// Intervals in whole periods: what they lack, and how far they are from whole.
+void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.periods.assign(1, 0);
   std::vector<double> deviations;
   std::int64_t on_grid = 0;
@@ -77,24 +109,14 @@ bool note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
     const double interval = interval_ms(frames, i);
     const double whole = std::round(interval / facts.period_ms);
     const double deviation = interval - whole * facts.period_ms;
-    facts.periods.push_back(facts.periods.back() + static_cast<std::int64_t>(whole));
+    facts.periods.push_back(facts.periods.back() + std::llround(whole));
     deviations.push_back(deviation);
+    if (interval < 0) ++facts.backward_stamps;
     if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
-    const std::uint64_t before = frames[i - 1].counter;
-    const std::uint64_t now = frames[i].counter;
-    if (now <= before || now - before > (std::uint64_t{1} << 32)) {
-      ++facts.counter_restarts;
-      continue;
-    }
-    const auto counted = static_cast<std::int64_t>(now - before);
-    facts.lost_frames += counted - 1;
-    if (whole < kMostPeriods) {
-      facts.skipped_pulses += std::max<std::int64_t>(0, static_cast<std::int64_t>(whole) - counted);
-    }
+    note_counter(frames[i - 1].counter, frames[i].counter, whole, facts);
   }
   facts.interval_jitter_ms = standard_deviation(deviations);
   facts.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
-  return true;
 }
 
 double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -120,7 +142,8 @@ void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>&
         const bool whole = std::abs(periods - std::round(periods)) < kWholePeriod;
         const bool few = std::abs(periods) < kMostPeriods;
         facts.jumps.push_back(
-            {.at_s =
+            {.frame = at,
+             .at_s =
                  difference_ms(frames[at].arrival.count(), frames.front().arrival.count()) * 1e-3,
              .step_ms = step,
              .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
@@ -156,41 +179,67 @@ void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts
   }
 }
 
-// The period in host time: a line through medians of batches, which a late frame hardly moves; the
-// batches' scatter about it says how well it is known, also where lateness lasts for many frames.
-void note_host_period(StreamFacts& facts) {
-  const std::size_t size = facts.periods.size();
-  const std::size_t batches = size / kLeastBatchFrames >= 2 * kBatches ? kBatches : kFewBatches;
-  if (size / batches < kLeastBatchFrames) return;
+// Medians of batches of frames, which a late frame hardly moves; between jumps only. Each stretch
+// between two jumps has its own zero, as a jump is known no better than the arrivals are.
+struct Batches {
+  std::vector<double> x;  // periods, about the stretch's mean
+  std::vector<double> y;  // arrival less the camera's periods, likewise
+  std::size_t stretches = 0;
+};
+
+void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, Batches& batches) {
+  const std::size_t all = facts.periods.size() >= kManyFrames ? kBatches : kFewBatches;
+  const std::size_t share = std::max<std::size_t>(2, all * (end - begin) / facts.periods.size());
+  const std::size_t count = std::min(share, (end - begin) / kLeastBatchFrames);
+  if (count < 2) return;
   std::vector<double> x;
   std::vector<double> y;
-  for (std::size_t batch = 0; batch < batches; ++batch) {
-    const std::size_t begin = batch * size / batches;
-    const std::size_t end = (batch + 1) * size / batches;
+  for (std::size_t batch = 0; batch < count; ++batch) {
+    const std::size_t first = begin + batch * (end - begin) / count;
+    const std::size_t last = begin + (batch + 1) * (end - begin) / count;
+    std::vector<double> periods;
     std::vector<double> offsets;
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto period = static_cast<double>(facts.periods[i]);
-      sum += period;
-      offsets.push_back(facts.arrivals_ms[i] - period * facts.period_ms);
+    for (std::size_t i = first; i < last; ++i) {
+      periods.push_back(static_cast<double>(facts.periods[i]));
+      offsets.push_back(facts.arrivals_ms[i] - periods.back() * facts.period_ms);
     }
-    x.push_back(sum / static_cast<double>(end - begin));
-    y.push_back(median(offsets));
+    x.push_back(mean_of(periods));
+    y.push_back(median(std::move(offsets)));
   }
-  const FittedLine line = fit_line(x, y);
+  const double mean_x = mean_of(x);
+  const double mean_y = mean_of(y);
+  for (std::size_t i = 0; i < count; ++i) {
+    batches.x.push_back(x[i] - mean_x);
+    batches.y.push_back(y[i] - mean_y);
+  }
+  ++batches.stretches;
+}
+
+// The period in host time: a line through the batches, whose scatter about it says how well it is
+// known, also where lateness lasts for many frames.
+void note_host_period(StreamFacts& facts) {
+  Batches batches;
+  std::size_t begin = 0;
+  for (const StampJump& jump : facts.jumps) {
+    add_stretch(facts, begin, jump.frame, batches);
+    begin = jump.frame;
+  }
+  add_stretch(facts, begin, facts.periods.size(), batches);
+  if (batches.x.size() < kFewBatches || batches.x.size() < 2 * batches.stretches + 2) return;
+  const FittedLine line = fit_line(batches.x, batches.y);
   double scatter = 0;
   double width = 0;
-  for (std::size_t i = 0; i < batches; ++i) {
-    scatter += (y[i] - line.at(x[i])) * (y[i] - line.at(x[i]));
-    width += (x[i] - line.mean_x) * (x[i] - line.mean_x);
+  for (std::size_t i = 0; i < batches.x.size(); ++i) {
+    const double residual = batches.y[i] - line.at(batches.x[i]);
+    scatter += residual * residual;
+    width += batches.x[i] * batches.x[i];
   }
-  const double sd = std::sqrt(scatter / static_cast<double>(batches - 2) / width);
-  facts.host_period_ms = facts.period_ms + line.slope;
-  facts.host_period_sd_ppm = sd / facts.host_period_ms * 1e6;
-  if (!(facts.host_period_ms > 0) || !std::isfinite(facts.host_period_sd_ppm)) {
-    facts.host_period_ms = StreamFacts::kUnknown;
-    facts.host_period_sd_ppm = StreamFacts::kUnknown;
-  }
+  const auto freedom = static_cast<double>(batches.x.size() - batches.stretches - 1);
+  const double period_ms = facts.period_ms + line.slope;
+  const double sd_ppm = std::sqrt(scatter / freedom / width) / period_ms * 1e6;
+  if (!(period_ms > 0) || !std::isfinite(sd_ppm)) return;
+  facts.host_period_ms = period_ms;
+  facts.host_period_sd_ppm = sd_ppm;
 }
 
 }  // namespace
@@ -203,7 +252,10 @@ StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
   note_arrivals(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
   const std::span<const StampedFrame> frames = without_warm_up(all);
-  if (frames.size() < 2 || !note_intervals(frames, facts)) return facts;
+  const std::optional<double> period_ms = period_of(frames);
+  if (!period_ms) return facts;
+  facts.period_ms = *period_ms;
+  note_intervals(frames, facts);
 
   std::vector<double> offsets;
   for (const StampedFrame& frame : frames) {

@@ -8,6 +8,7 @@
 #ifndef SIMBENCH_EVALUATION_DIAGNOSE_STREAM_H_
 #define SIMBENCH_EVALUATION_DIAGNOSE_STREAM_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -19,9 +20,10 @@ namespace simbench::evaluation {
 
 // A lasting change of (arrival - sensor stamp).
 struct StampJump {
-  double at_s = 0;     // after the stream's first arrival
-  double step_ms = 0;  // positive: stamps fell behind the arrivals
-  int periods = 0;     // 0: no whole number of them
+  std::size_t frame = 0;  // the first one after it; of StreamFacts::arrivals_ms
+  double at_s = 0;        // after the stream's first arrival
+  double step_ms = 0;     // positive: stamps fell behind the arrivals
+  int periods = 0;        // 0: no whole number of them
 };
 
 struct StreamFacts {
@@ -33,7 +35,7 @@ struct StreamFacts {
   double longest_gap_s = kUnknown;  // between two arrivals
   double gap_at_s = kUnknown;       // its begin, after the first arrival
   // On the camera's clock.
-  double period_ms = kUnknown;           // median interval
+  double period_ms = kUnknown;           // of a frame
   double interval_jitter_ms = kUnknown;  // standard deviation from whole periods
   double on_grid_share = kUnknown;       // of intervals within a tenth of whole periods
   // On the host's clock.

@@ -171,9 +171,10 @@ Json camera_json(const CameraDiagnosis& camera) {
 
 constexpr const char* kLegend = R"(
 How to read it
-  follows: the trigger, if its frame period in host time is that of the others; free-running cameras differ by tens of ppm.
-  phase: of the arrivals, against the first camera that follows. intervals: how far the stamps are from whole periods.
-  lost: counted by the camera, never arrived. skipped: periods without a frame that its counter does not know.
+  follows: the trigger, if its frame period in host time is that of the others; free-running ones
+    differ by tens of ppm. phase: of the arrivals, against the first camera that follows.
+  intervals: how far the stamps are from whole periods. lost: counted by the camera, never arrived.
+    skipped: periods without a frame that its counter does not know.
 )";
 
 }  // namespace

@@ -1,0 +1,70 @@
+// `simbench diagnose` through the real program.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class DiagnoseCommand : public ProgramTest {
+ protected:
+  // A minute of two cameras at 30 FPS on one host; the second is `ppm` slow.
+  static std::string recording(double ppm) {
+    std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),camera,host\n";
+    for (int i = 0; i < 1800; ++i) {
+      const double ms = i * 1000.0 / 30;
+      const double late_ms = 9 + i * 7919 % 97 * 0.005;
+      text += fmt::format("Depth,0,{},{:.3f},{:.6f},left,pc\n", i, 700 + ms, ms + late_ms);
+      text += fmt::format("Depth,0,{},{:.3f},{:.6f},right,pc\n", i, 400 + ms,
+                          ms * (1 + ppm * 1e-6) + late_ms);
+    }
+    return text;
+  }
+};
+
+TEST_F(DiagnoseCommand, SaysThatTheSyncWorks) {
+  const ProgramResult result = run({"diagnose", file("rig.csv", recording(0))});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("Depth 0: hardware sync works: all 2 cameras"));
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(DiagnoseCommand, SaysThatItDoesNot) {
+  const ProgramResult result = run({"diagnose", file("rig.csv", recording(60))});
+  EXPECT_EQ(result.status, 0) << "the exit status says whether there was an answer";
+  EXPECT_THAT(result.out, StartsWith("Depth 0: hardware sync does not work, because free-running"));
+  EXPECT_THAT(result.out, HasSubstr("moves 3.6 ms per minute against camera left"));
+}
+
+TEST_F(DiagnoseCommand, JsonIsAllThatIsOnStandardOutput) {
+  const ProgramResult result =
+      run({"diagnose", file("rig.csv", recording(0)), "--rate-hz", "60", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  EXPECT_EQ(root["verdict"]["status"], "works");
+  EXPECT_EQ(root["cameras"][1]["period_multiple"], 2);
+}
+
+TEST_F(DiagnoseCommand, BadInputIsNamed) {
+  const ProgramResult none = run({"diagnose", "absent.csv"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("absent.csv: cannot be read"));
+  const ProgramResult rate = run({"diagnose", file("rig.csv", recording(0)), "--rate-hz", "none"});
+  EXPECT_EQ(rate.status, 2);
+  EXPECT_THAT(rate.err, HasSubstr("found 'none', allowed: a number from 0.01 to 10000"));
+  const ProgramResult empty = run({"diagnose", file("empty.csv", "")});
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("the file is empty"));
+}
+
+}  // namespace
+}  // namespace simbench
