@@ -41,6 +41,24 @@ void sort_by_error(std::vector<Rank>& ranks) {
   });
 }
 
+void sort_by_recall(std::vector<Rank>& ranks) {
+  std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
+    const auto rank = [](double share) { return std::isnan(share) ? -1 : share; };
+    if (rank(a.row->recall) != rank(b.row->recall)) {
+      return rank(a.row->recall) > rank(b.row->recall);
+    }
+    return rank(a.row->precision) > rank(b.row->precision);
+  });
+}
+
+bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
+  const Row& first = *ranks.front().row;
+  const auto same_stamps = [&first](const Rank& rank) {
+    return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time;
+  };
+  return ranks.size() > 1 && std::all_of(ranks.begin(), ranks.end(), same_stamps);
+}
+
 }  // namespace
 
 Series paired_ratio(const Series& numerator, const Series& denominator) {
@@ -72,8 +90,15 @@ std::vector<Board> leaderboard(const Results& results) {
         .push_back({.row = &row, .to_oracle = ratios(row, oracle), .to_paper = ratios(row, paper)});
   }
   for (Board& board : boards) {
-    sort_by_error(board.online);
-    sort_by_error(board.offline);
+    std::vector<Rank>& ranks = board.online.empty() ? board.offline : board.online;
+    board.of_gathering =
+        (board.online.empty() || board.offline.empty()) && differ_in_gathering_alone(ranks);
+    if (board.of_gathering) {
+      sort_by_recall(ranks);
+    } else {
+      sort_by_error(board.online);
+      sort_by_error(board.offline);
+    }
   }
   return boards;
 }

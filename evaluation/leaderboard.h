@@ -4,7 +4,8 @@
 // one stage. Its row "<board>.oracle" has the oracle in that stage. Rows without a dot are the
 // board "" (references). Ratios are paired by seed: the median, over seeds in which both exist, of
 // the row's value divided by the other's. Rows are in order of their median absolute error, what
-// has none last; estimators that need the whole recording (offline) are ranked apart.
+// has none last; estimators that need the whole recording (offline) are ranked apart. Rows that
+// differ in gathering alone have one error; they are in order of recall, then precision.
 //
 //   for (const Board& board : leaderboard(results)) board.online.front().row->pipeline;
 #ifndef SIMBENCH_EVALUATION_LEADERBOARD_H_
@@ -36,6 +37,7 @@ struct Board {
   std::string name;
   std::vector<Rank> online;
   std::vector<Rank> offline;
+  bool of_gathering = false;  // its rows differ in gathering alone
 };
 
 // In order of each board's first row. `results` must outlive them.

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "evaluation/leaderboard.h"
 #include "reports/json.h"
 #include "reports/number_text.h"
+#include "reports/sets_block.h"
 #include "reports/text_table.h"
 
 namespace simbench::reports {
@@ -56,6 +58,14 @@ TextTable block(const Board& board) {
   return table;
 }
 
+TextTable gathering_block(const Board& board) {
+  std::vector<const Row*> rows;
+  for (const Rank& rank : board.online.empty() ? board.offline : board.online) {
+    rows.push_back(rank.row);
+  }
+  return sets_block(rows);
+}
+
 // "host = host_sync x hull_300 + yoon2021": which stage the board varies, and what the others are.
 std::string composition(const Board& board) {
   std::vector<const Row*> rows;
@@ -71,14 +81,20 @@ std::string composition(const Board& board) {
                      stage("device_time", &Row::device_time), stage("gathering", &Row::gathering));
 }
 
+bool any_of_gathering(const Results& results) {
+  const std::vector<Board> boards = evaluation::leaderboard(results);
+  return std::any_of(boards.begin(), boards.end(),
+                     [](const Board& board) { return board.of_gathering; });
+}
+
 std::string report(const Results& results, std::string_view summary, bool as_markdown) {
   std::string text = fmt::format("{}{}: {} seeds from {}\n", as_markdown ? "## " : "",
                                  results.scenario, results.seed_count, results.first_seed);
   if (!summary.empty()) text += fmt::format("{}\n", wrapped(summary));
   for (const Board& board : evaluation::leaderboard(results)) {
-    const TextTable table = block(board);
+    const TextTable table = board.of_gathering ? gathering_block(board) : block(board);
     const std::string heading =
-        board.name.empty() ? "references" : board.name + ": " + composition(board);
+        board.name.empty() ? "references" : fmt::format("{}: {}", board.name, composition(board));
     text += fmt::format("\n{}{}\n\n{}", as_markdown ? "### " : "", heading,
                         as_markdown ? table.markdown() : table.plain());
   }
@@ -92,6 +108,7 @@ std::string report(const Results& results, std::string_view summary, bool as_mar
           "with the oracle in its place, and to the paper's proposal. Every pipeline meets the "
           "same "
           "worlds. Online stamps a frame when it arrives; offline has seen the whole recording.");
+  if (any_of_gathering(results)) text += "\n" + wrapped(kSetsLegend);
   const std::string asymmetry = asymmetry_line(results);
   return asymmetry.empty() ? text : text + "\n" + wrapped(asymmetry);
 }

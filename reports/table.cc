@@ -7,6 +7,7 @@
 
 #include "reports/leaderboard_report.h"
 #include "reports/number_text.h"
+#include "reports/sets_block.h"
 #include "reports/text_table.h"
 
 namespace simbench::reports {
@@ -95,41 +96,17 @@ TextTable truth_block(const Results& results) {
   return block;
 }
 
+std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
 bool gatherings_differ(const Results& results) {
   return std::any_of(results.rows.begin(), results.rows.end(), [&](const Row& row) {
     return row.gathering != results.rows.front().gathering;
   });
 }
-
-// What gathering made of the stamps.
-TextTable sets_block(const Results& results) {
-  TextTable block({{"pipeline", Align::kLeft},
-                   {"gathering", Align::kLeft},
-                   {"complete\nsets"},
-                   {"sets:\nprecision"},
-                   {"sets:\nrecall"},
-                   {"index\nerrors"},
-                   {"partial\nsets"},
-                   {"frames\ndiscarded"},
-                   {"AMD of\nsets ms"},
-                   {"abs. error\nof sets ms"},
-                   {"emitted after\nmean ms"},
-                   {"emitted after\nlargest ms"}});
-  for (const Row& row : results.rows) {
-    block.add({row.pipeline, row.gathering, count_text(row.sets.emitted), share_text(row.precision),
-               share_text(row.recall), count_text(row.sets.index_errors),
-               count_text(row.sets.partial), count_text(row.sets.discarded_frames),
-               number_text(row.set_amd_ms.median), number_text(row.set_absolute_error_ms.median),
-               number_text(row.emission_latency_ms.median),
-               number_text(row.emission_latency_max_ms)});
-  }
-  return block;
-}
-
-constexpr const char* kSetsLegend =
-    "index errors: frames of complete sets that are not of the pulse of most others there. emitted "
-    "after: from the last member's arrival. AMD of sets is small where sets were given up: see "
-    "recall.";
 
 std::string stages_text(const Row& row) {
   return fmt::format("{} = {} + {} + {}", row.pipeline, row.host_sync, row.device_time,
@@ -218,7 +195,7 @@ std::string report(const Results& results, std::string_view summary, const Layou
   out += layout.block(truth_block(results));
   if (gatherings_differ(results)) {
     out += layout.heading("What gathering made of the stamps, over all seeds");
-    out += layout.block(sets_block(results));
+    out += layout.block(sets_block(pointers_to(results.rows)));
   }
   for (const Row& row : results.rows) {
     if (row.unsynchronised_hosts > 0) out += fmt::format("\n{}\n", unsynchronised_line(row));

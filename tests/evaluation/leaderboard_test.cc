@@ -59,6 +59,18 @@ TEST(Leaderboard, RatiosArePairedBySeed) {
   EXPECT_DOUBLE_EQ(a.to_oracle.amd.median, 3);           // of 2 and 4
 }
 
+TEST(Leaderboard, PoliciesOfOneStampAreInOrderOfRecall) {
+  Results results;
+  results.rows = {row("gather.a", {2, 2}), row("gather.none", {2, 2}), row("gather.b", {2, 2})};
+  results.rows[0].recall = 0.5;
+  results.rows[1].recall = kNan;
+  results.rows[2].recall = 0.9;
+  const std::vector<Board> boards = leaderboard(results);
+  EXPECT_TRUE(boards[0].of_gathering);
+  EXPECT_EQ(names(boards[0].online),
+            (std::vector<std::string>{"gather.b", "gather.a", "gather.none"}));
+}
+
 TEST(Leaderboard, ABoardWithoutOracleHasNoSuchRatio) {
   Results results;
   results.rows = {row("device.x", {2, 2})};

@@ -1,0 +1,22 @@
+// What gathering made of the stamps: a line per pipeline, for tables of policies beside each other.
+#ifndef SIMBENCH_REPORTS_SETS_BLOCK_H_
+#define SIMBENCH_REPORTS_SETS_BLOCK_H_
+
+#include <vector>
+
+#include "evaluation/results.h"
+#include "reports/text_table.h"
+
+namespace simbench::reports {
+
+TextTable sets_block(const std::vector<const evaluation::Row*>& rows);
+
+// What its columns mean.
+inline constexpr const char* kSetsLegend =
+    "index errors: frames of complete sets that are not of the pulse of most others there. emitted "
+    "after: from the last member's arrival. AMD of sets is small where sets were given up: see "
+    "recall.";
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_SETS_BLOCK_H_
