@@ -8,6 +8,7 @@ namespace simbench {
 namespace {
 
 constexpr double kPollSpread = 0.02;
+constexpr double kSlewAhead = 1.25;      // poll intervals
 constexpr double kMaxClockError = 1e-6;  // the default of maxclockerror, 1 ppm
 
 Nanoseconds from_seconds(double seconds) { return from_ms(seconds * 1e3); }
@@ -15,7 +16,7 @@ Nanoseconds from_seconds(double seconds) { return from_ms(seconds * 1e3); }
 }  // namespace
 
 double UnfinishedSlew::left_s(double at_s) const {
-  const double done_s = rate * std::max(at_s - start_s, 0.0);
+  const double done_s = rate * std::clamp(at_s - start_s, 0.0, duration_s);
   return std::copysign(std::max(std::abs(offset_s) - done_s, 0.0), offset_s);
 }
 
@@ -47,23 +48,28 @@ Task<void> ChronyClient::run() {
 Task<void> ChronyClient::poll() {
   const std::optional<NtpMeasurement> reply = co_await association_.exchange(kMaxDelay);
   ++polls_;
-  if (!reply) {
+  const bool is_used = reply && use(*reply);
+  if (!is_used) {
+    co_await slew(slew_.left_s(now_s()), slew_.rate);
     if (replies_ == 0 && polls_ >= kPatience) report(false);
     co_return;
   }
+  co_await correct();
+  report(true);
+}
+
+bool ChronyClient::use(const NtpMeasurement& measurement) {
   ++replies_;
-  const ChronySample sample = sample_of(*reply);
+  const ChronySample sample = sample_of(measurement);
   const double error_s = std::abs(sample.offset_s - stats_.predict_s(sample.at_s));
   const bool was_known = stats_.estimate().has_value();
-  if (!stats_.is_good(sample)) co_return;
+  if (!stats_.is_good(sample)) return false;
   ++good_samples_;
   stats_.add(sample);
   if (was_known && good_samples_ > kBurst) {
     poll_.update(stats_.samples(), error_s, sample.delay_s / 2 + sample.dispersion_s);
   }
-  if (!stats_.estimate()) co_return;
-  co_await correct();
-  report(true);
+  return stats_.estimate().has_value();
 }
 
 Task<void> ChronyClient::correct() {
@@ -74,11 +80,18 @@ Task<void> ChronyClient::correct() {
   if (correction.frequency != 0) {
     co_await host_.clock().adjust_frequency(reference_.frequency() * 1e9);
   }
-  const Nanoseconds offset = from_seconds(left_s + correction.offset_s);
-  if (offset == Nanoseconds{0}) co_return;
-  const double before = now_s();
-  co_await host_.clock().slew(offset, correction.slew_rate * 1e9);
-  slew_ = {to_seconds(offset), correction.slew_rate, (before + now_s()) / 2};
+  co_await slew(left_s + correction.offset_s, correction.slew_rate);
+}
+
+Task<void> ChronyClient::slew(double offset_s, double rate) {
+  // No more at a time than is due until the next poll has come for certain: what the end of a slew
+  // costs grows with its distance.
+  const double part_s = std::min(std::abs(offset_s), rate * kSlewAhead * poll_.interval_s());
+  const Nanoseconds part = from_seconds(std::copysign(part_s, offset_s));
+  if (part == Nanoseconds{0}) co_return;
+  const double before_s = now_s();
+  co_await host_.clock().slew(part, rate * 1e9);
+  slew_ = {offset_s, rate, (before_s + now_s()) / 2, part_s / rate};
 }
 
 ChronySample ChronyClient::sample_of(const NtpMeasurement& measurement) const {

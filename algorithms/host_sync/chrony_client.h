@@ -18,6 +18,7 @@ struct UnfinishedSlew {
   double offset_s = 0;
   double rate = 0;  // as a fraction
   double start_s = 0;
+  double duration_s = 0;  // of the part of it that was begun
 
   double left_s(double at_s) const;
 };
@@ -37,7 +38,11 @@ class ChronyClient {
 
  private:
   Task<void> poll();
+  // Whether there is an estimate to correct the clock by.
+  bool use(const NtpMeasurement& measurement);
   Task<void> correct();
+  // Adds `offset_s` at a rate, as a fraction; in parts, each as long as is sure to be needed.
+  Task<void> slew(double offset_s, double rate);
   // The measurement as seen by the clock that has finished its slew.
   ChronySample sample_of(const NtpMeasurement& measurement) const;
 

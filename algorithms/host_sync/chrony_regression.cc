@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kRunsRatio = 2;  // points of the runs test to points in use
 constexpr std::size_t kMinRunsTest = 8;
 constexpr double kRunsSignificance = 0.05;
+constexpr std::size_t kTabulatedRuns = 129;  // twice 64 points, and none
 
 // Sums of a weighted fit, about the weighted mean of x.
 struct Moments {
@@ -25,32 +26,41 @@ struct Moments {
   double intercept() const { return mean_y - slope() * mean_x; }
 };
 
-Moments moments(std::span<const double> x, std::span<const double> y, std::span<const double> w) {
+std::vector<double> reliabilities(std::span<const double> w) {
+  std::vector<double> inverse;
+  inverse.reserve(w.size());
+  for (const double weight : w) inverse.push_back(1 / weight);
+  return inverse;
+}
+
+Moments moments(std::span<const double> x, std::span<const double> y,
+                std::span<const double> reliability) {
   Moments sums;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    sums.weight += 1 / w[i];
-    sums.mean_x += x[i] / w[i];
-    sums.mean_y += y[i] / w[i];
+    sums.weight += reliability[i];
+    sums.mean_x += x[i] * reliability[i];
+    sums.mean_y += y[i] * reliability[i];
   }
   sums.mean_x /= sums.weight;
   sums.mean_y /= sums.weight;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double from_mean = x[i] - sums.mean_x;
-    sums.xx += from_mean * from_mean / w[i];
-    sums.xy += from_mean * y[i] / w[i];
+    const double weighed = from_mean * reliability[i];
+    sums.xx += from_mean * weighed;
+    sums.xy += weighed * y[i];
   }
   return sums;
 }
 
 WeightedLine line_of(const Moments& sums, std::span<const double> x, std::span<const double> y,
-                     std::span<const double> w) {
+                     std::span<const double> reliability) {
   WeightedLine line;
   line.slope = sums.slope();
   line.intercept = sums.intercept();
   double squares = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double residual = y[i] - line.intercept - line.slope * x[i];
-    squares += residual * residual / w[i];
+    squares += residual * residual * reliability[i];
   }
   const auto n = static_cast<double>(x.size());
   const double unit_variance = squares / (n - 2);
@@ -61,6 +71,19 @@ WeightedLine line_of(const Moments& sums, std::span<const double> x, std::span<c
   return line;
 }
 
+int quantile_of_runs(std::size_t n) {
+  // P(runs <= k) of 1 + Binomial(n - 1, 1/2), summed up to the first k where it exceeds 5 %.
+  const auto trials = static_cast<double>(n - 1);
+  double probability = std::exp2(-trials);
+  double sum = 0;
+  int runs = 1;
+  while ((sum += probability) <= kRunsSignificance) {
+    probability *= (trials - (runs - 1)) / runs;
+    ++runs;
+  }
+  return runs;
+}
+
 }  // namespace
 
 std::optional<WeightedLine> weighted_regression(std::span<const double> x,
@@ -68,9 +91,10 @@ std::optional<WeightedLine> weighted_regression(std::span<const double> x,
                                                 std::span<const double> w) {
   SIMBENCH_ASSERT(x.size() == y.size() && x.size() == w.size(), "as many x as y as w");
   if (x.size() < kChronyMinPoints) return std::nullopt;
-  const Moments sums = moments(x, y, w);
+  const std::vector<double> reliability = reliabilities(w);
+  const Moments sums = moments(x, y, reliability);
   if (!(sums.xx > 0)) return std::nullopt;
-  return line_of(sums, x, y, w);
+  return line_of(sums, x, y, reliability);
 }
 
 std::optional<BestRegression> best_regression(std::span<const double> x, std::span<const double> y,
@@ -80,19 +104,20 @@ std::optional<BestRegression> best_regression(std::span<const double> x, std::sp
   const std::size_t n = w.size();
   const std::size_t fewest = std::max(min_samples, kChronyMinPoints);
   if (n < kChronyMinPoints) return std::nullopt;
+  const std::vector<double> reliability = reliabilities(w);
   for (std::size_t start = 0;; ++start) {
     const std::size_t kept = n - start;
     const auto kept_x = x.last(kept);
     const auto kept_y = y.last(kept);
-    const auto kept_w = w.last(kept);
-    const Moments sums = moments(kept_x, kept_y, kept_w);
+    const auto kept_reliability = std::span(reliability).last(kept);
+    const Moments sums = moments(kept_x, kept_y, kept_reliability);
     if (!(sums.xx > 0)) return std::nullopt;
     const std::size_t tested = std::min(kept * kRunsRatio, n + extra);
     const int runs =
         runs_of_residuals(x.last(tested), y.last(tested), sums.intercept(), sums.slope());
     if (runs <= critical_runs(tested) && kept > fewest) continue;
     BestRegression best;
-    best.line = line_of(sums, kept_x, kept_y, kept_w);
+    best.line = line_of(sums, kept_x, kept_y, kept_reliability);
     best.start = start;
     best.runs = runs_of_residuals(kept_x, kept_y, best.line.intercept, best.line.slope);
     best.degrees_of_freedom = static_cast<int>(kept) - 2;
@@ -156,17 +181,12 @@ double median(std::span<const double> values) {
 }
 
 int critical_runs(std::size_t n) {
-  if (n < kMinRunsTest) return 0;
-  // P(runs <= k) of 1 + Binomial(n - 1, 1/2), summed up to the first k where it exceeds 5 %.
-  const auto trials = static_cast<double>(n - 1);
-  double probability = std::exp2(-trials);
-  double sum = 0;
-  int runs = 1;
-  while ((sum += probability) <= kRunsSignificance) {
-    probability *= (trials - (runs - 1)) / runs;
-    ++runs;
-  }
-  return runs;
+  static const std::array<int, kTabulatedRuns> kTable = [] {
+    std::array<int, kTabulatedRuns> table{};
+    for (std::size_t i = kMinRunsTest; i < table.size(); ++i) table[i] = quantile_of_runs(i);
+    return table;
+  }();
+  return n < kTable.size() ? kTable[n] : quantile_of_runs(n);
 }
 
 double student_t_9995(int degrees_of_freedom) {

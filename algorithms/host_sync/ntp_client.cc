@@ -7,6 +7,7 @@ namespace simbench {
 namespace {
 
 constexpr double kPollSpread = 1.0 / 16;
+constexpr double kSlewAhead = 1.25;  // poll intervals
 // A longer round trip tells nothing; also keeps nonsense stamps out of the arithmetic.
 constexpr double kMaxDelay = 16;
 
@@ -164,11 +165,16 @@ Task<void> NtpClient::correct_phase() {
   // While the frequency is measured, the first offset is still being added.
   if (discipline_.state() == NtpState::kFreq) co_return;
   const double at_s = seconds(now());
-  const double rate_ppb = std::abs(discipline_.phase_rate(at_s)) * 1e9;
-  const Nanoseconds residual = from_seconds(rate_ppb > 0 ? discipline_.residual_s(at_s) : 0);
-  if (residual == Nanoseconds{0} && !is_slewing_) co_return;
-  is_slewing_ = residual != Nanoseconds{0};
-  co_await host_.clock().slew(residual, rate_ppb);
+  // No more than is due until the next poll has come for certain: what the end of a slew costs
+  // grows with its distance.
+  const double rate = discipline_.phase_rate(at_s);
+  const double due_s = std::abs(rate) * kSlewAhead * discipline_.poll_interval_s();
+  const double residual_s = discipline_.residual_s(at_s);
+  const Nanoseconds part =
+      from_seconds(std::copysign(std::min(due_s, std::abs(residual_s)), residual_s));
+  if (part == Nanoseconds{0} && !is_slewing_) co_return;
+  is_slewing_ = part != Nanoseconds{0};
+  co_await host_.clock().slew(part, std::abs(rate) * 1e9);
 }
 
 void NtpClient::note_reply(bool replied) {

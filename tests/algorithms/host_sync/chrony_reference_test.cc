@@ -72,11 +72,13 @@ TEST(ChronyReference, TheFrequencyIsCapped) {
 }
 
 TEST(UnfinishedSlew, EndsWhenAllIsAdded) {
-  const UnfinishedSlew slew{-1e-3, 100e-6, 50};
+  const UnfinishedSlew slew{-1e-3, 100e-6, 50, 10};
   EXPECT_EQ(slew.left_s(40), -1e-3);
   EXPECT_NEAR(slew.left_s(55), -0.5e-3, 1e-15);
   EXPECT_EQ(std::abs(slew.left_s(70)), 0);
   EXPECT_EQ(UnfinishedSlew{}.left_s(10), 0);
+  const UnfinishedSlew begun{1e-3, 100e-6, 50, 4};
+  EXPECT_NEAR(begun.left_s(1000), 0.6e-3, 1e-15) << "a part of 4 s was begun";
 }
 
 TEST(ChronyPoll, GrowsWithTheSamplesOnTheLine) {
