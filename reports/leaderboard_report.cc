@@ -98,8 +98,8 @@ std::string report(const Results& results, std::string_view summary, bool as_mar
     text += fmt::format("\n{}{}\n\n{}", as_markdown ? "### " : "", heading,
                         as_markdown ? table.markdown() : table.plain());
   }
-  text +=
-      "\n" +
+  text += fmt::format(
+      "\n{}",
       wrapped(
           "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's "
           "clock|. "
@@ -107,10 +107,10 @@ std::string report(const Results& results, std::string_view summary, bool as_mar
           "board "
           "with the oracle in its place, and to the paper's proposal. Every pipeline meets the "
           "same "
-          "worlds. Online stamps a frame when it arrives; offline has seen the whole recording.");
-  if (any_of_gathering(results)) text += "\n" + wrapped(kSetsLegend);
+          "worlds. Online stamps a frame when it arrives; offline has seen the whole recording."));
+  if (any_of_gathering(results)) text += fmt::format("\n{}", wrapped(kSetsLegend));
   const std::string asymmetry = asymmetry_line(results);
-  return asymmetry.empty() ? text : text + "\n" + wrapped(asymmetry);
+  return asymmetry.empty() ? text : fmt::format("{}\n{}", text, wrapped(asymmetry));
 }
 
 Json ratio_json(const Series& ratio) {
