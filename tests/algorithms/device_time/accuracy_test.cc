@@ -88,13 +88,13 @@ void expect_near(const DeviceTimeErrors& errors, double bias_us, double std_us) 
 }
 
 TEST_P(DeviceTimeExpectation, WorldsAAndB) {
-  static const std::vector<DeviceTimeRun> kRunsA = runs_of({}, 2);
-  static const std::vector<DeviceTimeRun> kRunsB = runs_of(world_b(), 2);
+  static const std::vector<DeviceTimeRun> runs_a = runs_of({}, 2);
+  static const std::vector<DeviceTimeRun> runs_b = runs_of(world_b(), 2);
   const Expectation& expected = GetParam();
-  expect_near(errors_of(expected.name, kRunsA), expected.a_bias_us, expected.a_std_us);
+  expect_near(errors_of(expected.name, runs_a), expected.a_bias_us, expected.a_std_us);
   // A line through all of a sinusoid lies where the first 60 s leave it: not compared.
   if (expected.name.ends_with("_offline")) return;
-  expect_near(errors_of(expected.name, kRunsB), expected.b_bias_us, expected.b_std_us);
+  expect_near(errors_of(expected.name, runs_b), expected.b_bias_us, expected.b_std_us);
 }
 
 TEST(DeviceTimeAccuracy, TheilSen) {

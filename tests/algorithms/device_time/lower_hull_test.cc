@@ -20,6 +20,7 @@ std::vector<LinePoint> vertices_of(const std::vector<LinePoint>& points) {
 
 std::vector<std::int64_t> xs_of(const std::vector<LinePoint>& points) {
   std::vector<std::int64_t> xs;
+  xs.reserve(points.size());
   for (const LinePoint point : points) xs.push_back(point.x);
   return xs;
 }
@@ -122,6 +123,7 @@ TEST(LowerHull, AgreesWithBruteForce) {
     // Few values, so that many points lie on one line.
     boost::random::uniform_int_distribution<std::int64_t> value(0, 6);
     std::vector<LinePoint> points;
+    points.reserve(12);
     std::int64_t x = 0;
     for (int i = 0; i < 12; ++i) points.push_back({x += step(random), value(random)});
     const std::vector<LinePoint> vertices = vertices_of(points);
