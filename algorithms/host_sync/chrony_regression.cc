@@ -181,12 +181,12 @@ double median(std::span<const double> values) {
 }
 
 int critical_runs(std::size_t n) {
-  static const std::array<int, kTabulatedRuns> kTable = [] {
+  static const std::array<int, kTabulatedRuns> table_of_runs = [] {
     std::array<int, kTabulatedRuns> table{};
     for (std::size_t i = kMinRunsTest; i < table.size(); ++i) table[i] = quantile_of_runs(i);
     return table;
   }();
-  return n < kTable.size() ? kTable[n] : quantile_of_runs(n);
+  return n < table_of_runs.size() ? table_of_runs[n] : quantile_of_runs(n);
 }
 
 double student_t_9995(int degrees_of_freedom) {
