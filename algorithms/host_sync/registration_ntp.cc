@@ -183,8 +183,8 @@ std::vector<HostSyncEntry> ntp_host_syncs() {
           NtpMode::kUnicast, 16),
       ntp("ntp_broadcast_volley", "NTP broadcast, its delay calibrated by one volley of exchanges",
           NtpMode::kBroadcastVolley, 6),
-      ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay of 4 ms",
-          NtpMode::kBroadcastFixed, 6),
+      ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay", NtpMode::kBroadcastFixed,
+          6),
       w32time_domain(),
       chrony(),
   };

@@ -7,9 +7,8 @@
 #include <cmath>
 #include <memory>
 #include <string>
-#include <utility>
+#include <vector>
 
-#include "algorithms/host_sync/chrony_service.h"
 #include "algorithms/host_sync/ntp_packet.h"
 #include "algorithms/host_sync/registration_ntp.h"
 #include "tests/algorithms/host_sync/script_host.h"
@@ -60,6 +59,28 @@ TEST(NtpRegistration, ParametersReachTheAlgorithm) {
   ASSERT_EQ(world.host(1).slews.size(), 1U);
   EXPECT_EQ(world.host(1).slews[0].offset, from_ms(300));
   EXPECT_DOUBLE_EQ(world.host(1).slews[0].rate_ppb, 500e3);
+}
+
+TEST(NtpService, AServerThatReturnsIsAskedInABurst) {
+  ScriptWorld world(2);
+  connect(world);
+  world.script_link(0, 1, [](std::size_t index, const Bytes&) {
+    const bool is_down = index >= 10 && index < 25;
+    return is_down ? std::vector<Nanoseconds>{} : std::vector{from_ms(1)};
+  });
+  world.run(*make("ntp"), from_ms(1800e3));
+  const auto& exchanges = world.host(1).exchanges;
+  ASSERT_GE(exchanges.size(), 18U);
+  for (std::size_t i = 1; i < 18; ++i) {
+    const double gap_s = to_seconds(*exchanges[i].t1 - *exchanges[i - 1].t1);
+    const bool in_burst = i < 8 || i > 10;
+    if (in_burst) {
+      EXPECT_NEAR(gap_s, 2, 0.01) << i;
+    } else {
+      EXPECT_GT(gap_s, 45) << i;
+    }
+  }
+  EXPECT_EQ(world.host(1).outcomes.size(), 1U);
 }
 
 // A packet of a mode that is looked at, from a server that claims to be synchronised.
