@@ -8,13 +8,12 @@
 //
 // Where the departure is stamped decides how much of the sender's occupancy is in the path:
 //   transmit-stamped  t1 and t3 are when the message left: the host's transmit stamp if it has one,
-//                     else the clock right after the send call. t3 follows with the next reply.
+//                     else the clock right after the send call. t3 follows with a later reply.
 //   naive             t1 and t3 are read before the send call, as most code does it.
 //
-// A lost message costs its exchange (a lost reply also the departure of the one before);
-// duplicates, late replies and bytes that are no message of ours are ignored. A slave reports its
-// outcome when its clock was first steered, or once kPatience requests have gone unanswered; it
-// goes on asking.
+// A lost message costs its exchange; duplicates, late replies and bytes that are no message of ours
+// are ignored. A slave reports its outcome when its clock was first steered, or once kPatience
+// requests have gone unanswered; it goes on asking.
 //
 // The names: two_way_min_rtt, two_way_independent_minima, two_way_hull, each also as *_naive where
 // registered; libsoftwaresync is naive best-of-300 with early stop and without rate, one round

@@ -33,12 +33,12 @@ std::optional<TwoWayMessage> decode_two_way_message(const Bytes& bytes) {
   message.arrived = HostTime(Nanoseconds(boost::endian::load_little_s64(at + 8)));
   message.replied_index = boost::endian::load_little_u32(at + 16);
   message.replied = HostTime(Nanoseconds(boost::endian::load_little_s64(at + 20)));
-  const bool has_departure = message.replied_index != 0;
   if (message.index == 0 || message.replied_index > message.index) return std::nullopt;
-  if (!has_departure && message.replied != HostTime{}) return std::nullopt;
+  if (message.replied_index == 0 && message.replied != HostTime{}) return std::nullopt;
   if (message.kind == TwoWayMessage::Kind::kReply) return message;
-  const bool is_request = message.kind == TwoWayMessage::Kind::kRequest && !has_departure &&
-                          message.arrived == HostTime{};
+  const bool is_request = message.kind == TwoWayMessage::Kind::kRequest &&
+                          message.replied_index < message.index && message.arrived == HostTime{} &&
+                          message.replied == HostTime{};
   if (!is_request) return std::nullopt;
   return message;
 }

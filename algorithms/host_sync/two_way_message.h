@@ -9,12 +9,13 @@
 //   3       1     kind: 1 request, 2 reply
 //   4       4     index: the number of the exchange, from 1
 //   8       8     arrived: reply: when the request reached the master, its clock, ns; else 0
-//   16      4     replied_index: reply: the exchange whose reply left at `replied`; 0: none
-//   20      8     replied: ns, else 0
+//   16      4     replied_index: reply: the exchange whose reply left at `replied`; request: the
+//                 one whose departure is wanted; 0: none
+//   20      8     replied: reply: ns, else 0
 //
 // A reply that carries its own departure has replied_index == index; it was read before the send
-// call. A reply whose departure was measured can only be told with the next one (interleaved mode,
-// RFC 9769): replied_index names an earlier one.
+// call. A departure that was measured can only be told with a later reply (interleaved mode, RFC
+// 9769): the client asks for that of the last reply it had.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_MESSAGE_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_MESSAGE_H_
 

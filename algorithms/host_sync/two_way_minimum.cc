@@ -44,6 +44,13 @@ RemoteReading independent_minima(std::span<const TwoWayExchange> exchanges, doub
 
 bool TwoWayMinimum::add(const TwoWayExchange& exchange) {
   if (exchange.round_trip().count() < 0 || exchange.received < exchange.sent) return false;
+  if (line_ && settings_.estimate_rate && is_jump(exchange)) {
+    rounds_.clear();
+    round_.assign(1, exchange);
+    add_round(best_round_trip(round_));
+    round_.clear();
+    return true;
+  }
   round_.push_back(exchange);
   const bool is_short = settings_.early_stop && exchange.round_trip() < *settings_.early_stop;
   if (!is_short && round_.size() < settings_.exchanges) return false;
@@ -54,10 +61,13 @@ bool TwoWayMinimum::add(const TwoWayExchange& exchange) {
   return true;
 }
 
+bool TwoWayMinimum::is_jump(const TwoWayExchange& exchange) const {
+  const Nanoseconds above = exchange.arrived - line_->read(exchange.sent);
+  const Nanoseconds below = exchange.replied - line_->read(exchange.received);
+  return as_ns(above) < -kJumpNs || as_ns(below) > kJumpNs;
+}
+
 void TwoWayMinimum::add_round(RemoteReading reading) {
-  const bool has_jumped = line_ && settings_.estimate_rate &&
-                          std::abs(as_ns(reading.value - line_->read(reading.at))) > kJumpNs;
-  if (has_jumped) rounds_.clear();
   rounds_.push_back(reading);
   while (rounds_.size() > kRoundsKept || reading.at - rounds_.front().at > settings_.window) {
     rounds_.pop_front();

@@ -9,7 +9,8 @@
 //
 // TwoWayMinimum makes rounds of N exchanges out of a stream: each round gives one offset by one of
 // the two, and the rate is the least-squares slope of the offsets in the window (kRoundsKept at
-// most). An offset that is more than kJumpNs off the line through the others starts afresh.
+// most). An exchange whose bounds lie more than kJumpNs on the wrong side of the line says that a
+// clock has jumped: everything starts afresh, from that exchange alone.
 // With `early_stop`, a round ends with the first exchange whose round trip is below that: on a
 // wired network nearly always the first one (host_sync.md section 1).
 // Without `estimate_rate` the line is flat and goes through the last offset.
@@ -59,6 +60,7 @@ class TwoWayMinimum : public TwoWayEstimator {
   std::optional<ClockLine> line() override { return line_; }
 
  private:
+  bool is_jump(const TwoWayExchange& exchange) const;
   void add_round(RemoteReading reading);
 
   Settings settings_;

@@ -32,20 +32,24 @@ Task<void> TwoWayServer::answer(ReceivedMessage received) {
   TwoWayMessage reply{.kind = TwoWayMessage::Kind::kReply,
                       .index = request->index,
                       .arrived = clock_->at(received.received_steady),
-                      .replied_index = last_index_ < request->index ? last_index_ : 0,
+                      .replied_index = 0,
                       .replied = {}};
   if (is_naive_) {
     reply.replied_index = reply.index;
     reply.replied = clock_->at(host_.steady_clock().now());
-  } else if (reply.replied_index != 0) {
-    reply.replied = last_departure_;
+  }
+  for (const Departure& departure : departures_) {
+    if (departure.index != request->replied_index) continue;
+    reply.replied_index = departure.index;
+    reply.replied = departure.at;
   }
   Bytes bytes = encode(reply);
   const MessageId id = co_await channel.send(std::move(bytes));
   last_index_ = request->index;
   if (is_naive_) co_return;
   const SteadyTime departure = co_await departure_of(host_, channel, id, clock_);
-  last_departure_ = clock_->at(departure);
+  departures_.push_back({request->index, clock_->at(departure)});
+  if (departures_.size() > kDepartures) departures_.pop_front();
 }
 
 Task<void> serve_two_way(Host& host, PeerId client, std::shared_ptr<SteeredClock> clock,
@@ -63,7 +67,8 @@ Task<std::optional<TwoWayExchange>> TwoWayClient::ask(Nanoseconds timeout) {
   MessageChannel& channel = host_.open_channel(server_, Transport::kDatagram);
   present_ = Open{.index = ++index_, .exchange = {}, .t1 = {}, .t4 = {}};
   const SteadyTime begin = host_.steady_clock().now();
-  Bytes bytes = encode(TwoWayMessage{.index = index_});
+  const std::uint32_t wanted = last_ && !is_naive_ ? last_->index : 0;
+  Bytes bytes = encode(TwoWayMessage{.index = index_, .replied_index = wanted});
   const MessageId id = co_await channel.send(std::move(bytes));
   SteadyTime sent = begin;
   if (!is_naive_) sent = co_await departure_of(host_, channel, id, clock_);

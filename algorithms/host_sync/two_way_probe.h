@@ -8,7 +8,9 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_PROBE_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_PROBE_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 
@@ -34,12 +36,17 @@ class TwoWayServer {
   Task<void> answer(ReceivedMessage received);
 
  private:
+  static constexpr std::size_t kDepartures = 16;
+  struct Departure {
+    std::uint32_t index = 0;
+    HostTime at{};
+  };
   Host& host_;
   PeerId client_;
   std::shared_ptr<SteeredClock> clock_;
   bool is_naive_;
   std::uint32_t last_index_ = 0;
-  HostTime last_departure_{};
+  std::deque<Departure> departures_;  // of the last replies
 };
 
 // Answers for ever.
@@ -52,7 +59,8 @@ class TwoWayClient {
       : host_(host), server_(server), clock_(std::move(clock)), is_naive_(is_naive) {}
 
   // Sends a request and waits for its reply, at most until `timeout`. Returns the exchange that is
-  // complete with that, if one is: this one, or (transmit-stamped) the one before. Reports it.
+  // complete with that, if one is: this one, or (transmit-stamped) the one answered before. Reports
+  // it.
   Task<std::optional<TwoWayExchange>> ask(Nanoseconds timeout);
   std::uint32_t asked() const { return index_; }
   std::uint32_t answered() const { return answered_; }

@@ -10,6 +10,8 @@ namespace {
 TEST(TwoWayMessageTest, WhatIsEncodedIsDecoded) {
   const TwoWayMessage request{.index = 7};
   EXPECT_EQ(decode_two_way_message(encode(request)), request);
+  const TwoWayMessage asking{.index = 7, .replied_index = 6};
+  EXPECT_EQ(decode_two_way_message(encode(asking)), asking);
   const TwoWayMessage reply{.kind = TwoWayMessage::Kind::kReply,
                             .index = 0xfffffffe,
                             .arrived = HostTime(Nanoseconds(-5)),

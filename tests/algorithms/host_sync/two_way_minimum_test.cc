@@ -139,18 +139,19 @@ TEST(TwoWayMinimumTest, EarlyStopEndsARoundWithTheFirstShortExchange) {
   EXPECT_TRUE(estimator.add(exchange_at(truth, at_second(5), from_ms(0.7), from_ms(0.7))));
 }
 
-TEST(TwoWayMinimumTest, AJumpOfTheRemoteClockStartsAfresh) {
-  const ClockLine before = remote_clock({}, 10'000);
-  const ClockLine after = remote_clock(from_ms(50), 10'000);
-  TwoWayMinimum::Settings settings;
-  settings.exchanges = 2;
-  TwoWayMinimum estimator(settings);
-  for (int i = 0; i < 80; ++i) {
-    estimator.add(
-        exchange_at(i < 60 ? before : after, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+TEST(TwoWayMinimumTest, AJumpOfTheRemoteClockIsFollowedAtOnceAndKeepsTheRate) {
+  for (const double jump_ms : {50.0, -50.0}) {
+    const ClockLine before = remote_clock({}, 10'000);
+    const ClockLine after = remote_clock(from_ms(jump_ms), 10'000);
+    TwoWayMinimum estimator({.exchanges = 4});
+    for (int i = 0; i < 61; ++i) {
+      estimator.add(exchange_at(before, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+    }
+    EXPECT_TRUE(estimator.add(exchange_at(after, at_second(31), from_ms(0.2), from_ms(0.2))));
+    const Nanoseconds error = estimator.line()->read(at_second(32)) - after.read(at_second(32));
+    EXPECT_LT(std::abs(to_ms(error)), 1e-3);
+    EXPECT_NEAR(estimator.line()->rate_ppb, 10'000, 20);
   }
-  EXPECT_LT(std::abs(to_ms(estimator.line()->read(at_second(40)) - after.read(at_second(40)))),
-            1e-3);
 }
 
 TEST(TwoWayMinimumTest, ImpossibleExchangesAreRefused) {

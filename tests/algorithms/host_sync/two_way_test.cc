@@ -112,6 +112,19 @@ TEST(TwoWayTest, LossDuplicatesAndLateMessagesCostExchangesOnly) {
   EXPECT_EQ(world.host(1).outcomes.size(), 1u);
 }
 
+TEST(TwoWayTest, TheDepartureOfALostReplysPredecessorComesWithTheNextOne) {
+  ScriptWorld world(2);
+  connect(world);
+  world.script_link(0, 1, [](std::size_t index, const Bytes&) {
+    return index % 2 == 1 ? std::vector<Nanoseconds>{} : std::vector{kLatency};
+  });
+  TwoWay sync = hull_sync(settings_of_test());
+  world.run(sync, from_ms(20e3));
+  // Half a second for each lost reply: a complete exchange each 0.52 s, less the last one.
+  EXPECT_GE(world.host(1).exchanges.size(), 25u);
+  EXPECT_LE(std::abs(world.host(1).lead_over(world.host(0)).count()), 2);
+}
+
 TEST(TwoWayTest, RandomBytesFromThePeerAreIgnored) {
   boost::random::mt19937_64 engine(4);
   ScriptWorld world(2);
