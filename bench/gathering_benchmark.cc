@@ -1,7 +1,8 @@
 // Time per pulse of every registered gatherer, by number of sources.
 //
 // "clean": one frame of every source per pulse, so a set per pulse. "lossy": about one pulse in
-// five lacks a frame. "noisy": stamps over half a period, so that fronts must be searched.
+// five lacks a frame. "equal": the same, without noise, so that nothing decides. "noisy": stamps
+// over half a period, so that fronts must be searched.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -76,12 +77,15 @@ void add_benchmarks() {
   const struct {
     const char* name;
     Stream stream;
-  } streams[] = {{"clean", {}}, {"lossy", {.lost_every = 5}}, {"noisy", {.noise_us = 10'000}}};
+  } streams[] = {{"clean", {}},
+                 {"lossy", {.lost_every = 5}},
+                 {"equal", {.noise_us = 1, .lost_every = 5}},
+                 {"noisy", {.noise_us = 10'000}}};
   for (const GatheringEntry& entry : simbench::gathering_algorithms()) {
     for (const auto& [name, stream] : streams) {
       benchmark::RegisterBenchmark(
           (entry.info.name + "/" + name).c_str(),
-          [&entry, stream](benchmark::State& state) { gather(state, entry, stream); })
+          [&entry, stream = stream](benchmark::State& state) { gather(state, entry, stream); })
           ->Arg(18)
           ->Arg(1000);
     }

@@ -35,6 +35,7 @@ class ApproximateTimeGatherer final : public Gatherer {
 
   void push(const GatherFrame& frame, FrameSetSink& sink) override {
     const std::uint32_t source = frame.source;
+    if (undecided_until_ && may_decide(frame)) undecided_until_.reset();
     queues_.push(frame);
     if (has_front_one(source)) {
       ++with_front_;
@@ -78,6 +79,7 @@ class ApproximateTimeGatherer final : public Gatherer {
         }
         candidate_ = {.start = start, .end = end, .pivot = last, .pivot_time = end};
       } else if (is_better(start, end)) {
+        undecided_until_.reset();
         give_up_stepped_aside();
         candidate_->start = start;
         candidate_->end = end;
@@ -85,8 +87,8 @@ class ApproximateTimeGatherer final : public Gatherer {
       step_aside(first);
       if (first == candidate_->pivot || is_best(end)) {
         emit(sink);
-      } else if (with_front_ < sources_) {
-        if (search_virtually()) emit(sink);
+      } else if (with_front_ < sources_ && !undecided_until_ && search_virtually()) {
+        emit(sink);
       }
     }
   }
@@ -107,6 +109,7 @@ class ApproximateTimeGatherer final : public Gatherer {
   bool search_virtually() {
     const std::size_t real_steps = steps_.size();
     note_virtual_front(steps_.back());
+    undecided_until_ = fronts_.key(fronts_.latest());
     for (;;) {
       const std::uint32_t first = fronts_.earliest();
       const std::int64_t end = fronts_.key(fronts_.latest());
@@ -119,11 +122,23 @@ class ApproximateTimeGatherer final : public Gatherer {
     return false;
   }
 
-  void note_virtual_front(std::uint32_t source) {
-    if (has_front(source)) return;
+  // The earliest stamp that the source's next frame can have, as far as the search is concerned.
+  std::int64_t virtual_key(std::uint32_t source) const {
     const std::int64_t newest = gather_key(queues_.at(source, queues_.size(source) - 1));
-    const std::int64_t next = std::min(newest + lower_bounds_[source], kFarthestKey);
-    fronts_.set(source, std::max(next, candidate_->pivot_time));
+    return std::max(std::min(newest + lower_bounds_[source], kFarthestKey), candidate_->pivot_time);
+  }
+
+  void note_virtual_front(std::uint32_t source) {
+    if (!has_front(source)) fronts_.set(source, virtual_key(source));
+  }
+
+  // A virtual search that decided nothing would take the same steps again and decide nothing, as
+  // long as frames come no earlier than it took them to come, and no later than its latest front:
+  // steps are of fronts before the pivot, and the end of every one of its ranges stays what it was.
+  bool may_decide(const GatherFrame& frame) const {
+    SIMBENCH_ASSERT(frame.source < sources_, "a frame of a source that does not exist");
+    const std::int64_t key = gather_key(frame);
+    return key < virtual_key(frame.source) || key > *undecided_until_;
   }
 
   void step_aside(std::uint32_t source) {
@@ -169,6 +184,7 @@ class ApproximateTimeGatherer final : public Gatherer {
 
   void emit(FrameSetSink& sink) {
     candidate_.reset();
+    undecided_until_.reset();
     steps_.clear();
     sink.on_set(queues_.take_fronts());
     fronts_.forget();
@@ -188,6 +204,7 @@ class ApproximateTimeGatherer final : public Gatherer {
     has_dropped_[source] = 1;
     if (!candidate_) return;
     candidate_.reset();
+    undecided_until_.reset();
     search(sink);
   }
 
@@ -214,6 +231,8 @@ class ApproximateTimeGatherer final : public Gatherer {
   std::vector<std::uint32_t> aside_;  // by source: frames that stepped aside
   std::vector<std::uint32_t> steps_;  // the sources of these, in order
   std::optional<Candidate> candidate_;
+  // Of the last virtual search, if it decided nothing and would not now: its first range's end.
+  std::optional<std::int64_t> undecided_until_;
   std::vector<char> has_dropped_;       // by source: an overflow since it last was harmless
   std::vector<std::uint32_t> dropped_;  // the sources of which that is true
   std::uint64_t discarded_ = 0;

@@ -18,7 +18,8 @@
 // Stamps of a source should increase; if they do not, its frames still leave in order of arrival,
 // and no search is endless.
 //
-// Complexity: O(log n) per frame that steps aside, O(n) per set. Memory: n * (queue + 1) frames.
+// Complexity: O(log n) per frame that steps aside, O(n) per set; steps that decided nothing are not
+// taken again until a frame comes that may change that. Memory: n * (queue + 1) frames.
 // Source: ros_comm message_filters sync_policies/approximate_time.h; reference/gathering.md.
 //
 //   auto gatherer = make_approximate_time_gatherer(setup, {.lower_bound = setup.period / 2});
