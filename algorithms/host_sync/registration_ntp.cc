@@ -144,7 +144,7 @@ HostSyncEntry w32time_domain() {
   const W32TimeSettings defaults = w32time_domain_settings();
   HostSyncEntry entry;
   entry.info.name = "w32time_domain";
-  entry.info.family = "w32time";
+  entry.info.family = "w32time_domain";
   entry.info.summary = "SNTP in the manner of Windows Time on a member of a domain, as documented";
   entry.info.source = documentation + "; RFC 4330";
   entry.info.parameters = {
