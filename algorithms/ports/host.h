@@ -72,7 +72,7 @@ struct ReceivedMessage {
   Bytes bytes;
   HostTime received{};  // receive stamp, from the point of the stack that stamps
   SteadyTime received_steady{};
-  // When the message's start passed the network card, on the card's clock; if the card stamps.
+  // When the message's end passed the network card, on the card's clock; if the card stamps.
   std::optional<HardwareTime> received_hardware{};
 };
 
