@@ -28,7 +28,8 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   const ProgramResult all = run({"--help"});
   EXPECT_EQ(all.status, 0);
   EXPECT_EQ(all.err, "");
-  for (const char* command : {"run", "list", "describe", "validate", "replay", "convert-ibl"}) {
+  for (const char* command :
+       {"run", "list", "describe", "validate", "replay", "diagnose", "convert-ibl"}) {
     EXPECT_THAT(all.out, HasSubstr(command));
     const ProgramResult result = run({command, "--help"});
     EXPECT_EQ(result.status, 0) << command;
@@ -90,7 +91,7 @@ TEST_F(Usage, WhatDescribePrintsAsJsonIsAScenario) {
 
 TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({}, {"subcommand is required", "See: simbench --help"});
-  refuses({"fly"}, {"found 'fly'", "run, list, describe, validate, replay, convert-ibl"});
+  refuses({"fly"}, {"found 'fly'", "run, list, describe, validate, replay, diagnose, convert-ibl"});
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
   refuses({"describe"}, {"scenario is required"});
