@@ -8,6 +8,8 @@ namespace {
 constexpr std::size_t kBytes = 28;
 constexpr std::uint16_t kMagic = 0x5643;
 constexpr std::uint8_t kVersion = 1;
+// Times this far from zero can still be subtracted in 64 bits.
+constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
 constexpr std::uint8_t kRequest = 1;
 constexpr std::uint8_t kAnswer = 2;
 
@@ -39,6 +41,7 @@ std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes) 
   const std::int64_t sigma_ns = boost::endian::load_little_s64(at + 16);
   const std::uint32_t pulses = boost::endian::load_little_u32(at + 24);
   if (message.index == 0 || sigma_ns < 0) return std::nullopt;
+  if (pulse_ns > kMostNs || pulse_ns < -kMostNs) return std::nullopt;
   if (pulses == 0) {
     if (pulse_ns != 0 || sigma_ns != 0) return std::nullopt;
     return message;

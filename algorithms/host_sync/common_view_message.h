@@ -35,7 +35,7 @@ struct CommonViewMessage {
 
 Bytes encode(const CommonViewMessage& message);
 
-// Nothing, if the bytes are not what encode() makes of some message.
+// Nothing, if the bytes are not what encode() makes of some message with times within +-4e18 ns.
 std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes);
 
 }  // namespace simbench

@@ -6,6 +6,9 @@
 namespace simbench {
 namespace {
 
+// No oscillator is that far off: the stamps are wrong.
+constexpr double kMostSlope = 1e-3;
+
 double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
 
 // Reports how a slave fares, once; the master's own clock is nobody's outcome.
@@ -88,6 +91,7 @@ std::optional<ClockLine> GnssEstimator::line() const {
   const Envelope::Point a = hull[right - 1];
   const Envelope::Point b = hull[right];
   const double slope = (b.y - a.y) / (b.x - a.x);
+  if (std::abs(slope) > kMostSlope) return std::nullopt;
   // Steady time runs 1 + slope while GNSS time runs 1.
   const auto seen_ns = static_cast<std::int64_t>(std::llround(a.x + a.y));
   return ClockLine{.at = zero_seen_ + Nanoseconds(seen_ns),

@@ -35,7 +35,7 @@ class GnssEstimator {
   explicit GnssEstimator(Nanoseconds window);
   // A pulse at `gnss`, seen at `seen`. One that is more than kJumpNs off starts afresh.
   void add(Nanoseconds gnss, SteadyTime seen);
-  // Nothing before kFewestPulses.
+  // Nothing before kFewestPulses, nor for pulses that no clock would see so (rate beyond 0.1 %).
   std::optional<ClockLine> line() const;
 
  private:

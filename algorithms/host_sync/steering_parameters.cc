@@ -8,7 +8,7 @@ std::vector<ParameterSpec> steering_parameters() {
   return {
       number_parameter("step_threshold_ms", 5, 0, 1e9,
                        "the clock is stepped if it is further off than this, else slewed",
-                       "assumption: a tenth of a second is too long to be wrong by a frame"),
+                       "assumption: what takes 10 s to slew at 500 ppm"),
       number_parameter("max_slew_ppm", 500, 1, 1e5, "fastest slew", "adjtime(3) on Linux: 500 ppm"),
       number_parameter("steer_interval_ms", 1000, 1, 1e7,
                        "time between two corrections of the clock, each slewed within that time",

@@ -7,6 +7,12 @@ namespace {
 
 constexpr std::uint16_t kMagic = 0x5754;
 constexpr std::uint8_t kVersion = 1;
+// Times this far from zero can still be subtracted in 64 bits.
+constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
+
+bool is_possible(HostTime time) {
+  return nanoseconds_of(time) <= kMostNs && nanoseconds_of(time) >= -kMostNs;
+}
 
 }  // namespace
 
@@ -33,6 +39,7 @@ std::optional<TwoWayMessage> decode_two_way_message(const Bytes& bytes) {
   message.arrived = HostTime(Nanoseconds(boost::endian::load_little_s64(at + 8)));
   message.replied_index = boost::endian::load_little_u32(at + 16);
   message.replied = HostTime(Nanoseconds(boost::endian::load_little_s64(at + 20)));
+  if (!is_possible(message.arrived) || !is_possible(message.replied)) return std::nullopt;
   if (message.index == 0 || message.replied_index > message.index) return std::nullopt;
   if (message.replied_index == 0 && message.replied != HostTime{}) return std::nullopt;
   if (message.kind == TwoWayMessage::Kind::kReply) return message;

@@ -40,7 +40,7 @@ inline constexpr std::size_t kTwoWayMessageBytes = 28;
 
 Bytes encode(const TwoWayMessage& message);
 
-// Nothing, if the bytes are not what encode() makes of some message.
+// Nothing, if the bytes are not what encode() makes of some message with times within +-4e18 ns.
 std::optional<TwoWayMessage> decode_two_way_message(const Bytes& bytes);
 
 }  // namespace simbench

@@ -13,12 +13,14 @@ constexpr std::uint32_t kLateRequests = 64;
 
 }  // namespace
 
-Task<SteadyTime> departure_of(Host& host, MessageChannel& channel, MessageId id,
+Task<SteadyTime> departure_of(Host& host, MessageChannel& channel, MessageId id, SteadyTime begin,
                               std::shared_ptr<const SteeredClock> clock) {
   const SteadyTime returned = host.steady_clock().now();
   const std::optional<HostTime> stamp =
       co_await channel.transmit_stamp(id, returned + kStampTimeout);
-  co_return stamp ? clock->when(*stamp) : returned;
+  if (!stamp) co_return returned;
+  const SteadyTime departure = clock->when(*stamp);
+  co_return departure < begin ? returned : departure;
 }
 
 Task<void> TwoWayServer::answer(ReceivedMessage received) {
@@ -44,10 +46,11 @@ Task<void> TwoWayServer::answer(ReceivedMessage received) {
     reply.replied = departure.at;
   }
   Bytes bytes = encode(reply);
+  const SteadyTime begin = host_.steady_clock().now();
   const MessageId id = co_await channel.send(std::move(bytes));
   last_index_ = request->index;
   if (is_naive_) co_return;
-  const SteadyTime departure = co_await departure_of(host_, channel, id, clock_);
+  const SteadyTime departure = co_await departure_of(host_, channel, id, begin, clock_);
   departures_.push_back({request->index, clock_->at(departure)});
   if (departures_.size() > kDepartures) departures_.pop_front();
 }
@@ -71,7 +74,7 @@ Task<std::optional<TwoWayExchange>> TwoWayClient::ask(Nanoseconds timeout) {
   Bytes bytes = encode(TwoWayMessage{.index = index_, .replied_index = wanted});
   const MessageId id = co_await channel.send(std::move(bytes));
   SteadyTime sent = begin;
-  if (!is_naive_) sent = co_await departure_of(host_, channel, id, clock_);
+  if (!is_naive_) sent = co_await departure_of(host_, channel, id, begin, clock_);
   present_.exchange.sent = sent;
   while (true) {
     std::optional<ReceivedMessage> received = co_await channel.receive(begin + timeout);

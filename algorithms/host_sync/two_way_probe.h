@@ -21,9 +21,10 @@
 
 namespace simbench {
 
-// When a message left that send() has just returned from: by the host's stamp if there is one, else
-// now. On the steady clock.
-Task<SteadyTime> departure_of(Host& host, MessageChannel& channel, MessageId id,
+// When a message left that send(), called at `begin`, has just returned from: by the host's stamp
+// if there is one, else now. A stamp from before the call is one of a coarse clock and does not
+// count.
+Task<SteadyTime> departure_of(Host& host, MessageChannel& channel, MessageId id, SteadyTime begin,
                               std::shared_ptr<const SteeredClock> clock);
 
 // Answers one client.

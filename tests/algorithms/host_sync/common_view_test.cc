@@ -252,6 +252,14 @@ TEST(GnssEstimatorTest, AJumpOfTheReceiverStartsAfresh) {
   EXPECT_EQ(estimator.line()->read(SteadyTime{}), HostTime(from_ms(5000)));
 }
 
+TEST(GnssEstimatorTest, PulsesThatNoClockSeesSoGiveNoLine) {
+  GnssEstimator still(from_ms(60e3));
+  for (int i = 0; i < 20; ++i) {
+    still.add(from_ms(0.1 * i), SteadyTime{});
+    EXPECT_FALSE(still.line());
+  }
+}
+
 TEST(GnssEstimatorTest, RepeatedPulsesGiveNoLine) {
   GnssEstimator estimator(from_ms(60e3));
   for (int i = 0; i < 20; ++i) estimator.add(from_ms(1000), SteadyTime(from_ms(1000)));

@@ -48,6 +48,9 @@ TEST(TwoWayMessageTest, WhatEncodeCannotMakeIsRefused) {
   Bytes from_the_future = good;
   from_the_future[16] = std::byte{10};
   EXPECT_FALSE(decode_two_way_message(from_the_future));
+  Bytes in_a_far_future = good;
+  in_a_far_future[15] = std::byte{0x7f};
+  EXPECT_FALSE(decode_two_way_message(in_a_far_future));
   Bytes departure_of_none = good;
   departure_of_none[16] = std::byte{0};
   EXPECT_FALSE(decode_two_way_message(departure_of_none));
