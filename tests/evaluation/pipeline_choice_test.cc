@@ -107,6 +107,38 @@ TEST(PipelineChoiceTest, RefusesParametersOfAnUnknownAlgorithm) {
   EXPECT_THAT(error_of(scenario), HasSubstr("/algorithms/a~1b~0c"));
 }
 
+TEST(PipelineChoiceTest, RefusesAlgorithmsThatNeedWhatTheWorldHasNot) {
+  struct Case {
+    const char* stage;
+    const char* algorithm;
+    const char* missing;
+  };
+  for (const Case& needy : {Case{"host_sync", "ptp_e2e_hardware", "/hosts/nic/hardware_stamps"},
+                            Case{"host_sync", "pps", "/hosts/pulse_lines/pps"},
+                            Case{"host_sync", "trigger_wired", "/hosts/pulse_lines/trigger"},
+                            Case{"device_time", "two_way_poll", "/cameras/clock_poll/interval_ms"},
+                            Case{"device_time", "librealsense_global_steady", "clock_poll"}}) {
+    Scenario scenario = test_scenario();
+    scenarios::Pipeline& pipeline = scenario.pipelines[0];
+    (needy.stage == std::string("host_sync") ? pipeline.host_sync : pipeline.device_time) =
+        needy.algorithm;
+    EXPECT_THAT(error_of(scenario),
+                AllOf(HasSubstr(std::string("/pipelines/0/").append(needy.stage)),
+                      HasSubstr("which needs"), HasSubstr(needy.missing)));
+  }
+}
+
+TEST(PipelineChoiceTest, SuffixesOfADeviceTimeAreItsVariants) {
+  Scenario scenario = test_scenario();
+  scenario.pipelines[0].device_time = "hull_300_steady_calibrated";
+  const PipelineChoice choice = choose_pipelines(scenario, {}).front();
+  EXPECT_EQ(choice.device_time.info.name, "hull_300");
+  EXPECT_TRUE(choice.device_time_variants.steady);
+  EXPECT_TRUE(choice.device_time_variants.calibrated);
+  scenario.pipelines[0].device_time = "oracle_steady";
+  EXPECT_THAT(error_of(scenario), HasSubstr("has no variants"));
+}
+
 TEST(PipelineChoiceTest, NamesKnownAlgorithmsOfTheStage) {
   Scenario scenario = test_scenario();
   scenario.pipelines[1].device_time = "regresion_30";
@@ -114,7 +146,7 @@ TEST(PipelineChoiceTest, NamesKnownAlgorithmsOfTheStage) {
               AllOf(HasSubstr("/pipelines/1/device_time"), HasSubstr("found \"regresion_30\""),
                     HasSubstr("did you mean regression_30"), HasSubstr("oracle")));
   scenario = test_scenario();
-  scenario.pipelines[0].gathering = "oracle";
+  scenario.pipelines[0].gathering = "oracel";
   EXPECT_THAT(error_of(scenario), AllOf(HasSubstr("/pipelines/0/gathering"), HasSubstr("genlock")));
   scenario = test_scenario();
   scenario.pipelines[0].host_sync = "ntpd";
