@@ -14,7 +14,7 @@ namespace {
 
 constexpr Nanoseconds kIdle{3'600'000'000'000};
 constexpr Nanoseconds kAnswerTimeout{500'000'000};
-constexpr double kClear = 4;  // standard deviations
+constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
 
 // The master's side towards one slave.
 Task<void> serve(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,

@@ -16,7 +16,7 @@
 // c is known with a standard deviation s (split halves of both hosts' pulses). Before there are
 // many pulses it is worse than the network, so only w c is taken off, with
 //
-//   w = a^2 / (a^2 + s^2),  a = asymmetry_sigma / 2;   w = 1 if |c| > 4 s
+//   w = a^2 / (a^2 + s^2),  a = asymmetry_sigma / 2;   w = 1 if |c| > 8 s
 //
 // What it cannot know: unequal least delays between hosts (other USB controllers, other cameras,
 // cables) go into the offset as they are, where the network alone would have been right.

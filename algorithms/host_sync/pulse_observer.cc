@@ -1,5 +1,6 @@
 #include "algorithms/host_sync/pulse_observer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -54,22 +55,39 @@ void PulseObserver::add(const FrameArrival& frame) {
   if (found == trains_.end()) {
     Train fresh{.train = PulseTrain(train_settings_),
                 .first_arrival = frame.arrival_steady,
-                .last_stamp_us = 0};
+                .last_stamp_us = frame.sensor.us,
+                .last_used_us = 0};
     found = trains_.emplace(frame.camera, std::move(fresh)).first;
   }
   Train& train = found->second;
-  if (frame.arrival_steady - train.first_arrival < settings_.settle) return;
   // The difference of the registers, as a signed number, is right across a wrap.
-  const auto step_us = static_cast<std::int32_t>(frame.sensor.us - train.last_stamp_us);
-  train.train.add(Microseconds(step_us), frame.arrival_steady - Microseconds(frame.exposure_us));
+  const Microseconds step(static_cast<std::int32_t>(frame.sensor.us - train.last_stamp_us));
   train.last_stamp_us = frame.sensor.us;
+  if (step.count() > 0) shortest_step_ = std::min<Nanoseconds>(shortest_step_, step);
+  if (frame.arrival_steady - train.first_arrival < settings_.settle) return;
+  const bool is_next_pulse =
+      !group_.empty() && frame.arrival_steady - group_.front().arrival_steady > shortest_step_ / 2;
+  if (is_next_pulse) group_.clear();
+  group_.push_back(frame);
+  if (group_.size() == trains_.size()) add_group();
+}
+
+void PulseObserver::add_group() {
+  for (const FrameArrival& frame : group_) {
+    Train& train = trains_.at(frame.camera);
+    const Microseconds step(static_cast<std::int32_t>(frame.sensor.us - train.last_used_us));
+    train.last_used_us = frame.sensor.us;
+    train.train.add(step, frame.arrival_steady - Microseconds(frame.exposure_us));
+  }
+  group_.clear();
 }
 
 Task<void> PulseObserver::collect_pulses() {
   const auto found = trains_
                          .try_emplace(0, Train{.train = PulseTrain(train_settings_),
                                                .first_arrival = {},
-                                               .last_stamp_us = 0})
+                                               .last_stamp_us = 0,
+                                               .last_used_us = 0})
                          .first;
   while (true) {
     const std::optional<PulseStamp> pulse = co_await input_->next(host_.steady_clock().now());

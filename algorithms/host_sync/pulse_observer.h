@@ -6,8 +6,9 @@
 //   frames    the arrival of each frame less its exposure time: where the exposure begins with the
 //             pulse that is the pulse plus a constant, whatever the exposure. Pulses are counted by
 //             the camera's clock, across the wrap of its 32-bit stamps. Frames of a camera's first
-//             `settle` are left out: exposures are unsteady then, and frames that do not share the
-//             bus as usual come earlier than ever after.
+//             `settle` are left out, and frames of pulses of which not every camera of the host
+//             has delivered one: where fewer frames share the bus, they come earlier than ever
+//             else. (A camera that falls silent for good thus ends the observation.)
 //   kTrigger  the camera's trigger pulses on a line of the host
 //   kPps      one pulse a second
 //
@@ -22,6 +23,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "algorithms/host_sync/pulse_train.h"
 #include "algorithms/ports/host.h"
@@ -58,10 +60,12 @@ class PulseObserver {
     PulseTrain train;
     SteadyTime first_arrival{};
     std::uint32_t last_stamp_us = 0;
+    std::uint32_t last_used_us = 0;
   };
   Task<void> collect_frames();
   Task<void> collect_pulses();
   void add(const FrameArrival& frame);
+  void add_group();
 
   Host& host_;
   Settings settings_;
@@ -71,6 +75,8 @@ class PulseObserver {
   bool is_collecting_ = false;
   std::map<std::uint32_t, Train> trains_;  // by camera; a line has number 0
   SteadyTime last_pulse_{};
+  std::vector<FrameArrival> group_;  // frames of one pulse
+  Nanoseconds shortest_step_ = Nanoseconds::max();
 };
 
 }  // namespace simbench
