@@ -9,7 +9,6 @@
 #include "algorithms/host_sync/registration_ptp.h"
 #include "algorithms/host_sync/registration_pulse.h"
 #include "algorithms/host_sync/registration_two_way.h"
-#include "algorithms/host_sync/w32time.h"
 #include "algorithms/host_sync/yoon2021.h"
 #include "algorithms/parameter_specs.h"
 
@@ -81,42 +80,6 @@ HostSyncEntry yoon2021(std::string name, std::string summary, bool add_network_d
   return entry;
 }
 
-HostSyncEntry w32time() {
-  const std::string documentation = "Microsoft documentation of W32Time (host_sync.md section 2)";
-  HostSyncEntry entry;
-  entry.info.name = "w32time";
-  entry.info.family = "w32time";
-  entry.info.summary = "SNTP in the manner of stand-alone Windows Time, as documented";
-  entry.info.source = documentation + "; RFC 4330";
-  entry.info.parameters = {
-      number_parameter("poll_interval_s", 32768, 16, 604800,
-                       "time between polls: SpecialPollInterval, bounded by MaxPollInterval",
-                       documentation),
-      number_parameter("phase_correct_rate", 7, 1, 1e3, "PhaseCorrectRate, divides the slew rate",
-                       documentation),
-      number_parameter("max_allowed_phase_offset_s", 1, 0, 1e6,
-                       "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
-                       documentation),
-      number_parameter("service_hours", 20, 0, 1e4,
-                       "how long the service has run when the capture starts",
-                       "assumption: at least two polls"),
-      number_parameter("start_spread_s", 32768, 0, 1e6,
-                       "the services start at random times within this span",
-                       "assumption: one poll interval, so that the hosts' polls are spread evenly"),
-  };
-  entry.make = [](const Parameters& parameters) {
-    W32TimeSettings settings;
-    settings.poll_interval = from_ms(parameters.number("poll_interval_s") * 1e3);
-    settings.phase_correct_rate = parameters.number("phase_correct_rate");
-    settings.max_allowed_phase_offset =
-        from_ms(parameters.number("max_allowed_phase_offset_s") * 1e3);
-    settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
-    settings.start_spread = from_ms(parameters.number("start_spread_s") * 1e3);
-    return std::make_unique<W32Time>(settings);
-  };
-  return entry;
-}
-
 HostSyncEntry limit(std::string name, std::string summary, std::string source,
                     InitialClocks initial_clocks) {
   HostSyncEntry entry;
@@ -143,7 +106,6 @@ std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
       yoon2021("yoon2021_both", "the paper's proposal: t_d = t_l + t_t", true, true),
       yoon2021("yoon2021_neither", "the paper's protocol without compensation: t_d = 0", false,
                false),
-      w32time(),
       limit("free_running", "no synchronisation: clocks start at arbitrary offsets",
             "a limit, for comparison", InitialClocks::kUnsynchronised),
       limit("ntp_last_set", "the paper's row None: clocks set hours ago, free-running since",

@@ -139,17 +139,18 @@ HostSyncEntry chrony() {
   return entry;
 }
 
-HostSyncEntry w32time_domain() {
+HostSyncEntry w32time(const std::string& name, std::string summary,
+                      const W32TimeSettings& defaults) {
   const std::string documentation = "Microsoft documentation of W32Time (host_sync.md section 2)";
-  const W32TimeSettings defaults = w32time_domain_settings();
   HostSyncEntry entry;
-  entry.info.name = "w32time_domain";
-  entry.info.family = "w32time_domain";
-  entry.info.summary = "SNTP in the manner of Windows Time on a member of a domain, as documented";
+  entry.info.name = name;
+  entry.info.family = name;
+  entry.info.summary = std::move(summary);
   entry.info.source = documentation + "; RFC 4330";
   entry.info.parameters = {
       number_parameter("poll_interval_s", to_seconds(defaults.poll_interval), 16, 604800,
-                       "time between polls: MinPollInterval", documentation),
+                       "time between polls: SpecialPollInterval (MinPollInterval in a domain)",
+                       documentation),
       number_parameter("phase_correct_rate", defaults.phase_correct_rate, 1, 1e3,
                        "PhaseCorrectRate, divides the slew rate", documentation),
       number_parameter("max_allowed_phase_offset_s", to_seconds(defaults.max_allowed_phase_offset),
@@ -157,13 +158,13 @@ HostSyncEntry w32time_domain() {
                        documentation),
       number_parameter("service_hours", to_seconds(defaults.service_time) / 3600, 0, 1e4,
                        "how long the service has run when the capture starts",
-                       "assumption: several polls"),
+                       "assumption: at least two polls"),
       number_parameter("start_spread_s", to_seconds(defaults.start_spread), 0, 1e6,
                        "the services start at random times within this span",
                        "assumption: one poll interval, so that the hosts' polls are spread evenly"),
   };
-  entry.make = [](const Parameters& parameters) {
-    W32TimeSettings settings = w32time_domain_settings();
+  entry.make = [defaults](const Parameters& parameters) {
+    W32TimeSettings settings = defaults;
     settings.poll_interval = from_ms(parameters.number("poll_interval_s") * 1e3);
     settings.phase_correct_rate = parameters.number("phase_correct_rate");
     settings.max_allowed_phase_offset =
@@ -185,7 +186,11 @@ std::vector<HostSyncEntry> ntp_host_syncs() {
           NtpMode::kBroadcastVolley, 6),
       ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay", NtpMode::kBroadcastFixed,
           6),
-      w32time_domain(),
+      w32time("w32time", "SNTP in the manner of stand-alone Windows Time, as documented",
+              W32TimeSettings{}),
+      w32time("w32time_domain",
+              "SNTP in the manner of Windows Time on a member of a domain, as documented",
+              w32time_domain_settings()),
       chrony(),
   };
 }

@@ -1,7 +1,7 @@
 // The NTP family of host_sync algorithms, with their parameters and the sources of their defaults.
 //
 //   ntp, ntp_broadcast_volley, ntp_broadcast_fixed   (family ntp)
-//   w32time_domain                                   (family w32time_domain)
+//   w32time, w32time_domain                          (families of their own)
 //   chrony                                           (family chrony)
 //
 // w32time_domain is a family of its own: what a scenario sets for a stand-alone machine's W32Time
