@@ -85,9 +85,8 @@ class ApproximateTimeGatherer final : public Gatherer {
         candidate_->end = end;
       }
       step_aside(first);
-      if (first == candidate_->pivot || is_best(end)) {
-        emit(sink);
-      } else if (with_front_ < sources_ && !undecided_until_ && search_virtually()) {
+      const bool proven = first == candidate_->pivot || is_best(end);
+      if (proven || (with_front_ < sources_ && !undecided_until_ && search_virtually())) {
         emit(sink);
       }
     }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kTurnsPerRadian = 0.5 / std::numbers::pi;
 
-// sin(2 pi turns) for |turns| <= 1/2, within 0.0011: a parabola and one correction. Ten times as
-// fast as the library's, and the same number everywhere; a mean needs no more.
+// sin(2 pi turns) for |turns| <= 1/2, within 0.0011: a parabola and one correction.
+// Quicker than the library's, and the same number everywhere; a mean needs no more.
 double sine(double turns) {
   const double parabola = 8 * turns * (1 - 2 * std::abs(turns));
   return parabola * (0.775 + 0.225 * std::abs(parabola));
