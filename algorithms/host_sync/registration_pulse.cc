@@ -52,7 +52,7 @@ HostSyncEntry gnss() {
   entry.info.family = "gnss";
   entry.info.summary = "every host, the master too, follows a GNSS receiver of its own";
   entry.info.source = "PPS and time of day of a receiver; theory";
-  entry.info.needs = {Need::kPps};
+  entry.info.needs = {Need::kPps, Need::kGnss};
   entry.info.parameters = {
       number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
                        kAssumption),

@@ -23,11 +23,12 @@ RunLoad::RunLoad(std::uint64_t run_seed, std::string_view load_key, const scenar
       latency_mean_ms_(network.latency_session_exponential_ms * factor_),
       set_cost_log_sigma_(hosts.clock.set_cost_session_log_sigma) {}
 
-SessionLoad RunLoad::session(PeerId a, PeerId b) const {
-  RandomStream draw(run_seed_, session_key_, std::min(a, b), std::max(a, b));
+SessionLoad RunLoad::session(PeerId from, PeerId to) const {
+  RandomStream draw(run_seed_, session_key_, std::min(from, to), std::max(from, to));
+  const double lower_send_cost_ms = draw.exponential(send_cost_mean_ms_);
   SessionLoad load;
-  load.send_cost_ms = draw.exponential(send_cost_mean_ms_);
   load.latency_ms = draw.exponential(latency_mean_ms_);
+  load.send_cost_ms = from < to ? lower_send_cost_ms : draw.exponential(send_cost_mean_ms_);
   return load;
 }
 

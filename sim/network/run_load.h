@@ -3,9 +3,10 @@
 //
 // In the calibrated worlds every cell of the published tables was a run of its own, with a load of
 // its own: one factor M for the run, an extra occupancy of the sender and an extra latency for each
-// session (a session is a pair of hosts, both ends share them), a factor on each host's set calls.
-// All are drawn per (run seed, load key); nothing else in the world depends on the load key, so
-// pipelines stay paired by seed in everything else. Draws are keyed, not stored.
+// session (a session is a pair of hosts: they share the latency, each end has an occupancy of its
+// own, so that naive two-way stamps are asymmetric by their difference), a factor on each host's
+// set calls. All are drawn per (run seed, load key); nothing else in the world depends on the load
+// key, so pipelines stay paired by seed in everything else. Draws are keyed, not stored.
 //
 // Source: reference/calibration.md sections 1 and 2 (rmult, callrun, Lrun, Srun); DESIGN section 6.
 //
@@ -36,8 +37,8 @@ class RunLoad {
 
   // M of the run.
   double factor() const { return factor_; }
-  // The same for (a, b) and (b, a).
-  SessionLoad session(PeerId a, PeerId b) const;
+  // Of messages that `from` sends to `to`.
+  SessionLoad session(PeerId from, PeerId to) const;
   // Factor on the cost of this host's set calls.
   double set_cost_factor(PeerId host) const;
 
