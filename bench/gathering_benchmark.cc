@@ -75,7 +75,7 @@ void gather(benchmark::State& state, const GatheringEntry& entry, const Stream& 
 
 void add_benchmarks() {
   const struct {
-    const char* name;
+    const char* name = "";
     Stream stream;
   } streams[] = {{"clean", {}},
                  {"lossy", {.lost_every = 5}},

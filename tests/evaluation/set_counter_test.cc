@@ -16,6 +16,7 @@ GlobalTime at(double ms) { return GlobalTime(from_ms(ms)); }
 // Members by pulse, all stamped and arriving at 0; sources 0, 1, ...
 std::vector<GatherFrame> members(const std::vector<std::int64_t>& pulses) {
   std::vector<GatherFrame> set;
+  set.reserve(pulses.size());
   for (const std::int64_t pulse : pulses) {
     set.push_back({.source = static_cast<std::uint32_t>(set.size()), .tag = pulse});
   }

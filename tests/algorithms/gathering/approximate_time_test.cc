@@ -102,11 +102,8 @@ class NaiveApproximateTime {
         take(now);
       }
       step(now.first);
-      if (now.first == pivot_ || later(now) >= pivot_time_ - start_) {
-        emit(sink);
-      } else if (!all_ahead() && is_best_even_virtually()) {
-        emit(sink);
-      }
+      const bool best = now.first == pivot_ || later(now) >= pivot_time_ - start_;
+      if (best || (!all_ahead() && is_best_even_virtually())) emit(sink);
     }
   }
 

@@ -79,6 +79,7 @@ TEST(Epsilon, EqualsTheNaiveImplementation) {
       }
       while (std::ranges::none_of(queues, [](const auto& queue) { return queue.empty(); })) {
         std::vector<GatherFrame> fronts;
+        fronts.reserve(queues.size());
         for (const auto& queue : queues) fronts.push_back(queue.front());
         const GlobalTime limit =
             std::ranges::min_element(fronts, {}, &GatherFrame::stamp)->stamp + setup.interval;

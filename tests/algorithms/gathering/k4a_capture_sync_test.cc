@@ -92,6 +92,7 @@ TEST(K4a, EqualsTheNaiveImplementation) {
       while (complete()) {
         const GlobalTime begin = queues[0].front().stamp - from_ms(kPeriodMs / 4);
         std::vector<GatherFrame> fronts;
+        fronts.reserve(queues.size());
         for (const auto& queue : queues) fronts.push_back(queue.front());
         const auto late = [&](const GatherFrame& f) {
           return f.source > 0 && f.stamp > begin + from_ms(kPeriodMs);

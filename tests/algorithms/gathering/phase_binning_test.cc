@@ -12,7 +12,6 @@ namespace simbench {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 constexpr double kPeriodMs = 20;
 
