@@ -56,7 +56,11 @@ bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
   const auto same_stamps = [&first](const Rank& rank) {
     return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time;
   };
-  return ranks.size() > 1 && std::all_of(ranks.begin(), ranks.end(), same_stamps);
+  const auto other_gathering = [&first](const Rank& rank) {
+    return rank.row->gathering != first.gathering;
+  };
+  return std::all_of(ranks.begin(), ranks.end(), same_stamps) &&
+         std::any_of(ranks.begin(), ranks.end(), other_gathering);
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ TEST(Leaderboard, RatiosArePairedBySeed) {
 TEST(Leaderboard, PoliciesOfOneStampAreInOrderOfRecall) {
   Results results;
   results.rows = {row("gather.a", {2, 2}), row("gather.none", {2, 2}), row("gather.b", {2, 2})};
+  for (Row& row : results.rows) row.gathering = row.pipeline;
   results.rows[0].recall = 0.5;
   results.rows[1].recall = kNan;
   results.rows[2].recall = 0.9;
