@@ -76,13 +76,14 @@ TEST(Shapley, IsTheMeanOverAllOrders) {
 
 // Two hosts of one camera each, in a world whose only faults are the ones given.
 scenarios::Scenario small_world(const std::string& set_pointer, const std::string& value) {
-  return scenarios::load_scenario("18cam_6host_45fps_lan", {{"/hosts/count", "2"},
-                                                            {"/cameras/count", "2"},
-                                                            {"/cameras/cameras_per_host", "1"},
-                                                            {"/timeline/frames", "40"},
-                                                            {"/timeline/warm_up_ms", "200"},
-       {"/cameras/unstable_start_jitter_sigma_ms", "0"},
-                                                            {set_pointer, value}});
+  return scenarios::load_scenario("18cam_6host_45fps_lan",
+                                  {{"/hosts/count", "2"},
+                                   {"/cameras/count", "2"},
+                                   {"/cameras/cameras_per_host", "1"},
+                                   {"/timeline/frames", "40"},
+                                   {"/timeline/warm_up_ms", "200"},
+                                   {"/cameras/unstable_start_jitter_sigma_ms", "0"},
+                                   {set_pointer, value}});
 }
 
 Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
