@@ -30,6 +30,14 @@ void idealise_device_clock(scenarios::Oscillator& oscillator) {
   oscillator.self_heating_time_constant_s = time_constant_s;
 }
 
+// Frames are moved by IdealDelivery; polls take no time, and nothing is left to calibrate.
+void idealise_delivery(scenarios::Cameras& cameras) {
+  for (scenarios::Stream& stream : cameras.streams) stream.calibrated_delay_ms = 0;
+  const double interval_ms = cameras.clock_poll.interval_ms;
+  cameras.clock_poll = {};
+  cameras.clock_poll.interval_ms = interval_ms;
+}
+
 template <class Time>
 Time floored(Time time, Nanoseconds quantum) {
   if (quantum.count() == 0) return time;
@@ -96,9 +104,7 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.hosts.clock.arrival_quantum_ms = 0;
   }
   if (ideal.has(Stage::kDeviceClock)) idealise_device_clock(world.cameras.oscillator);
-  if (ideal.has(Stage::kUsbDelivery)) {
-    for (scenarios::Stream& stream : world.cameras.streams) stream.calibrated_delay_ms = 0;
-  }
+  if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
   if (ideal.has(Stage::kHostClock)) world.pipelines.front().host_sync = kOracle;
   if (ideal.has(Stage::kGathering)) world.pipelines.front().gathering = kOracle;
   return world;
