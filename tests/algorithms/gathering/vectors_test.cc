@@ -149,7 +149,7 @@ TEST(GatheringVectors, LibrealsenseScriptsOfOneRate) {
         ASSERT_LT(taken, out.all.size()) << name << " lacks " << step[1];
         std::string id;
         for (const GatherFrame& frame : out.all[taken++]) {
-          id += (frame.source == 0 ? "D" : "C") + std::to_string(frame.tag);
+          id.append(frame.source == 0 ? "D" : "C").append(std::to_string(frame.tag));
         }
         EXPECT_EQ(id, step[1]) << name;
       } else {
