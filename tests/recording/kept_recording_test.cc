@@ -80,9 +80,10 @@ TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
   record_something(kept);
   Transcript played;
   kept.play(played);
-  EXPECT_THAT(played.lines, ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ",
-                                        "outcome no answer ", "frame 1 100 2000 4 ",
-                                        "pulse 4 0 -5 ", "pulse 5 0 6 ", "frame 0 101 1999 -1 "));
+  EXPECT_THAT(played.lines,
+              ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
+                          "outcome no answer ", "frame 1 100 2000 4 ", "pulse 4 0 -5 ",
+                          "pulse 5 0 6 ", "frame 0 101 1999 -1 "));
 }
 
 TEST(KeptRecordingTest, PlaysTheSameTwice) {
@@ -98,7 +99,7 @@ TEST(KeptRecordingTest, PlaysTheSameTwice) {
 TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   KeptRecording kept;
   record_something(kept);
-  EXPECT_EQ(kept.events(), 7U);
+  EXPECT_EQ(kept.events(), 8U);
   kept.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 50});
   EXPECT_EQ(kept.events(), 0U);
   EXPECT_EQ(kept.layout().cameras.size(), 1U);
