@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "recording/version.h"
@@ -20,15 +21,16 @@ std::string band(const BudgetPart& part) {
   return fmt::format("[{}, {}]", number_text(part.p05), number_text(part.p95));
 }
 
-std::string share(const BudgetPart& part, const ErrorParts& error) {
-  return share_text(part.mean / error.total.mean);
+std::string share_of(const BudgetPart& part, const ErrorParts& error) {
+  const double share = part.mean / error.total.mean;
+  return share_text(std::abs(share) < 5e-4 ? 0 : share);
 }
 
 void add_line(TextTable& table, const std::string& name, const Budget& budget,
               const BudgetPart& amd, const BudgetPart& absolute, const BudgetPart& physical) {
-  table.add({name, number_text(amd.mean), band(amd), share(amd, budget.amd_ms),
-             number_text(absolute.mean), band(absolute), share(absolute, budget.absolute_error_ms),
-             number_text(physical.mean)});
+  table.add({name, number_text(amd.mean), band(amd), share_of(amd, budget.amd_ms),
+             number_text(absolute.mean), band(absolute),
+             share_of(absolute, budget.absolute_error_ms), number_text(physical.mean)});
 }
 
 TextTable block(const Budget& budget) {
