@@ -36,9 +36,9 @@ class DeferredStamps {
 
   void add(const DeferredFrame& frame) { frames_.push_back(frame); }
 
-  void add_poll(std::uint32_t source, const PollSample& poll) { polls_.push_back({source, poll}); }
+  void add_poll(std::uint32_t source, const PollSample& poll) { polls_.emplace_back(source, poll); }
   void add_adjustment(std::uint32_t source, const ClockAdjustment& adjustment) {
-    adjustments_.push_back({source, adjustment});
+    adjustments_.emplace_back(source, adjustment);
   }
 
   // Calls `stamped` for every frame, in the order they were added.

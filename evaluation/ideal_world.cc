@@ -41,8 +41,9 @@ void idealise_delivery(scenarios::Cameras& cameras) {
 template <class Time>
 Time floored(Time time, Nanoseconds quantum) {
   if (quantum.count() == 0) return time;
-  const std::int64_t rest = time.time_since_epoch().count() % quantum.count();
-  return time - Nanoseconds(rest < 0 ? rest + quantum.count() : rest);
+  const std::int64_t rest_ns = time.time_since_epoch().count() % quantum.count();
+  const Nanoseconds above{rest_ns < 0 ? rest_ns + quantum.count() : rest_ns};
+  return time - above;
 }
 
 // Hands everything on, frames as if they had arrived in the middle of their exposure.

@@ -98,6 +98,7 @@ TextTable truth_block(const Results& results) {
 
 std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
   std::vector<const Row*> pointers;
+  pointers.reserve(rows.size());
   for (const Row& row : rows) pointers.push_back(&row);
   return pointers;
 }
