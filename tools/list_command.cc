@@ -24,6 +24,15 @@ Examples:
   simbench list cameras                               what each camera model can do
   simbench list pipelines --scenario 18cam_6host_45fps)";
 
+// Variants have no entries of their own (algorithms/device_time/variants.h).
+constexpr const char* kVariants = R"(
+Any device_time but the oracle may be named with suffixes, as in hull_300_steady_calibrated:
+  _steady              fitted on the host's steady clock, mapped by the log of clock adjustments
+  _exposure_corrected  arrivals less half of the exposure
+  _calibrated          the same, less the delay (and asymmetry of polls) of the camera model,
+                       /cameras/streams/N/calibrated_delay_ms, /cameras/clock_poll
+)";
+
 struct ListOptions {
   std::string what;
   std::string scenario;
@@ -100,11 +109,11 @@ std::string listing(const ListOptions& options) {
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
-           details_text("device_time", device_time_algorithms()) + "\n" +
+           details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
            details_text("gathering", gathering_algorithms());
   }
   return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
-         names_text("device_time", device_time_algorithms()) + "\n" +
+         names_text("device_time", device_time_algorithms()) + kVariants + "\n" +
          names_text("gathering", gathering_algorithms());
 }
 

@@ -62,7 +62,8 @@ TEST_F(Usage, ListsWhatThereIs) {
                            "regression_30", "gathering", "genlock"}) {
     EXPECT_THAT(names.out, HasSubstr(name));
   }
-  EXPECT_THAT(run({"list", "algorithms"}).out, HasSubstr("source: "));
+  EXPECT_THAT(run({"list", "algorithms"}).out,
+              AllOf(HasSubstr("source: "), HasSubstr("_exposure_corrected")));
   EXPECT_THAT(run({"list", "pipelines"}).out, HasSubstr("ntp_last_set"));
   EXPECT_THAT(run({"list", "scenarios"}).out, HasSubstr("18cam_6host_15fps"));
   EXPECT_THAT(run({"list", "cameras"}).out, HasSubstr("d455: RealSense D455"));
