@@ -70,7 +70,7 @@ TEST(GoldenTrace, EveryScenarioDoesWhatItDid) {
       {"3cam_1host_30fps", "free_running", 285, 0xa2ed9dbbb2c5df47},
       {"6cam_2host_30fps", "yoon2021_both", 1356, 0xe12235e06711401b},
       {"pulse_index_off_by_two", "yoon2021_both", 6668, 0x3820573813a832c},
-      {"scale_18000cam_6000host_45fps", "yoon2021_both", 79583, 0xb7e99d92d0eebf36},
+      {"scale_18000cam_6000host_45fps", "yoon2021_both", 77848, 0xb8d08ea957b190ae},
       {"18cam_6host_45fps_asymmetric_links", "yoon2021_both", 6668, 0x66b507648f893faa},
       {"18cam_6host_45fps_auto_exposure", "yoon2021_both", 6644, 0xc79ffbaa2aab728},
       {"18cam_6host_45fps_clock_step_during_capture", "yoon2021_both", 6668, 0xe48662be14fd3e8f},
