@@ -157,15 +157,14 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   }
   const TrueTime in_order = std::max(arrival, path.last_arrival);
   // Before the message itself is corrected.
-  const std::optional<SegmentId> duplicate =
-      is_duplicated ? std::optional(keep(segment)) : std::nullopt;
+  const SegmentId duplicate = is_duplicated ? keep(segment) : id;
   if (is_reordered) {
     deliver(id, in_order + from_ms(detour_ms), 0);
   } else {
     path.last_arrival = in_order;
     deliver(id, in_order, 0);
   }
-  if (duplicate) deliver(*duplicate, std::max(copy_arrival, in_order), 1);
+  if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
 }
 
 // A datagram will arrive then, corrected for the time it spends in the switch.
