@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "recording/forwarding_sink.h"
+
 namespace simbench::evaluation {
 namespace {
 
@@ -47,10 +49,10 @@ Time floored(Time time, Nanoseconds quantum) {
 }
 
 // Hands everything on, frames as if they had arrived in the middle of their exposure.
-class IdealDelivery final : public RecordingSink {
+class IdealDelivery final : public ForwardingSink {
  public:
-  IdealDelivery(RecordingSink& sink, Nanoseconds quantum) : sink_(sink), quantum_(quantum) {}
-  void on_start(const RigLayout& layout) override { sink_.on_start(layout); }
+  IdealDelivery(RecordingSink& sink, Nanoseconds quantum)
+      : ForwardingSink(sink), quantum_(quantum) {}
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
     if (truth == nullptr) {
       throw std::runtime_error("an ideal delivery needs the truth, which only a simulation has");
@@ -60,20 +62,10 @@ class IdealDelivery final : public RecordingSink {
     ideal.arrival = ideal.backend;
     ideal.arrival_steady = floored(truth->own_steady, quantum_);
     ideal.exposure_us = 0;  // nothing is left of it between the stamp and the arrival
-    sink_.on_frame(ideal, truth);
+    sink().on_frame(ideal, truth);
   }
-  void on_pulse(const PulseTruth& truth) override { sink_.on_pulse(truth); }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    sink_.on_adjustment(adjustment);
-  }
-  void on_poll(const DevicePoll& poll) override { sink_.on_poll(poll); }
-  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
-    sink_.on_exchange(host, exchange);
-  }
-  void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
 
  private:
-  RecordingSink& sink_;
   Nanoseconds quantum_;
 };
 

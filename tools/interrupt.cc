@@ -3,6 +3,8 @@
 #include <atomic>
 #include <utility>
 
+#include "recording/forwarding_sink.h"
+
 namespace simbench::tools {
 namespace {
 
@@ -14,27 +16,17 @@ void throw_if_interrupted() {
 }
 
 // Hands everything on; frames are frequent enough to notice the flag by.
-class InterruptibleSink : public RecordingSink {
+class InterruptibleSink final : public ForwardingSink {
  public:
-  explicit InterruptibleSink(RecordingSink& sink) : sink_(sink) {}
-  void on_start(const RigLayout& layout) override { sink_.on_start(layout); }
+  using ForwardingSink::ForwardingSink;
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
     throw_if_interrupted();
-    sink_.on_frame(frame, truth);
+    sink().on_frame(frame, truth);
   }
-  void on_pulse(const PulseTruth& truth) override { sink_.on_pulse(truth); }
-  void on_adjustment(const ClockAdjustment& adjustment) override {
-    sink_.on_adjustment(adjustment);
-  }
-  void on_poll(const DevicePoll& poll) override { sink_.on_poll(poll); }
   void on_exchange(std::uint32_t host, const Exchange& exchange) override {
     throw_if_interrupted();
-    sink_.on_exchange(host, exchange);
+    sink().on_exchange(host, exchange);
   }
-  void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
-
- private:
-  RecordingSink& sink_;
 };
 
 class InterruptibleSource : public RecordingSource {
