@@ -112,6 +112,8 @@ struct Row {
   double recall = 0;
   double margin_ms = 0;
   SetCounts sets;  // over all seeds
+  Series seed_precision;
+  Series seed_recall;
   Series set_amd_ms;
   Series set_absolute_error_ms;
   Series emission_latency_ms;

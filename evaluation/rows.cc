@@ -22,6 +22,14 @@ double ratio(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
+// A share of each seed's own counts.
+Series share_of(const std::vector<SeedScore>& seeds, std::int64_t SetCounts::*whole) {
+  std::vector<double> values;
+  values.reserve(seeds.size());
+  for (const SeedScore& seed : seeds) values.push_back(ratio(seed.sets.pure, seed.sets.*whole));
+  return make_series(std::move(values));
+}
+
 double margin_ms(const std::vector<SeedScore>& seeds, double gathering_interval_ms) {
   std::vector<double> spreads;
   for (const SeedScore& seed : seeds) {
@@ -56,6 +64,9 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   row.set_amd_ms = series_of(seeds, &SeedScore::set_amd_ms);
   row.set_absolute_error_ms = series_of(seeds, &SeedScore::set_absolute_error_ms);
   row.emission_latency_ms = series_of(seeds, &SeedScore::emission_latency_ms);
+
+  row.seed_precision = share_of(seeds, &SetCounts::emitted);
+  row.seed_recall = share_of(seeds, &SetCounts::complete_pulses);
 
   SetCounts& sets = row.sets;
   for (const SeedScore& seed : seeds) {

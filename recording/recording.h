@@ -31,6 +31,7 @@
 namespace simbench {
 
 class HostSync;
+class WorldObserver;
 
 enum class StreamKind : std::uint8_t { kDepth, kColour };
 enum class StampDomain : std::uint8_t { kHardwareClock, kSystemTime, kGlobalTime };
@@ -111,6 +112,9 @@ struct RecordingRequest {
   std::uint64_t seed = 1;
   std::string pipeline;           // by name, one of the scenario's
   HostSync* host_sync = nullptr;  // the algorithm to run; outlives the call; null: none runs
+  // Told what only a simulated world can show (world_observer.h); outlives the call. Never changes
+  // the recording; other backends have nothing to tell it.
+  WorldObserver* observer = nullptr;
 };
 
 // What making the recording cost; for the performance line.

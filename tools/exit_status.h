@@ -8,6 +8,8 @@ enum ExitStatus : int {
   kOk = 0,
   kInternalError = 1,
   kBadInput = 2,  // of the command line, of a file, of an output folder
+  kGateFailed = 3,
+  kBaselineMissing = 4,
   kInterrupted = 130,
 };
 

@@ -34,8 +34,10 @@ TEST(ResultsJson, ARowHasEverything) {
     "host_error_ms": {"median": 0.5, "p05": 0.25, "p95": 0.75, "values": [0.25, 0.75]},
     "exposure_spread_ms": {"median": 0.0625, "p05": 0.0, "p95": 0.125, "values": [0.0, 0.125]},
     "gathering_score": {
-      "precision": 1.0, "recall": 0.75, "margin_ms": 8.5, "sets": 720, "pure_sets": 720,
-      "partial_sets": 4, "index_errors": 0, "discarded_frames": 21,
+      "precision": 1.0, "recall": 0.75, "margin_ms": 8.5,
+      "seed_precision": {"median": 1.0, "p05": 1.0, "p95": 1.0, "values": [1.0, 1.0]},
+      "seed_recall": {"median": 0.75, "p05": 0.5, "p95": 1.0, "values": [0.5, 1.0]},
+      "sets": 720, "pure_sets": 720, "complete_pulses": 960, "partial_sets": 4, "index_errors": 0, "discarded_frames": 21,
       "set_amd_ms": {"median": 1.75, "p05": 1.25, "p95": 2.25, "values": [1.25, 2.25]},
       "set_absolute_error_ms": {"median": 28.0, "p05": 27.0, "p95": 29.0, "values": [27.0, 29.0]},
       "emission_latency_ms": {"median": 0.25, "p05": 0.0, "p95": 0.5, "values": [0.0, 0.5]},

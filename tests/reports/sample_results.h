@@ -50,6 +50,8 @@ inline evaluation::Results sample_results() {
                .discarded_frames = 21,
                .partial = 4,
                .index_errors = 0};
+  both.seed_precision = series(1, 1);
+  both.seed_recall = series(0.5, 1);
   both.set_amd_ms = series(1.25, 2.25);
   both.set_absolute_error_ms = series(27, 29);
   both.emission_latency_ms = series(0, 0.5);
@@ -79,6 +81,8 @@ inline evaluation::Results sample_results() {
   none.precision = kNaN;
   none.recall = 0;
   none.margin_ms = kNaN;
+  none.seed_precision = no_series();
+  none.seed_recall = series(0, 0);
   none.set_amd_ms = no_series();
   none.set_absolute_error_ms = no_series();
   none.emission_latency_ms = no_series();

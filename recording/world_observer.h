@@ -1,0 +1,85 @@
+// What only a simulated world can show, beside its recording: when everything truly happened.
+//
+// For timelines and for figures of what no host can see. A recording is the same with and without
+// an observer; times are true (recording/true_time.h), zero at the start of synchronisation.
+// Calls come in order of the instant at which the world knows the thing (a frame when its way ends,
+// a message when it leaves), so `at`, `left` and the like of successive calls may go back a little.
+//
+// Cost: nothing without an observer but a test of a pointer per frame and message.
+//
+//   class Counter final : public WorldObserver {
+//     void on_message(const ObservedMessage&) override { ++messages; }
+//    ...
+//   source.record({.seed = 1, .pipeline = "mine", .host_sync = sync, .observer = &counter}, sink);
+#ifndef SIMBENCH_RECORDING_WORLD_OBSERVER_H_
+#define SIMBENCH_RECORDING_WORLD_OBSERVER_H_
+
+#include <cstdint>
+#include <span>
+
+#include "algorithms/ports/time.h"
+#include "recording/recording.h"
+#include "recording/true_time.h"
+
+namespace simbench {
+
+// A trigger pulse as it leaves the main trigger.
+struct ObservedPulse {
+  std::int64_t pulse = 0;
+  TrueTime at{};
+};
+
+enum class FrameFate : std::uint8_t {
+  kDelivered,
+  kLostInCamera,  // never offered to the bus; nothing after exposure_end is known
+  kLostOnUsb,     // refused by a full controller; nothing after `offered` is known
+};
+
+struct ObservedFrame {
+  std::uint32_t camera = 0;
+  std::uint32_t host = 0;
+  StreamKind stream = StreamKind::kDepth;
+  std::uint32_t counter = 0;
+  std::int64_t pulse = -1;  // -1: free-running
+  FrameFate fate = FrameFate::kDelivered;
+  TrueTime exposure_start{};
+  TrueTime exposure_end{};
+  TrueTime offered{};      // to the USB controller: read out and ready to be sent
+  TrueTime transferred{};  // the last byte is with the host
+  TrueTime copied{};       // to the kernel (back-end stamp)
+  TrueTime delivered{};    // to the program (time of arrival)
+};
+
+// A message between hosts. A stream's retransmissions are part of its way, not messages.
+struct ObservedMessage {
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+  bool stream = false;   // TCP-like; else a datagram
+  std::uint64_t id = 0;  // counts up on each direction and transport of a link
+  std::size_t bytes = 0;
+  TrueTime left{};
+  TrueTime arrived{};  // of no meaning if lost
+  bool lost = false;   // or the stream is broken
+};
+
+class WorldObserver {
+ public:
+  virtual ~WorldObserver() = default;
+
+  // The interval at which on_clocks is wanted, 0 for never; asked for once, at the start.
+  virtual Nanoseconds clock_interval() const { return Nanoseconds(0); }
+
+  // From `start` on there is a world: synchronisation, or a service's warm-up, begins.
+  virtual void on_world(TrueTime start) = 0;
+  // The cameras are being started.
+  virtual void on_capture_start(TrueTime at) = 0;
+  virtual void on_pulse(const ObservedPulse& pulse) = 0;
+  virtual void on_frame(const ObservedFrame& frame) = 0;
+  virtual void on_message(const ObservedMessage& message) = 0;
+  // System clock minus the master's, per host; [0] is 0.
+  virtual void on_clocks(TrueTime at, std::span<const Nanoseconds> errors) = 0;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_WORLD_OBSERVER_H_

@@ -1,0 +1,89 @@
+// A figure as plain data: what is drawn, not how.
+//
+// Every picture simbench makes is one of these: the HTML report draws it interactively, `simbench
+// figure` writes it as CSV or has gnuplot draw it, tests look at the numbers.
+//
+// A figure belongs to a place in the results: to all of them, to one pipeline, to one seed, or to
+// one pipeline at one seed. Figures of the same id and different scope are alternatives of each
+// other: a reader sees one of them and switches.
+//
+// Units stand in the labels of the axes. NaN in y is a gap.
+#ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_H_
+#define SIMBENCH_REPORTS_FIGURES_FIGURE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace simbench::reports {
+
+enum class Mark : std::uint8_t { kPoints, kLine, kSteps, kBars };
+
+// One curve, cloud or row of bars of a panel.
+struct FigureSeries {
+  std::string label;
+  Mark mark = Mark::kPoints;
+  std::vector<double> x;  // in ascending order but for kPoints; for kBars: 0, 1, ... (categories)
+  std::vector<double> y;  // as long as x
+  int colour = 0;         // series of the same thing share a number throughout a figure
+};
+
+// A line across the panel, such as a published value.
+struct FigureLine {
+  std::string label;
+  bool vertical = false;
+  double at = 0;
+};
+
+// A shaded stretch of the x axis, such as a warm-up.
+struct FigureSpan {
+  std::string label;
+  double from = 0;
+  double to = 0;
+};
+
+// One pair of axes.
+struct FigurePanel {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  std::vector<FigureSeries> series{};
+  std::vector<FigureLine> lines{};
+  std::vector<FigureSpan> spans{};
+  std::vector<std::string> categories{};  // names on the x axis where bars stand
+  bool log_y = false;
+  // The x axis counts trigger pulses: a reader can link to one of them.
+  bool x_is_pulse = false;
+};
+
+// What one camera sees of a clock on a display: the readings shown during its exposure, each with
+// its share of it (they add up to 1). One reading is a sharp picture, several a ghosted one.
+struct PhotographedReading {
+  std::string text;  // "00:12.345"
+  double share = 0;
+};
+struct Photograph {
+  std::string label;  // of the camera
+  std::vector<PhotographedReading> readings;
+};
+struct PhotographRow {
+  std::string label;  // of the pipeline
+  std::vector<Photograph> photographs;
+};
+
+struct Figure {
+  std::string id;  // "frame_errors": what `simbench figure` calls it
+  std::string title;
+  std::string caption;     // what is seen, what it cannot show
+  std::string paper;       // "Fig. 9, 10" of the paper that it is drawn after; empty: of none
+  std::string pipeline{};  // empty: not of one pipeline
+  std::optional<std::uint64_t> seed{};  // nothing: not of one seed
+  std::vector<FigurePanel> panels{};
+  std::vector<PhotographRow> photographs{};
+  std::string absent{};  // why there is nothing to draw; then there are no panels
+};
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_FIGURES_FIGURE_H_
