@@ -38,7 +38,7 @@ struct Archive {
 // `path`: an archive's folder, or a results.json alone, which has no manifest.
 Archive read_archive(const std::string& path);
 
-// Fills Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else.
+// (seed_details.cc) Fills Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else.
 // The archive must be a folder.
 void read_seed_details(Archive& archive);
 
