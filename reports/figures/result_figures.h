@@ -1,0 +1,35 @@
+// Figures of finished results, without running anything again.
+//
+//   Archive archive = read_archive("results/monday");
+//   read_seed_details(archive);
+//   const std::vector<Figure> figures = frame_errors(archive);
+#ifndef SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_
+#define SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "reports/archive_reader.h"
+#include "reports/figures/figure.h"
+
+namespace simbench::reports {
+
+// Fig. 9 and 10: the terms of AMD and RMDV of every pulse at one seed, for the paper's four rows,
+// or the first four of the results if these are missing. Needs read_seed_details().
+Figure frame_errors(const Archive& archive, std::uint64_t seed);
+// The same for all seeds of the archive, in order.
+std::vector<Figure> frame_errors(const Archive& archive);
+
+// The scores of all seeds in ascending order against the share of seeds that have no larger one
+// (the quantile function, of which the empirical distribution is the inverse), with the published
+// values as lines. First one of up to 12 pipelines together, then one for each pipeline.
+std::vector<Figure> distributions(const Archive& archive);
+
+// The clock errors of the hosts by their place in the session: the paper's procedure synchronises
+// one after another. First one of up to 12 pipelines together, then one for each pipeline.
+// Needs read_seed_details().
+std::vector<Figure> host_order(const Archive& archive);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_FIGURES_RESULT_FIGURES_H_

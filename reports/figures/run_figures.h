@@ -1,0 +1,39 @@
+// Figures of one run: one pipeline at one seed.
+//
+// The paper plots stamps against the frame, where offsets of milliseconds vanish in seconds. Where
+// a figure is about differences, the stamps here are less what the master's clock read at the
+// mid-exposure of the same pulse (of the master's first camera, or the first that has the pulse);
+// in captures without truth, less the median of the pulse's stamps.
+//
+// Series of cameras of one host share a colour where hosts are compared.
+#ifndef SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_
+#define SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_
+
+#include <vector>
+
+#include "evaluation/run_detail.h"
+#include "reports/figures/figure.h"
+
+namespace simbench::reports {
+
+// Fig. 2: intervals between consecutive stamps of one camera, a panel for each of the four stamps.
+Figure stamp_intervals(const evaluation::RunDetail& run);
+// Fig. 3: sensor and arrival stamps of the cameras of one host.
+Figure stamps(const evaluation::RunDetail& run);
+// Fig. 4: global stamps by regression over the last 30 frames and over all.
+Figure global_stamps(const evaluation::RunDetail& run);
+// Fig. 5: global stamps of the cameras of one host, and of two.
+Figure hosts(const evaluation::RunDetail& run);
+// Fig. 7b: intervals of the global stamps in the first 10 s of the capture.
+Figure first_seconds(const evaluation::RunDetail& run);
+// Clock errors of the hosts before, during and after synchronisation.
+Figure host_clocks(const evaluation::RunDetail& run);
+// Which frames were gathered, dropped, gathered wrongly or left over.
+Figure gathering(const evaluation::RunDetail& run);
+
+// All of these, in this order.
+std::vector<Figure> run_figures(const evaluation::RunDetail& run);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_

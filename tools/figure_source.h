@@ -1,0 +1,48 @@
+// Makes figures: from a result archive, whose runs it repeats in the simulator for what an archive
+// does not hold, or from a scenario alone.
+//
+// A run is a pure function of scenario, pipeline and seed, so the repeated one is the archive's.
+// Its AMD is compared with the archive's all the same: another version of simbench may give another
+// run, and then the figures of that pipeline and seed are left out and a note says so.
+//
+//   Archive archive = reports::read_archive("results/monday");
+//   const ArchiveFigures made = archive_figures(archive, {.seeds = {1, 2}});
+//
+// Errors: scenarios::InputError (no manifest, an unknown seed, pipeline or figure; a scenario that
+// this version does not take), tools::Interrupted, what the simulator throws.
+#ifndef SIMBENCH_TOOLS_FIGURE_SOURCE_H_
+#define SIMBENCH_TOOLS_FIGURE_SOURCE_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reports/archive_reader.h"
+#include "reports/figures/figure.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::tools {
+
+struct FigureOptions {
+  std::vector<std::uint64_t> seeds{};    // to show in detail; empty: the first of the archive
+  std::vector<std::string> pipelines{};  // to show in detail; empty: all
+  std::uint64_t budget_seeds = 0;        // for error budgets (128 runs each); 0: no budgets
+  std::vector<std::string> figures{};    // by id; empty: all
+};
+
+struct ArchiveFigures {
+  // In the order of the catalogue; those of one id by seed, then by pipeline as in the archive.
+  std::vector<reports::Figure> figures;
+  std::vector<std::string> notes;  // what a reader of the figures has to know; mostly none
+};
+
+// Reads the archive's seed details if it has none yet (reports::read_seed_details).
+ArchiveFigures archive_figures(reports::Archive& archive, const FigureOptions& options);
+
+// The same without an archive: evaluates the scenario's pipelines at `options.seeds` first (empty:
+// seed 1).
+ArchiveFigures scenario_figures(const scenarios::Scenario& scenario, const FigureOptions& options);
+
+}  // namespace simbench::tools
+
+#endif  // SIMBENCH_TOOLS_FIGURE_SOURCE_H_
