@@ -38,8 +38,8 @@ struct Archive {
 // `path`: an archive's folder, or a results.json alone, which has no manifest.
 Archive read_archive(const std::string& path);
 
-// (seed_details.cc) Fills Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else.
-// The archive must be a folder.
+// Fills Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else.
+// The archive must be a folder. (seed_details.cc)
 void read_seed_details(Archive& archive);
 
 }  // namespace simbench::reports
