@@ -151,18 +151,17 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   const bool is_reordered = draw.chance(parameters_.reorder_probability);
   const double detour_ms = draw.uniform(0, parameters_.reorder_max_ms);
   if (is_lost || outages_.unreachable(path.from, segment.left)) {
+    tell(segment, std::nullopt);
     release(id);
     return;
   }
   const TrueTime in_order = std::max(arrival, path.last_arrival);
   // Before the message itself is corrected.
   const SegmentId duplicate = is_duplicated ? keep(segment) : id;
-  if (is_reordered) {
-    deliver(id, in_order + from_ms(detour_ms), 0);
-  } else {
-    path.last_arrival = in_order;
-    deliver(id, in_order, 0);
-  }
+  if (!is_reordered) path.last_arrival = in_order;
+  const TrueTime arrives = is_reordered ? in_order + from_ms(detour_ms) : in_order;
+  tell(segment, outages_.unreachable(path.to, arrives) ? std::nullopt : std::optional(arrives));
+  deliver(id, arrives, 0);
   if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
 }
 
@@ -195,10 +194,12 @@ void Network::travel_on_stream(SegmentId id, TrueTime at) {
     arrival += from_ms(timeout_ms);
   }
   if (path.is_broken) {
+    tell(segment, std::nullopt);
     release(id);
     return;
   }
   path.last_arrival = std::max(path.last_arrival, arrival);
+  tell(segment, path.last_arrival);
   engine_.schedule(path.last_arrival, handler_id_, kArrival, id);
 }
 

@@ -41,10 +41,12 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "algorithms/ports/host.h"
+#include "recording/world_observer.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
 #include "sim/network/link_latency.h"
@@ -93,6 +95,11 @@ class Network : private EventHandler {
 
   // Message `id` leaves the host now; ids count from 0 on each path.
   void send(PathId path, MessageId id, Bytes message);
+
+  // From now on `observer`, which must outlive the network's events, is told of every message when
+  // its way is known: as it leaves the sender or, with a bandwidth, the sender's port. A duplicate
+  // is no message of its own, and capture traffic none at all.
+  void observe(WorldObserver& observer) { observer_ = &observer; }
 
   // `from` sends this much capture traffic now.
   void send_capture_traffic(PeerId from, double bytes);
@@ -153,6 +160,7 @@ class Network : private EventHandler {
     return outages_.unreachable(path.from, left) || outages_.unreachable(path.to, arrival);
   }
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
+  void tell(const Segment& segment, std::optional<TrueTime> arrival) const;
 
   SegmentId keep(Segment segment);
   Segment release(SegmentId id);
@@ -172,6 +180,7 @@ class Network : private EventHandler {
   std::uint64_t run_seed_;
   RunLoad load_;
   const Outages& outages_;
+  WorldObserver* observer_ = nullptr;
   SwitchClock switch_clock_;
   LineRate rate_;
   HandlerId handler_id_;

@@ -42,6 +42,7 @@ void Capture::on_pulse(std::int64_t slot) {
   if (trigger_.pulse(slot)) {
     if (slot >= first_slot_) report_pulse(slot);
     const TrueTime now = engine_.now();
+    if (observer_ != nullptr) observer_->on_pulse({.pulse = slot, .at = now});
     for (const std::uint32_t id : triggered_streams_) {
       Stream& stream = streams_[id];
       const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
@@ -86,7 +87,9 @@ void Capture::expose(std::uint32_t stream_id, const Exposure& planned) {
   }
   if (vanished(stream.camera, exposure.start)) return;
   const std::uint32_t counter = stream.counter++;
-  if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) return;
+  if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
+    return tell_lost(stream, counter, exposure);
+  }
 
   const std::uint32_t frame_id = new_frame();
   FrameInFlight& frame = frames_[frame_id];
@@ -129,11 +132,14 @@ double Capture::late_first_frame_ns(std::uint32_t camera, TrueTime at) {
 }
 
 void Capture::on_readout(std::uint32_t frame_id) {
-  const Stream& stream = streams_[frames_[frame_id].stream];
+  FrameInFlight& frame = frames_[frame_id];
+  const Stream& stream = streams_[frame.stream];
+  frame.offered = engine_.now();
   UsbController& bus = controllers_[stream.controller].bus;
   if (bus.submit(engine_.now(), stream.index_on_controller, stream.bytes, frame_id)) {
     wake_controller(stream.controller);
   } else {
+    tell(frame, FrameFate::kLostOnUsb);
     release_frame(frame_id);
   }
 }
@@ -163,6 +169,7 @@ void Capture::deliver_later(std::uint32_t frame_id) {
   Stream& stream = streams_[frame.stream];
   const TrueTime now = engine_.now();
   const double host_jitter_ns = host_jitter_[stream.host].at(now) * stream.transfer_ns;
+  frame.transferred = now;
   frame.copied = now + Nanoseconds(std::llround(frame.kernel_copy_ns));
   TrueTime arrival = frame.copied + Nanoseconds(std::llround(frame.delivery_ns + host_jitter_ns));
   arrival +=
@@ -192,6 +199,7 @@ void Capture::on_delivery(std::uint32_t frame_id) {
   if (frame_observer_ != nullptr) {
     frame_observer_->on_delivery(stream.host, frame.record, stream.bytes);
   }
+  tell(frame, FrameFate::kDelivered);
   release_frame(frame_id);
   end_if_done();
 }

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "recording/recording.h"
+#include "recording/world_observer.h"
 #include "scenarios/scenario.h"
 #include "sim/camera/auto_exposure.h"
 #include "sim/camera/device_clock.h"
@@ -54,6 +55,9 @@ class Capture final : public EventHandler {
   // From now on `observer`, which must outlive the capture's run, is told of every delivered frame,
   // after the recording.
   void observe_frames(FrameObserver& observer) { frame_observer_ = &observer; }
+  // Likewise of the start, of every pulse and of every frame that was exposed; those that reach a
+  // stopped host end there untold.
+  void observe(WorldObserver& observer) { observer_ = &observer; }
 
   // The cameras are started at `at`, not before the engine's present. `on_end` is called when the
   // last frame has been delivered.
@@ -110,6 +114,8 @@ class Capture final : public EventHandler {
     std::uint32_t stream = 0;
     double kernel_copy_ns = 0;
     double delivery_ns = 0;
+    TrueTime offered;
+    TrueTime transferred;
     TrueTime copied;
   };
 
@@ -132,6 +138,8 @@ class Capture final : public EventHandler {
   void wake_controller(std::uint32_t controller_id);
   void deliver_later(std::uint32_t frame_id);
   void on_delivery(std::uint32_t frame_id);
+  void tell_lost(const Stream& stream, std::uint32_t counter, const Exposure& exposure) const;
+  void tell(const FrameInFlight& frame, FrameFate fate) const;
   void on_fault(const scenarios::Fault& fault);
   std::uint32_t new_frame();
   void release_frame(std::uint32_t frame_id);
@@ -144,6 +152,7 @@ class Capture final : public EventHandler {
   std::vector<SystemClock*> clocks_;
   RecordingSink& sink_;
   FrameObserver* frame_observer_ = nullptr;
+  WorldObserver* observer_ = nullptr;
   TriggerTree trigger_;
   std::vector<DeviceClock> device_clocks_;
   std::vector<AutoExposure> exposures_;  // of the cameras

@@ -42,6 +42,7 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
 }
 
 void Capture::start(TrueTime at, std::function<void()> on_end) {
+  if (observer_ != nullptr) observer_->on_capture_start(at);
   start_ = at;
   on_end_ = std::move(on_end);
   trigger_.start(at);

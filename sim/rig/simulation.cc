@@ -13,6 +13,7 @@
 #include "sim/host/host_group.h"
 #include "sim/rig/capture.h"
 #include "sim/rig/clock_polls.h"
+#include "sim/rig/clock_sampling.h"
 #include "sim/rig/frame_feeds.h"
 
 namespace simbench::sim {
@@ -33,6 +34,10 @@ class Run {
         frame_feeds_(scenario, hosts_),
         clock_polls_(scenario, request.seed, engine_, hosts_, capture_, sink) {
     capture_.observe_frames(frame_feeds_);
+    if (request.observer == nullptr) return;
+    told_.emplace(*request.observer, hosts_.clocks(), engine_);
+    capture_.observe(*told_);
+    hosts_.network().observe(*told_);
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -41,12 +46,14 @@ class Run {
 
   RecordingCost run(RecordingSink& sink) {
     sink.on_start(capture_.layout());
+    if (told_) told_->on_world(start_);
     hosts_.report_clocks();
     start_host_sync();
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     engine_.run();
     if (failure_) std::rethrow_exception(failure_);
     if (!captured_) throw SimulationError(standstill());
+    if (told_) told_->finish();
     return {.events = engine_.events(),
             .simulated_seconds = to_seconds(engine_.now() - start_),
             .trace_hash = engine_.trace_hash()};
@@ -112,6 +119,7 @@ class Run {
   Capture capture_;
   FrameFeeds frame_feeds_;
   ClockPolls clock_polls_;
+  std::optional<ClockSampling> told_;  // if somebody observes
   std::exception_ptr failure_;
   bool captured_ = false;
 };

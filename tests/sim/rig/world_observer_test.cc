@@ -1,0 +1,228 @@
+#include "recording/world_observer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "algorithms/registry.h"
+#include "scenarios/loader.h"
+#include "tests/sim/rig/ideal_scenario.h"
+#include "tests/sim/rig/test_world.h"
+#include "tests/sim/rig/told_world.h"
+#include "tests/sim/rig/written_recording.h"
+
+namespace simbench::sim {
+namespace {
+
+ToldWorld tell(const scenarios::Scenario& scenario, HostSync* host_sync = nullptr,
+               Nanoseconds interval = Nanoseconds(0)) {
+  ToldWorld told(interval);
+  KeptLists kept;
+  make_simulation(scenario)->record(
+      {.seed = 1, .pipeline = "test", .host_sync = host_sync, .observer = &told}, kept);
+  return told;
+}
+
+TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
+  for (const auto& [name, host_sync] : std::vector<std::pair<std::string, std::string>>{
+           {"18cam_6host_45fps", "yoon2021_both"},
+           {"18cam_6host_45fps", "w32time_domain"},
+           {"18cam_6host_45fps_lan", "chrony"},
+           {"18cam_6host_45fps_lan", "oracle"},
+           {"18cam_6host_45fps_loss_and_reordering", "yoon2021_both"},
+           {"18cam_6host_45fps_clock_step_during_capture", "yoon2021_both"},
+           {"18cam_6host_45fps_frame_drops_10pct", "yoon2021_both"},
+           {"9cam_3host_30fps_azure_kinect", "yoon2021_neither"}}) {
+    const scenarios::Scenario scenario = scenarios::load_scenario(
+        name, {{"/timeline/frames", "20"}, {"/timeline/warm_up_ms", "500"}});
+    const HostSyncEntry* entry = find_host_sync(host_sync);
+    ASSERT_NE(entry, nullptr) << host_sync;
+    const auto record = [&](WorldObserver* observer, WrittenRecording& written) {
+      const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
+      return make_simulation(scenario)->record(
+          {.seed = 3, .pipeline = host_sync, .host_sync = algorithm.get(), .observer = observer},
+          written);
+    };
+    WrittenRecording without;
+    WrittenRecording with;
+    ToldWorld told(from_ms(7.3));
+    const RecordingCost cost_without = record(nullptr, without);
+    const RecordingCost cost_with = record(&told, with);
+    EXPECT_TRUE(without.text == with.text) << name << ", " << host_sync;
+    EXPECT_GT(with.text.size(), 10'000U);
+    EXPECT_FALSE(told.frames.empty());
+    EXPECT_FALSE(told.clocks.empty());
+    EXPECT_EQ(cost_with.events, cost_without.events) << name << ", " << host_sync;
+    EXPECT_EQ(cost_with.trace_hash, cost_without.trace_hash) << name << ", " << host_sync;
+  }
+}
+
+TEST(WorldObserver, AFrameIsToldWithItsWholeWay) {
+  const ToldWorld told = tell(ideal_scenario());
+  EXPECT_EQ(told.world_starts, std::vector<TrueTime>{TrueTime{}});
+  EXPECT_EQ(told.capture_starts, std::vector<TrueTime>{TrueTime(from_ms(100))});
+  ASSERT_FALSE(told.frames.empty());
+  std::map<std::int64_t, TrueTime> pulses;
+  for (const ObservedPulse& pulse : told.pulses) pulses[pulse.pulse] = pulse.at;
+  EXPECT_EQ(pulses.size(), told.pulses.size());
+  EXPECT_EQ(pulses.begin()->first, 0) << "the warm-up has pulses too";
+  for (const ObservedFrame& frame : told.frames) {
+    EXPECT_EQ(frame.fate, FrameFate::kDelivered);
+    EXPECT_EQ(frame.host, frame.camera);
+    EXPECT_EQ(frame.exposure_start, pulses.at(frame.pulse));
+    EXPECT_EQ(frame.exposure_end, frame.exposure_start + from_ms(4));
+    EXPECT_EQ(frame.offered, frame.exposure_end + from_ms(8));
+    EXPECT_EQ(frame.transferred, frame.offered + from_ms(2));
+    EXPECT_EQ(frame.copied, frame.transferred);
+    EXPECT_EQ(frame.delivered, frame.transferred);
+  }
+}
+
+TEST(WorldObserver, FramesLostInCamerasAreTold) {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.cameras.drop_probability = 0.5;
+  const ToldWorld told = tell(scenario);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> counters;
+  std::map<FrameFate, std::size_t> fates;
+  for (const ObservedFrame& frame : told.frames) {
+    ++fates[frame.fate];
+    counters[frame.camera].push_back(frame.counter);
+    EXPECT_EQ(frame.exposure_end, frame.exposure_start + from_ms(4));
+  }
+  EXPECT_GT(fates[FrameFate::kLostInCamera], told.frames.size() / 3);
+  EXPECT_GT(fates[FrameFate::kDelivered], told.frames.size() / 3);
+  for (auto& [camera, all] : counters) {
+    std::sort(all.begin(), all.end());
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i) << "of camera " << camera;
+  }
+}
+
+TEST(WorldObserver, FramesThatAFullBusRefusesAreTold) {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.usb.bandwidth_mb_per_s = 24;  // 29 ms for a frame every 22 ms
+  scenario.usb.buffered_frames = 1;
+  const ToldWorld told = tell(scenario);
+  std::size_t refused = 0;
+  for (const ObservedFrame& frame : told.frames) {
+    EXPECT_EQ(frame.offered, frame.exposure_end + from_ms(8));
+    if (frame.fate == FrameFate::kLostOnUsb) ++refused;
+  }
+  EXPECT_NEAR(static_cast<double>(refused), static_cast<double>(told.frames.size()) / 2, 3);
+}
+
+// Every host but the master sends it two messages of five bytes.
+Service two_messages(Transport transport) {
+  return Service([transport](Host& host) -> Task<void> {
+    if (host.id() == 0) co_return;
+    MessageChannel& channel = host.open_channel(0, transport);
+    co_await channel.send(Bytes(5));
+    co_await host.sleep_for(from_ms(10));
+    co_await channel.send(Bytes(5));
+  });
+}
+
+TEST(WorldObserver, MessagesAreToldWithBothEnds) {
+  for (const Transport transport : {Transport::kDatagram, Transport::kStream}) {
+    Service service = two_messages(transport);
+    const ToldWorld told = tell(ideal_scenario(), &service);
+    ASSERT_EQ(told.messages.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ObservedMessage& message = told.messages[i];
+      EXPECT_EQ(message.from, 1U);
+      EXPECT_EQ(message.to, 0U);
+      EXPECT_EQ(message.stream, transport == Transport::kStream);
+      EXPECT_EQ(message.id, i);
+      EXPECT_EQ(message.bytes, 5U);
+      EXPECT_EQ(message.left, TrueTime(from_ms(10.0 * static_cast<double>(i))));
+      EXPECT_EQ(message.arrived, message.left + from_ms(0.1));
+      EXPECT_FALSE(message.lost);
+    }
+  }
+}
+
+TEST(WorldObserver, LostMessagesAreToldAndRetransmissionsAreNot) {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.network.loss_probability = 1;
+  Service datagrams = two_messages(Transport::kDatagram);
+  const ToldWorld lost = tell(scenario, &datagrams);
+  ASSERT_EQ(lost.messages.size(), 2U);
+  for (const ObservedMessage& message : lost.messages) EXPECT_TRUE(message.lost);
+
+  scenario.network.loss_probability = 0.5;
+  Service stream = two_messages(Transport::kStream);
+  const ToldWorld late = tell(scenario, &stream);
+  ASSERT_EQ(late.messages.size(), 2U);
+  for (const ObservedMessage& message : late.messages) {
+    EXPECT_FALSE(message.lost);
+    EXPECT_GE(message.arrived, message.left + from_ms(0.1));
+  }
+}
+
+// Nobody knows of messages to a host that has stopped but the sender and the observer.
+TEST(WorldObserver, AMessageToAStoppedHostIsLost) {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.faults = {{.kind = "host_stops", .host = 0, .at_ms = 0, .duration_ms = 500}};
+  Service service([](Host& host) -> Task<void> {
+    if (host.id() == 0) co_return;
+    MessageChannel& channel = host.open_channel(0, Transport::kDatagram);
+    co_await host.sleep_for(from_ms(300));
+    co_await channel.send(Bytes(5));
+    co_await host.sleep_for(from_ms(500));
+    co_await channel.send(Bytes(5));
+  });
+  const ToldWorld told = tell(scenario, &service);
+  ASSERT_EQ(told.messages.size(), 2U);
+  EXPECT_TRUE(told.messages[0].lost);
+  EXPECT_FALSE(told.messages[1].lost);
+  for (const ObservedFrame& frame : told.frames) {
+    EXPECT_TRUE(frame.host == 1 || frame.delivered >= TrueTime(from_ms(600)));
+  }
+}
+
+TEST(WorldObserver, ClocksAreSampledAtTheIntervalFromTheStartToTheEnd) {
+  Service service([](Host& host) -> Task<void> {
+    if (host.id() == 0) co_return;
+    co_await host.sleep_for(from_ms(42));
+    co_await host.clock().set(HostTime(from_ms(1042)));
+  });
+  const ToldWorld told = tell(ideal_scenario(), &service, from_ms(10));
+  // Pulses 45 to 134 of 45 Hz are scored; the last frame is delivered 14 ms after its pulse, and
+  // two pulses later the capture is over.
+  ASSERT_FALSE(told.clocks.empty());
+  const Nanoseconds length = told.clocks.back().at - TrueTime{};
+  EXPECT_NEAR(to_ms(length), 100 + 136 * 1000.0 / 45, 11);
+  EXPECT_EQ(told.clocks.size(), static_cast<std::size_t>(length / from_ms(10)) + 1);
+  for (std::size_t i = 0; i < told.clocks.size(); ++i) {
+    const ToldWorld::Clocks& clocks = told.clocks[i];
+    EXPECT_EQ(clocks.at, TrueTime(i * from_ms(10)));
+    ASSERT_EQ(clocks.errors.size(), 2U);
+    EXPECT_EQ(clocks.errors[0].count(), 0);
+    EXPECT_EQ(clocks.errors[1], from_ms(i <= 4 ? 0 : 1000)) << "at " << i * 10 << " ms";
+  }
+  EXPECT_TRUE(tell(ideal_scenario(), &service).clocks.empty()) << "not asked for";
+}
+
+TEST(WorldObserver, AWarmUpOfHoursIsSampledAThousandTimes) {
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.hosts.clock.initial_offset_sigma_ms = 300;
+  Service service([](Host&) -> Task<void> { co_return; }, std::chrono::hours(20));
+  const ToldWorld told = tell(scenario, &service, from_ms(10));
+  EXPECT_EQ(told.world_starts, std::vector<TrueTime>{TrueTime(-std::chrono::hours(20))});
+  const auto before_zero = std::count_if(told.clocks.begin(), told.clocks.end(),
+                                         [](const auto& c) { return c.at < TrueTime{}; });
+  EXPECT_EQ(before_zero, 1000);
+  EXPECT_EQ(told.clocks.front().at, told.world_starts.front());
+  const ToldWorld::Clocks& zero = told.clocks[1000];
+  EXPECT_EQ(zero.at, TrueTime{});
+  EXPECT_NE(zero.errors[1].count(), 0);
+  for (const ToldWorld::Clocks& clocks : told.clocks) EXPECT_EQ(clocks.errors, zero.errors);
+}
+
+}  // namespace
+}  // namespace simbench::sim
