@@ -43,7 +43,7 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   gather_warm_up_ = gatherer_->from_first_frame();
   anchor_camera_ = first_camera_of_master(layout);
   table_.emplace(layout.first_pulse, layout.pulses, cameras);
-  sets_.emplace(*table_);
+  sets_.emplace(*table_, observer_);
   host_errors_.emplace(layout.hosts);
   if (setup_.make_second_estimator) second_deferred_.emplace(cameras);
   sources_.reserve(cameras);
@@ -136,6 +136,7 @@ void PipelineScorer::gather(const DeferredFrame& frame, GlobalTime global) {
 
 void PipelineScorer::settle(const DeferredFrame& frame, GlobalTime global) {
   if (table_->holds(frame.pulse)) table_->store(frame.pulse, frame.source, global);
+  if (observer_ != nullptr) observer_->on_stamp(frame, global);
   gather(frame, global);
 }
 
@@ -175,6 +176,7 @@ SeedScore PipelineScorer::finish() {
     });
   }
   if (relative_) table_->shift(anchor_shift());
+  if (observer_ != nullptr) observer_->on_shift(anchor_shift());
   SeedScore score;
   PulseScoring scoring;
   scoring.median = setup_.median;

@@ -39,6 +39,7 @@
 #include "evaluation/pulse_scores.h"
 #include "evaluation/pulse_table.h"
 #include "evaluation/results.h"
+#include "evaluation/score_observer.h"
 #include "evaluation/set_counter.h"
 #include "recording/recording.h"
 
@@ -59,6 +60,9 @@ struct ScorerSetup {
 class PipelineScorer final : public RecordingSink {
  public:
   explicit PipelineScorer(ScorerSetup setup);
+
+  // Shows `observer` stamps and sets as they come; before the capture starts. It must outlive this.
+  void watch(ScoreObserver& observer) { observer_ = &observer; }
 
   void on_start(const RigLayout& layout) override;
   // Throws std::runtime_error if the oracle gets a frame without truth.
@@ -91,6 +95,7 @@ class PipelineScorer final : public RecordingSink {
   Nanoseconds period() const;
 
   ScorerSetup setup_;
+  ScoreObserver* observer_ = nullptr;
   RigLayout layout_;
   std::vector<Source> sources_;
   std::unique_ptr<Gatherer> gatherer_;

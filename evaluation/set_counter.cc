@@ -11,7 +11,9 @@ bool SetCounter::counts(std::span<const GatherFrame> set) const {
 }
 
 void SetCounter::on_partial_set(std::span<const GatherFrame> set) {
-  if (counts(set)) ++partial_;
+  if (!counts(set)) return;
+  ++partial_;
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now_);
 }
 
 void SetCounter::on_set(std::span<const GatherFrame> set) {
@@ -33,6 +35,7 @@ void SetCounter::on_set(std::span<const GatherFrame> set) {
   latency_max_ms_ = emitted_ == 0 ? latency_ms : std::max(latency_max_ms_, latency_ms);
   ++emitted_;
   if (table_.has_truth()) add_errors(set);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
 }
 
 // Members that are not of the pulse that most members are of.

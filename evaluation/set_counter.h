@@ -23,13 +23,16 @@
 #include "algorithms/gathering/gathering.h"
 #include "evaluation/pulse_table.h"
 #include "evaluation/results.h"
+#include "evaluation/score_observer.h"
 
 namespace simbench::evaluation {
 
 class SetCounter final : public FrameSetSink {
  public:
-  // The table says which pulses are evaluated, and knows the references; it must outlive this.
-  explicit SetCounter(const PulseTable& table) : table_(table) {}
+  // The table says which pulses are evaluated, and knows the references; it must outlive this, and
+  // so must the observer, who is shown the sets that count (null: nobody is).
+  explicit SetCounter(const PulseTable& table, ScoreObserver* observer = nullptr)
+      : table_(table), observer_(observer) {}
 
   // The arrival of the frame that is to be pushed next, and what is to be added to the stamps of
   // sets before they are compared with the reference (an estimator may not know the epoch).
@@ -50,6 +53,7 @@ class SetCounter final : public FrameSetSink {
   void add_errors(std::span<const GatherFrame> set);
 
   const PulseTable& table_;
+  ScoreObserver* observer_;
   GlobalTime now_{};
   Nanoseconds shift_{};
   std::int64_t emitted_ = 0;

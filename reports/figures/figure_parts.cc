@@ -1,0 +1,152 @@
+#include "reports/figures/figure_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/thin.h"
+
+namespace simbench::reports {
+
+using evaluation::CameraDetail;
+using evaluation::FrameDetail;
+using evaluation::RunDetail;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// The upper-middle one, as in RMDV.
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return kNan;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Figure catalogued(std::string_view id) {
+  const FigureEntry* entry = find_figure(id);
+  SIMBENCH_ASSERT(entry != nullptr, "a figure of the catalogue");
+  Figure figure;
+  figure.id = entry->id;
+  figure.title = entry->title;
+  figure.paper = entry->paper;
+  return figure;
+}
+
+Figure of_run(std::string_view id, const RunDetail& run) {
+  Figure figure = catalogued(id);
+  figure.pipeline = run.pipeline;
+  figure.seed = run.seed;
+  return figure;
+}
+
+Figure absent(Figure figure, std::string why) {
+  figure.panels.clear();
+  figure.photographs.clear();
+  figure.absent = std::move(why);
+  return figure;
+}
+
+FigurePanel panel(std::string title, std::string x_label, std::string y_label) {
+  FigurePanel made;
+  made.title = std::move(title);
+  made.x_label = std::move(x_label);
+  made.y_label = std::move(y_label);
+  return made;
+}
+
+FigureSeries series(std::string label, Mark mark, int colour) {
+  FigureSeries made;
+  made.label = std::move(label);
+  made.mark = mark;
+  made.colour = colour;
+  return made;
+}
+
+std::string camera_label(const RunDetail& run, std::size_t camera) {
+  if (run.host_count < 2) return fmt::format("camera {}", camera);
+  return fmt::format("host {}, camera {}", run.cameras[camera].host, camera);
+}
+
+std::vector<std::size_t> cameras_of_host(const RunDetail& run, std::size_t host, std::size_t most) {
+  std::vector<std::size_t> cameras;
+  for (std::size_t camera = 0; camera < run.cameras.size() && cameras.size() < most; ++camera) {
+    if (run.cameras[camera].host == host) cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+std::string camera_note(const RunDetail& run) {
+  if (run.camera_count <= run.cameras.size()) return "";
+  return fmt::format(" Only the first {} of {} cameras are drawn.", run.cameras.size(),
+                     run.camera_count);
+}
+
+bool has_pulses(const RunDetail& run) {
+  return std::any_of(run.cameras.begin(), run.cameras.end(), [](const CameraDetail& camera) {
+    return std::any_of(camera.frames.begin(), camera.frames.end(),
+                       [](const FrameDetail& frame) { return frame.pulse >= 0; });
+  });
+}
+
+std::string frame_axis(const RunDetail& run) { return has_pulses(run) ? "pulse" : "frame"; }
+
+double frame_position(const RunDetail& run, const CameraDetail& camera, std::size_t frame) {
+  const std::int64_t pulse = camera.frames[frame].pulse;
+  if (pulse >= 0) return static_cast<double>(pulse);
+  return has_pulses(run) ? kNan : static_cast<double>(frame);
+}
+
+CommonReference::CommonReference(const RunDetail& run, double FrameDetail::*stamp)
+    : by_pulse_(has_pulses(run)), first_pulse_(run.first_pulse) {
+  if (!by_pulse_) return;
+  by_row_.assign(static_cast<std::size_t>(run.pulses), kNan);
+  std::vector<std::vector<double>> stamps(run.has_truth ? 0 : by_row_.size());
+  for (const CameraDetail& camera : run.cameras) {
+    for (const FrameDetail& frame : camera.frames) {
+      if (!frame.evaluated) continue;
+      const auto row = static_cast<std::size_t>(frame.pulse - first_pulse_);
+      if (!run.has_truth) {
+        stamps[row].push_back(frame.*stamp);
+      } else if (std::isnan(by_row_[row])) {
+        by_row_[row] = frame.reference_ms;
+      }
+    }
+  }
+  for (std::size_t row = 0; row < stamps.size(); ++row) by_row_[row] = middle_of(stamps[row]);
+}
+
+double CommonReference::of(const FrameDetail& frame) const {
+  if (!by_pulse_) return frame.reference_ms;
+  return frame.evaluated ? by_row_[static_cast<std::size_t>(frame.pulse - first_pulse_)] : kNan;
+}
+
+FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double FrameDetail::*stamp,
+                          const CommonReference& reference, int colour) {
+  FigureSeries made = series(camera_label(run, camera), Mark::kPoints, colour);
+  const CameraDetail& of_camera = run.cameras[camera];
+  const bool by_pulse = has_pulses(run);
+  for (std::size_t i = 0; i < of_camera.frames.size(); ++i) {
+    const FrameDetail& frame = of_camera.frames[i];
+    if (by_pulse ? !frame.evaluated : frame.in_warm_up) continue;
+    made.x.push_back(by_pulse ? static_cast<double>(frame.pulse) : static_cast<double>(i));
+    made.y.push_back(frame.*stamp - reference.of(frame));
+  }
+  return thinned(std::move(made), kMostPoints);
+}
+
+std::string reference_axis(const RunDetail& run) {
+  return run.has_truth ? "global stamp - true time on the master's clock (ms)"
+                       : "global stamp - median of the pulse (ms)";
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,67 @@
+// What the makers of figures share; for the files of this folder.
+#ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
+#define SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evaluation/run_detail.h"
+#include "reports/figures/figure.h"
+
+namespace simbench::reports {
+
+// Points of a series beyond which it is thinned.
+inline constexpr std::size_t kMostPoints = 600;
+
+// A figure with the id's title and place in the paper, and nothing in it yet.
+Figure catalogued(std::string_view id);
+// The same of one run.
+Figure of_run(std::string_view id, const evaluation::RunDetail& run);
+// The same without anything to draw.
+Figure absent(Figure figure, std::string why);
+
+// An empty panel.
+FigurePanel panel(std::string title, std::string x_label, std::string y_label);
+FigureSeries series(std::string label, Mark mark, int colour);
+
+// "host 1, camera 3"; "camera 3" where there is one host.
+std::string camera_label(const evaluation::RunDetail& run, std::size_t camera);
+// The first so many kept cameras of a host.
+std::vector<std::size_t> cameras_of_host(const evaluation::RunDetail& run, std::size_t host,
+                                         std::size_t most);
+// Says so if the rig has more cameras than are drawn; else empty. Begins with a blank.
+std::string camera_note(const evaluation::RunDetail& run);
+
+// Where the stamps of a camera are drawn: against the pulse, or against the number of the frame
+// where no pulse exposed them.
+bool has_pulses(const evaluation::RunDetail& run);
+std::string frame_axis(const evaluation::RunDetail& run);
+double frame_position(const evaluation::RunDetail& run, const evaluation::CameraDetail& camera,
+                      std::size_t frame);
+
+// What stamps of one pulse are compared with; see run_figures.h.
+class CommonReference {
+ public:
+  // `stamp`: which one the median is of where there is no truth.
+  CommonReference(const evaluation::RunDetail& run, double evaluation::FrameDetail::*stamp);
+  // NaN where there is none.
+  double of(const evaluation::FrameDetail& frame) const;
+
+ private:
+  bool by_pulse_;
+  std::int64_t first_pulse_;
+  std::vector<double> by_row_;
+};
+
+// The evaluated stamps of one camera less the reference.
+FigureSeries stamp_series(const evaluation::RunDetail& run, std::size_t camera,
+                          double evaluation::FrameDetail::*stamp, const CommonReference& reference,
+                          int colour);
+// What its y axis says.
+std::string reference_axis(const evaluation::RunDetail& run);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_

@@ -1,0 +1,254 @@
+#include "reports/figures/result_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "evaluation/statistics.h"
+#include "reports/figures/figure_parts.h"
+#include "reports/figures/thin.h"
+#include "reports/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::PulseScore;
+using evaluation::Results;
+using evaluation::Row;
+using evaluation::SeedScore;
+
+constexpr std::array<std::string_view, 4> kPaperRows = {"ntp_last_set", "yoon2021_network",
+                                                        "yoon2021_time", "yoon2021_both"};
+constexpr std::size_t kMostTogether = 12;  // more curves in one panel cannot be told apart
+// A panel whose values span more than this has a logarithmic axis.
+constexpr double kLogSpan = 50;
+
+struct RowRef {
+  const Row* row = nullptr;
+  int colour = 0;
+};
+
+// The paper's rows, or the first ones; with a number that is the same in all figures.
+std::vector<RowRef> four_rows(const Results& results) {
+  std::vector<RowRef> rows;
+  for (const std::string_view name : kPaperRows) {
+    for (std::size_t i = 0; i < results.rows.size(); ++i) {
+      if (results.rows[i].pipeline == name) rows.push_back({&results.rows[i], static_cast<int>(i)});
+    }
+  }
+  if (!rows.empty()) return rows;
+  for (std::size_t i = 0; i < std::min(results.rows.size(), kPaperRows.size()); ++i) {
+    rows.push_back({&results.rows[i], static_cast<int>(i)});
+  }
+  return rows;
+}
+
+std::vector<RowRef> first_rows(const Results& results) {
+  std::vector<RowRef> rows;
+  for (std::size_t i = 0; i < std::min(results.rows.size(), kMostTogether); ++i) {
+    rows.push_back({&results.rows[i], static_cast<int>(i)});
+  }
+  return rows;
+}
+
+const SeedScore* seed_of(const Row& row, std::uint64_t seed) {
+  const auto found = std::find_if(row.seeds.begin(), row.seeds.end(),
+                                  [seed](const SeedScore& score) { return score.seed == seed; });
+  return found == row.seeds.end() ? nullptr : &*found;
+}
+
+// Whether all that is drawn is positive and some of it far from the rest.
+bool wants_log(const FigurePanel& panel) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0;
+  for (const FigureSeries& series : panel.series) {
+    for (const double value : series.y) {
+      if (std::isnan(value)) continue;
+      least = std::min(least, value);
+      greatest = std::max(greatest, value);
+    }
+  }
+  return least > 0 && greatest > kLogSpan * least;
+}
+
+bool empty(const FigurePanel& panel) {
+  return std::all_of(panel.series.begin(), panel.series.end(),
+                     [](const FigureSeries& series) { return series.x.empty(); });
+}
+
+void add_published(const std::vector<RowRef>& rows, double evaluation::PublishedComparison::*metric,
+                   FigurePanel& panel) {
+  for (const RowRef& ref : rows) {
+    if (!ref.row->published) continue;
+    const double value = (*ref.row->published).*metric;
+    panel.lines.push_back({.label = rows.size() == 1
+                                        ? fmt::format("published: {}", number_text(value))
+                                        : fmt::format("{}, published", ref.row->pipeline),
+                           .at = value});
+  }
+}
+
+FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std::string title,
+                        std::string axis, double PulseScore::*value) {
+  FigurePanel made = panel(std::move(title), "pulse", std::move(axis));
+  made.x_is_pulse = true;
+  for (const RowRef& ref : rows) {
+    const SeedScore* score = seed_of(*ref.row, seed);
+    if (score == nullptr || score->pulses.empty()) continue;
+    FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
+    for (const PulseScore& pulse : score->pulses) {
+      curve.x.push_back(static_cast<double>(pulse.pulse));
+      curve.y.push_back(pulse.*value);
+    }
+    made.series.push_back(thinned(std::move(curve), kMostPoints));
+  }
+  made.log_y = wants_log(made);
+  return made;
+}
+
+// A score's values over seeds, ascending.
+FigurePanel quantile_panel(const std::vector<RowRef>& rows, std::string title, std::string axis,
+                           evaluation::Series Row::*score) {
+  FigurePanel made = panel(std::move(title), "share of seeds (%)", std::move(axis));
+  for (const RowRef& ref : rows) {
+    std::vector<double> values = (ref.row->*score).values;
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    if (values.empty()) continue;
+    std::sort(values.begin(), values.end());
+    FigureSeries curve = series(ref.row->pipeline, Mark::kSteps, ref.colour);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      curve.x.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(values.size()));
+      curve.y.push_back(values[i]);
+    }
+    made.series.push_back(thinned(std::move(curve), kMostPoints));
+  }
+  made.log_y = wants_log(made);
+  return made;
+}
+
+Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
+  Figure figure = catalogued("distributions");
+  FigurePanel amd = quantile_panel(rows, "AMD", "AMD (ms)", &Row::amd_ms);
+  add_published(rows, &evaluation::PublishedComparison::amd_ms, amd);
+  FigurePanel rmdv = quantile_panel(rows, "RMDV", "RMDV (ms)", &Row::rmdv_ms);
+  add_published(rows, &evaluation::PublishedComparison::rmdv_ms, rmdv);
+  for (FigurePanel& made : std::vector<FigurePanel>{
+           std::move(amd), std::move(rmdv),
+           quantile_panel(rows, "Absolute error", "mean |error| (ms)", &Row::absolute_error_ms),
+           quantile_panel(rows, "Host clocks", "mean |host error| (ms)", &Row::host_error_ms)}) {
+    if (!empty(made)) figure.panels.push_back(std::move(made));
+  }
+  if (figure.panels.empty()) return absent(std::move(figure), "No seed has any of these scores.");
+  figure.caption = fmt::format(
+      "Scores of {} seeds in ascending order: the curve at 50 % is the median. A line is a "
+      "published value, which is one recording.",
+      results.seed_count);
+  return figure;
+}
+
+// Median over seeds of |error| by host; and of one pipeline also the seeds themselves, signed.
+Figure order_figure(const std::vector<RowRef>& rows) {
+  Figure figure = catalogued("host_order");
+  FigurePanel medians = panel("Median over seeds", "host, in order of synchronisation",
+                              "|mean clock error over the capture| (ms)");
+  FigurePanel single = panel("Every seed", medians.x_label, "mean clock error (ms)");
+  for (const RowRef& ref : rows) {
+    std::vector<std::vector<double>> by_host;
+    FigureSeries points = series(ref.row->pipeline, Mark::kPoints, ref.colour);
+    for (const SeedScore& seed : ref.row->seeds) {
+      by_host.resize(std::max(by_host.size(), seed.host_errors_ms.size()));
+      for (std::size_t host = 1; host < seed.host_errors_ms.size(); ++host) {
+        const double error = seed.host_errors_ms[host];
+        if (std::isnan(error)) continue;
+        by_host[host].push_back(std::abs(error));
+        points.x.push_back(static_cast<double>(host));
+        points.y.push_back(error);
+      }
+    }
+    FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
+    for (std::size_t host = 1; host < by_host.size(); ++host) {
+      if (by_host[host].empty()) continue;
+      curve.x.push_back(static_cast<double>(host));
+      curve.y.push_back(evaluation::median(by_host[host]));
+    }
+    if (curve.x.empty()) continue;
+    medians.series.push_back(thinned(std::move(curve), kMostPoints));
+    if (rows.size() == 1) single.series.push_back(thinned(std::move(points), kMostPoints));
+  }
+  if (medians.series.empty()) {
+    return absent(std::move(figure),
+                  "There is no slave host, or the archive holds no errors of host clocks.");
+  }
+  medians.log_y = wants_log(medians);
+  figure.panels.push_back(std::move(medians));
+  if (!single.series.empty()) figure.panels.push_back(std::move(single));
+  figure.caption =
+      "System clock of each slave minus the master's, mean over the evaluated pulses. The paper's "
+      "procedure synchronises the hosts one after another; its error should not grow along the "
+      "line.";
+  return figure;
+}
+
+// One of the first pipelines together, then one for each.
+template <class Make>
+std::vector<Figure> together_and_each(const Results& results, const Make& make) {
+  std::vector<Figure> figures = {make(first_rows(results))};
+  if (results.rows.size() > kMostTogether) {
+    figures.front().caption +=
+        fmt::format(" The first {} of {} pipelines.", kMostTogether, results.rows.size());
+  }
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    figures.push_back(make({{&results.rows[i], static_cast<int>(i)}}));
+    figures.back().pipeline = results.rows[i].pipeline;
+  }
+  return figures;
+}
+
+}  // namespace
+
+Figure frame_errors(const Archive& archive, std::uint64_t seed) {
+  Figure figure = catalogued("frame_errors");
+  figure.seed = seed;
+  const std::vector<RowRef> rows = four_rows(archive.results);
+  FigurePanel amd = pulse_panel(rows, seed, "Terms of AMD", "range of the global stamps (ms)",
+                                &PulseScore::spread_ms);
+  if (amd.series.empty()) {
+    return absent(std::move(figure),
+                  "No pulse was delivered by all cameras, or the archive has no frames.csv.");
+  }
+  add_published(rows, &evaluation::PublishedComparison::amd_ms, amd);
+  FigurePanel rmdv = pulse_panel(rows, seed, "Terms of RMDV", "deviation from the median (ms)",
+                                 &PulseScore::deviation_ms);
+  add_published(rows, &evaluation::PublishedComparison::rmdv_ms, rmdv);
+  figure.panels = {std::move(amd), std::move(rmdv)};
+  figure.caption =
+      "One point for every pulse that all cameras delivered; the mean of a curve is the pipeline's "
+      "AMD or RMDV at this seed. Lines are published means.";
+  return figure;
+}
+
+std::vector<Figure> frame_errors(const Archive& archive) {
+  std::vector<Figure> figures;
+  for (std::uint64_t i = 0; i < archive.results.seed_count; ++i) {
+    figures.push_back(frame_errors(archive, archive.results.first_seed + i));
+  }
+  return figures;
+}
+
+std::vector<Figure> distributions(const Archive& archive) {
+  const Results& results = archive.results;
+  return together_and_each(
+      results, [&](const std::vector<RowRef>& rows) { return distribution(rows, results); });
+}
+
+std::vector<Figure> host_order(const Archive& archive) {
+  return together_and_each(archive.results, order_figure);
+}
+
+}  // namespace simbench::reports
