@@ -29,37 +29,45 @@ ToldWorld tell(const scenarios::Scenario& scenario, HostSync* host_sync = nullpt
   return told;
 }
 
+struct Choice {
+  std::string scenario;
+  std::string host_sync;
+};
+
 TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
-  for (const auto& [name, host_sync] : std::vector<std::pair<std::string, std::string>>{
-           {"18cam_6host_45fps", "yoon2021_both"},
-           {"18cam_6host_45fps", "w32time_domain"},
-           {"18cam_6host_45fps_lan", "chrony"},
-           {"18cam_6host_45fps_lan", "oracle"},
-           {"18cam_6host_45fps_loss_and_reordering", "yoon2021_both"},
-           {"18cam_6host_45fps_clock_step_during_capture", "yoon2021_both"},
-           {"18cam_6host_45fps_frame_drops_10pct", "yoon2021_both"},
-           {"9cam_3host_30fps_azure_kinect", "yoon2021_neither"}}) {
+  for (const Choice& choice :
+       std::vector<Choice>{{"18cam_6host_45fps", "yoon2021_both"},
+                           {"18cam_6host_45fps", "w32time_domain"},
+                           {"18cam_6host_45fps_lan", "chrony"},
+                           {"18cam_6host_45fps_lan", "oracle"},
+                           {"18cam_6host_45fps_loss_and_reordering", "yoon2021_both"},
+                           {"18cam_6host_45fps_clock_step_during_capture", "yoon2021_both"},
+                           {"18cam_6host_45fps_frame_drops_10pct", "yoon2021_both"},
+                           {"9cam_3host_30fps_azure_kinect", "yoon2021_neither"}}) {
+    SCOPED_TRACE(choice.scenario + ", " + choice.host_sync);
     const scenarios::Scenario scenario = scenarios::load_scenario(
-        name, {{"/timeline/frames", "20"}, {"/timeline/warm_up_ms", "500"}});
-    const HostSyncEntry* entry = find_host_sync(host_sync);
-    ASSERT_NE(entry, nullptr) << host_sync;
+        choice.scenario, {{"/timeline/frames", "20"}, {"/timeline/warm_up_ms", "500"}});
+    const HostSyncEntry* entry = find_host_sync(choice.host_sync);
+    ASSERT_NE(entry, nullptr);
     const auto record = [&](WorldObserver* observer, WrittenRecording& written) {
       const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
-      return make_simulation(scenario)->record(
-          {.seed = 3, .pipeline = host_sync, .host_sync = algorithm.get(), .observer = observer},
-          written);
+      return make_simulation(scenario)->record({.seed = 3,
+                                                .pipeline = choice.host_sync,
+                                                .host_sync = algorithm.get(),
+                                                .observer = observer},
+                                               written);
     };
     WrittenRecording without;
     WrittenRecording with;
     ToldWorld told(from_ms(7.3));
     const RecordingCost cost_without = record(nullptr, without);
     const RecordingCost cost_with = record(&told, with);
-    EXPECT_TRUE(without.text == with.text) << name << ", " << host_sync;
+    EXPECT_TRUE(without.text == with.text);
     EXPECT_GT(with.text.size(), 10'000U);
     EXPECT_FALSE(told.frames.empty());
     EXPECT_FALSE(told.clocks.empty());
-    EXPECT_EQ(cost_with.events, cost_without.events) << name << ", " << host_sync;
-    EXPECT_EQ(cost_with.trace_hash, cost_without.trace_hash) << name << ", " << host_sync;
+    EXPECT_EQ(cost_with.events, cost_without.events);
+    EXPECT_EQ(cost_with.trace_hash, cost_without.trace_hash);
   }
 }
 
