@@ -31,3 +31,10 @@ endif()
 add_library(simbench_valijson INTERFACE)
 target_include_directories(simbench_valijson SYSTEM INTERFACE
   $<BUILD_INTERFACE:${SIMBENCH_VALIJSON_INCLUDE_DIR}>)
+
+# uPlot 1.6: draws the figures of the HTML report, embedded in reports/. JavaScript, not linked.
+find_path(SIMBENCH_UPLOT_DIR dist/uPlot.iife.min.js
+  HINTS ${SIMBENCH_DEPS_DIR}/usr/share/javascript/uplot NO_CACHE)
+if(NOT SIMBENCH_UPLOT_DIR)
+  message(FATAL_ERROR "uPlot: not found; run tools/setup")
+endif()

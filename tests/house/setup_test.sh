@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tools/setup on machines that are made up: in a folder of its own, with stand-ins for apt-get and
-# dpkg-deb that write down what they are asked for, so nothing on this machine changes.
+# dpkg-deb that write down what they are asked for, and of curl, so nothing on this machine changes.
 set -euo pipefail
 source_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
@@ -52,6 +52,17 @@ APT
 source "$(dirname "$0")/../provide"
 provide "$3/usr" "$(basename "$2" .deb)"
 DPKG
+  # The package that is fetched, and its checksum: right, or whatever `checksum` says.
+  mkdir -p "$work/package/dist"
+  : > "$work/package/LICENSE"
+  tar -czf "$work/package.tgz" -C "$work" package
+  cat > "$work/bin/curl" <<'CURL'
+#!/usr/bin/env bash
+while [[ $1 != -o ]]; do shift; done
+cp "$(dirname "$0")/../package.tgz" "$2"
+CURL
+  printf '#!/bin/sh\ncat > /dev/null; exit "$(cat "%s")"\n' "$work/checksum" > "$work/bin/sha512sum"
+  echo 0 > "$work/checksum"
   printf '#!/bin/sh\nexec "$@"\n' > "$work/bin/sudo"
   chmod +x "$work"/bin/*
 }
@@ -73,6 +84,7 @@ expect_asked 'install .*libeigen3-dev .*libfmt-dev'
 expect_asked '--no-remove'
 expect_not_asked 'install .*(boost|valijson)'
 [[ -e $(deps valijson/validator.hpp) ]] || fail "valijson was not unpacked"
+[[ -e $work/project/build/deps/usr/share/javascript/uplot/LICENSE ]] || fail "uPlot was not unpacked"
 : > "$work/asked"
 setup
 expect_status 0
@@ -116,8 +128,15 @@ setup
 expect_status 0
 expect_asked 'download libvalijson-dev'
 
+machine "a fetched package that is not the expected one"
+echo 1 > "$work/checksum"
+setup
+expect_status 1
+grep -q 'not the file that is expected' "$work/said" || fail "the message does not say so"
+[[ ! -e $work/project/build/deps/usr/share/javascript/uplot ]] || fail "it was kept"
+
 machine "a level that does not exist"
 setup everything
 expect_status 2
 
-echo "setup_test: 7 machines passed"
+echo "setup_test: 8 machines passed"

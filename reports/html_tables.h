@@ -1,0 +1,24 @@
+// The results of an archive as tables of HTML: the same numbers as reports/table.h prints.
+#ifndef SIMBENCH_REPORTS_HTML_TABLES_H_
+#define SIMBENCH_REPORTS_HTML_TABLES_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/results.h"
+#include "reports/archive_reader.h"
+
+namespace simbench::reports {
+
+// The tables with their headings: the paper's metrics, what only true time can tell, gathering (if
+// pipelines differ in it), boards (of a leaderboard), claims, stages, warnings, performance.
+// `leaderboard`: /evaluation/table of the scenario is "leaderboard".
+std::string html_tables(const evaluation::Results& results, bool leaderboard);
+
+// Median and band of AMD and of the absolute error of every pipeline, archives side by side; empty
+// for a single one.
+std::string html_comparison(const std::vector<const Archive*>& archives);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_HTML_TABLES_H_
