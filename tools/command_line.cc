@@ -12,6 +12,7 @@
 #include "recording/version.h"
 #include "reports/output_folder.h"
 #include "scenarios/loader.h"
+#include "tools/compare_command.h"
 #include "tools/convert_ibl_command.h"
 #include "tools/describe_command.h"
 #include "tools/diagnose_command.h"
@@ -80,6 +81,7 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   tools::add_validate_command(app, action);
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
+  tools::add_compare_command(app, action);
   tools::add_convert_ibl_command(app, action);
 
   const std::vector<std::string> all = with_default_command(arguments);
