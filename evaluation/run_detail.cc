@@ -218,6 +218,7 @@ EstimatorFactory estimator_named(const scenarios::Scenario& scenario, const Pipe
 void note_times(RunDetail& run) {
   for (const CameraDetail& camera : run.cameras) {
     for (const FrameDetail& frame : camera.frames) {
+      run.has_pulses = run.has_pulses || frame.pulse >= 0;
       if (!run.has_truth) continue;
       run.capture_end_ms = std::fmax(run.capture_end_ms, frame.exposure_end_ms);
       if (frame.in_warm_up) continue;

@@ -105,7 +105,8 @@ struct RunDetail {
   std::int64_t pulses = 0;
   double gathering_interval_ms = 0;  // T_int
   bool has_truth = false;
-  bool service = false;  // host_sync goes on during the capture
+  bool has_pulses = false;  // false: no frame is known to be of a pulse
+  bool service = false;     // host_sync goes on during the capture
   // True time; NaN where the world was not observed (a real rig) or there is none.
   double world_start_ms = FrameDetail::kNan();
   double sync_end_ms = FrameDetail::kNan();  // of a synchronisation that ends

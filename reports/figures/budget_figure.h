@@ -7,8 +7,8 @@
 
 namespace simbench::reports {
 
-// Means over seeds with the bands' ends as a second and third series of bars' marks: a panel each
-// for AMD, absolute error and the physical spread.
+// A panel each for AMD, the absolute error and the physical spread: means over the seeds as bars,
+// the ends of the band from 5 to 95 % as points.
 Figure budget_figure(const evaluation::Budget& budget);
 
 }  // namespace simbench::reports

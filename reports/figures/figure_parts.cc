@@ -91,23 +91,16 @@ std::string camera_note(const RunDetail& run) {
                      run.camera_count);
 }
 
-bool has_pulses(const RunDetail& run) {
-  return std::any_of(run.cameras.begin(), run.cameras.end(), [](const CameraDetail& camera) {
-    return std::any_of(camera.frames.begin(), camera.frames.end(),
-                       [](const FrameDetail& frame) { return frame.pulse >= 0; });
-  });
-}
-
-std::string frame_axis(const RunDetail& run) { return has_pulses(run) ? "pulse" : "frame"; }
+std::string frame_axis(const RunDetail& run) { return run.has_pulses ? "pulse" : "frame"; }
 
 double frame_position(const RunDetail& run, const CameraDetail& camera, std::size_t frame) {
   const std::int64_t pulse = camera.frames[frame].pulse;
   if (pulse >= 0) return static_cast<double>(pulse);
-  return has_pulses(run) ? kNan : static_cast<double>(frame);
+  return run.has_pulses ? kNan : static_cast<double>(frame);
 }
 
 CommonReference::CommonReference(const RunDetail& run, double FrameDetail::*stamp)
-    : by_pulse_(has_pulses(run)), first_pulse_(run.first_pulse) {
+    : by_pulse_(run.has_pulses), first_pulse_(run.first_pulse) {
   if (!by_pulse_) return;
   by_row_.assign(static_cast<std::size_t>(run.pulses), kNan);
   std::vector<std::vector<double>> stamps(run.has_truth ? 0 : by_row_.size());
@@ -134,11 +127,10 @@ FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double Frame
                           const CommonReference& reference, int colour) {
   FigureSeries made = series(camera_label(run, camera), Mark::kPoints, colour);
   const CameraDetail& of_camera = run.cameras[camera];
-  const bool by_pulse = has_pulses(run);
   for (std::size_t i = 0; i < of_camera.frames.size(); ++i) {
     const FrameDetail& frame = of_camera.frames[i];
-    if (by_pulse ? !frame.evaluated : frame.in_warm_up) continue;
-    made.x.push_back(by_pulse ? static_cast<double>(frame.pulse) : static_cast<double>(i));
+    if (run.has_pulses ? !frame.evaluated : frame.in_warm_up) continue;
+    made.x.push_back(run.has_pulses ? static_cast<double>(frame.pulse) : static_cast<double>(i));
     made.y.push_back(frame.*stamp - reference.of(frame));
   }
   return thinned(std::move(made), kMostPoints);

@@ -36,7 +36,6 @@ std::string camera_note(const evaluation::RunDetail& run);
 
 // Where the stamps of a camera are drawn: against the pulse, or against the number of the frame
 // where no pulse exposed them.
-bool has_pulses(const evaluation::RunDetail& run);
 std::string frame_axis(const evaluation::RunDetail& run);
 double frame_position(const evaluation::RunDetail& run, const evaluation::CameraDetail& camera,
                       std::size_t frame);

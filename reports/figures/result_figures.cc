@@ -122,9 +122,9 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, std::string title, s
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
     FigureSeries curve = series(ref.row->pipeline, Mark::kSteps, ref.colour);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      curve.x.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(values.size()));
-      curve.y.push_back(values[i]);
+    for (std::size_t i = 0; i <= values.size(); ++i) {  // a value holds to the next share
+      curve.x.push_back(100 * static_cast<double>(i) / static_cast<double>(values.size()));
+      curve.y.push_back(values[std::min(i, values.size() - 1)]);
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }

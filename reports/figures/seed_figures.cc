@@ -1,0 +1,189 @@
+#include "reports/figures/seed_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "reports/figures/display_clock.h"
+#include "reports/figures/figure_parts.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::CameraDetail;
+using evaluation::FrameDetail;
+using evaluation::RunDetail;
+
+using Names = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 1> kProposed = {"yoon2021_both"};
+constexpr std::array<std::string_view, 4> kWithout = {"ntp_last_set", "ntp_w32time", "free_running",
+                                                      "yoon2021_neither"};
+constexpr std::array<std::string_view, 1> kGenlock = {"genlock"};
+constexpr std::array<std::string_view, 2> kNtp = {"ntp_last_set", "ntp_w32time"};
+
+constexpr std::size_t kPhotographs = 6;
+constexpr std::size_t kMostRows = 3;
+
+// The first of these names that has a run; null if none has.
+const RunDetail* run_named(std::span<const RunDetail> runs, Names names) {
+  for (const std::string_view name : names) {
+    for (const RunDetail& run : runs) {
+      if (run.pipeline == name) return &run;
+    }
+  }
+  return nullptr;
+}
+
+// Runs with the smallest and the largest AMD; null where no run has one.
+std::pair<const RunDetail*, const RunDetail*> best_and_worst(std::span<const RunDetail> runs) {
+  const RunDetail* best = nullptr;
+  const RunDetail* worst = nullptr;
+  for (const RunDetail& run : runs) {
+    if (std::isnan(run.score.amd_ms)) continue;
+    if (best == nullptr || run.score.amd_ms < best->score.amd_ms) best = &run;
+    if (worst == nullptr || run.score.amd_ms > worst->score.amd_ms) worst = &run;
+  }
+  return {best, worst};
+}
+
+FigurePanel all_cameras(const RunDetail& run, std::string_view what) {
+  FigurePanel made =
+      panel(fmt::format("{}: {}", what, run.pipeline), frame_axis(run), reference_axis(run));
+  made.x_is_pulse = run.has_pulses;
+  const CommonReference reference(run, &FrameDetail::global_ms);
+  for (std::size_t camera = 0; camera < run.cameras.size(); ++camera) {
+    const int colour = static_cast<int>(run.cameras[camera].host);
+    made.series.push_back(stamp_series(run, camera, &FrameDetail::global_ms, reference, colour));
+  }
+  return made;
+}
+
+// The evaluated frame of the master's first camera in the middle of the capture; null: it has none.
+const FrameDetail* middle_frame(const RunDetail& run) {
+  const auto camera = std::find_if(run.cameras.begin(), run.cameras.end(),
+                                   [](const CameraDetail& c) { return c.host == 0; });
+  if (camera == run.cameras.end()) return nullptr;
+  std::vector<const FrameDetail*> frames;
+  for (const FrameDetail& frame : camera->frames) {
+    if (!std::isnan(frame.global_ms)) frames.push_back(&frame);
+  }
+  return frames.empty() ? nullptr : frames[frames.size() / 2];
+}
+
+// Cameras of as many hosts as there are: the first of each, then the second of each, ...
+std::vector<std::size_t> photographers(const RunDetail& run) {
+  std::vector<std::size_t> cameras;
+  std::size_t hosts = 0;
+  for (const CameraDetail& camera : run.cameras) {
+    hosts = std::max<std::size_t>(hosts, camera.host + std::size_t{1});
+  }
+  for (std::size_t turn = 0; turn < run.cameras.size() && cameras.size() < kPhotographs; ++turn) {
+    for (std::size_t host = 0; host < hosts && cameras.size() < kPhotographs; ++host) {
+      const std::vector<std::size_t> of_host = cameras_of_host(run, host, turn + 1);
+      if (of_host.size() > turn) cameras.push_back(of_host[turn]);
+    }
+  }
+  return cameras;
+}
+
+// The frame whose global stamp is nearest; null: there is none.
+const FrameDetail* nearest_frame(const CameraDetail& camera, double global_ms) {
+  const FrameDetail* nearest = nullptr;
+  for (const FrameDetail& frame : camera.frames) {
+    if (std::isnan(frame.global_ms)) continue;
+    if (nearest == nullptr ||
+        std::abs(frame.global_ms - global_ms) < std::abs(nearest->global_ms - global_ms)) {
+      nearest = &frame;
+    }
+  }
+  return nearest;
+}
+
+// Nothing if there is nothing to photograph.
+PhotographRow photograph_row(const RunDetail& run) {
+  PhotographRow row{.label = run.pipeline, .photographs = {}};
+  const FrameDetail* middle = middle_frame(run);
+  if (middle == nullptr || !run.has_truth) return row;
+  for (const std::size_t camera : photographers(run)) {
+    const FrameDetail* frame = nearest_frame(run.cameras[camera], middle->global_ms);
+    if (frame == nullptr) continue;
+    row.photographs.push_back({camera_label(run, camera),
+                               display_readings(frame->exposure_start_ms, frame->exposure_end_ms)});
+  }
+  return row;
+}
+
+// GenLock, the proposed method and NTP as far as they are there, else the first ones.
+std::vector<const RunDetail*> photographed_runs(std::span<const RunDetail> runs) {
+  std::vector<const RunDetail*> chosen;
+  for (const Names names : {Names(kGenlock), Names(kProposed), Names(kNtp)}) {
+    if (const RunDetail* run = run_named(runs, names)) chosen.push_back(run);
+  }
+  if (!chosen.empty()) return chosen;
+  for (const RunDetail& run : runs.first(std::min(runs.size(), kMostRows))) chosen.push_back(&run);
+  return chosen;
+}
+
+Figure of_seed(std::string_view id, std::span<const RunDetail> runs) {
+  Figure figure = catalogued(id);
+  if (!runs.empty()) figure.seed = runs.front().seed;
+  return figure;
+}
+
+}  // namespace
+
+Figure synchronisation(std::span<const RunDetail> runs) {
+  Figure figure = of_seed("synchronisation", runs);
+  const auto [best, worst] = best_and_worst(runs);
+  const RunDetail* without = run_named(runs, kWithout);
+  const RunDetail* with = run_named(runs, kProposed);
+  const bool stand_in = without == nullptr || with == nullptr;
+  if (without == nullptr && worst != with) without = worst;
+  if (with == nullptr && best != without) with = best;
+  if (without == nullptr && with == nullptr) {
+    return absent(std::move(figure), "No pulse was delivered by all cameras of a pipeline.");
+  }
+  if (without != nullptr) figure.panels.push_back(all_cameras(*without, "Without"));
+  if (with != nullptr) figure.panels.push_back(all_cameras(*with, "With"));
+  const RunDetail& shown = with != nullptr ? *with : *without;
+  figure.caption = fmt::format(
+      "Global stamps of {} cameras on {} hosts, one colour for each host. Note the different "
+      "scales: cameras of one host agree without synchronisation, hosts do not.{}{}",
+      shown.camera_count, shown.host_count,
+      stand_in ? " The paper's pipelines are not all here; those with the largest and the smallest "
+                 "AMD stand in for them."
+               : "",
+      camera_note(shown));
+  return figure;
+}
+
+Figure digital_clocks(std::span<const RunDetail> runs) {
+  Figure figure = of_seed("digital_clocks", runs);
+  for (const RunDetail* run : photographed_runs(runs)) {
+    PhotographRow row = photograph_row(*run);
+    if (!row.photographs.empty()) figure.photographs.push_back(std::move(row));
+  }
+  if (figure.photographs.empty()) {
+    return absent(std::move(figure), "What a camera sees needs the true exposures, and frames.");
+  }
+  figure.caption = fmt::format(
+      "Simulated photographs of a clock on a {:.0f} Hz display, in the frames that each pipeline "
+      "takes for simultaneous (global stamps nearest to the master's first camera, in the middle "
+      "of the capture). Equal readings mean synchronised cameras, but no better than the display's "
+      "steps of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
+      kDisplayRateHz, 1000 / kDisplayRateHz);
+  return figure;
+}
+
+std::vector<Figure> seed_figures(std::span<const RunDetail> runs) {
+  return {synchronisation(runs), digital_clocks(runs)};
+}
+
+}  // namespace simbench::reports
