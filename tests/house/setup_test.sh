@@ -26,6 +26,7 @@ provide() {
     libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libvalijson-dev) prove "$1/include/valijson/validator.hpp" ;;
+    ca-certificates) prove "$1/share/ca-certificates/mozilla/some.crt" ;;
     libboost1.81-dev)
       prove "$1/include/boost/asio/awaitable.hpp"
       echo '#define BOOST_VERSION 108100' > "$1/include/boost/version.hpp" ;;
