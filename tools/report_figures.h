@@ -1,0 +1,36 @@
+// What a report shows of an archive: figures and notes, within bounds of time and size.
+#ifndef SIMBENCH_TOOLS_REPORT_FIGURES_H_
+#define SIMBENCH_TOOLS_REPORT_FIGURES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluate.h"
+#include "reports/html_report.h"
+
+namespace simbench::tools {
+
+struct ReportDetail {
+  // How many seeds, from the first; nothing: kDefaultSeeds, fewer where there are many pipelines.
+  std::optional<std::uint64_t> seeds;
+  std::optional<std::uint64_t> budget_seeds;  // likewise; 0: no error budgets
+  std::vector<std::string> pipelines{};       // empty: all of the archive
+};
+
+inline constexpr std::uint64_t kDefaultSeeds = 4;
+// Runs (pipeline and seed) that a report shows in detail, if nobody asks for another number of
+// seeds: about 4 MB of figures of 18 cameras.
+inline constexpr std::uint64_t kMostRuns = 32;
+
+// The figures of one of `archives` in all, which share the bounds. Progress counts steps of work.
+// What cannot be drawn (no manifest, a scenario that this version does not take) is left out and
+// said in a note.
+reports::ReportedArchive with_figures(reports::Archive archive, const ReportDetail& detail,
+                                      std::size_t archives, const evaluation::Progress& progress);
+
+}  // namespace simbench::tools
+
+#endif  // SIMBENCH_TOOLS_REPORT_FIGURES_H_
