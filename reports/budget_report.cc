@@ -97,7 +97,7 @@ std::string budget_table(const BudgetReport& report) {
     text += fmt::format("{}{}\n\n{}\n{}", text.empty() ? "" : "\n", heading(report, budget),
                         block(budget).plain(), legend(budget));
   }
-  return text;
+  return fitted(text);
 }
 
 std::string budget_markdown(const BudgetReport& report) {

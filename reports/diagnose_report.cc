@@ -117,7 +117,8 @@ std::string pairs_text(const Diagnosis& diagnosis) {
                    {"offset\nms"},
                    {"spread\nms"},
                    {"moves ms\na minute"},
-                   {"is", Align::kLeft}});
+                   {"is", Align::kLeft}},
+                  2);
   for (const PairDiagnosis& pair : diagnosis.pairs) {
     const char* const is = std::isnan(pair.offset_ms) ? "unknown"
                            : pair.runs_free           ? "free-running"
@@ -191,7 +192,7 @@ std::string diagnose_table(const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) text += wrapped(finding.text, 2);
   text += "\nWhat the stamps alone cannot tell\n";
   for (const std::string& unknown : diagnosis.cannot_know) text += wrapped(unknown, 2);
-  return text + kLegend;
+  return fitted(text + kLegend);
 }
 
 std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::string>& files) {

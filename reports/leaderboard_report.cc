@@ -132,7 +132,7 @@ Json ranks_json(const std::vector<Rank>& ranks) {
 }  // namespace
 
 std::string leaderboard_table(const Results& results, std::string_view summary) {
-  return report(results, summary, false);
+  return fitted(report(results, summary, false));
 }
 
 std::string leaderboard_markdown(const Results& results, std::string_view summary) {

@@ -69,7 +69,8 @@ std::string rows_text(const Replay& replay) {
                    {"\n95 %"},
                    {"\n99 %"},
                    {"\nmax"},
-                   {"drift\nppm"}});
+                   {"drift\nppm"}},
+                  2);
   for (const CameraReplay& camera : replay.cameras) {
     for (const DeviceTimeReplay& row : camera.rows) {
       table.add({name_of(replay, camera), row.device_time, number_text(row.jitter_ms),
@@ -97,7 +98,8 @@ std::string rig_text(const RigReplay& rig) {
                    {"sets"},
                    {"frames\ndiscarded"},
                    {"AMD\nms"},
-                   {"RMDV\nms"}});
+                   {"RMDV\nms"}},
+                  2);
   for (const RigRow& row : rig.rows) {
     table.add({row.device_time, "GenLock order", count_text(rig.complete_pulses), "-",
                number_text(row.amd_ms), number_text(row.rmdv_ms)});
@@ -130,7 +132,7 @@ std::string replay_table(const Replay& replay) {
   std::string text = "The cameras and their clocks\n\n" + cameras_text(replay) +
                      "\nGlobal stamps, by estimator\n\n" + rows_text(replay);
   for (const RigReplay& rig : replay.rigs) text += rig_text(rig);
-  return text + kLegend;
+  return fitted(text + kLegend);
 }
 
 std::string replay_csv(const Replay& replay) {

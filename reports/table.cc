@@ -218,7 +218,7 @@ std::string report(const Results& results, std::string_view summary, const Layou
 }  // namespace
 
 std::string table(const Results& results, std::string_view summary) {
-  return report(results, summary, Layout{.markdown = false});
+  return fitted(report(results, summary, Layout{.markdown = false}));
 }
 
 std::string markdown(const Results& results, std::string_view summary) {

@@ -6,31 +6,12 @@
 #include <cstddef>
 
 #include "algorithms/ports/assert.h"
+#include "reports/table_layout.h"
 
 namespace simbench::reports {
 namespace {
 
-constexpr const char* kGap = "  ";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
-    end = text.find('\n', begin);
-    lines.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return lines;
-}
-
-std::string pad(const std::string& text, std::size_t width, Align align) {
-  const std::string blanks(width - std::min(width, text.size()), ' ');
-  return align == Align::kLeft ? text + blanks : blanks + text;
-}
-
-std::string end_line(std::string line) {
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + "\n";
-}
+std::optional<std::size_t> the_page_width;
 
 std::string markdown_cell(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -39,7 +20,30 @@ std::string markdown_cell(std::string text) {
   return escaped;
 }
 
+// Breaks one line; blanks between words stay as they are, but at the end of a line.
+void append_broken(std::string& out, std::string_view line, std::size_t width) {
+  constexpr std::size_t kDeeper = 2;
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  std::size_t margin = 0;
+  while (margin + line.size() > width) {
+    const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
+    const std::size_t room = width - std::min(width, margin);
+    std::size_t at = line.rfind(' ', room);
+    if (at == std::string_view::npos || at < first) at = line.find(' ', std::max(first, room));
+    if (at == std::string_view::npos) break;
+    const std::string_view part = line.substr(0, line.find_last_not_of(' ', at) + 1);
+    out += fmt::format("{:{}}{}\n", "", margin, part);
+    line.remove_prefix(std::min(line.find_first_not_of(' ', at), line.size()));
+    margin = std::min(indent + kDeeper, width / 2);
+  }
+  out += fmt::format("{:{}}{}", "", margin, line);
+}
+
 }  // namespace
+
+void set_page_width(std::optional<std::size_t> columns) { the_page_width = columns; }
+
+std::optional<std::size_t> page_width() { return the_page_width; }
 
 void TextTable::add(std::vector<std::string> cells) {
   SIMBENCH_ASSERT(cells.size() == columns_.size(), "a row has a cell for every column");
@@ -47,41 +51,7 @@ void TextTable::add(std::vector<std::string> cells) {
 }
 
 std::string TextTable::plain() const {
-  std::vector<std::size_t> widths;
-  std::vector<std::vector<std::string>> headers;
-  std::size_t header_height = 0;
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    headers.push_back(lines_of(columns_[c].header));
-    header_height = std::max(header_height, headers[c].size());
-    std::size_t width = 0;
-    for (const std::string& line : headers[c]) width = std::max(width, line.size());
-    for (const auto& row : rows_) width = std::max(width, row[c].size());
-    widths.push_back(width);
-  }
-  std::string out;
-  for (std::size_t i = 0; i < header_height; ++i) {
-    std::string line;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      // Headers stand on the line above the cells: the short ones are filled up at the top.
-      const std::size_t missing = header_height - headers[c].size();
-      const std::string text = i < missing ? "" : headers[c][i - missing];
-      line += (c ? kGap : "") + pad(text, widths[c], columns_[c].align);
-    }
-    out += end_line(line);
-  }
-  std::string rule;
-  for (std::size_t c = 0; c < widths.size(); ++c) {
-    rule += (c ? kGap : "") + std::string(widths[c], '-');
-  }
-  out += end_line(rule);
-  for (const auto& row : rows_) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      line += (c ? kGap : "") + pad(row[c], widths[c], columns_[c].align);
-    }
-    out += end_line(line);
-  }
-  return out;
+  return laid_out(columns_, rows_, {.width = the_page_width, .key_columns = key_columns_});
 }
 
 std::string TextTable::markdown() const {
@@ -99,21 +69,25 @@ std::string TextTable::markdown() const {
 }
 
 std::string wrapped(std::string_view text, std::size_t indent) {
+  const std::size_t width = std::min(kTextWidth, the_page_width.value_or(kTextWidth));
   const std::string margin(indent, ' ');
   std::string out;
-  std::string line;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    const std::string_view word = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (word.empty()) continue;
-    if (!line.empty() && indent + line.size() + 1 + word.size() > kTextWidth) {
-      out += fmt::format("{}{}\n", margin, line);
-      line.clear();
-    }
-    line += fmt::format("{}{}", line.empty() ? "" : " ", word);
+  for (const std::string& line : words_in_lines(text, width - std::min(width, indent))) {
+    out += fmt::format("{}{}\n", margin, line);
   }
-  return line.empty() ? out : out + fmt::format("{}{}\n", margin, line);
+  return out;
+}
+
+std::string fitted(std::string_view text) {
+  if (!the_page_width) return std::string(text);
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    append_broken(out, text.substr(0, end), *the_page_width);
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
 }
 
 }  // namespace simbench::reports

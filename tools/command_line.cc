@@ -2,24 +2,27 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iostream>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "recording/rs_csv.h"
 #include "recording/version.h"
 #include "reports/output_folder.h"
+#include "reports/text_table.h"
 #include "scenarios/loader.h"
 #include "tools/compare_command.h"
 #include "tools/convert_ibl_command.h"
 #include "tools/describe_command.h"
 #include "tools/diagnose_command.h"
 #include "tools/exit_status.h"
+#include "tools/help_format.h"
 #include "tools/list_command.h"
+#include "tools/messages.h"
 #include "tools/replay_command.h"
 #include "tools/run_command.h"
+#include "tools/terminal.h"
+#include "tools/usage_error.h"
 #include "tools/validate_command.h"
 
 namespace simbench {
@@ -46,26 +49,35 @@ std::vector<std::string> with_default_command(std::vector<std::string> arguments
 }
 
 // CLI11's own exit() would choose the status and the stream.
-int explain(const CLI::App& app, const CLI::ParseError& error, const std::string& command) {
+int explain(CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     // A request for help or the version, not an error.
     tools::print_result(error.get_name() == "CallForVersion" ? std::string(error.what()) + "\n"
                                                              : app.help());
     return ExitStatus::kOk;
   }
-  std::cerr << "error: " << error.what() << "\nSee: " << command << " --help\n";
+  const auto used = app.get_subcommands();
+  tools::print_error(
+      tools::usage_error(app, error),
+      used.empty() ? "simbench --help" : fmt::format("simbench {} --help", used[0]->get_name()));
   return ExitStatus::kBadInput;
 }
 
-// The first word of the command line, if it is no command: CLI11 would only say that one is
-// missing.
-std::optional<std::string> unknown_command(const CLI::App& app,
-                                           const std::vector<std::string>& arguments) {
-  if (arguments.size() < 2 || arguments[1].starts_with("-")) return std::nullopt;
-  std::vector<std::string> known;
-  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  if (std::find(known.begin(), known.end(), arguments[1]) != known.end()) return std::nullopt;
-  return fmt::format("found '{}', allowed: {}", arguments[1], fmt::join(known, ", "));
+// The one place where commands are added; the help lists them in this order and under these
+// headings, completion and man pages follow.
+void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments) {
+  tools::add_run_command(app, action, arguments);
+  tools::group_commands(app, "Run");
+  tools::add_replay_command(app, action, arguments);
+  tools::add_diagnose_command(app, action);
+  tools::add_convert_ibl_command(app, action);
+  tools::group_commands(app, "Recordings of real cameras");
+  tools::add_compare_command(app, action);
+  tools::group_commands(app, "Compare");
+  tools::add_list_command(app, action);
+  tools::add_describe_command(app, action);
+  tools::add_validate_command(app, action);
+  tools::group_commands(app, "Scenarios and algorithms");
 }
 
 int parse_and_run(const std::vector<std::string>& arguments) {
@@ -74,19 +86,13 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
   app.require_subcommand(1);
   app.footer(kExamples);
+  app.formatter(std::make_shared<tools::HelpFormat>());
   tools::Action action;
-  tools::add_run_command(app, action, arguments);
-  tools::add_list_command(app, action);
-  tools::add_describe_command(app, action);
-  tools::add_validate_command(app, action);
-  tools::add_replay_command(app, action, arguments);
-  tools::add_diagnose_command(app, action);
-  tools::add_compare_command(app, action);
-  tools::add_convert_ibl_command(app, action);
+  add_commands(app, action, arguments);
 
   const std::vector<std::string> all = with_default_command(arguments);
-  if (const auto problem = unknown_command(app, all)) {
-    std::cerr << "error: " << *problem << "\nSee: simbench --help\n";
+  if (const auto problem = tools::unknown_command(app, all)) {
+    tools::print_error(*problem, "simbench --help");
     return ExitStatus::kBadInput;
   }
   // CLI11 takes the arguments last first, without the program's name.
@@ -94,22 +100,24 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   try {
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
-    const auto used = app.get_subcommands();
-    return explain(app, error, used.empty() ? "simbench" : "simbench " + used[0]->get_name());
+    return explain(app, error);
   }
   return action();
 }
 
 int bad_input(const std::exception& error) {
-  std::cerr << "error: " << error.what() << '\n';
+  tools::print_error(error.what());
   return ExitStatus::kBadInput;
 }
 
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv, argv + argc);
+  tools::choose_message_format(arguments);
+  reports::set_page_width(tools::width_of_output());
   try {
-    return parse_and_run(std::vector<std::string>(argv, argv + argc));
+    return parse_and_run(arguments);
   } catch (const scenarios::InputError& error) {
     return bad_input(error);
   } catch (const reports::OutputError& error) {
@@ -117,8 +125,8 @@ int run_command_line(int argc, char** argv) {
   } catch (const CsvError& error) {
     return bad_input(error);
   } catch (const std::exception& error) {
-    std::cerr << fmt::format("internal error: {}\n(simbench {}, commit {})\n", error.what(),
-                             version(), commit());
+    tools::print_internal_error(
+        fmt::format("{}\n(simbench {}, commit {})", error.what(), version(), commit()));
     return ExitStatus::kInternalError;
   }
 }

@@ -2,10 +2,20 @@
 //
 // On a terminal: one line with a bar and the time still to go, redrawn at most ten times a second,
 // never wider than the terminal, erased at the end. Elsewhere (a file, a log): a line at the start
-// and one at every quarter. Colour only on a terminal that has it, and never with NO_COLOR set
-// (no-color.org).
+// and one at every quarter. Colour only on a terminal that has it and where it is wanted
+// (tools/terminal.h).
 //
-//   Progress progress(std::cerr, terminal_style(), "runs");
+// With --json (tools/messages.h) JSON lines, eight of progress a second at most; "eta_s" is null
+// while nothing is done:
+//
+//   {"event":"start","unit":"runs"}
+//   {"event":"progress","done":12,"total":96,"unit":"runs","elapsed_s":1.31,"eta_s":9.17}
+//   {"event":"end","done":96,"total":96,"unit":"runs","elapsed_s":10.4}
+//
+// and in place of the last, after Ctrl-C, {"event":"interrupt", ...} with the same members. Work
+// that fails ends with neither, but with an "error".
+//
+//   Progress progress(std::cerr, progress_style(), "runs");
 //   evaluate(..., [&](auto done, auto total) { progress.update(done, total); });
 //   progress.finish();
 //
@@ -22,13 +32,14 @@
 namespace simbench::tools {
 
 struct ProgressStyle {
+  bool json = false;
   bool terminal = false;
   bool colour = false;
   int width = 80;  // of the terminal, in columns
 };
 
-// What standard error is: terminal or not, its width, NO_COLOR and TERM.
-ProgressStyle terminal_style();
+// What standard error is: terminal or not, its width, whether it takes colour; and --json.
+ProgressStyle progress_style();
 
 class Progress {
  public:
@@ -36,17 +47,23 @@ class Progress {
 
   // `clock` counts seconds from any zero; a test brings its own.
   Progress(std::ostream& out, ProgressStyle style, std::string unit, Clock clock = steady_seconds);
-  ~Progress() { finish(); }
+  ~Progress() { erase(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void update(std::uint64_t done, std::uint64_t total);
-  // Erases the bar. Later updates are ignored.
+  // The work is done, or was interrupted. Erases the bar; later updates are ignored.
   void finish();
+  void interrupt();
 
  private:
   static std::chrono::duration<double> steady_seconds();
+  double elapsed_s() const { return (clock_() - start_).count(); }
+  double left_s(std::uint64_t done, std::uint64_t total) const;
   std::string time_left(std::uint64_t done, std::uint64_t total) const;
+  void erase();
+  void print_event(std::uint64_t done, std::uint64_t total);
+  void print_last_event(const char* event);
   void draw(std::uint64_t done, std::uint64_t total);
   void print_line(std::uint64_t done, std::uint64_t total);
 
@@ -57,6 +74,8 @@ class Progress {
   std::chrono::duration<double> start_;
   std::chrono::duration<double> last_drawn_{-1};
   std::uint64_t next_quarter_ = 0;
+  std::uint64_t done_ = 0;
+  std::uint64_t total_ = 0;
   bool drawn_ = false;
   bool finished_ = false;
 };

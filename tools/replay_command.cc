@@ -1,7 +1,6 @@
 #include "tools/replay_command.h"
 
 #include <chrono>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -50,7 +49,7 @@ int run_replay(const ReplayOptions& options) {
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
   const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
   print_warnings(replay.warnings);
-  std::cerr << "note: host_sync cannot be replayed; device_time and gathering are\n";
+  print_note("host_sync cannot be replayed; device_time and gathering are");
   provenance.finished = std::chrono::system_clock::now();
   if (output) {
     const nlohmann::ordered_json files = {{"files", options.files}};
@@ -58,7 +57,7 @@ int run_replay(const ReplayOptions& options) {
     output->file("results.json") << reports::replay_json(replay, options.files);
     reports::write_replay_frames(replay, output->file("frames.csv"));
     output->publish();
-    std::cerr << "results written to " << options.output << '\n';
+    print_note("results written to " + options.output);
   }
   print_result(formatted(replay, options));
   return kOk;

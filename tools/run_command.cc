@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -133,7 +132,7 @@ int run(const RunOptions& options) {
   provenance.finished = std::chrono::system_clock::now();
   if (output) {
     reports::write_archive(*output, *results, scenario, provenance);
-    std::cerr << "results written to " << options.output << '\n';
+    print_note("results written to " + options.output);
   }
   print_result(formatted(*results, scenario, options.format));
   return kOk;

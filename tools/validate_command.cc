@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iostream>
 #include <memory>
 
 #include "evaluation/evaluate.h"
@@ -23,7 +22,7 @@ bool validate(const std::string& file) {
     evaluation::check_pipelines(scenario);
     print_warnings(scenarios::warnings(scenario));
   } catch (const scenarios::InputError& error) {
-    std::cerr << "error: " << error.what() << '\n';
+    print_error(error.what());
     return false;
   }
   print_result(fmt::format("{}: ok\n", file));
