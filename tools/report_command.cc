@@ -75,11 +75,14 @@ int run(const ReportOptions& options) {
 
   reports::ReportInput input{.archives = {}, .command = options.command};
   for (reports::Archive& archive : archives) {
+    const ReportDetail detail = bounded(options.detail, archive, archives.size());
     auto reported = watched<reports::ReportedArchive>([&](const evaluation::Progress& progress) {
-      return with_figures(std::move(archive), options.detail, archives.size(), progress);
+      return with_figures(std::move(archive), detail, progress);
     });
     if (!reported) return kInterrupted;
     print_warnings(reported->notes);
+    const std::string bounds = detail_note(reported->archive, detail);
+    if (!bounds.empty()) reported->notes.insert(reported->notes.begin(), bounds);
     input.archives.push_back(std::move(*reported));
   }
   const std::string html = reports::html_report(input);

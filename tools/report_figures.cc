@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <utility>
 
 #include "recording/version.h"
 #include "reports/figures/figure_catalogue.h"
-#include "reports/figures/result_figures.h"
 #include "scenarios/loader.h"
 #include "tools/figure_source.h"
 
@@ -17,137 +15,137 @@ namespace simbench::tools {
 namespace {
 
 using reports::Archive;
-using reports::Figure;
-using reports::FigureScope;
 using reports::ReportedArchive;
 
 constexpr const char* kBudget = "budget";
+constexpr std::uint64_t kRunsOfABudget = 128;  // a seed; only for the progress
+constexpr std::size_t kMostNotes = 6;
 
-std::vector<std::string> pipelines_in_detail(const Archive& archive, const ReportDetail& detail) {
-  std::vector<std::string> pipelines = detail.pipelines;
-  if (!pipelines.empty()) return pipelines;
-  for (const evaluation::Row& row : archive.results.rows) pipelines.push_back(row.pipeline);
-  if (pipelines.size() > kMostRuns) pipelines.resize(kMostRuns);
-  return pipelines;
-}
+// A call of archive_figures and its share of the work.
+struct Step {
+  FigureOptions options;
+  std::uint64_t runs = 0;
+};
 
-std::uint64_t bounded_seeds(const std::optional<std::uint64_t>& wanted, const Archive& archive,
-                            std::uint64_t runs_for_each) {
-  const std::uint64_t fitting =
-      std::clamp<std::uint64_t>(kMostRuns / runs_for_each, 1, kDefaultSeeds);
-  return std::min(wanted.value_or(fitting), archive.results.seed_count);
-}
-
-// By id, in two kinds: what every seed has its own of, and what is there once.
-std::vector<std::string> figures_of(bool per_seed) {
-  std::vector<std::string> ids;
+// All figures but error budgets at once, then a budget for each pipeline.
+std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
+  Step first;
+  first.options.pipelines = detail.pipelines;
   for (const reports::FigureEntry& entry : reports::figure_catalogue()) {
-    const bool of_seed = entry.scope == FigureScope::kSeed || entry.scope == FigureScope::kRun;
-    if (of_seed == per_seed && entry.id != kBudget) ids.push_back(entry.id);
+    if (entry.id != kBudget) first.options.figures.push_back(entry.id);
   }
-  return ids;
-}
-
-// One call of archive_figures for each step, so that progress can be told and Ctrl-C is heard.
-std::vector<FigureOptions> steps_of(const Archive& archive, const ReportDetail& detail,
-                                    std::size_t archives) {
-  const std::vector<std::string> pipelines = pipelines_in_detail(archive, detail);
-  const std::uint64_t runs = pipelines.size() * archives;
-  const std::uint64_t seeds = bounded_seeds(detail.seeds, archive, runs);
-  const std::uint64_t budget_seeds = bounded_seeds(detail.budget_seeds, archive, runs);
-  std::vector<FigureOptions> steps = {{.pipelines = pipelines, .figures = figures_of(false)}};
-  for (std::uint64_t i = 0; i < seeds; ++i) {
-    steps.push_back({.seeds = {archive.results.first_seed + i},
-                     .pipelines = pipelines,
-                     .figures = figures_of(true)});
+  for (std::uint64_t i = 0; i < detail.seeds.value_or(1); ++i) {
+    first.options.seeds.push_back(archive.results.first_seed + i);
   }
-  for (const std::string& pipeline : pipelines) {
+  first.runs = first.options.seeds.size() * detail.pipelines.size();
+  std::vector<Step> steps = {first};
+  const std::uint64_t budget_seeds = detail.budget_seeds.value_or(0);
+  for (const std::string& pipeline : detail.pipelines) {
     if (budget_seeds == 0) break;
-    steps.push_back({.pipelines = {pipeline}, .budget_seeds = budget_seeds, .figures = {kBudget}});
+    Step step;
+    step.options.pipelines = {pipeline};
+    step.options.budget_seeds = budget_seeds;
+    step.options.figures = {kBudget};
+    step.runs = budget_seeds * kRunsOfABudget;
+    steps.push_back(step);
   }
   return steps;
-}
-
-std::string detail_note(const Archive& archive, const ReportDetail& detail, std::size_t archives) {
-  const std::vector<std::string> pipelines = pipelines_in_detail(archive, detail);
-  const std::uint64_t seeds = bounded_seeds(detail.seeds, archive, pipelines.size() * archives);
-  std::string note;
-  if (seeds < archive.results.seed_count) {
-    note = fmt::format(
-        "Tables and distributions are of all {} seeds; stamps, clocks and single pulses are shown "
-        "of the first {} (--seeds-in-detail).",
-        archive.results.seed_count, seeds);
-  }
-  if (pipelines.size() < archive.results.rows.size()) {
-    note += fmt::format("{}In detail: {} of {} pipelines (--pipelines).", note.empty() ? "" : " ",
-                        pipelines.size(), archive.results.rows.size());
-  }
-  return note;
 }
 
 std::string version_note(const Archive& archive) {
   if (archive.version == version() && archive.commit == commit()) return "";
   return fmt::format(
-      "The results are of simbench {} ({}), the figures of {} ({}), which ran the seeds again.",
+      "The results are of simbench {} ({}); simbench {} ({}) repeated the runs for the figures.",
       archive.version, archive.commit, version(), commit());
 }
 
-void add(std::vector<std::string>& notes, const std::string& note) {
-  const bool known = std::find(notes.begin(), notes.end(), note) != notes.end();
-  if (!note.empty() && !known) notes.push_back(note);
-}
-
-std::size_t place_in_catalogue(const Figure& figure) {
-  const auto& catalogue = reports::figure_catalogue();
-  const auto entry = std::find_if(catalogue.begin(), catalogue.end(),
-                                  [&](const auto& each) { return each.id == figure.id; });
-  return static_cast<std::size_t>(entry - catalogue.begin());
-}
-
-void draw(ReportedArchive& reported, const std::vector<FigureOptions>& steps,
+void draw(ReportedArchive& reported, const std::vector<Step>& steps,
           const evaluation::Progress& progress) {
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    progress(i, steps.size());
-    ArchiveFigures made = archive_figures(reported.archive, steps[i]);
+  std::uint64_t all = 0;
+  for (const Step& step : steps) all += step.runs;
+  std::uint64_t before = 0;
+  for (const Step& step : steps) {
+    ArchiveFigures made = archive_figures(
+        reported.archive, step.options, [&](std::uint64_t done, std::uint64_t total) {
+          progress(before + step.runs * done / std::max<std::uint64_t>(total, 1), all);
+        });
     std::move(made.figures.begin(), made.figures.end(), std::back_inserter(reported.figures));
-    for (const std::string& note : made.notes) add(reported.notes, note);
+    std::move(made.notes.begin(), made.notes.end(), std::back_inserter(reported.notes));
+    before += step.runs;
   }
-  progress(steps.size(), steps.size());
-  std::stable_sort(reported.figures.begin(), reported.figures.end(),
-                   [](const Figure& a, const Figure& b) {
-                     return place_in_catalogue(a) < place_in_catalogue(b);
-                   });
 }
 
-// What needs no scenario.
-void draw_results_only(ReportedArchive& reported, const std::string& reason) {
-  reported.figures = reports::distributions(reported.archive);
-  reported.notes = {reason};
+// What stands in the archive, without running anything.
+void draw_stored(ReportedArchive& reported, const FigureOptions& options) {
+  Archive stored = reported.archive;
+  stored.scenario_json.clear();
+  reported.figures = archive_figures(stored, options).figures;
+}
+
+void shorten(std::vector<std::string>& notes) {
+  if (notes.size() <= kMostNotes) return;
+  const std::size_t more = notes.size() - kMostNotes;
+  notes.resize(kMostNotes);
+  notes.push_back(fmt::format("... and {} more notes of this kind", more));
 }
 
 }  // namespace
 
-ReportedArchive with_figures(Archive archive, const ReportDetail& detail, std::size_t archives,
+ReportDetail bounded(const ReportDetail& detail, const Archive& archive, std::size_t archives) {
+  ReportDetail chosen = detail;
+  if (chosen.pipelines.empty()) {
+    for (const evaluation::Row& row : archive.results.rows)
+      chosen.pipelines.push_back(row.pipeline);
+    if (chosen.pipelines.size() > kMostRuns) chosen.pipelines.resize(kMostRuns);
+  }
+  const std::uint64_t each = std::max<std::uint64_t>(chosen.pipelines.size() * archives, 1);
+  const std::uint64_t fitting = std::clamp<std::uint64_t>(kMostRuns / each, 1, kDefaultSeeds);
+  chosen.seeds = std::min(detail.seeds.value_or(fitting), archive.results.seed_count);
+  chosen.budget_seeds = std::min(detail.budget_seeds.value_or(fitting), archive.results.seed_count);
+  return chosen;
+}
+
+ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
                              const evaluation::Progress& progress) {
   ReportedArchive reported{.archive = std::move(archive)};
+  const std::vector<Step> steps = steps_of(reported.archive, detail);
   if (reported.archive.scenario_json.empty()) {
-    draw_results_only(
-        reported,
-        "A results.json alone, without its manifest.json, does not say which scenario "
-        "it is of: only the tables and the distributions over seeds can be shown.");
+    reported.notes = {fmt::format(
+        "{} has no manifest, which names the scenario: only the tables and the distributions over "
+        "seeds can be shown; `simbench run --output DIR` writes archives that have one.",
+        reported.archive.path)};
+    draw_stored(reported, steps.front().options);
     return reported;
   }
   reports::read_seed_details(reported.archive);
-  add(reported.notes, detail_note(reported.archive, detail, archives));
-  add(reported.notes, version_note(reported.archive));
   try {
-    draw(reported, steps_of(reported.archive, detail, archives), progress);
+    draw(reported, steps, progress);
+    shorten(reported.notes);
+    const std::string other = version_note(reported.archive);
+    if (!other.empty()) reported.notes.insert(reported.notes.begin(), other);
   } catch (const scenarios::InputError& error) {
-    draw_results_only(
-        reported, fmt::format("Only the tables and the distributions over seeds can be shown: {}",
-                              error.what()));
+    reported.notes = {
+        fmt::format("The runs cannot be repeated, so only what the archive holds is "
+                    "shown: {}",
+                    error.what())};
+    draw_stored(reported, steps.front().options);
   }
   return reported;
+}
+
+std::string detail_note(const Archive& archive, const ReportDetail& detail) {
+  std::string note;
+  if (detail.seeds < archive.results.seed_count) {
+    note = fmt::format(
+        "Tables and distributions are of all {} seeds; stamps, clocks and single pulses are shown "
+        "of the first {} (--seeds-in-detail).",
+        archive.results.seed_count, *detail.seeds);
+  }
+  if (detail.pipelines.size() < archive.results.rows.size()) {
+    note += fmt::format("{}In detail: {} of {} pipelines (--pipelines).", note.empty() ? "" : " ",
+                        detail.pipelines.size(), archive.results.rows.size());
+  }
+  return note;
 }
 
 }  // namespace simbench::tools

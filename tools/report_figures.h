@@ -15,21 +15,27 @@ namespace simbench::tools {
 
 struct ReportDetail {
   // How many seeds, from the first; nothing: kDefaultSeeds, fewer where there are many pipelines.
-  std::optional<std::uint64_t> seeds;
-  std::optional<std::uint64_t> budget_seeds;  // likewise; 0: no error budgets
-  std::vector<std::string> pipelines{};       // empty: all of the archive
+  std::optional<std::uint64_t> seeds{};
+  std::optional<std::uint64_t> budget_seeds{};  // likewise; 0: no error budgets
+  std::vector<std::string> pipelines{};         // empty: all of the archive
 };
 
 inline constexpr std::uint64_t kDefaultSeeds = 4;
 // Runs (pipeline and seed) that a report shows in detail, if nobody asks for another number of
-// seeds: about 4 MB of figures of 18 cameras.
+// seeds: about 3 MB of figures of 18 cameras.
 inline constexpr std::uint64_t kMostRuns = 32;
 
-// The figures of one of `archives` in all, which share the bounds. Progress counts steps of work.
-// What cannot be drawn (no manifest, a scenario that this version does not take) is left out and
-// said in a note.
+// The same with every choice made, for one of `archives` that share the bounds.
+ReportDetail bounded(const ReportDetail& detail, const reports::Archive& archive,
+                     std::size_t archives);
+
+// `detail` as bounded() gives it. Progress counts runs. What cannot be drawn (no manifest, a
+// scenario that this version does not take) is left out, and a note says so.
 reports::ReportedArchive with_figures(reports::Archive archive, const ReportDetail& detail,
-                                      std::size_t archives, const evaluation::Progress& progress);
+                                      const evaluation::Progress& progress);
+
+// Of what not everything is shown; empty if it is.
+std::string detail_note(const reports::Archive& archive, const ReportDetail& detail);
 
 }  // namespace simbench::tools
 
