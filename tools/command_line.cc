@@ -20,6 +20,7 @@
 #include "tools/list_command.h"
 #include "tools/messages.h"
 #include "tools/replay_command.h"
+#include "tools/report_command.h"
 #include "tools/run_command.h"
 #include "tools/terminal.h"
 #include "tools/usage_error.h"
@@ -67,6 +68,7 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
 // headings, completion and man pages follow.
 void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments) {
   tools::add_run_command(app, action, arguments);
+  tools::add_report_command(app, action, arguments);
   tools::group_commands(app, "Run");
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
