@@ -1,5 +1,5 @@
-// The files of scenarios/*.json and scenarios/cameras/*.json as they are built into the program
-// (written by embed.cmake).
+// The files of scenarios/*.json, scenarios/cameras/*.json and scenarios/studies/*.json as they are
+// built into the program (written by embed.cmake).
 #ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 #define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 
@@ -24,6 +24,12 @@ const std::vector<BuiltinFile>& camera_files();
 
 // scenarios/cameras/schema.json.
 std::string_view camera_schema_text();
+
+// The studies in alphabetical order; their schema is not among them.
+const std::vector<BuiltinFile>& study_files();
+
+// scenarios/studies/schema.json.
+std::string_view study_schema_text();
 
 }  // namespace simbench::scenarios
 

@@ -1,4 +1,4 @@
-# Writes OUTPUT: the schemas, the scenarios and the camera profiles of FOLDER as the C++ source behind
+# Writes OUTPUT: the schemas, scenarios, camera profiles and studies of FOLDER as the C++ source behind
 # scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
 
 # Sets `result` to the initializers of the files of a folder, and `schema` to the text of its schema.
@@ -19,6 +19,7 @@ endfunction()
 
 read_folder(${FOLDER} scenarios schema)
 read_folder(${FOLDER}/cameras cameras camera_schema)
+read_folder(${FOLDER}/studies studies study_schema)
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #include "scenarios/builtin_files.h"
@@ -40,6 +41,14 @@ const std::vector<BuiltinFile>& camera_files() {
 }
 
 std::string_view camera_schema_text() { return R"json(@camera_schema@)json"; }
+
+const std::vector<BuiltinFile>& study_files() {
+  static const std::vector<BuiltinFile> files = {
+@studies@  };
+  return files;
+}
+
+std::string_view study_schema_text() { return R"json(@study_schema@)json"; }
 
 }  // namespace simbench::scenarios
 ]])

@@ -16,12 +16,15 @@
 #include "tools/describe_command.h"
 #include "tools/diagnose_command.h"
 #include "tools/exit_status.h"
+#include "tools/gate_command.h"
 #include "tools/help_format.h"
 #include "tools/list_command.h"
 #include "tools/messages.h"
+#include "tools/mpi_launch.h"
 #include "tools/replay_command.h"
 #include "tools/report_command.h"
 #include "tools/run_command.h"
+#include "tools/sweep_command.h"
 #include "tools/terminal.h"
 #include "tools/usage_error.h"
 #include "tools/validate_command.h"
@@ -66,12 +69,15 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
 
 // The one place where commands are added; the help lists them in this order and under these
 // headings, completion and man pages follow.
-void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments) {
+void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments,
+                  evaluation::TaskFarm* farm) {
   tools::add_run_command(app, action, arguments);
   tools::add_report_command(app, action, arguments);
+  tools::add_sweep_command(app, action, farm);
   tools::group_commands(app, "Run");
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
+  tools::add_gate_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings of real cameras");
   tools::add_compare_command(app, action);
@@ -82,7 +88,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::group_commands(app, "Scenarios and algorithms");
 }
 
-int parse_and_run(const std::vector<std::string>& arguments) {
+int parse_and_run(const std::vector<std::string>& arguments, evaluation::TaskFarm* farm) {
   CLI::App app("simbench: how well will these cameras, on these hosts, be synchronised?");
   app.name("simbench");
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
@@ -90,7 +96,7 @@ int parse_and_run(const std::vector<std::string>& arguments) {
   app.footer(kExamples);
   app.formatter(std::make_shared<tools::HelpFormat>());
   tools::Action action;
-  add_commands(app, action, arguments);
+  add_commands(app, action, arguments, farm);
 
   const std::vector<std::string> all = with_default_command(arguments);
   if (const auto problem = tools::unknown_command(app, all)) {
@@ -114,12 +120,13 @@ int bad_input(const std::exception& error) {
 
 }  // namespace
 
-int run_command_line(int argc, char** argv) {
+int run_command_line(int argc, char** argv, evaluation::TaskFarm* farm) {
   const std::vector<std::string> arguments(argv, argv + argc);
   tools::choose_message_format(arguments);
   reports::set_page_width(tools::width_of_output());
   try {
-    return parse_and_run(arguments);
+    if (farm == nullptr) tools::become_mpi_program(arguments);
+    return parse_and_run(arguments, farm);
   } catch (const scenarios::InputError& error) {
     return bad_input(error);
   } catch (const reports::OutputError& error) {

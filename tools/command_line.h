@@ -14,7 +14,13 @@
 
 namespace simbench {
 
-int run_command_line(int argc, char** argv);
+namespace evaluation {
+class TaskFarm;
+}
+
+// `farm` works on the runs of `simbench sweep`; null: the cores of this machine, and under mpirun
+// simbench-mpi in place of this program.
+int run_command_line(int argc, char** argv, evaluation::TaskFarm* farm = nullptr);
 
 }  // namespace simbench
 

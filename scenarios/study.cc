@@ -1,0 +1,38 @@
+#include "scenarios/study.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/builtin_files.h"
+
+namespace simbench::scenarios {
+
+using nlohmann::json;
+
+const std::vector<Study>& studies() {
+  static const std::vector<Study> all = [] {
+    std::vector<Study> studies;
+    for (const BuiltinFile& file : study_files()) {
+      const json in = json::parse(file.text);
+      studies.push_back({.name = std::string(file.name),
+                         .summary = in.at("summary"),
+                         .scenario = in.at("scenario"),
+                         .set = in.at("set"),
+                         .sweep = in.at("sweep"),
+                         .pipelines = in.at("pipelines"),
+                         .seeds = in.at("seeds"),
+                         .tables = in.at("tables")});
+    }
+    return studies;
+  }();
+  return all;
+}
+
+const Study* find_study(std::string_view name) {
+  const std::vector<Study>& all = studies();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Study& study) { return study.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace simbench::scenarios

@@ -1,0 +1,36 @@
+// Ready-made sweeps: a question, the scenario and the parameters that answer it
+// (scenarios/studies/*.json, whose schema documents every member; built into the program).
+//
+// Another study is another file in that folder; nothing else needs to change.
+//
+//   simbench sweep --study scalability -o results/scalability
+#ifndef SIMBENCH_SCENARIOS_STUDY_H_
+#define SIMBENCH_SCENARIOS_STUDY_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace simbench::scenarios {
+
+struct Study {
+  std::string name;
+  std::string summary;  // the question it answers, and how it is to be read
+  std::string scenario;
+  std::vector<std::string> set;    // "/json/pointer=value", for all points
+  std::vector<std::string> sweep;  // axes, as `simbench sweep --sweep` takes them
+  std::vector<std::string> pipelines;
+  std::uint64_t seeds = 0;
+  std::vector<std::string> tables;  // "response", "host_order", "seeds_needed"
+};
+
+// In alphabetical order.
+const std::vector<Study>& studies();
+
+// Null if there is no such study.
+const Study* find_study(std::string_view name);
+
+}  // namespace simbench::scenarios
+
+#endif  // SIMBENCH_SCENARIOS_STUDY_H_

@@ -1,0 +1,66 @@
+#include "tools/mpi_launch.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <system_error>
+
+#include "scenarios/loader.h"
+
+namespace simbench::tools {
+namespace {
+
+std::optional<long> number_in_environment(const char* name) {
+  const char* text = std::getenv(name);
+  if (text == nullptr) return std::nullopt;
+  char* end = nullptr;
+  const long number = std::strtol(text, &end, 10);
+  if (end == text || *end != '\0') return std::nullopt;
+  return number;
+}
+
+struct Launcher {
+  const char* size;
+  const char* rank;
+};
+// Slurm counts tasks for any job; only with PMIx's rank are they ranks of MPI.
+constexpr std::initializer_list<Launcher> kLaunchers = {
+    {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
+    {"PMI_SIZE", "PMI_RANK"},
+    {"SLURM_NTASKS", "PMIX_RANK"}};
+
+}  // namespace
+
+std::optional<long> mpi_rank() {
+  for (const Launcher& launcher : kLaunchers) {
+    const std::optional<long> size = number_in_environment(launcher.size);
+    const std::optional<long> rank = number_in_environment(launcher.rank);
+    if (size && rank && *size > 1) return rank;
+  }
+  return std::nullopt;
+}
+
+void become_mpi_program(const std::vector<std::string>& arguments) {
+  if (arguments.size() < 2 || arguments[1] != "sweep" || !mpi_rank()) return;
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string program = self.parent_path() / "simbench-mpi";
+  std::vector<std::string> own = arguments;
+  own.front() = program;
+  std::vector<char*> argv;
+  argv.reserve(own.size() + 1);
+  for (std::string& argument : own) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  ::execv(program.c_str(), argv.data());
+  throw scenarios::InputError(fmt::format(
+      "launched by MPI on more than one rank, but {} cannot be started: {}; build simbench where "
+      "OpenMPI and Boost.MPI 1.81 are installed (tools/setup check), or start it without mpirun",
+      program, std::strerror(errno)));
+}
+
+}  // namespace simbench::tools

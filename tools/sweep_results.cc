@@ -1,0 +1,80 @@
+#include "tools/sweep_results.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "algorithms/ports/assert.h"
+#include "evaluation/sweep_response.h"
+#include "evaluation/sweep_score.h"
+#include "reports/sweep_figure.h"
+#include "reports/sweep_report.h"
+#include "reports/text_table.h"
+#include "scenarios/study.h"
+
+namespace simbench::tools {
+namespace {
+
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+using evaluation::SweepScore;
+
+std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan& plan) {
+  std::vector<SweepScore> scores;
+  scores.reserve(plan.runs());
+  for (std::size_t run = 0; run < plan.runs(); ++run) {
+    std::optional<SweepScore> score = evaluation::score_of(log.text(run));
+    SIMBENCH_ASSERT(score.has_value(), "the log's checksums hold, so its texts are scores");
+    scores.push_back(std::move(*score));
+  }
+  return scores;
+}
+
+std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                    const std::vector<std::string>& tables) {
+  std::string text;
+  for (const std::string& table : tables) {
+    if (!text.empty()) text += '\n';
+    if (table == "host_order") {
+      text += reports::host_order_table(plan, rows);
+    } else if (table == "seeds_needed") {
+      text += reports::seeds_needed_table(plan, rows);
+    } else {
+      text += reports::response_table(plan, rows);
+    }
+  }
+  return text;
+}
+
+// For a file the page is as wide as need be, whatever the terminal.
+std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          const std::vector<std::string>& tables) {
+  const std::optional<std::size_t> width = reports::page_width();
+  reports::set_page_width(std::nullopt);
+  std::string text = text_of(plan, rows, tables);
+  reports::set_page_width(width);
+  return text;
+}
+
+}  // namespace
+
+std::string write_sweep_results(const SweepPlan& plan, const std::vector<std::string>& tables,
+                                reports::SweepFolder& folder) {
+  const std::vector<SweepScore> scores = scores_in(folder.log(), plan);
+  const std::vector<ResponseRow> rows = evaluation::response(plan, scores);
+  folder.write("sweep.csv", reports::sweep_csv(plan, scores));
+  folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
+  folder.write("sweep.txt", text_for_file(plan, rows, tables));
+  folder.log().put_in_order();
+  return text_of(plan, rows, tables);
+}
+
+std::string study_list() {
+  std::string text = "studies\n";
+  for (const scenarios::Study& study : scenarios::studies()) {
+    text += fmt::format("  {}\n{}", study.name, reports::wrapped(study.summary, 6));
+  }
+  return text;
+}
+
+}  // namespace simbench::tools
