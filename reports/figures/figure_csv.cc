@@ -1,0 +1,58 @@
+#include "reports/figures/figure_csv.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "reports/csv.h"
+
+namespace simbench::reports {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+std::string line(std::string_view panel, std::string_view series, const std::string& x, double y) {
+  return fmt::format("{},{},{},{}\n", csv_cell(panel), csv_cell(series), x, csv_cell(y));
+}
+
+std::string panel_lines(const FigurePanel& panel) {
+  std::string text;
+  for (const FigureSeries& series : panel.series) {
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const std::string x =
+          panel.categories.empty()
+              ? csv_cell(series.x[i])
+              : csv_cell(panel.categories.at(static_cast<std::size_t>(std::llround(series.x[i]))));
+      text += line(panel.title, series.label, x, series.y[i]);
+    }
+  }
+  for (const FigureLine& drawn : panel.lines) {
+    text += line(panel.title, drawn.label, drawn.vertical ? csv_cell(drawn.at) : "",
+                 drawn.vertical ? kNothing : drawn.at);
+  }
+  for (const FigureSpan& span : panel.spans) {
+    for (const double end : {span.from, span.to}) {
+      text += line(panel.title, span.label, csv_cell(end), kNothing);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string figure_csv(const Figure& figure) {
+  std::string text = "panel,series,x,y\n";
+  for (const FigurePanel& panel : figure.panels) text += panel_lines(panel);
+  for (const PhotographRow& row : figure.photographs) {
+    for (const Photograph& photograph : row.photographs) {
+      for (const PhotographedReading& reading : photograph.readings) {
+        text += line(row.label, photograph.label, csv_cell(reading.text), reading.share);
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace simbench::reports
