@@ -26,6 +26,7 @@
 #include "tools/run_command.h"
 #include "tools/sweep_command.h"
 #include "tools/terminal.h"
+#include "tools/trace_command.h"
 #include "tools/usage_error.h"
 #include "tools/validate_command.h"
 
@@ -73,6 +74,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
                   evaluation::TaskFarm* farm) {
   tools::add_run_command(app, action, arguments);
   tools::add_report_command(app, action, arguments);
+  tools::add_trace_command(app, action);
   tools::add_sweep_command(app, action, farm);
   tools::group_commands(app, "Run");
   tools::add_replay_command(app, action, arguments);
