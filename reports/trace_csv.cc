@@ -72,7 +72,9 @@ class Table {
       for (; cell != cells_.cend() && cell->at == at; ++cell) {
         row[places[cell->column]] = fmt::format("{:.3f}", cell->value);
       }
-      out << fmt::format("{},{}\n", seconds_text(at), fmt::join(row, ","));
+      out << seconds_text(at);
+      for (const std::string& text : row) out << ',' << text;
+      out << '\n';
     }
   }
 

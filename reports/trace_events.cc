@@ -82,7 +82,7 @@ class TimelineBuilder {
       return add_loss(index);
     }
     tracks_.point(pulse ? TracePhase::kArrowStep : TracePhase::kArrowBegin, TraceWhat::kFrameArrow,
-                  index, exposure, exposed);
+                  index + 1, exposure, exposed);
     tracks_.slice(frame_track(way, TrackKind::kUsb), TraceWhat::kUsb, index, way.offered,
                   way.transferred);
     const EventIndex stack = tracks_.slice(frame_track(way, TrackKind::kHostStack),
