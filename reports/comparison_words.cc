@@ -43,7 +43,7 @@ std::string factor_words(const Estimate& ratio) {
 }  // namespace
 
 std::string ratio_text(double ratio) {
-  constexpr double kWhole = 1000;
+  constexpr double kWhole = 999.5;  // rounds to four digits
   if (std::isnan(ratio)) return "-";
   return std::abs(ratio) < kWhole ? fmt::format("{:.3g}", ratio) : fmt::format("{:.0f}", ratio);
 }
