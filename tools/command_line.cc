@@ -16,6 +16,7 @@
 #include "tools/describe_command.h"
 #include "tools/diagnose_command.h"
 #include "tools/exit_status.h"
+#include "tools/figure_command.h"
 #include "tools/gate_command.h"
 #include "tools/help_format.h"
 #include "tools/list_command.h"
@@ -24,6 +25,7 @@
 #include "tools/replay_command.h"
 #include "tools/report_command.h"
 #include "tools/run_command.h"
+#include "tools/shell_commands.h"
 #include "tools/sweep_command.h"
 #include "tools/terminal.h"
 #include "tools/trace_command.h"
@@ -73,25 +75,30 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
 void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments,
                   evaluation::TaskFarm* farm) {
   tools::add_run_command(app, action, arguments);
-  tools::add_report_command(app, action, arguments);
-  tools::add_trace_command(app, action);
   tools::add_sweep_command(app, action, farm);
   tools::group_commands(app, "Run");
+  tools::add_report_command(app, action, arguments);
+  tools::add_trace_command(app, action);
+  tools::add_figure_command(app, action);
+  tools::group_commands(app, "Look at results");
+  tools::add_compare_command(app, action);
+  tools::add_gate_command(app, action);
+  tools::group_commands(app, "Compare results");
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
-  tools::add_gate_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings of real cameras");
-  tools::add_compare_command(app, action);
-  tools::group_commands(app, "Compare");
   tools::add_list_command(app, action);
   tools::add_describe_command(app, action);
   tools::add_validate_command(app, action);
   tools::group_commands(app, "Scenarios and algorithms");
+  tools::add_completion_command(app, action);
+  tools::add_manual_command(app, action);  // last: it knows those before it
+  tools::group_commands(app, "The command line itself");
 }
 
 int parse_and_run(const std::vector<std::string>& arguments, evaluation::TaskFarm* farm) {
-  CLI::App app("simbench: how well will these cameras, on these hosts, be synchronised?");
+  CLI::App app("How well will these cameras, on these hosts, be synchronised?");
   app.name("simbench");
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
   app.require_subcommand(1);

@@ -1,9 +1,12 @@
 #include "tools/list_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "algorithms/registry.h"
 #include "reports/text_table.h"
@@ -22,6 +25,7 @@ Examples:
   simbench list                                       everything by name
   simbench list algorithms                            with parameters and sources
   simbench list cameras                               what each camera model can do
+  simbench list scenarios --format names              for scripts: one name a line
   simbench list pipelines --scenario 18cam_6host_45fps)";
 
 // Variants have no entries of their own (algorithms/device_time/variants.h).
@@ -65,6 +69,31 @@ std::string scenarios_text() {
   return text;
 }
 
+// The same for scripts: one name a line.
+std::string bare_names(const ListOptions& options) {
+  std::vector<std::string> names;
+  const auto add_algorithms = [&names](const auto& entries) {
+    for (const auto& entry : entries) names.push_back(entry.info.name);
+  };
+  if (options.what.empty() || options.what == "scenarios") {
+    for (const auto& scenario : scenarios::builtin_scenarios()) names.push_back(scenario.name);
+  }
+  if (options.what.empty() || options.what == "algorithms") {
+    add_algorithms(host_sync_algorithms());
+    add_algorithms(device_time_algorithms());
+    add_algorithms(gathering_algorithms());
+  }
+  if (options.what == "pipelines") {
+    for (const auto& pipeline : scenarios::load_scenario(options.scenario).pipelines) {
+      names.push_back(pipeline.name);
+    }
+  }
+  if (options.what == "cameras") {
+    for (const auto& camera : scenarios::camera_profiles()) names.push_back(camera.model);
+  }
+  return fmt::format("{}\n", fmt::join(names, "\n"));
+}
+
 template <class Entries>
 std::string names_text(const char* stage, const Entries& entries) {
   TextTable table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
@@ -102,6 +131,7 @@ std::string pipelines_text(const std::string& scenario) {
 }
 
 std::string listing(const ListOptions& options) {
+  if (options.format == "names") return bare_names(options);
   if (options.what == "scenarios") return scenarios_text();
   if (options.what == "cameras") {
     return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
@@ -134,14 +164,15 @@ void add_list_command(CLI::App& app, Action& action) {
       ->add_option("--scenario", options->scenario,
                    "Whose pipelines to list. Default: " + options->scenario)
       ->type_name("SCENARIO");
-  add_format_option(*command, options->format, {"text", "json"});
+  add_format_option(*command, options->format, {"text", "names", "json"});
   command->footer(kExamples);
   command->callback([options, &action] {
     if (options->format == "json" && options->what != "cameras") {
       throw CLI::ValidationError("--format", "found 'json', allowed: with cameras only");
     }
     action = [options] {
-      print_result(listing(*options));
+      print_result(options->format == "text" ? reports::fitted(listing(*options))
+                                             : listing(*options));
       return static_cast<int>(kOk);
     };
   });
