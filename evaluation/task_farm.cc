@@ -13,6 +13,11 @@ std::optional<TaskQueue::Task> TaskQueue::next() {
   return Task{index, tasks_.task(index)};
 }
 
+std::size_t TaskQueue::left() const {
+  const std::lock_guard lock(mutex_);
+  return failure_ ? 0 : tasks_.count - next_;
+}
+
 void TaskQueue::answered(std::size_t task, const std::string& answer) {
   const std::lock_guard lock(mutex_);
   try {

@@ -66,6 +66,8 @@ class TaskQueue {
 
   // Nothing once all are given out or one has failed.
   std::optional<Task> next();
+  // How many next() has still to give.
+  std::size_t left() const;
   void answered(std::size_t task, const std::string& answer);
   void failed(std::exception_ptr error);
   // Makes a worker and lets it work until there is nothing left; what it throws goes to failed().
