@@ -3,7 +3,7 @@
 //
 //   {"schema_version": 1, "kind": "simbench baseline", "version": ..., "commit": ...,
 //    "scenario": "18cam_6host_45fps", "seeds": {"first": 1, "count": 32},
-//    "margins": {"amd_ms": {"relative": 0.05, "absolute": 0.005}, ... one for each metric},
+//    "margins": {"amd_ms": {"relative": 0.02, "absolute": 0.001}, ... one for each metric},
 //    "scenario_digest": ..., "pipelines_digest": ...,
 //    "resolved_scenario": {...},
 //    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,

@@ -14,6 +14,12 @@ using evaluation::Estimate;
 using evaluation::PairedComparison;
 using evaluation::PairedMetric;
 
+// As the other numbers, but a small ratio keeps its digits.
+std::string ratio_cell(double ratio) {
+  constexpr double kSmall = 0.1;
+  return ratio > 0 && ratio < kSmall ? factor_text(ratio) : number_text(ratio);
+}
+
 std::vector<std::string> cells(const std::string& pipeline, const PairedMetric& metric,
                                const PairedComparison& c, double smallest_effect) {
   const auto shown = [&](double value) { return number_text(shown_value(metric, value)); };
@@ -23,8 +29,8 @@ std::vector<std::string> cells(const std::string& pipeline, const PairedMetric& 
           shown(c.median_b),
           shown(c.difference.value),
           fmt::format("[{}, {}]", shown(c.difference.low), shown(c.difference.high)),
-          ratio_text(c.ratio.value),
-          fmt::format("[{}, {}]", ratio_text(c.ratio.low), ratio_text(c.ratio.high)),
+          ratio_cell(c.ratio.value),
+          fmt::format("[{}, {}]", ratio_cell(c.ratio.low), ratio_cell(c.ratio.high)),
           verdict_text(c, smallest_effect)};
 }
 

@@ -25,27 +25,27 @@ bool is_sure(const PairedComparison& comparison) {
 std::string factor_words(const Estimate& ratio) {
   constexpr double kTimes = 2;
   if (ratio.value >= kTimes) {
-    return fmt::format("{} times larger [{}, {}]", ratio_text(ratio.value), ratio_text(ratio.low),
-                       ratio_text(ratio.high));
+    return fmt::format("{} times larger [{}, {}]", factor_text(ratio.value), factor_text(ratio.low),
+                       factor_text(ratio.high));
   }
   if (ratio.value * kTimes <= 1 && ratio.low > 0) {
-    return fmt::format("{} times smaller [{}, {}]", ratio_text(1 / ratio.value),
-                       ratio_text(1 / ratio.high), ratio_text(1 / ratio.low));
+    return fmt::format("{} times smaller [{}, {}]", factor_text(1 / ratio.value),
+                       factor_text(1 / ratio.high), factor_text(1 / ratio.low));
   }
   const bool is_larger = ratio.value >= 1;
   const double near = is_larger ? ratio.low : ratio.high;
   const double far = is_larger ? ratio.high : ratio.low;
-  const auto percent = [](double share) { return ratio_text(100 * std::abs(share - 1)); };
+  const auto percent = [](double share) { return factor_text(100 * std::abs(share - 1)); };
   return fmt::format("{} % {} [{} %, {} %]", percent(ratio.value), is_larger ? "larger" : "smaller",
                      percent(near), percent(far));
 }
 
 }  // namespace
 
-std::string ratio_text(double ratio) {
+std::string factor_text(double factor) {
   constexpr double kWhole = 999.5;  // rounds to four digits
-  if (std::isnan(ratio)) return "-";
-  return std::abs(ratio) < kWhole ? fmt::format("{:.3g}", ratio) : fmt::format("{:.0f}", ratio);
+  if (std::isnan(factor)) return "-";
+  return std::abs(factor) < kWhole ? fmt::format("{:.3g}", factor) : fmt::format("{:.0f}", factor);
 }
 
 const char* verdict_name(Verdict verdict) {

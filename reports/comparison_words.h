@@ -22,7 +22,7 @@ double shown_value(const evaluation::PairedMetric& metric, double value);
 std::string shown_title(const evaluation::PairedMetric& metric);
 
 // Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
-std::string ratio_text(double ratio);
+std::string factor_text(double factor);
 
 // What B is against A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]",
 // "recall 100 % in place of 0 %", "absolute error: no difference seen".

@@ -84,7 +84,7 @@ TEST_F(BaselineFile, ALinePerMetricAndTwelveDigits) {
 
 TEST_F(BaselineFile, MarginsMayBeEdited) {
   write_baseline(make_baseline(sample_archive("a")), path_);
-  edit("\"relative\":0.05", "\"relative\":0.2");
+  edit("\"relative\":0.02", "\"relative\":0.2");
   EXPECT_EQ(read_baseline(path_).margins[0].relative, 0.2);
   edit("\"relative\":0.2", "\"relative\":-1");
   EXPECT_THAT(reading(),

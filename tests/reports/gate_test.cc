@@ -62,8 +62,8 @@ TEST(ExactGate, RoundingIsNoChangeAndAMillionthIs) {
 }
 
 TEST(ExactGate, TheMarginDecides) {
-  EXPECT_TRUE(exact(scaled(1.049)).passed());
-  const GateReport worse = exact(scaled(1.051));
+  EXPECT_TRUE(exact(scaled(1.019)).passed());
+  const GateReport worse = exact(scaled(1.021));
   EXPECT_FALSE(worse.passed());
   EXPECT_EQ(amd_of_good(worse).outcome, GateOutcome::kFailed);
   EXPECT_EQ(worse.count(GateOutcome::kFailed), 1U);
@@ -74,9 +74,9 @@ TEST(ExactGate, TheMarginDecides) {
 
 TEST(ExactGate, SmallValuesHaveAnAbsoluteMargin) {
   Archive before = sample_archive("before");
-  scale(before.results.rows[1].amd_ms, 0.001);  // 2 us, of which 5 % would be nothing
+  scale(before.results.rows[1].amd_ms, 0.001);  // 2 us, of which 2 % would be nothing
   Archive now = before;
-  for (double& value : now.results.rows[1].amd_ms.values) value += 0.0049;
+  for (double& value : now.results.rows[1].amd_ms.values) value += 0.0009;
   EXPECT_TRUE(gate(now, baseline_of(before), GateMode::kExact).passed());
   for (double& value : now.results.rows[1].amd_ms.values) value += 0.0002;
   EXPECT_FALSE(gate(now, baseline_of(before), GateMode::kExact).passed());
@@ -145,7 +145,7 @@ TEST(StatisticalGate, FailsWhereWorseIsBothMuchAndSure) {
   EXPECT_EQ(amd_of_good(much).outcome, GateOutcome::kFailed);
   EXPECT_FALSE(much.passed());
   EXPECT_GT(amd_of_good(much).difference.low, 0);
-  EXPECT_TRUE(statistical(scaled(1.04)).passed());  // sure, but within the margin
+  EXPECT_TRUE(statistical(scaled(1.015)).passed());  // sure, but within the margin
   EXPECT_EQ(amd_of_good(statistical(scaled(0.8))).outcome, GateOutcome::kBetter);
   // A few seeds that are far worse: much, but not sure.
   Archive now = sample_archive("now");
