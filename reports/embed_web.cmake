@@ -3,7 +3,7 @@
 #
 # The script is one module: what others use comes first.
 set(script "")
-foreach(name data chart photographs figure_view report)
+foreach(name data axes overlay chart photographs figure_view report)
   file(READ ${FOLDER}/${name}.js text)
   string(APPEND script "${text}\n")
 endforeach()

@@ -113,6 +113,9 @@ class FigureView {
     host.setAttribute('aria-label', `${panel.title || this.shown.title}: ${panel.y_label} over ${
         panel.x_label || 'categories'}. ${names}. Plus and minus zoom, arrows move, 0 resets.`);
     if (panel.title) root.append(element('h5', '', panel.title));
+    if (!panel.categories.length || !isLying(panel)) {
+      root.append(element('div', 'y-label', panel.y_label));
+    }
     root.append(host);
     this.body.append(root);
     return host;
@@ -142,7 +145,7 @@ class FigureView {
     chart.over.addEventListener('click', ({clientX}) => {
       if (Math.abs(clientX - from) > 3) return;
       const left = clientX - chart.over.getBoundingClientRect().left;
-      this.page.chosen(this, chart.data[0][chart.posToIdx(left)]);
+      this.page.chosen(this, Math.round(chart.posToVal(left, 'x')));
     });
   }
 

@@ -58,9 +58,11 @@ function displayOf(readings) {
   return svg;
 }
 
+// What can be seen, that is: from half a percent on.
 function readingsText(readings) {
-  return readings.map(({text, share}) => readings.length > 1 ?
-      `${text} (${Math.round(share * 100)} %)` : text).join(', ');
+  const seen = readings.filter(({share}) => share >= 0.005);
+  if (seen.length === 1) return seen[0].text;
+  return seen.map(({text, share}) => `${text} (${Math.round(share * 100)} %)`).join(', ');
 }
 
 function element(name, className, text = '') {

@@ -1,0 +1,133 @@
+// The HTML report in a real browser: a report made by the real simbench is opened from the disk, in
+// two widths and two themes, looked at, used, and printed.
+//
+// Run by CTest (label `browser`); by hand:
+//   node tests/browser/report_test.mjs build/release/bin/simbench build/browser
+// Chromium is the system's (CHROMIUM names another one). The last line counts the checks.
+import assert from 'node:assert/strict';
+import {mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import path from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+import {closeBrowser, openPage} from './browser.mjs';
+import {makeReport} from './make_report.mjs';
+import * as look from './look.mjs';
+
+const [simbench, packages] = process.argv.slice(2).map((argument) => path.resolve(argument));
+if (!packages) {
+  console.error('usage: node report_test.mjs SIMBENCH FOLDER_OF_NODE_MODULES');
+  process.exit(2);
+}
+
+const folder = mkdtempSync(path.join(tmpdir(), 'simbench_report.'));
+const kShapes = [
+  {width: 1280, height: 900, theme: 'light'}, {width: 1280, height: 900, theme: 'dark'},
+  {width: 390, height: 844, theme: 'light'}, {width: 390, height: 844, theme: 'dark'},
+];
+let passed = 0, failed = 0;
+
+async function check(name, action) {
+  try {
+    await action();
+    ++passed;
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED: ${name}\n  ${String(error.message).replaceAll('\n', '\n  ')}`);
+  }
+}
+
+// Opens the report, runs the checks, and then asks whether anything went wrong or out.
+async function withPage(file, shape, fragment, action) {
+  const opened = await openPage(packages, pathToFileURL(file).href + fragment, shape);
+  const name = `${path.basename(file)} at ${shape.width}, ${shape.theme}`;
+  await action(opened.page, (what, test) => check(`${name}: ${what}`, test));
+  await check(`${name}: nothing was asked from outside`, () =>
+      assert.deepEqual(opened.requests, []));
+  await check(`${name}: no error and no warning was logged`, () => assert.deepEqual(opened.errors, []));
+  await opened.context.close();
+}
+
+async function checkLook(file, shape) {
+  await withPage(file, shape, '', async (page, test) => {
+    await test('the theme is what the system asks for', async () =>
+        assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), shape.theme));
+    await test('the page does not scroll sideways', () => look.fitsWidth(page));
+    await look.scrollThrough(page);
+    await test('the page does not scroll sideways once all is drawn', () => look.fitsWidth(page));
+    for (const id of await look.visibleFigures(page)) {
+      await test(`${id} has data and drew it`, () => look.isDrawn(page, id));
+    }
+    await test('every control has a name', () => look.controlsAreNamed(page));
+    const first = await page.evaluate(() => performance.getEntriesByName('first figure')[0].startTime);
+    console.log(`${path.basename(file)} at ${shape.width}, ${shape.theme}: first figure after ${
+        first.toFixed(0)} ms`);
+  });
+}
+
+async function checkUse(file) {
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await test('dragging zooms, a double click and the button reset', () => look.zooms(page));
+    await test('the keyboard zooms', () => look.zoomsByKey(page));
+    await test('hovering shows values', () => look.showsValues(page));
+    await test('another pipeline changes what is drawn', () => look.switches(page, 'Pipeline'));
+    await test('another seed changes what is drawn', () => look.switches(page, 'Seed'));
+    await test('the switches above change all figures', () => look.switchesAll(page));
+    await test('an entry of the legend hides its series', () => look.hidesSeries(page));
+    await test('the button changes the theme and its colours', () => look.changesTheme(page));
+  });
+}
+
+async function checkLink(file) {
+  let fragment = '', before = null;
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await test('a click into a frame writes it into the address', async () => {
+      ({fragment, before} = await look.choosesFrame(page));
+    });
+  });
+  await withPage(file, kShapes[0], fragment, async (page, test) => {
+    await test('a link to a frame shows the same', () => look.showsFrame(page, before));
+  });
+  await withPage(file, kShapes[0], '#archive=7&pipeline=none&figure=%3Cb%3E&pulse=x', async (page, test) => {
+    await test('a fragment of nonsense shows the report', () => look.isDrawn(page, 'frame_errors'));
+  });
+}
+
+async function checkPrint(file) {
+  await withPage(file, kShapes[1], '', async (page, test) => {
+    await page.emulateMedia({media: 'print'});
+    await test('on paper every figure is drawn, without controls', () => look.printsAll(page));
+    await test('on paper all is dark on white', () => look.printsLight(page));
+    await page.emulateMedia({media: 'screen'});
+    await test('afterwards the figures fill the screen again', () => look.isWideAgain(page));
+  });
+}
+
+async function checkArchives(file) {
+  await withPage(file, kShapes[0], '', async (page, test) => {
+    await test('the archives are side by side in a table', () => look.compares(page));
+    await test('a switch shows the other archive', () => look.switchesArchive(page));
+  });
+}
+
+async function checkWithoutScript(file) {
+  const opened = await openPage(
+      packages, pathToFileURL(file).href, {...kShapes[0], javaScriptEnabled: false});
+  await check('without JavaScript the tables are there', () => look.hasTables(opened.page));
+  await opened.context.close();
+}
+
+const {one, two, hostile} = makeReport(simbench, folder);
+for (const shape of kShapes) await checkLook(one, shape);
+await checkUse(one);
+await checkLink(one);
+await checkPrint(one);
+await checkArchives(two);
+await withPage(hostile, kShapes[0], '', async (page, test) => {
+  await test('names with markup are text', () => look.isHarmless(page));
+});
+await checkWithoutScript(one);
+await closeBrowser();
+rmSync(folder, {recursive: true});
+console.log(`${passed} checks passed, ${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);
