@@ -46,7 +46,8 @@ std::optional<long> mpi_rank() {
 }
 
 void become_mpi_program(const std::vector<std::string>& arguments) {
-  if (arguments.size() < 2 || arguments[1] != "sweep" || !mpi_rank()) return;
+  const std::optional<long> rank = mpi_rank();
+  if (arguments.size() < 2 || arguments[1] != "sweep" || !rank) return;
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::string program = self.parent_path() / "simbench-mpi";
@@ -57,10 +58,13 @@ void become_mpi_program(const std::vector<std::string>& arguments) {
   for (std::string& argument : own) argv.push_back(argument.data());
   argv.push_back(nullptr);
   ::execv(program.c_str(), argv.data());
+  const int reason = errno;
+  // Rank 0 speaks for all; a status of failure here might end it before it has spoken.
+  if (*rank > 0) std::exit(0);
   throw scenarios::InputError(fmt::format(
       "launched by MPI on more than one rank, but {} cannot be started: {}; build simbench where "
       "OpenMPI and Boost.MPI 1.81 are installed (tools/setup check), or start it without mpirun",
-      program, std::strerror(errno)));
+      program, std::strerror(reason)));
 }
 
 }  // namespace simbench::tools

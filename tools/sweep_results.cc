@@ -1,16 +1,24 @@
 #include "tools/sweep_results.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
+#include <system_error>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/sweep_response.h"
 #include "evaluation/sweep_score.h"
+#include "reports/figures/gnuplot.h"
+#include "reports/output_folder.h"
 #include "reports/sweep_figure.h"
 #include "reports/sweep_report.h"
 #include "reports/text_table.h"
 #include "scenarios/study.h"
+#include "tools/messages.h"
 
 namespace simbench::tools {
 namespace {
@@ -56,6 +64,36 @@ std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>&
   return text;
 }
 
+reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          const std::string& table) {
+  if (table == "host_order") return reports::host_order_figure(plan, rows);
+  if (table == "seeds_needed") return reports::seeds_needed_figure(plan, rows);
+  return reports::response_figure(plan, rows);
+}
+
+// Drawn elsewhere: what gnuplot leaves when it is killed does not belong into the folder. Without a
+// picture a sweep is complete all the same.
+void draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
+  constexpr const char* kName = "sweep.svg";
+  folder.remove(kName);
+  if (figure.panels.empty()) return;
+  namespace fs = std::filesystem;
+  const fs::path picture =
+      fs::temp_directory_path() / fmt::format("simbench_sweep_{}.svg", ::getpid());
+  std::error_code ignored;  // of tidying up
+  try {
+    reports::draw(figure, reports::PlotFormat::kSvg, picture);
+  } catch (const reports::OutputError& error) {
+    fs::remove(picture, ignored);
+    print_warnings({fmt::format("{} was not drawn: {}", kName, error.what())});
+    return;
+  }
+  std::ifstream in(picture, std::ios::binary);
+  const std::string svg{std::istreambuf_iterator<char>(in), {}};
+  fs::remove(picture, ignored);
+  folder.write(kName, svg);
+}
+
 }  // namespace
 
 std::string write_sweep_results(const SweepPlan& plan, const std::vector<std::string>& tables,
@@ -65,6 +103,7 @@ std::string write_sweep_results(const SweepPlan& plan, const std::vector<std::st
   folder.write("sweep.csv", reports::sweep_csv(plan, scores));
   folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
   folder.write("sweep.txt", text_for_file(plan, rows, tables));
+  draw_figure(figure_of(plan, rows, tables.front()), folder);
   folder.log().put_in_order();
   return text_of(plan, rows, tables);
 }
