@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kStepMs = 1000 / kDisplayRateHz;
 constexpr std::int64_t kMostReadings = 24;
+constexpr double kLeastShare = 0.01;
 
 // Minutes, seconds and milliseconds of the display's frame `step`: whole ones, as clocks count.
 std::string reading(std::int64_t step) {
@@ -35,6 +36,10 @@ std::vector<PhotographedReading> display_readings(double start_ms, double end_ms
     const double to = std::min(end, static_cast<double>(step + 1) * kStepMs);
     readings.push_back({reading(step), (to - from) / (end - start_ms)});
   }
+  std::erase_if(readings, [](const PhotographedReading& r) { return r.share < kLeastShare; });
+  double sum = 0;
+  for (const PhotographedReading& seen : readings) sum += seen.share;
+  for (PhotographedReading& seen : readings) seen.share /= sum;
   return readings;
 }
 

@@ -14,8 +14,8 @@ namespace simbench::reports {
 inline constexpr double kDisplayRateHz = 120;
 
 // What is on the display from `start_ms` to `end_ms` (true time), with the shares of that time; an
-// exposure of no length sees one reading. At most 24 readings: those of the longest exposures are
-// the first ones, and shares are of what is shown.
+// exposure of no length sees one reading. What is shown for less than 1 % of it leaves no trace. At
+// most 24 readings, the first ones. The shares add up to 1.
 std::vector<PhotographedReading> display_readings(double start_ms, double end_ms);
 
 }  // namespace simbench::reports

@@ -125,20 +125,31 @@ double CommonReference::of(const FrameDetail& frame) const {
 
 FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double FrameDetail::*stamp,
                           const CommonReference& reference, int colour) {
-  FigureSeries made = series(camera_label(run, camera), Mark::kPoints, colour);
+  FigureSeries made = series(camera_label(run, camera), Mark::kLine, colour);
   const CameraDetail& of_camera = run.cameras[camera];
   for (std::size_t i = 0; i < of_camera.frames.size(); ++i) {
     const FrameDetail& frame = of_camera.frames[i];
     if (run.has_pulses ? !frame.evaluated : frame.in_warm_up) continue;
-    made.x.push_back(run.has_pulses ? static_cast<double>(frame.pulse) : static_cast<double>(i));
+    const auto x = static_cast<double>(run.has_pulses ? frame.pulse : static_cast<std::int64_t>(i));
+    const bool lost_before = i > 0 && of_camera.frames[i - 1].counter + 1 != frame.counter;
+    if (lost_before && !made.x.empty()) {
+      made.x.push_back(x);
+      made.y.push_back(kNan);
+    }
+    made.x.push_back(x);
     made.y.push_back(frame.*stamp - reference.of(frame));
   }
   return thinned(std::move(made), kMostPoints);
 }
 
 std::string reference_axis(const RunDetail& run) {
-  return run.has_truth ? "global stamp - true time on the master's clock (ms)"
-                       : "global stamp - median of the pulse (ms)";
+  return run.has_truth ? "global stamp - truth (ms)" : "global stamp - median (ms)";
+}
+
+std::string truth_note(const RunDetail& run) {
+  return run.has_truth
+             ? " The truth is what the master's clock read at mid-exposure."
+             : " There is no truth; the median is that of all cameras' stamps of the pulse.";
 }
 
 }  // namespace simbench::reports

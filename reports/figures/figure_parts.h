@@ -58,8 +58,9 @@ class CommonReference {
 FigureSeries stamp_series(const evaluation::RunDetail& run, std::size_t camera,
                           double evaluation::FrameDetail::*stamp, const CommonReference& reference,
                           int colour);
-// What its y axis says.
+// What its y axis says, and what a caption has to add; the second begins with a blank.
 std::string reference_axis(const evaluation::RunDetail& run);
+std::string truth_note(const evaluation::RunDetail& run);
 
 }  // namespace simbench::reports
 

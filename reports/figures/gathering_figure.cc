@@ -162,7 +162,7 @@ FigurePanel frames_panel(const RunDetail& run, const Timeline& timeline) {
 }
 
 FigurePanel sets_panel(const RunDetail& run) {
-  FigurePanel made = panel("Sets", "pulse", "range of a set's global stamps (ms)");
+  FigurePanel made = panel("Sets", "pulse", "range of the set (ms)");
   made.x_is_pulse = true;
   for (const Lot lot : {Lot::kGathered, Lot::kMixed, Lot::kPartial}) {
     std::vector<std::pair<double, double>> points;

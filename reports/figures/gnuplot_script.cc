@@ -22,9 +22,12 @@ constexpr std::array<const char*, 3> kSpanColours = {"#E8E8E8", "#D6E6F2", "#FBE
 constexpr std::array<int, 4> kPointTypes = {7, 5, 9, 13};
 
 constexpr int kWidth = 900;  // points of the picture; a PDF has 100 of them to the inch
-constexpr int kPanelHeight = 250;
+constexpr int kPanelHeight = 230;
+constexpr int kAxisHeight = 105;  // of a panel: its title and x axis
+constexpr int kEntryHeight = 15;  // of a legend
 constexpr int kTitleHeight = 40;
 constexpr double kPointsPerInch = 100;
+constexpr double kFewTics = 12;  // of whole numbers, none between them
 
 // A single quote is doubled; a line of gnuplot ends with its line.
 std::string in_quotes(std::string_view text) {
@@ -50,7 +53,7 @@ std::string datablock(std::size_t number, const FigureSeries& series) {
 
 // What the labels of the series of one colour have in common.
 std::string common_label(const std::string& a, const std::string& b) {
-  if (a == b) return a;
+  if (a == b || b.starts_with(a + ",")) return a;
   const auto differ = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
   const std::string common(a.begin(), differ);
   const std::size_t comma = common.rfind(',');
@@ -66,10 +69,17 @@ std::map<int, std::string> legend_of(const FigurePanel& panel) {
   return legend;
 }
 
+std::size_t number_of(const FigureSeries& series) {
+  return static_cast<std::size_t>(std::max(series.colour, 0));
+}
+
+std::string colour_of(const FigureSeries& series) {
+  return kColours.at(number_of(series) % kColours.size());
+}
+
 std::string style(const FigureSeries& series) {
-  const auto number = static_cast<std::size_t>(std::max(series.colour, 0));
-  const char* colour = kColours.at(number % kColours.size());
-  const std::size_t turn = number / kColours.size();
+  const std::string colour = colour_of(series);
+  const std::size_t turn = number_of(series) / kColours.size();
   const std::size_t dash = turn % 5 + 1;
   switch (series.mark) {
     case Mark::kPoints:
@@ -85,12 +95,25 @@ std::string style(const FigureSeries& series) {
   return "";
 }
 
+// By the label of a shaded stretch, for all panels of a figure.
+using SpanColours = std::map<std::string, const char*>;
+
+SpanColours span_colours(const Figure& figure) {
+  SpanColours colours;
+  for (const FigurePanel& panel : figure.panels) {
+    for (const FigureSpan& span : panel.spans) {
+      colours.emplace(span.label, kSpanColours.at(colours.size() % kSpanColours.size()));
+    }
+  }
+  return colours;
+}
+
 // Shaded stretches lie behind the data, and stand in the legend.
-std::string spans(const FigurePanel& panel, std::vector<std::string>& plots) {
+std::string spans(const FigurePanel& panel, const SpanColours& colours,
+                  std::vector<std::string>& plots) {
   std::string text;
-  for (std::size_t i = 0; i < panel.spans.size(); ++i) {
-    const FigureSpan& span = panel.spans[i];
-    const char* colour = kSpanColours.at(i % kSpanColours.size());
+  for (const FigureSpan& span : panel.spans) {
+    const char* colour = colours.at(span.label);
     fmt::format_to(std::back_inserter(text),
                    "set object rect from {}, graph 0 to {}, graph 1 behind fc rgb '{}' fs solid "
                    "noborder\n",
@@ -101,11 +124,18 @@ std::string spans(const FigurePanel& panel, std::vector<std::string>& plots) {
   return text;
 }
 
+// A line named after a series ("mine, published") has its colour.
+std::string line_colour(const FigurePanel& panel, const FigureLine& line) {
+  for (const FigureSeries& series : panel.series) {
+    if (line.label.starts_with(series.label + ",")) return colour_of(series);
+  }
+  return "#555555";
+}
+
 std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
   std::string text;
-  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
-    const FigureLine& line = panel.lines[i];
-    const std::string look = fmt::format("lw 1.2 dt {} lc rgb '#555555'", 2 + i % 4);
+  for (const FigureLine& line : panel.lines) {
+    const std::string look = fmt::format("lw 1.2 dt 3 lc rgb '{}'", line_colour(panel, line));
     const std::string ends =
         line.vertical ? fmt::format("from {0}, graph 0 to {0}, graph 1", line.at)
                       : fmt::format("from graph 0, first {0} to graph 1, first {0}", line.at);
@@ -115,14 +145,43 @@ std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
   return text;
 }
 
-// The lines and points of all series lie within the axes; so do the lines across the panel.
-std::string ranges(const FigurePanel& panel) {
+// The smallest and the largest of what is to lie within an axis.
+struct Range {
   double least = std::numeric_limits<double>::infinity();
-  double greatest = -least;
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void cover(double value) {
+    if (!std::isfinite(value)) return;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  bool empty() const { return least > greatest; }
+};
+
+std::string x_range(const FigurePanel& panel) {
+  Range range;
+  bool all_whole = true;
+  for (const FigureSeries& series : panel.series) {
+    for (const double x : series.x) {
+      range.cover(x);
+      all_whole = all_whole && x == std::round(x);
+    }
+  }
+  for (const FigureSpan& span : panel.spans) {
+    range.cover(span.from);
+    range.cover(span.to);
+  }
+  if (range.empty()) return "set xrange [0:1]\n";
+  const double room = std::max((range.greatest - range.least) * 0.01, 1e-6);
+  return fmt::format("set xrange [{}:{}]\nset xtics norotate {}\n", range.least - room,
+                     range.greatest + room,
+                     all_whole && range.greatest - range.least < kFewTics ? "1" : "autofreq");
+}
+
+std::string y_range(const FigurePanel& panel) {
+  Range range;
   const auto cover = [&](double y) {
-    if (!std::isfinite(y) || (panel.log_y && y <= 0)) return;
-    least = std::min(least, y);
-    greatest = std::max(greatest, y);
+    if (!panel.log_y || y > 0) range.cover(y);
   };
   for (const FigureSeries& series : panel.series) {
     for (const double y : series.y) cover(y);
@@ -131,11 +190,14 @@ std::string ranges(const FigurePanel& panel) {
   for (const FigureLine& line : panel.lines) {
     if (!line.vertical) cover(line.at);
   }
-  if (least > greatest) return panel.log_y ? "set yrange [0.1:1]\n" : "set yrange [0:1]\n";
-  if (panel.log_y) return fmt::format("set yrange [{}:{}]\n", least / 1.3, greatest * 1.3);
+  if (range.empty()) return panel.log_y ? "set yrange [0.1:1]\n" : "set yrange [0:1]\n";
+  if (panel.log_y) {
+    return fmt::format("set yrange [{}:{}]\n", range.least / 1.3, range.greatest * 1.3);
+  }
   // A constant gets a range in which its last digits would not be drawn as a mountain.
-  const double room = std::max({(greatest - least) * 0.06, std::abs(greatest) * 1e-6, 1e-6});
-  return fmt::format("set yrange [{}:{}]\n", least - room, greatest + room);
+  const double room =
+      std::max({(range.greatest - range.least) * 0.06, std::abs(range.greatest) * 1e-4, 1e-6});
+  return fmt::format("set yrange [{}:{}]\n", range.least - room, range.greatest + room);
 }
 
 std::string categories(const FigurePanel& panel) {
@@ -150,26 +212,31 @@ std::string categories(const FigurePanel& panel) {
       tics, static_cast<double>(panel.categories.size()) - 0.4);
 }
 
-std::string panel_script(const FigurePanel& panel, std::size_t& datablocks) {
-  std::string script = "unset object\nunset arrow\nset autoscale x\nset xtics norotate autofreq\n";
-  fmt::format_to(std::back_inserter(script), "set title {}\nset xlabel {}\nset ylabel {}\n",
+bool has_legend(const FigurePanel& panel) {
+  return panel.series.size() > 1 || !panel.lines.empty() || !panel.spans.empty();
+}
+
+std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
+                         std::size_t& datablocks) {
+  std::string script = "unset object\nunset arrow\n";
+  fmt::format_to(std::back_inserter(script),
+                 "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {}\n",
                  in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
   script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
-  script += ranges(panel) + categories(panel);
+  script += x_range(panel) + y_range(panel) + categories(panel);
   std::map<int, std::string> legend = legend_of(panel);
-  const bool has_legend = panel.series.size() > 1 || !panel.lines.empty() || !panel.spans.empty();
   std::vector<std::string> plots;
   for (const FigureSeries& series : panel.series) {
     script += datablock(datablocks, series);
     const auto entry = legend.extract(series.colour);  // titles its first series alone
     const std::string title =
-        entry.empty() || !has_legend ? "notitle" : "title " + in_quotes(entry.mapped());
+        entry.empty() || !has_legend(panel) ? "notitle" : "title " + in_quotes(entry.mapped());
     plots.push_back(fmt::format("$data{} using 1:2 {} {}", datablocks, style(series), title));
     ++datablocks;
   }
   if (plots.empty()) plots.emplace_back("NaN notitle");
   script += lines(panel, plots);
-  script += spans(panel, plots);
+  script += spans(panel, colours, plots);
   return script + fmt::format("plot {}\n", fmt::join(plots, ", \\\n     "));
 }
 
@@ -184,13 +251,27 @@ std::string terminal(PlotFormat format, int height) {
                      kWidth / kPointsPerInch, height / kPointsPerInch);
 }
 
+// Panels are of one height, which has room for the longest legend.
+int panels_height(const Figure& figure) {
+  std::size_t entries = 0;
+  for (const FigurePanel& panel : figure.panels) {
+    entries = std::max(entries, legend_of(panel).size() + panel.lines.size() + panel.spans.size());
+  }
+  const int panel = std::max(kPanelHeight, kAxisHeight + kEntryHeight * static_cast<int>(entries));
+  return panel * static_cast<int>(figure.panels.size());
+}
+
+// Of all panels, so that their axes stand below each other.
+bool has_legends(const Figure& figure) {
+  return std::any_of(figure.panels.begin(), figure.panels.end(), has_legend);
+}
+
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::string& output) {
   const bool is_photographs = figure.panels.empty();
   const int height =
-      kTitleHeight + (is_photographs ? photographs_height(figure)
-                                     : kPanelHeight * static_cast<int>(figure.panels.size()));
+      kTitleHeight + (is_photographs ? photographs_height(figure) : panels_height(figure));
   std::string script = "set encoding utf8\n" + terminal(format, height);
   fmt::format_to(std::back_inserter(script), "set output {}\n", in_quotes(output));
   const std::string title = figure.paper.empty()
@@ -198,12 +279,20 @@ std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::s
                                 : fmt::format("{} ({} of the paper)", figure.title, figure.paper);
   if (is_photographs) return script + photographs_script(figure, in_quotes(title));
   script +=
-      "set key outside right top Left reverse samplen 1.5 spacing 1.1\n"
-      "set border 3\nset tics nomirror out\nset grid ytics lc rgb '#DDDDDD' lt 1\n";
+      "set key at screen 0.72, graph 1 left top vertical maxrows 99 Left reverse samplen 1.5 "
+      "font ',10'\n"
+      "set border 3\nset tics nomirror out scale 0.5\nset grid ytics lc rgb '#DDDDDD' lt 1\n"
+      "set xtics offset 0,0.3\n";
+  fmt::format_to(std::back_inserter(script),
+                 "set lmargin at screen 0.1\nset rmargin at screen {}\n",
+                 has_legends(figure) ? 0.7 : 0.97);
   fmt::format_to(std::back_inserter(script), "set multiplot layout {},1 title {} font ',14'\n",
                  figure.panels.size(), in_quotes(title));
   std::size_t datablocks = 0;
-  for (const FigurePanel& panel : figure.panels) script += panel_script(panel, datablocks);
+  const SpanColours colours = span_colours(figure);
+  for (const FigurePanel& panel : figure.panels) {
+    script += panel_script(panel, colours, datablocks);
+  }
   return script + "unset multiplot\nset output\n";
 }
 

@@ -63,19 +63,29 @@ const SeedScore* seed_of(const Row& row, std::uint64_t seed) {
   return found == row.seeds.end() ? nullptr : &*found;
 }
 
-// Whether all that is drawn is positive and some of it far from the rest.
-bool wants_log(const FigurePanel& panel) {
+// Makes the y axis logarithmic if nothing is negative and some of the rest is far from the rest.
+// Zeros are then gaps, and curves of nothing else are left out.
+void choose_scale(FigurePanel& panel) {
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0;
   for (const FigureSeries& series : panel.series) {
     for (const double value : series.y) {
-      if (std::isnan(value)) continue;
-      least = std::min(least, value);
-      greatest = std::max(greatest, value);
+      if (value < 0) return;
+      if (value > 0) least = std::min(least, value);
+      greatest = std::fmax(greatest, value);
     }
   }
-  return least > 0 && greatest > kLogSpan * least;
+  if (greatest <= kLogSpan * least) return;
+  panel.log_y = true;
+  for (FigureSeries& series : panel.series) {
+    std::replace(series.y.begin(), series.y.end(), 0.0, std::numeric_limits<double>::quiet_NaN());
+  }
+  std::erase_if(panel.series, [](const FigureSeries& series) {
+    return std::all_of(series.y.begin(), series.y.end(), [](double y) { return std::isnan(y); });
+  });
 }
+
+constexpr const char* kLogNote = " Errors of exactly zero do not appear on logarithmic axes.";
 
 bool empty(const FigurePanel& panel) {
   return std::all_of(panel.series.begin(), panel.series.end(),
@@ -108,7 +118,7 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
-  made.log_y = wants_log(made);
+  choose_scale(made);
   return made;
 }
 
@@ -128,7 +138,7 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, std::string title, s
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
-  made.log_y = wants_log(made);
+  choose_scale(made);
   return made;
 }
 
@@ -149,15 +159,19 @@ Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
       "Scores of {} seeds in ascending order: the curve at 50 % is the median. A line is a "
       "published value, which is one recording.",
       results.seed_count);
+  if (std::any_of(figure.panels.begin(), figure.panels.end(),
+                  [](const FigurePanel& made) { return made.log_y; })) {
+    figure.caption += kLogNote;
+  }
   return figure;
 }
 
 // Median over seeds of |error| by host; and of one pipeline also the seeds themselves, signed.
 Figure order_figure(const std::vector<RowRef>& rows) {
   Figure figure = catalogued("host_order");
-  FigurePanel medians = panel("Median over seeds", "host, in order of synchronisation",
-                              "|mean clock error over the capture| (ms)");
-  FigurePanel single = panel("Every seed", medians.x_label, "mean clock error (ms)");
+  FigurePanel medians =
+      panel("Median over seeds", "host, in order of synchronisation", "|mean error| (ms)");
+  FigurePanel single = panel("Every seed", medians.x_label, "mean error (ms)");
   for (const RowRef& ref : rows) {
     std::vector<std::vector<double>> by_host;
     FigureSeries points = series(ref.row->pipeline, Mark::kPoints, ref.colour);
@@ -185,13 +199,15 @@ Figure order_figure(const std::vector<RowRef>& rows) {
     return absent(std::move(figure),
                   "There is no slave host, or the archive holds no errors of host clocks.");
   }
-  medians.log_y = wants_log(medians);
+  choose_scale(medians);
+  const bool is_log = medians.log_y;
   figure.panels.push_back(std::move(medians));
   if (!single.series.empty()) figure.panels.push_back(std::move(single));
   figure.caption =
       "System clock of each slave minus the master's, mean over the evaluated pulses. The paper's "
       "procedure synchronises the hosts one after another; its error should not grow along the "
       "line.";
+  if (is_log) figure.caption += kLogNote;
   return figure;
 }
 
@@ -216,8 +232,8 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed) {
   Figure figure = catalogued("frame_errors");
   figure.seed = seed;
   const std::vector<RowRef> rows = four_rows(archive.results);
-  FigurePanel amd = pulse_panel(rows, seed, "Terms of AMD", "range of the global stamps (ms)",
-                                &PulseScore::spread_ms);
+  FigurePanel amd =
+      pulse_panel(rows, seed, "Terms of AMD", "range of the stamps (ms)", &PulseScore::spread_ms);
   if (amd.series.empty()) {
     return absent(std::move(figure),
                   "No pulse was delivered by all cameras, or the archive has no frames.csv.");

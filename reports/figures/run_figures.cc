@@ -66,8 +66,7 @@ bool has_points(const FigureSeries& series) { return !series.x.empty(); }
 
 // Differences to the first of the series, where they have the same x.
 FigurePanel differences(const RunDetail& run, const FigurePanel& stamps) {
-  FigurePanel made = frame_panel(run, "Arrivals less those of the first camera",
-                                 "difference of arrival stamps (ms)");
+  FigurePanel made = frame_panel(run, "Arrivals less those of the first camera", "difference (ms)");
   const FigureSeries& first = stamps.series.front();
   for (const FigureSeries& of_camera : stamps.series) {
     FigureSeries difference = series(of_camera.label, of_camera.mark, of_camera.colour);
@@ -152,7 +151,7 @@ Figure stamp_intervals(const RunDetail& run) {
 Figure stamps(const RunDetail& run) {
   Figure figure = of_run("stamps", run);
   FigurePanel sensor = frame_panel(run, "Sensor stamps", "camera's clock (ms)");
-  FigurePanel arrival = frame_panel(run, "Arrival stamps", "host's clock, from the first (ms)");
+  FigurePanel arrival = frame_panel(run, "Arrival stamps", "host's clock (ms)");
   for (const std::size_t camera : cameras_of_host(run, 0, kCamerasOfAHost)) {
     const std::size_t colour = sensor.series.size();
     sensor.series.push_back(raw_series(run, camera, &FrameDetail::sensor_ms, colour));
@@ -180,6 +179,7 @@ Figure global_stamps(const RunDetail& run) {
       "Global stamps by eq. (1) on the cameras of the master host, whichever device_time the "
       "pipeline has. The paper plots the stamps themselves, where no difference can be seen; "
       "both include the delay from exposure to arrival.";
+  figure.caption += truth_note(run);
   return figure;
 }
 
@@ -199,15 +199,15 @@ Figure hosts(const RunDetail& run) {
   }
   figure.caption = fmt::format(
       "Global stamps of the pipeline, one colour for each host. Cameras of one host lie together; "
-      "what separates the hosts is the error of their clocks.{}",
-      others.empty() ? " This rig has one host with cameras." : "");
+      "what separates the hosts is the error of their clocks.{}{}",
+      others.empty() ? " This rig has one host with cameras." : "", truth_note(run));
   return figure;
 }
 
 Figure first_seconds(const RunDetail& run) {
   Figure figure = of_run("first_seconds", run);
-  FigurePanel made =
-      panel("", "time since the start of the cameras (s)", "interval of global stamps (ms)");
+  FigurePanel made = panel("Intervals of the global stamps",
+                           "time since the start of the cameras (s)", "interval (ms)");
   std::optional<double> start_ms;
   for (const std::size_t camera : cameras_of_host(run, 0, kCamerasOfAHost)) {
     if (run.cameras[camera].frames.empty()) continue;

@@ -155,12 +155,12 @@ Figure synchronisation(std::span<const RunDetail> runs) {
   const RunDetail& shown = with != nullptr ? *with : *without;
   figure.caption = fmt::format(
       "Global stamps of {} cameras on {} hosts, one colour for each host. Note the different "
-      "scales: cameras of one host agree without synchronisation, hosts do not.{}{}",
+      "scales: cameras of one host agree without synchronisation, hosts do not.{}{}{}",
       shown.camera_count, shown.host_count,
       stand_in ? " The paper's pipelines are not all here; those with the largest and the smallest "
                  "AMD stand in for them."
                : "",
-      camera_note(shown));
+      camera_note(shown), truth_note(shown));
   return figure;
 }
 
