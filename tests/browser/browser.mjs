@@ -11,9 +11,17 @@ const kArguments = [
 ];
 let browser = null;
 
+function playwright(packages) {
+  try {
+    return createRequire(path.join(packages, 'package.json'))('playwright-core');
+  } catch {
+    throw new Error(`playwright-core is not in ${packages}: run tools/setup check`);
+  }
+}
+
 // `packages`: the folder in which node_modules is.
 async function launched(packages) {
-  const {chromium} = createRequire(path.join(packages, 'package.json'))('playwright-core');
+  const {chromium} = playwright(packages);
   browser ??= await chromium.launch(
       {executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: kArguments});
   return browser;
