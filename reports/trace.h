@@ -54,7 +54,9 @@ struct TraceClock {
 };
 
 struct TraceAdjustment {
-  TrueTime at{};  // to some microseconds: worked out from the host's steady clock
+  // Worked out from the host's steady clock between two instants at which both are known: to
+  // microseconds, or to what a host without cameras has drifted since the world's start.
+  TrueTime at{};
   std::uint32_t host = 0;
   SteadyTime at_steady{};
   Nanoseconds step{};

@@ -126,12 +126,9 @@ int run_trace(const TraceCommandOptions& options) {
   const evaluation::PipelineChoice choice = choose(scenario, options.pipeline);
   print_warnings(scenarios::warnings(scenario));
   Output output(options.output);
-  const auto trace = watched<reports::Trace>([&](const evaluation::Progress& progress) {
+  const auto trace = watched<reports::Trace>([&](const evaluation::Progress&) {
     const auto source = interruptible(sim::make_simulation(scenario));
-    progress(0, 1);
-    auto recorded = reports::record_trace(scenario, choice, options.seed, *source, wanted);
-    progress(1, 1);
-    return recorded;
+    return reports::record_trace(scenario, choice, options.seed, *source, wanted);
   });
   if (!trace) return kInterrupted;
   output.write(*trace, options.format);
@@ -180,6 +177,7 @@ void add_trace_command(CLI::App& app, Action& action) {
       ->type_name("NAME");
   add_set_option(*command, options->sets);
   add_format_option(*command, options->format, {"chrome", "csv"});
+  add_json_messages_option(*command);
   add_window_options(*command, *options);
   command
       ->add_option("-o,--output", options->output,

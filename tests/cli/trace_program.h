@@ -1,0 +1,76 @@
+// Runs `simbench trace`, and finds events in what it wrote.
+#ifndef SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_
+#define SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_
+
+#include <gmock/gmock.h>
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/cli/program.h"
+#include "tests/reports/trace_format.h"
+
+namespace simbench {
+
+using Json = nlohmann::ordered_json;
+
+inline std::vector<Json> events_of(const Json& trace, const std::string& phase,
+                                   const std::string& category = "") {
+  std::vector<Json> found;
+  for (const Json& event : trace["traceEvents"]) {
+    if (event["ph"] != phase) continue;
+    if (category.empty() || event.value("cat", "") == category) found.push_back(event);
+  }
+  return found;
+}
+
+inline std::map<std::int64_t, std::string> track_names(const Json& trace) {
+  std::map<std::int64_t, std::string> names;
+  for (const Json& event : events_of(trace, "M")) {
+    if (event["name"] == "thread_name") names[event["tid"]] = event["args"]["name"];
+  }
+  return names;
+}
+
+// Of the slices on tracks whose name ends like this.
+inline std::vector<Json> slices_on(const Json& trace, const std::string& ending) {
+  const std::map<std::int64_t, std::string> names = track_names(trace);
+  std::vector<Json> found;
+  for (const Json& event : events_of(trace, "X")) {
+    if (names.at(event["tid"]).ends_with(ending)) found.push_back(event);
+  }
+  return found;
+}
+
+class TraceCommand : public ProgramTest {
+ protected:
+  // `simbench trace` of a second or so of a scenario.
+  ProgramResult trace(const std::string& scenario, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"trace",
+                                          "--scenario",
+                                          scenario,
+                                          "--set",
+                                          "/timeline/frames=30",
+                                          "--set",
+                                          "/timeline/warm_up_ms=300"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  Json valid_trace(const std::string& scenario, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"-o", "trace.json"});
+    const ProgramResult result = trace(scenario, std::move(more));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    Json json = Json::parse(content("trace.json"));
+    EXPECT_THAT(TraceFormat::violations(json), testing::IsEmpty()) << scenario;
+    return json;
+  }
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_TESTS_CLI_TRACE_PROGRAM_H_
