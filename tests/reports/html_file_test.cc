@@ -1,0 +1,88 @@
+// The file of a report: whole or not at all.
+#include "reports/html_file.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "reports/output_folder.h"
+
+namespace simbench::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class HtmlFileTest : public testing::Test {
+ protected:
+  HtmlFileTest() {
+    std::string pattern = (fs::temp_directory_path() / "html_file.XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~HtmlFileTest() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  static std::string content(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  std::ptrdiff_t files() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+  static std::string problem(const std::string& path) {
+    try {
+      const HtmlFile file(path);
+    } catch (const OutputError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(HtmlFileTest, AppearsWhole) {
+  HtmlFile file(path("a.html"));
+  EXPECT_FALSE(fs::exists(path("a.html")));
+  file.write("<p>");
+  EXPECT_EQ(content(path("a.html")), "<p>");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(HtmlFileTest, NothingIsLeftOfWhatWasNotWritten) {
+  { const HtmlFile file(path("a.html")); }
+  EXPECT_EQ(files(), 0);
+}
+
+TEST_F(HtmlFileTest, AnEarlierFileStaysUntilThenAndIsReplaced) {
+  std::ofstream(path("a.html")) << "earlier";
+  {
+    const HtmlFile file(path("a.html"));
+    EXPECT_EQ(content(path("a.html")), "earlier");
+  }
+  EXPECT_EQ(content(path("a.html")), "earlier");
+  HtmlFile(path("a.html")).write("later");
+  EXPECT_EQ(content(path("a.html")), "later");
+}
+
+TEST_F(HtmlFileTest, ALinkStaysALink) {
+  std::ofstream(path("real.html")) << "earlier";
+  fs::create_symlink("real.html", path("link.html"));
+  HtmlFile(path("link.html")).write("later");
+  EXPECT_TRUE(fs::is_symlink(path("link.html")));
+  EXPECT_EQ(content(path("real.html")), "later");
+}
+
+TEST_F(HtmlFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
+  fs::create_directory(path("folder"));
+  EXPECT_THAT(problem(path("folder")), HasSubstr("is a folder; name a file"));
+  EXPECT_THAT(problem(path("missing/a.html")), HasSubstr("missing; make it first"));
+  EXPECT_THAT(problem("/dev/null"), HasSubstr("is no file that can be replaced"));
+  EXPECT_THAT(problem("/proc/a.html"), HasSubstr("cannot be written"));
+}
+
+}  // namespace
+}  // namespace simbench::reports
