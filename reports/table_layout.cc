@@ -10,6 +10,7 @@ using Lines = std::vector<std::string>;
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kGap = 2;
+constexpr std::size_t kNarrowest = 12;
 
 // Which column of the table, and how wide it is set.
 struct Slot {
@@ -82,6 +83,14 @@ void widen(Block& block, const std::vector<Need>& needs, std::size_t page_width)
   }
 }
 
+// Where even one column does not fit beside the keys, only its longest words stand out.
+void narrow_last(Block& block, std::size_t page_width) {
+  const std::size_t used = width_of(block);
+  if (used <= page_width) return;
+  std::size_t& width = block.back().width;
+  width -= std::min(used - page_width, width - std::min(width, kNarrowest));
+}
+
 // The columns in order, as many to a block as fit.
 std::vector<Block> dealt_out(const std::vector<Need>& needs, const Block& keys, std::size_t width) {
   std::vector<Block> blocks = {keys};
@@ -108,7 +117,10 @@ std::vector<Block> blocks_of(const std::vector<Need>& needs, const Page& page) {
     if (narrower.size() > blocks.size()) break;
     blocks = std::move(narrower);
   }
-  for (Block& block : blocks) widen(block, needs, *page.width);
+  for (Block& block : blocks) {
+    widen(block, needs, *page.width);
+    narrow_last(block, *page.width);
+  }
   return blocks;
 }
 

@@ -4,7 +4,7 @@
 // need, an empty line between two, each with the key columns first. A column of prose (a cell of
 // more than kProseWidth with a blank in it) may be narrowed to that, its cells going on below; as
 // much as a block must, its widest first. A single word is never broken, and a column that does not
-// fit beside the keys has a block of its own.
+// fit beside the keys has a block of its own, where its longest words stand out.
 #ifndef SIMBENCH_REPORTS_TABLE_LAYOUT_H_
 #define SIMBENCH_REPORTS_TABLE_LAYOUT_H_
 

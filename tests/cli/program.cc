@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <thread>
@@ -31,6 +32,11 @@ void redirect(const fs::path& path, int descriptor) {
                                  const fs::path& out, const fs::path& err,
                                  const ProgramOptions& options) {
   if (chdir(folder.c_str()) != 0) _exit(126);
+  unsetenv("COLUMNS");
+  for (const std::string& setting : options.environment) {
+    const std::size_t equals = setting.find('=');
+    setenv(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str(), 1);
+  }
   redirect(out, STDOUT_FILENO);
   redirect(err, STDERR_FILENO);
   if (options.largest_file) {

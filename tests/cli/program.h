@@ -24,6 +24,8 @@ struct ProgramOptions {
   std::optional<std::chrono::milliseconds> interrupt_after = std::nullopt;
   // Writes beyond this size fail, as on a full disk.
   std::optional<std::size_t> largest_file = std::nullopt;
+  // "NAME=value" each, beside what the test's own environment has (COLUMNS is taken from that).
+  std::vector<std::string> environment = {};
   // Where standard output goes instead of ProgramResult::out.
   std::string out_file = {};
 };

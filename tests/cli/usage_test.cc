@@ -9,6 +9,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class Usage : public ProgramTest {
@@ -69,6 +70,9 @@ TEST_F(Usage, ListsWhatThereIs) {
   EXPECT_THAT(run({"list", "cameras"}).out, HasSubstr("d455: RealSense D455"));
   EXPECT_THAT(run({"list", "cameras", "--format", "json"}).out, HasSubstr("\"model\": \"d435\""));
   refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
+  EXPECT_THAT(run({"list", "scenarios", "--format", "names"}).out,
+              AllOf(HasSubstr("18cam_6host_45fps\n"), Not(HasSubstr(" "))));
+  EXPECT_THAT(run({"list", "cameras", "--format", "names"}).out, HasSubstr("d455\n"));
   refuses({"list", "fish"}, {"found 'fish'", "scenarios, pipelines, algorithms, cameras"});
 }
 
@@ -91,7 +95,7 @@ TEST_F(Usage, WhatDescribePrintsAsJsonIsAScenario) {
 }
 
 TEST_F(Usage, WrongCommandsAreRefused) {
-  refuses({}, {"a command is required", "run, replay", "See: simbench --help"});
+  refuses({}, {"a command is required", "allowed: run, ", "See: simbench --help"});
   refuses({"fly"}, {"found 'fly'", "allowed: run, ", "list, describe, validate"});
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
@@ -99,6 +103,17 @@ TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({"validate"}, {"files is required"});
   refuses({"replay"}, {"files is required"});
   refuses({"run", "--scenario", "18cam_6host_45fps", "--colour"}, {"--colour"});
+}
+
+TEST_F(Usage, MistypedNamesGetASuggestion) {
+  refuses({"vlidate", "x.json"}, {"found 'vlidate', did you mean validate?"});
+  refuses({"run", "--scenario", "18cam_6host_45fps", "--seed", "3"},
+          {"found '--seed', which `simbench run` does not know; did you mean --seeds?",
+           "See: simbench run --help"});
+  refuses({"--scenario", "18cam_6host_45fps", "--pipeline=x"}, {"did you mean --pipelines?"});
+  refuses({"list", "cameras", "d455"}, {"found 'd455'", "no more than WHAT"});
+  refuses({"run", "18cam_6host_45fps", "--scenario", "3cam_1host_30fps"}, {"options only"});
+  refuses({"run"}, {"simbench list"});
 }
 
 TEST_F(Usage, NumbersAreChecked) {

@@ -88,6 +88,30 @@ TEST(Progress, ColourOnlyWhereItIsWanted) {
   EXPECT_THAT(coloured.new_text(), HasSubstr("\x1b[32m"));
 }
 
+TEST(Progress, JsonLinesTenASecondAtMost) {
+  Bench bench({.json = true});
+  EXPECT_EQ(bench.new_text(), "{\"event\":\"start\",\"unit\":\"runs\"}\n");
+  bench.progress.update(0, 400);
+  EXPECT_EQ(bench.new_text(),
+            "{\"event\":\"progress\",\"done\":0,\"total\":400,\"unit\":\"runs\","
+            "\"elapsed_s\":0.0,\"eta_s\":null}\n");
+  for (std::uint64_t done = 1; done <= 100; ++done) {
+    bench.now = static_cast<double>(done) / 100;
+    bench.progress.update(done, 400);
+  }
+  const std::string second = bench.new_text();
+  const auto lines = std::count(second.begin(), second.end(), '\n');
+  EXPECT_GE(lines, 7);
+  EXPECT_LE(lines, 8);
+  EXPECT_THAT(second, HasSubstr("\"elapsed_s\":0.13,\"eta_s\":3.87}"));
+  bench.progress.finish();
+  EXPECT_EQ(bench.new_text(),
+            "{\"event\":\"end\",\"done\":100,\"total\":400,\"unit\":\"runs\","
+            "\"elapsed_s\":1.0}\n");
+  bench.progress.interrupt();
+  EXPECT_EQ(bench.new_text(), "");
+}
+
 TEST(Progress, NothingToDoIsNoProgress) {
   Bench bench({.terminal = false});
   bench.progress.update(0, 0);
