@@ -48,12 +48,17 @@ XAxis x_axis(const SweepPlan& plan) {
   return x;
 }
 
+// "tick_ms" of "/hosts/clock/tick_ms": a legend has little room.
+std::string last_key(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
 // What tells the curves of a panel apart: the pipeline, and where the other axes stand.
 std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
-  std::string label = plan.pipelines[row.pipeline];
+  std::string label =
+      plan.pipelines.size() > 1 || plan.axes.size() < 2 ? plan.pipelines[row.pipeline] : "";
   const std::vector<std::size_t> steps = plan.steps(row.point);
   for (std::size_t axis = 1; axis < plan.axes.size(); ++axis) {
-    label += fmt::format(", {}={}", plan.axes[axis].pointers.front(),
+    if (!label.empty()) label += ", ";
+    label += fmt::format("{}={}", last_key(plan.axes[axis].pointers.front()),
                          plan.axes[axis].values.front()[steps[axis]]);
   }
   return label;
@@ -104,7 +109,9 @@ FigurePanel response_panel(const SweepPlan& plan, const std::vector<ResponseRow>
 Figure new_figure(const SweepPlan& plan, const std::string& id, const std::string& title) {
   Figure figure;
   figure.id = id;
-  figure.title = fmt::format("{}: {}", plan.scenario, title);
+  figure.title = plan.pipelines.size() > 1
+                     ? fmt::format("{}: {}", plan.scenario, title)
+                     : fmt::format("{}, {}: {}", plan.scenario, plan.pipelines.front(), title);
   figure.caption = fmt::format("{} points, {} seeds each.", plan.points(), plan.seeds);
   return figure;
 }
@@ -147,7 +154,10 @@ Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& 
     if (panel.series.size() == kMostCurves) break;
     FigureSeries series;
     series.mark = Mark::kLine;
-    series.label = fmt::format("{}, {}", plan.pipelines[row.pipeline], plan.point_text(row.point));
+    series.label = plan.pipelines[row.pipeline];
+    for (const scenarios::Override& value : plan.overrides(row.point)) {
+      series.label += fmt::format(", {}={}", last_key(value.pointer), value.value);
+    }
     for (std::size_t host = 1; host < row.hosts.size(); ++host) {
       series.x.push_back(static_cast<double>(host));
       series.y.push_back(row.hosts[host].median);

@@ -13,6 +13,7 @@
 #include "scenarios/camera_profile.h"
 #include "tools/camera_list.h"
 #include "tools/exit_status.h"
+#include "tools/sweep_results.h"
 
 namespace simbench::tools {
 namespace {
@@ -137,6 +138,7 @@ std::string listing(const ListOptions& options) {
     return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
   }
   if (options.what == "pipelines") return pipelines_text(options.scenario);
+  if (options.what == "studies") return study_list();
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
            details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
@@ -154,11 +156,12 @@ void add_list_command(CLI::App& app, Action& action) {
       app.add_subcommand("list", "List scenarios, and the algorithms of each stage");
   auto options = std::make_shared<ListOptions>();
   command
-      ->add_option("what", options->what,
-                   "scenarios, pipelines, algorithms (with parameters and sources) or cameras.\n"
-                   "Default: scenarios and algorithms by name")
+      ->add_option(
+          "what", options->what,
+          "scenarios, pipelines, algorithms (with parameters and sources), cameras or studies.\n"
+          "Default: scenarios and algorithms by name")
       ->type_name("WHAT")
-      ->check(one_of({"scenarios", "pipelines", "algorithms", "cameras"}));
+      ->check(one_of({"scenarios", "pipelines", "algorithms", "cameras", "studies"}));
   options->scenario = "18cam_6host_45fps";
   command
       ->add_option("--scenario", options->scenario,
