@@ -125,7 +125,9 @@ class ChromeWriter {
     if (event.what == TraceWhat::kReceived) what = "received";
     add(R"(,"cat":"message","name":"{} {}","args":{{"message":{},"from":{},"to":{})", what,
         message.id, message.id, message.from, message.to);
-    add(R"(,"transport":"{}","bytes":{}}})", message.stream ? "stream" : "datagram", message.bytes);
+    add(R"(,"transport":"{}","bytes":{})", message.stream ? "stream" : "datagram", message.bytes);
+    if (!message.lost) add(R"(,"latency_us":{:.3f})", us(message.arrived - message.left));
+    line_ += '}';
   }
 
   void write_other(const TraceEvent& event) {
@@ -157,7 +159,7 @@ class ChromeWriter {
         {"events", timeline_.events.size()},
         {"time", "ts and dur in microseconds of true time"},
         {"ts_0_is_true_time_us", us(zero_.time_since_epoch())},
-        {"nominal_lengths_us", {{"pulse", us(kShownPulse)}, {"received", us(kShownReceipt)}}},
+        {"nominal_lengths_us", {{"pulse", us(kShownPulse)}, {"message", us(kShownMessage)}}},
         {"left_out", left_out_notes(trace_)}};
     return data;
   }

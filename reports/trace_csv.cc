@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <compare>
 #include <cstdint>
 #include <map>
+#include <tuple>
 
 namespace simbench::reports {
 namespace {
@@ -23,7 +23,10 @@ struct Column {
   std::uint32_t place = 0;
   bool colour = false;
   Series series = Series::kPulse;
-  auto operator<=>(const Column&) const = default;
+  friend bool operator<(const Column& a, const Column& b) {
+    return std::tie(a.group, a.place, a.colour, a.series) <
+           std::tie(b.group, b.place, b.colour, b.series);
+  }
 };
 
 std::string name_of(const Column& column) {

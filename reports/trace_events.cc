@@ -138,9 +138,8 @@ class TimelineBuilder {
   void add_message(std::uint32_t index, Conversation& conversation) {
     const ObservedMessage& message = trace_.messages[index];
     const TrackKey there = channel_track(message.from, message.to);
-    const TrueTime shown_until = message.lost ? message.left + kShownReceipt : message.arrived;
     const EventIndex sent =
-        tracks_.slice(there, TraceWhat::kSent, index, message.left, shown_until);
+        tracks_.slice(there, TraceWhat::kSent, index, message.left, message.left + kShownMessage);
     TracePhase phase = TracePhase::kArrowBegin;
     if (answers(message, conversation)) {
       tracks_.point(TracePhase::kArrowStep, TraceWhat::kMessageArrow, conversation.arrow,
@@ -161,7 +160,7 @@ class TimelineBuilder {
     }
     conversation.received =
         tracks_.slice(channel_track(message.to, message.from), TraceWhat::kReceived, index,
-                      message.arrived, message.arrived + kShownReceipt);
+                      message.arrived, message.arrived + kShownMessage);
   }
 
   void add_clocks() {

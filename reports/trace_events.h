@@ -4,14 +4,15 @@
 // of the Chrome trace format's threads; slices on a track never overlap: what would goes to a
 // further track of the same name, "(2)". Per host: clock; gathering (of the master, which has no
 // other place); for each stream of a camera exposure, usb (offered to the bus -> transferred) and
-// host stack (copied to the kernel -> delivered); a channel for each peer, with what is on its way
+// host stack (copied to the kernel -> delivered); a channel for each peer, with what leaves for
 // there and what has come from there.
 //
 // Arrows: trigger pulse -> exposure -> host stack -> gathered set for each frame, as far as it got;
 // along the messages of a link for as long as each answers the one before it within 50 ms.
 //
-// A slice lasts at least 1 ns so that arrows hold on to it. Pulses and received messages are shown
-// with a nominal length, which is nobody's.
+// A slice lasts at least 1 ns so that arrows hold on to it. Pulses, and messages that leave or
+// arrive, have no length: they are shown with a nominal one, or less where the next slice of the
+// track follows sooner.
 //
 //   const TraceTimeline timeline = trace_timeline(trace);
 #ifndef SIMBENCH_REPORTS_TRACE_EVENTS_H_
@@ -27,7 +28,7 @@
 namespace simbench::reports {
 
 inline constexpr Nanoseconds kShownPulse = std::chrono::microseconds(100);
-inline constexpr Nanoseconds kShownReceipt = std::chrono::microseconds(10);
+inline constexpr Nanoseconds kShownMessage = std::chrono::microseconds(10);
 inline constexpr Nanoseconds kLongestAnswer = std::chrono::milliseconds(50);
 
 enum class TracePhase : char {

@@ -11,9 +11,9 @@
 #ifndef SIMBENCH_REPORTS_TRACE_RECORDER_H_
 #define SIMBENCH_REPORTS_TRACE_RECORDER_H_
 
-#include <compare>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "evaluation/pipeline_choice.h"
@@ -59,7 +59,10 @@ class TraceRecorder final : public ForwardingSink,
   struct FrameKey {
     std::uint32_t camera = 0;
     std::uint32_t sensor_us = 0;
-    auto operator<=>(const FrameKey&) const = default;
+    friend bool operator==(FrameKey, FrameKey) = default;
+    friend bool operator<(FrameKey a, FrameKey b) {
+      return std::tie(a.camera, a.sensor_us) < std::tie(b.camera, b.sensor_us);
+    }
   };
   struct Member {
     FrameKey key;
@@ -109,7 +112,7 @@ class TraceRecorder final : public ForwardingSink,
   std::vector<Stamp> late_stamps_;  // by an offline estimator
   struct Indexed {
     FrameKey key;
-    std::uint32_t frame;
+    std::uint32_t frame = 0;
   };
   std::vector<Indexed> index_;  // by key
 };

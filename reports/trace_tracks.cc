@@ -45,6 +45,10 @@ int order_at_an_instant(TracePhase phase) {
   }
 }
 
+bool has_nominal_length(TraceWhat what) {
+  return what == TraceWhat::kPulse || what == TraceWhat::kSent || what == TraceWhat::kReceived;
+}
+
 }  // namespace
 
 TrackKey trigger_track() { return {}; }
@@ -110,6 +114,7 @@ void TraceTracks::lay_out(const TrackKey& key, BaseTrack& base) {
   std::stable_sort(base.slices.begin(), base.slices.end(), [this](EventIndex a, EventIndex b) {
     return timeline_.events[a].at < timeline_.events[b].at;
   });
+  shorten_nominal(base.slices);
   const auto first = static_cast<std::uint32_t>(timeline_.tracks.size());
   std::vector<TrueTime> free_at = {TrueTime::min()};
   for (const EventIndex index : base.slices) {
@@ -125,6 +130,16 @@ void TraceTracks::lay_out(const TrackKey& key, BaseTrack& base) {
     std::string name = track_name(key);
     if (lane > 0) name += fmt::format(" ({})", lane + 1);
     timeline_.tracks.push_back({key.process, std::move(name)});
+  }
+}
+
+// To what is free until the next slice begins.
+void TraceTracks::shorten_nominal(const std::vector<EventIndex>& slices) {
+  for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
+    TraceEvent& event = timeline_.events[slices[i]];
+    if (!has_nominal_length(event.what)) continue;
+    const Nanoseconds free = timeline_.events[slices[i + 1]].at - event.at;
+    event.length = std::clamp(free, kShortest, event.length);
   }
 }
 

@@ -10,10 +10,10 @@
 #ifndef SIMBENCH_REPORTS_TRACE_TRACKS_H_
 #define SIMBENCH_REPORTS_TRACE_TRACKS_H_
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "reports/trace_events.h"
@@ -37,7 +37,10 @@ struct TrackKey {
   std::uint32_t place = 0;  // camera or peer
   StreamKind stream = StreamKind::kDepth;
   TrackKind kind = TrackKind::kTrigger;
-  auto operator<=>(const TrackKey&) const = default;
+  friend bool operator<(const TrackKey& a, const TrackKey& b) {
+    return std::tie(a.process, a.group, a.place, a.stream, a.kind) <
+           std::tie(b.process, b.group, b.place, b.stream, b.kind);
+  }
 };
 
 TrackKey trigger_track();
@@ -75,6 +78,7 @@ class TraceTracks {
 
   EventIndex add(const TraceEvent& event);
   void lay_out(const TrackKey& key, BaseTrack& base);
+  void shorten_nominal(const std::vector<EventIndex>& slices);
   void sort();
 
   TraceTimeline timeline_;

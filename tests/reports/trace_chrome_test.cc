@@ -179,8 +179,25 @@ TEST(ChromeTrace, AConversationIsOneArrow) {
   EXPECT_THAT(arrow(json, "message", 3), IsEmpty());
   EXPECT_THAT(arrow(json, "message", 4), ElementsAre("s 71000.0", "f 72000.0"));
   EXPECT_EQ(of_phase(json, "i").size(), 2U);
-  EXPECT_THAT(slices(json), testing::Contains("channel host1: sent 5 1000.0 1000.0"));
+  EXPECT_THAT(slices(json), testing::Contains("channel host1: sent 5 1000.0 10.0"));
   EXPECT_THAT(slices(json), testing::Contains("channel host0: received 5 2000.0 10.0"));
+}
+
+TEST(ChromeTrace, MessagesInQuickSuccessionShareATrack) {
+  Trace trace;
+  trace.hosts = 2;
+  for (int i = 0; i < 3; ++i) {
+    trace.messages.push_back({.from = 0,
+                              .to = 1,
+                              .id = static_cast<std::uint64_t>(i),
+                              .left = at_us(100 + 2.5 * i),
+                              .arrived = at_us(500 + 2.5 * i)});
+  }
+  EXPECT_THAT(
+      slices(chrome(trace)),
+      ElementsAre("channel host1: sent 0 100.0 2.5", "channel host1: sent 1 102.5 2.5",
+                  "channel host1: sent 2 105.0 10.0", "channel host0: received 0 500.0 2.5",
+                  "channel host0: received 1 502.5 2.5", "channel host0: received 2 505.0 10.0"));
 }
 
 TEST(ChromeTrace, ClocksAreCountersWhereTheyChangeAndInstantsWhereTheyAreSet) {
