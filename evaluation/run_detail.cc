@@ -239,7 +239,7 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
   PipelineScorer scorer(setup);
   DetailKeeper keeper(scorer, setup, run);
   const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-  RunWorld world(setup.stream, host_sync->warm_up());
+  RunWorld world(setup.stream, scenario.hosts.count, host_sync->warm_up());
   const RecordingCost cost = source.record({.seed = seed,
                                             .pipeline = choice.pipeline.name,
                                             .host_sync = host_sync.get(),

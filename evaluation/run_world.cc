@@ -30,11 +30,12 @@ std::vector<LostFrame> gaps(const RunDetail& run) {
 
 }  // namespace
 
-RunWorld::RunWorld(StreamKind stream, std::optional<Nanoseconds> service)
+RunWorld::RunWorld(StreamKind stream, std::int64_t hosts, std::optional<Nanoseconds> service)
     : stream_(stream),
       service_(service.has_value()),
-      clock_interval_(std::max(
-          kClockInterval, service.value_or(Nanoseconds::zero()) / kMostClockSamplesOfAService)) {}
+      clock_interval_(
+          std::max(kClockInterval * (1 + hosts / static_cast<std::int64_t>(kDetailCameras)),
+                   service.value_or(Nanoseconds::zero()) / kMostClockSamplesOfAService)) {}
 
 void RunWorld::on_world(TrueTime start) { start_ = start; }
 void RunWorld::on_capture_start(TrueTime at) { capture_start_ = at; }

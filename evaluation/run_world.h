@@ -3,6 +3,7 @@
 #ifndef SIMBENCH_EVALUATION_RUN_WORLD_H_
 #define SIMBENCH_EVALUATION_RUN_WORLD_H_
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,9 +15,10 @@ namespace simbench::evaluation {
 
 class RunWorld final : public WorldObserver {
  public:
-  // Frames of `stream` are of interest; `service`: how long a host_sync that does not end runs
-  // before the capture.
-  RunWorld(StreamKind stream, std::optional<Nanoseconds> service);
+  // Frames of `stream` are of interest. `service`: how long a host_sync that does not end runs
+  // before the capture. Clocks are sampled every 20 ms, less often the more `hosts` there are and
+  // the longer a service runs.
+  RunWorld(StreamKind stream, std::int64_t hosts, std::optional<Nanoseconds> service);
 
   Nanoseconds clock_interval() const override { return clock_interval_; }
   void on_world(TrueTime start) override;

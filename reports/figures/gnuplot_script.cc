@@ -220,7 +220,7 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
                          std::size_t& datablocks) {
   std::string script = "unset object\nunset arrow\n";
   fmt::format_to(std::back_inserter(script),
-                 "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {}\n",
+                 "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
                  in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
   script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   script += x_range(panel) + y_range(panel) + categories(panel);
@@ -284,7 +284,7 @@ std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::s
       "set border 3\nset tics nomirror out scale 0.5\nset grid ytics lc rgb '#DDDDDD' lt 1\n"
       "set xtics offset 0,0.3\n";
   fmt::format_to(std::back_inserter(script),
-                 "set lmargin at screen 0.1\nset rmargin at screen {}\n",
+                 "set lmargin at screen 0.115\nset rmargin at screen {}\n",
                  has_legends(figure) ? 0.7 : 0.97);
   fmt::format_to(std::back_inserter(script), "set multiplot layout {},1 title {} font ',14'\n",
                  figure.panels.size(), in_quotes(title));

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <string>
@@ -61,9 +63,11 @@ Figure host_clocks(const RunDetail& run) {
     figure.panels.push_back(
         clock_panel(run, run.service ? "The capture" : "After synchronisation", settled_ms));
   }
-  figure.caption =
-      "System clock of each slave host minus the master's at the same instant; every 20 ms, less "
-      "often during hours of a service.";
+  figure.caption = "System clock of each slave host minus the master's at the same instant.";
+  if (run.clocks.size() > 1) {
+    figure.caption +=
+        fmt::format(" Looked at every {:.0f} ms.", run.clocks[1].at_ms - run.clocks[0].at_ms);
+  }
   if (run.host_count > run.clocks.front().errors_ms.size()) {
     figure.caption += " Only the first " + std::to_string(run.clocks.front().errors_ms.size()) +
                       " of " + std::to_string(run.host_count) + " hosts are drawn.";
