@@ -1,0 +1,169 @@
+#include "reports/figures/run_figures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/reports/figures/hand_made_run.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::RunDetail;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+TEST(RunFiguresTest, IntervalsOfRegularStampsAreThePeriod) {
+  const Figure figure = stamp_intervals(hand_made_run({0, 3}, 2));
+  ASSERT_THAT(figure.panels, SizeIs(4));
+  for (const FigurePanel& panel : figure.panels) {
+    ASSERT_THAT(panel.series, SizeIs(1));
+    EXPECT_THAT(panel.series[0].y, SizeIs(9));  // between 10 frames
+    EXPECT_THAT(panel.series[0].y, Each(kPeriodMs));
+    EXPECT_EQ(panel.series[0].x.front(), 4);
+    EXPECT_TRUE(panel.x_is_pulse);
+  }
+  EXPECT_EQ(figure.pipeline, "mine");
+  EXPECT_EQ(figure.seed, 7U);
+  EXPECT_EQ(figure.paper, "Fig. 2");
+}
+
+TEST(RunFiguresTest, ALostFrameIsAGapBetweenIntervals) {
+  RunDetail run = hand_made_run({0}, 1);
+  run.cameras[0].frames.erase(run.cameras[0].frames.begin() + 6);
+  const FigureSeries series = stamp_intervals(run).panels[0].series[0];
+  ASSERT_THAT(series.y, SizeIs(8));
+  EXPECT_TRUE(std::isnan(series.y[2]));  // ends with pulse 7
+  EXPECT_EQ(series.x[2], 7);
+  EXPECT_EQ(series.y[3], kPeriodMs);
+}
+
+TEST(RunFiguresTest, SensorStampsHaveTheirOriginsAndArrivalsCoincide) {
+  const Figure figure = stamps(hand_made_run({0, 3}, 3));
+  ASSERT_THAT(figure.panels, SizeIs(3));
+  ASSERT_THAT(figure.panels[0].series, SizeIs(3));
+  for (std::size_t camera = 0; camera < 3; ++camera) {
+    EXPECT_EQ(figure.panels[0].series[camera].y.front(),
+              3 * kPeriodMs + 1000 * static_cast<double>(camera));
+    EXPECT_THAT(figure.panels[2].series[camera].y, Each(0.0));
+  }
+}
+
+TEST(RunFiguresTest, TheOffsetOfAHostSeparatesTheHosts) {
+  const Figure figure = hosts(hand_made_run({0, 2.5}, 3));
+  ASSERT_THAT(figure.panels, SizeIs(2));
+  EXPECT_THAT(figure.panels[0].series, SizeIs(3));
+  ASSERT_THAT(figure.panels[1].series, SizeIs(6));
+  for (std::size_t camera = 0; camera < 6; ++camera) {
+    EXPECT_THAT(figure.panels[1].series[camera].y, Each(camera < 3 ? 0.0 : 2.5));
+    EXPECT_EQ(figure.panels[1].series[camera].colour, camera < 3 ? 0 : 1);
+  }
+}
+
+TEST(RunFiguresTest, ARigOfOneHostHasOnePanelOfHostsAndNoClocksToDraw) {
+  const RunDetail run = hand_made_run({0}, 1);
+  EXPECT_THAT(hosts(run).panels, SizeIs(1));
+  EXPECT_THAT(hosts(run).caption, HasSubstr("one host"));
+  EXPECT_THAT(host_clocks(run).absent, HasSubstr("one host"));
+  EXPECT_THAT(host_clocks(run).panels, IsEmpty());
+}
+
+TEST(RunFiguresTest, FirstSecondsBeginWithTheWarmUp) {
+  const Figure figure = first_seconds(hand_made_run({0}, 2));
+  ASSERT_THAT(figure.panels, SizeIs(1));
+  const FigurePanel& panel = figure.panels[0];
+  ASSERT_THAT(panel.series, SizeIs(2));
+  EXPECT_NEAR(panel.series[0].x.front(), kPeriodMs / 1000, 1e-12);
+  EXPECT_THAT(panel.series[0].y, Each(kPeriodMs));
+  ASSERT_THAT(panel.spans, SizeIs(1));
+  EXPECT_NEAR(panel.spans[0].to, 3 * kPeriodMs / 1000, 1e-12);
+}
+
+TEST(RunFiguresTest, ClocksAreDrawnOverAllOfTheRunAndAfterSynchronisation) {
+  RunDetail run = hand_made_run({0, 2}, 1);
+  run.world_start_ms = -100;
+  run.sync_end_ms = -50;
+  for (double at_ms = -100; at_ms <= 260; at_ms += 10) {
+    run.clocks.push_back({at_ms, {0, at_ms < -50 ? 300.0 : 2.0}});
+  }
+  const Figure figure = host_clocks(run);
+  ASSERT_THAT(figure.panels, SizeIs(2));
+  ASSERT_THAT(figure.panels[0].series, SizeIs(1));  // the master's is not drawn
+  EXPECT_EQ(figure.panels[0].series[0].y.front(), 300);
+  EXPECT_THAT(figure.panels[1].series[0].y, Each(2.0));
+  ASSERT_THAT(figure.panels[0].spans, SizeIs(3));
+  EXPECT_EQ(figure.panels[0].spans[0].label, "synchronisation");
+  EXPECT_EQ(figure.panels[0].spans[0].to, -0.05);
+  EXPECT_EQ(figure.panels[1].spans[0].label, "warm-up");
+}
+
+TEST(RunFiguresTest, GatheringTellsWhatBecameOfEveryFrame) {
+  RunDetail run = hand_made_run({0}, 3);
+  run.cameras[1].frames.erase(run.cameras[1].frames.begin() + 12);
+  run.lost.push_back({.camera = 1, .counter = 12, .pulse = 12});
+  run.sets.pop_back();
+  run.sets.back().pure = false;  // pulse 11
+  const Figure figure = gathering(run);
+  ASSERT_THAT(figure.panels, SizeIs(2));
+  std::vector<std::pair<double, double>> mixed;
+  std::vector<std::pair<double, double>> left_over;
+  std::vector<std::pair<double, double>> dropped;
+  int lines = 0;
+  for (const FigureSeries& series : figure.panels[0].series) {
+    if (series.mark == Mark::kLine) {
+      ++lines;
+      EXPECT_THAT(series.x, ElementsAre(2.5, 10.5));
+      continue;
+    }
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const std::pair<double, double> point(series.x[i], series.y[i]);
+      if (series.label == "in a set of several pulses") mixed.push_back(point);
+      if (series.label == "in no set") left_over.push_back(point);
+      if (series.label == "dropped") dropped.push_back(point);
+    }
+  }
+  EXPECT_EQ(lines, 3);
+  EXPECT_THAT(mixed, ElementsAre(std::pair(11, 0), std::pair(11, 1), std::pair(11, 2)));
+  EXPECT_THAT(left_over, ElementsAre(std::pair(12, 0), std::pair(12, 2)));
+  EXPECT_THAT(dropped, ElementsAre(std::pair(12, 1)));
+}
+
+TEST(RunFiguresTest, WithoutTruthStampsAreComparedWithTheirMedian) {
+  RunDetail run = hand_made_run({0, 1, 5}, 1);
+  run.has_truth = false;
+  const Figure figure = hosts(run);
+  EXPECT_THAT(figure.panels[1].series[0].y, Each(-1.0));
+  EXPECT_THAT(figure.panels[1].series[1].y, Each(0.0));
+}
+
+TEST(RunFiguresTest, FreeRunningFramesAreDrawnAgainstTheirNumber) {
+  RunDetail run = hand_made_run({0, 2}, 1);
+  run.has_pulses = false;
+  for (evaluation::CameraDetail& camera : run.cameras) {
+    for (evaluation::FrameDetail& frame : camera.frames) {
+      frame.pulse = -1;
+      frame.evaluated = false;
+    }
+  }
+  const Figure figure = hosts(run);
+  EXPECT_EQ(figure.panels[1].x_label, "frame");
+  EXPECT_FALSE(figure.panels[1].x_is_pulse);
+  EXPECT_THAT(figure.panels[1].series[1].y, Each(2.0));
+}
+
+TEST(RunFiguresTest, ARunWithoutFramesSaysSo) {
+  RunDetail run = hand_made_run({0, 1}, 1);
+  for (evaluation::CameraDetail& camera : run.cameras) camera.frames.clear();
+  run.sets.clear();
+  for (const Figure& figure : run_figures(run)) {
+    EXPECT_FALSE(figure.absent.empty()) << figure.id;
+    EXPECT_THAT(figure.panels, IsEmpty()) << figure.id;
+  }
+}
+
+}  // namespace
+}  // namespace simbench::reports
