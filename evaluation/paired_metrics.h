@@ -23,13 +23,13 @@ struct GateMargin {
 };
 
 struct PairedMetric {
-  const char* name;   // of the member in results.json
-  const char* title;  // for people
-  const char* unit;   // "ms", or "" for a share
-  bool higher_is_better;
-  double smallest_step;  // a smaller change means nothing, whatever its share
-  GateMargin margin;     // unless a baseline says otherwise
-  const Series& (*of)(const Row&);
+  const char* name = "";   // of the member in results.json
+  const char* title = "";  // for people
+  const char* unit = "";   // "ms", or "" for a share
+  bool higher_is_better = false;
+  double smallest_step = 0;  // a smaller change means nothing, whatever its share
+  GateMargin margin;         // unless a baseline says otherwise
+  const Series& (*of)(const Row&) = nullptr;
 
   // The one value for all seeds; NaN if no seed has one.
   double table_value(const std::vector<double>& values) const;

@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 using evaluation::paired_metrics;
-using evaluation::PairedMetric;
 
 constexpr const char* kKind = "simbench baseline";
 constexpr const char* kEdited =

@@ -10,7 +10,6 @@
 namespace simbench::reports {
 namespace {
 
-using evaluation::Estimate;
 using evaluation::PairedComparison;
 using evaluation::PairedMetric;
 

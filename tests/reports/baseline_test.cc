@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 
+#include "reports/comparison_scenarios.h"
 #include "reports/output_folder.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_archive.h"
@@ -142,6 +143,21 @@ TEST_F(BaselineFile, WhereNothingCanBeWrittenNothingIsLeft) {
   EXPECT_THROW(write_baseline(baseline, folder_.string()), OutputError);
   EXPECT_THROW(write_baseline(baseline, "/dev/null"), OutputError);
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+// Each is of the scenario it is named after, as that is now: else tools/check could not hold a
+// build to it.
+TEST(CommittedBaselines, FitTheirScenarios) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(SIMBENCH_SOURCE_DIR "/reports/baselines")) {
+    const Baseline baseline = read_baseline(entry.path().string());
+    EXPECT_EQ(baseline.scenario, entry.path().stem().string());
+    EXPECT_EQ(seeds_text(baseline.seeds), "1-32");
+    const std::string now = scenarios::load_scenario(baseline.scenario).resolved_json;
+    EXPECT_THAT(compare_scenarios(baseline.scenario_json, now).world, testing::IsEmpty());
+    ++count;
+  }
+  EXPECT_EQ(count, 4);
 }
 
 }  // namespace
