@@ -1,0 +1,190 @@
+#include "reports/figures/gnuplot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "reports/figures/figure_csv.h"
+#include "reports/output_folder.h"
+
+namespace simbench::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+FigureSeries series(const std::string& label, std::vector<double> y, int colour) {
+  FigureSeries made;
+  made.label = label;
+  made.mark = Mark::kLine;
+  for (std::size_t i = 0; i < y.size(); ++i) made.x.push_back(static_cast<double>(i));
+  made.y = std::move(y);
+  made.colour = colour;
+  return made;
+}
+
+Figure sample() {
+  FigurePanel panel;
+  panel.title = "It's a title, \"quoted\" \\n";
+  panel.x_label = "pulse";
+  panel.y_label = "ms";
+  panel.series = {series("host 0, camera 0", {1, kNan, 2.5}, 0),
+                  series("host 0, camera 1", {2, 3, 4}, 0), series("mine", {5, 6, 7}, 1)};
+  panel.lines = {{.label = "mine, published", .at = 5.5}, {"start", true, 1}};
+  panel.spans = {{"warm-up", 0, 1}};
+  Figure figure;
+  figure.id = "sample";
+  figure.title = "Sample";
+  figure.panels = {panel, panel};
+  return figure;
+}
+
+Figure photographs() {
+  Figure figure;
+  figure.title = "Photographs";
+  figure.photographs = {
+      {"mine", {{"host 0, camera 0", {{"00:01.008", 0.75}, {"00:01.016", 0.25}}}}}};
+  return figure;
+}
+
+class GnuplotTest : public testing::Test {
+ protected:
+  GnuplotTest() : folder_(fs::temp_directory_path() / ("gnuplot_" + std::to_string(getpid()))) {
+    fs::create_directory(folder_);
+  }
+  ~GnuplotTest() override { fs::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string content(const std::string& name) const {
+    std::ifstream in(folder_ / name);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
+  draw(sample(), PlotFormat::kSvg, file("x.svg"));
+  const std::string svg = content("x.svg");
+  EXPECT_THAT(svg, StartsWith("<?xml"));
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  EXPECT_THAT(svg, HasSubstr("It's a title, \"quoted\" \\n"));
+  EXPECT_THAT(svg, HasSubstr("mine, published"));
+  EXPECT_THAT(svg, HasSubstr("warm-up"));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
+  const std::string script = gnuplot_script(sample(), PlotFormat::kSvg, "x.svg");
+  EXPECT_THAT(script, HasSubstr("title 'host 0'"));
+  EXPECT_THAT(script, Not(HasSubstr("'host 0, camera 1'")));
+}
+
+TEST_F(GnuplotTest, DrawsPhotographsAsPdf) {
+  draw(photographs(), PlotFormat::kPdf, file("x.pdf"));
+  EXPECT_THAT(content("x.pdf"), StartsWith("%PDF"));
+  draw(photographs(), PlotFormat::kSvg, file("x.svg"));
+  EXPECT_THAT(content("x.svg"), HasSubstr("00:01.016"));
+  EXPECT_THAT(content("x.svg"), HasSubstr("25 %"));
+}
+
+TEST_F(GnuplotTest, AFigureOfConstantsAndNothingElseIsDrawn) {
+  Figure figure = sample();
+  for (FigurePanel& panel : figure.panels) {
+    panel.log_y = true;
+    panel.lines.clear();
+    for (FigureSeries& each : panel.series) each.y.assign(each.y.size(), 0);
+  }
+  figure.panels[1].series[0] = series("nothing", {kNan}, 0);
+  draw(figure, PlotFormat::kSvg, file("x.svg"));
+  EXPECT_THAT(content("x.svg"), HasSubstr("</svg>"));
+}
+
+TEST_F(GnuplotTest, WithoutGnuplotNothingIsWrittenAndTheMessageSaysWhatToInstall) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.c_str(), 1);
+  std::string message;
+  try {
+    draw(sample(), PlotFormat::kSvg, file("x.svg"));
+  } catch (const OutputError& error) {
+    message = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_THAT(message, HasSubstr("apt-get install gnuplot-nox"));
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(GnuplotTest, WhatGnuplotRefusesLeavesNothingBehind) {
+  std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\necho 'line 7: no' >&2\nexit 1\n";
+  fs::permissions(folder_ / "gnuplot", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder_.string() + ":" + path).c_str(), 1);
+  std::string message;
+  try {
+    draw(sample(), PlotFormat::kSvg, file("x.svg"));
+  } catch (const OutputError& error) {
+    message = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_THAT(message, HasSubstr("line 7: no"));
+  EXPECT_EQ(files(), 1U);  // the false gnuplot
+}
+
+TEST_F(GnuplotTest, AMissingFolderIsRefused) {
+  EXPECT_THROW(draw(sample(), PlotFormat::kSvg, file("none/x.svg")), OutputError);
+}
+
+TEST(FigureCsvTest, HasALineForEveryPoint) {
+  Figure figure = sample();
+  figure.panels.pop_back();
+  figure.panels[0].title = "A, B";
+  EXPECT_EQ(figure_csv(figure),
+            "panel,series,x,y\n"
+            "\"A, B\",\"host 0, camera 0\",0,1\n"
+            "\"A, B\",\"host 0, camera 0\",1,\n"
+            "\"A, B\",\"host 0, camera 0\",2,2.5\n"
+            "\"A, B\",\"host 0, camera 1\",0,2\n"
+            "\"A, B\",\"host 0, camera 1\",1,3\n"
+            "\"A, B\",\"host 0, camera 1\",2,4\n"
+            "\"A, B\",mine,0,5\n"
+            "\"A, B\",mine,1,6\n"
+            "\"A, B\",mine,2,7\n"
+            "\"A, B\",\"mine, published\",,5.5\n"
+            "\"A, B\",start,1,\n"
+            "\"A, B\",warm-up,0,\n"
+            "\"A, B\",warm-up,1,\n");
+}
+
+TEST(FigureCsvTest, BarsHaveTheirCategoriesAndPhotographsTheirReadings) {
+  Figure figure;
+  FigurePanel panel;
+  panel.title = "Parts";
+  panel.categories = {"trigger", "host clock"};
+  panel.series = {series("mean", {0.25, 3}, 0)};
+  figure.panels = {panel};
+  figure.photographs = photographs().photographs;
+  EXPECT_EQ(figure_csv(figure),
+            "panel,series,x,y\n"
+            "Parts,mean,trigger,0.25\n"
+            "Parts,mean,host clock,3\n"
+            "mine,\"host 0, camera 0\",00:01.008,0.75\n"
+            "mine,\"host 0, camera 0\",00:01.016,0.25\n");
+}
+
+}  // namespace
+}  // namespace simbench::reports
