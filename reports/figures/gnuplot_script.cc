@@ -219,9 +219,10 @@ bool has_legend(const FigurePanel& panel) {
 std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
                          std::size_t& datablocks) {
   std::string script = "unset object\nunset arrow\n";
-  fmt::format_to(std::back_inserter(script),
-                 "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
-                 in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
+  fmt::format_to(
+      std::back_inserter(script),
+      "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
+      in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
   script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   script += x_range(panel) + y_range(panel) + categories(panel);
   std::map<int, std::string> legend = legend_of(panel);
