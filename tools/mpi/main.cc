@@ -9,16 +9,17 @@
 //
 // Only the main thread of a rank talks to MPI, as MPI_THREAD_FUNNELED asks; it looks for messages
 // often instead of waiting for them, since waiting takes a whole core.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/mpi/communicator.hpp>
 #include <boost/mpi/environment.hpp>
-#include <boost/serialization/string.hpp>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <exception>
-#include <iostream>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -38,52 +39,82 @@ namespace {
 namespace mpi = boost::mpi;
 using evaluation::TaskQueue;
 
-constexpr std::chrono::microseconds kBetweenLooks{200};
+constexpr std::chrono::microseconds kShortestPause{100};
+constexpr std::chrono::microseconds kLongestPause{1600};
 // Tasks that wait at a rank for each of its threads, while there are plenty: sending one takes as
 // long as a look or two, and short runs are not much longer.
 constexpr std::size_t kAhead = 3;
 constexpr std::size_t kPlenty = 8;  // tasks left for each thread
 
-enum Tag : int { kSetup, kTask, kStop, kAnswer };
+enum Tag : int { kSetup, kTask, kStop, kAnswer, kFailure };
 
-struct Setup {
-  unsigned threads = 1;
-  std::string text;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    archive& threads& text;
-  }
+// What ranks tell each other: a number and a text, in one message of plain bytes. (Boost.MPI sends
+// an object of several members as two messages, and to wait for the second takes a whole core.)
+struct Message {
+  std::size_t number = 0;  // of the task; of a setup: threads
+  std::string text;        // of a setup, a task, an answer; of a failure: why
 };
 
-struct Task {
-  std::size_t index = 0;
-  std::string text;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    archive& index& text;
+// Sends without waiting: a rank that sleeps takes its message later.
+class Outbox {
+ public:
+  explicit Outbox(mpi::communicator world) : world_(std::move(world)) {}
+  ~Outbox() {
+    for (Sent& sent : sent_) sent.request.wait();
   }
+  Outbox(const Outbox&) = delete;
+  Outbox& operator=(const Outbox&) = delete;
+
+  void send(int rank, Tag tag, const Message& message) {
+    while (!sent_.empty() && sent_.front().request.test()) sent_.pop_front();
+    Sent& sent = sent_.emplace_back();
+    sent.bytes = fmt::format("{} {}", message.number, message.text);
+    sent.request = world_.isend(rank, tag, sent.bytes.data(), static_cast<int>(sent.bytes.size()));
+  }
+
+ private:
+  struct Sent {
+    std::string bytes;
+    mpi::request request;
+  };
+  mpi::communicator world_;
+  std::deque<Sent> sent_;
 };
 
-struct Answer {
-  std::size_t index = 0;
-  bool failed = false;
-  std::string text;  // why, if it failed
-  template <class Archive>
-  void serialize(Archive& archive, unsigned /*version*/) {
-    archive& index& failed& text;
+// A message that is there.
+Message receive(const mpi::communicator& world, const mpi::status& waiting) {
+  std::string bytes(static_cast<std::size_t>(*waiting.count<char>()), '\0');
+  world.recv(waiting.source(), waiting.tag(), bytes.data(), static_cast<int>(bytes.size()));
+  Message message;
+  const char* const end = bytes.data() + bytes.size();
+  const char* const blank = std::from_chars(bytes.data(), end, message.number).ptr;
+  message.text.assign(blank + 1, end);
+  return message;
+}
+
+// Between two looks for messages: short while they come, longer while they do not.
+class Pause {
+ public:
+  void take() {
+    std::this_thread::sleep_for(length_);
+    length_ = std::min(2 * length_, kLongestPause);
   }
+  void end() { length_ = kShortestPause; }
+
+ private:
+  std::chrono::microseconds length_ = kShortestPause;
 };
 
 // Rank 0's side.
 class MpiFarm final : public evaluation::TaskFarm {
  public:
-  explicit MpiFarm(mpi::communicator world) : world_(std::move(world)) {}
+  explicit MpiFarm(mpi::communicator world) : world_(std::move(world)), outbox_(world_) {}
 
   void run(const evaluation::Tasks& tasks, const evaluation::AnswerKeeper& keep) override {
     TaskQueue queue(tasks, keep);
     const unsigned threads = std::max(1U, tasks.threads);
     for (int rank = 1; rank < world_.size(); ++rank) {
-      world_.send(rank, kSetup, Setup{threads, tasks.setup});
+      outbox_.send(rank, kSetup, {threads, tasks.setup});
     }
     {
       std::vector<std::jthread> own;
@@ -97,7 +128,7 @@ class MpiFarm final : public evaluation::TaskFarm {
 
   // The others may go. Also where nothing was run.
   void dismiss() {
-    for (int rank = 1; rank < world_.size(); ++rank) world_.send(rank, kStop);
+    for (int rank = 1; rank < world_.size(); ++rank) outbox_.send(rank, kStop, {});
   }
 
  private:
@@ -110,47 +141,54 @@ class MpiFarm final : public evaluation::TaskFarm {
       while (mine < threads * (queue.left() > kPlenty * others ? 1 + kAhead : 1)) {
         std::optional<TaskQueue::Task> task = queue.next();
         if (!task) return;
-        world_.send(rank, kTask, Task{task->index, std::move(task->text)});
+        outbox_.send(rank, kTask, {task->index, std::move(task->text)});
         ++mine;
         ++away;
       }
     };
     for (int rank = 1; rank < world_.size(); ++rank) fill(rank);
+    Pause pause;
     while (away > 0) {
-      const auto waiting = world_.iprobe(mpi::any_source, kAnswer);
+      const auto waiting = world_.iprobe(mpi::any_source, mpi::any_tag);
       if (!waiting) {
-        std::this_thread::sleep_for(kBetweenLooks);
+        pause.take();
         continue;
       }
-      Answer answer;
-      world_.recv(waiting->source(), kAnswer, answer);
+      pause.end();
+      const Message answer = receive(world_, *waiting);
       --given[static_cast<std::size_t>(waiting->source())];
       --away;
-      if (answer.failed) {
+      if (waiting->tag() == kFailure) {
         queue.failed(std::make_exception_ptr(std::runtime_error(answer.text)));
       } else {
-        queue.answered(answer.index, answer.text);
+        queue.answered(answer.number, answer.text);
       }
       fill(waiting->source());
     }
   }
 
   mpi::communicator world_;
+  Outbox outbox_;
+};
+
+struct Answer {
+  Tag tag = kAnswer;
+  Message message;
 };
 
 // Between a rank's main thread and its workers. An empty task ends a worker.
 class Exchange {
  public:
-  void add(std::optional<Task> task) {
+  void add(std::optional<Message> task) {
     const std::lock_guard lock(mutex_);
     tasks_.push_back(std::move(task));
     added_.notify_one();
   }
 
-  std::optional<Task> next() {
+  std::optional<Message> next() {
     std::unique_lock lock(mutex_);
     added_.wait(lock, [this] { return !tasks_.empty(); });
-    std::optional<Task> task = std::move(tasks_.front());
+    std::optional<Message> task = std::move(tasks_.front());
     tasks_.pop_front();
     return task;
   }
@@ -168,50 +206,49 @@ class Exchange {
  private:
   std::mutex mutex_;
   std::condition_variable added_;
-  std::deque<std::optional<Task>> tasks_;
+  std::deque<std::optional<Message>> tasks_;
   std::deque<Answer> answers_;
 };
 
 void work(const std::string& setup, Exchange& exchange) {
   evaluation::TaskWorker worker;
-  while (const std::optional<Task> task = exchange.next()) {
-    Answer answer{task->index, false, ""};
+  while (const std::optional<Message> task = exchange.next()) {
     try {
       if (!worker) worker = tools::simulated_sweep_workers()(setup);
-      answer.text = worker(task->text);
+      exchange.answer({kAnswer, {task->number, worker(task->text)}});
     } catch (const std::exception& error) {
-      answer.failed = true;
-      answer.text = error.what();
+      exchange.answer({kFailure, {task->number, error.what()}});
     }
-    exchange.answer(std::move(answer));
   }
 }
 
 // The side of every other rank: until it is dismissed.
 void serve(const mpi::communicator& world) {
   Exchange exchange;
+  Outbox outbox(world);
   std::vector<std::jthread> workers;
+  Pause pause;
   while (true) {
-    for (const Answer& answer : exchange.take_answers()) world.send(0, kAnswer, answer);
+    for (const Answer& answer : exchange.take_answers()) {
+      outbox.send(0, answer.tag, answer.message);
+      pause.end();
+    }
     const auto waiting = world.iprobe(0, mpi::any_tag);
     if (!waiting) {
-      std::this_thread::sleep_for(kBetweenLooks);
+      pause.take();
       continue;
     }
+    pause.end();
+    Message message = receive(world, *waiting);
     if (waiting->tag() == kStop) break;
-    if (waiting->tag() == kSetup) {
-      Setup setup;
-      world.recv(0, kSetup, setup);
-      for (unsigned i = 0; i < setup.threads; ++i) {
-        workers.emplace_back([&exchange, text = setup.text] { work(text, exchange); });
-      }
-    } else {
-      Task task;
-      world.recv(0, kTask, task);
-      exchange.add(std::move(task));
+    if (waiting->tag() == kTask) {
+      exchange.add(std::move(message));
+      continue;
+    }
+    for (std::size_t i = 0; i < message.number; ++i) {
+      workers.emplace_back([&exchange, text = message.text] { work(text, exchange); });
     }
   }
-  world.recv(0, kStop);
   for (std::size_t i = 0; i < workers.size(); ++i) exchange.add(std::nullopt);
 }
 
