@@ -7,6 +7,7 @@
 
 #include "algorithms/ports/assert.h"
 #include "recording/version.h"
+#include "reports/html_comparison.h"
 #include "reports/html_figures.h"
 #include "reports/html_tables.h"
 #include "reports/html_text.h"

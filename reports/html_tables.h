@@ -3,10 +3,8 @@
 #define SIMBENCH_REPORTS_HTML_TABLES_H_
 
 #include <string>
-#include <vector>
 
 #include "evaluation/results.h"
-#include "reports/archive_reader.h"
 
 namespace simbench::reports {
 
@@ -14,10 +12,6 @@ namespace simbench::reports {
 // pipelines differ in it), boards (of a leaderboard), claims, stages, warnings, performance.
 // `leaderboard`: /evaluation/table of the scenario is "leaderboard".
 std::string html_tables(const evaluation::Results& results, bool leaderboard);
-
-// Median and band of AMD and of the absolute error of every pipeline, archives side by side; empty
-// for a single one.
-std::string html_comparison(const std::vector<const Archive*>& archives);
 
 }  // namespace simbench::reports
 

@@ -164,7 +164,7 @@ readFragment();
 listenToControls();
 listenToPrinter();
 current().views[0]?.draw();
-performance.mark('first figure');
+requestAnimationFrame(() => performance.mark('first figure'));
 drawInSight();
 resizeWithPage();
 addEventListener('hashchange', readFragment);

@@ -13,6 +13,7 @@ import {pathToFileURL} from 'node:url';
 import {closeBrowser, openPage} from './browser.mjs';
 import {makeReport} from './make_report.mjs';
 import * as look from './look.mjs';
+import * as use from './use.mjs';
 
 const [simbench, packages] = process.argv.slice(2).map((argument) => path.resolve(argument));
 if (!packages) {
@@ -67,14 +68,14 @@ async function checkLook(file, shape) {
 
 async function checkUse(file) {
   await withPage(file, kShapes[0], '', async (page, test) => {
-    await test('dragging zooms, a double click and the button reset', () => look.zooms(page));
-    await test('the keyboard zooms', () => look.zoomsByKey(page));
-    await test('hovering shows values', () => look.showsValues(page));
-    await test('another pipeline changes what is drawn', () => look.switches(page, 'Pipeline'));
-    await test('another seed changes what is drawn', () => look.switches(page, 'Seed'));
-    await test('the switches above change all figures', () => look.switchesAll(page));
-    await test('an entry of the legend hides its series', () => look.hidesSeries(page));
-    await test('the button changes the theme and its colours', () => look.changesTheme(page));
+    await test('dragging zooms, a double click and the button reset', () => use.zooms(page));
+    await test('the keyboard zooms', () => use.zoomsByKey(page));
+    await test('hovering shows values', () => use.showsValues(page));
+    await test('another pipeline changes what is drawn', () => use.switches(page, 'Pipeline'));
+    await test('another seed changes what is drawn', () => use.switches(page, 'Seed'));
+    await test('the switches above change all figures', () => use.switchesAll(page));
+    await test('an entry of the legend hides its series', () => use.hidesSeries(page));
+    await test('the button changes the theme and its colours', () => use.changesTheme(page));
   });
 }
 
@@ -82,11 +83,11 @@ async function checkLink(file) {
   let fragment = '', before = null;
   await withPage(file, kShapes[0], '', async (page, test) => {
     await test('a click into a frame writes it into the address', async () => {
-      ({fragment, before} = await look.choosesFrame(page));
+      ({fragment, before} = await use.choosesFrame(page));
     });
   });
   await withPage(file, kShapes[0], fragment, async (page, test) => {
-    await test('a link to a frame shows the same', () => look.showsFrame(page, before));
+    await test('a link to a frame shows the same', () => use.showsFrame(page, before));
   });
   await withPage(file, kShapes[0], '#archive=7&pipeline=none&figure=%3Cb%3E&pulse=x', async (page, test) => {
     await test('a fragment of nonsense shows the report', () => look.isDrawn(page, 'frame_errors'));
@@ -106,7 +107,7 @@ async function checkPrint(file) {
 async function checkArchives(file) {
   await withPage(file, kShapes[0], '', async (page, test) => {
     await test('the archives are side by side in a table', () => look.compares(page));
-    await test('a switch shows the other archive', () => look.switchesArchive(page));
+    await test('a switch shows the other archive', () => use.switchesArchive(page));
   });
 }
 
