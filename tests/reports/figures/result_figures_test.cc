@@ -1,0 +1,120 @@
+#include "reports/figures/result_figures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "evaluation/statistics.h"
+#include "reports/figures/budget_figure.h"
+
+namespace simbench::reports {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+evaluation::Row row(const std::string& pipeline, const std::vector<double>& amd_ms) {
+  evaluation::Row made;
+  made.pipeline = pipeline;
+  made.amd_ms = evaluation::make_series(amd_ms);
+  for (std::size_t i = 0; i < amd_ms.size(); ++i) {
+    evaluation::SeedScore seed;
+    seed.seed = 1 + i;
+    seed.pulses = {{.pulse = 10, .spread_ms = amd_ms[i] - 1, .deviation_ms = 1},
+                   {.pulse = 11, .spread_ms = amd_ms[i] + 1, .deviation_ms = 2}};
+    seed.host_errors_ms = {0, -amd_ms[i], 2 * amd_ms[i]};
+    made.seeds.push_back(seed);
+  }
+  return made;
+}
+
+Archive archive(std::vector<evaluation::Row> rows) {
+  Archive made;
+  made.path = "results";
+  made.results.first_seed = 1;
+  made.results.seed_count = rows.front().seeds.size();
+  made.results.rows = std::move(rows);
+  return made;
+}
+
+TEST(ResultFiguresTest, FrameErrorsAreTheTermsOfOneSeed) {
+  const Archive results = archive({row("mine", {2, 4}), row("yours", {3, 5})});
+  const std::vector<Figure> figures = frame_errors(results);
+  ASSERT_THAT(figures, SizeIs(2));
+  EXPECT_EQ(figures[1].seed, 2U);
+  ASSERT_THAT(figures[1].panels, SizeIs(2));
+  ASSERT_THAT(figures[1].panels[0].series, SizeIs(2));
+  EXPECT_THAT(figures[1].panels[0].series[0].x, ElementsAre(10, 11));
+  EXPECT_THAT(figures[1].panels[0].series[0].y, ElementsAre(3, 5));
+  EXPECT_THAT(figures[1].panels[1].series[1].y, ElementsAre(1, 2));
+}
+
+TEST(ResultFiguresTest, ThePapersRowsAreTakenWhereTheyAre) {
+  const Archive results = archive({row("mine", {2}), row("yoon2021_both", {3}),
+                                   row("ntp_last_set", {500}), row("yoon2021_time", {4})});
+  const Figure figure = frame_errors(results, 1);
+  ASSERT_THAT(figure.panels[0].series, SizeIs(3));
+  EXPECT_EQ(figure.panels[0].series[0].label, "ntp_last_set");
+  EXPECT_EQ(figure.panels[0].series[2].label, "yoon2021_both");
+  EXPECT_TRUE(figure.panels[0].log_y);
+}
+
+TEST(ResultFiguresTest, AnUnknownSeedHasNoFrameErrors) {
+  EXPECT_FALSE(frame_errors(archive({row("mine", {2})}), 9).absent.empty());
+}
+
+TEST(ResultFiguresTest, ADistributionIsTheSortedValuesWithThePublishedOne) {
+  Archive results = archive({row("mine", {3, 1, 2})});
+  results.results.rows[0].published.emplace().amd_ms = 2.5;
+  const std::vector<Figure> figures = distributions(results);
+  ASSERT_THAT(figures, SizeIs(2));
+  EXPECT_EQ(figures[0].pipeline, "");
+  EXPECT_EQ(figures[1].pipeline, "mine");
+  const FigurePanel& amd = figures[1].panels.at(0);
+  EXPECT_EQ(amd.series.at(0).mark, Mark::kSteps);
+  EXPECT_THAT(amd.series.at(0).y, ElementsAre(1, 2, 3, 3));
+  EXPECT_EQ(amd.series.at(0).x.front(), 0);
+  EXPECT_EQ(amd.series.at(0).x.back(), 100);
+  ASSERT_THAT(amd.lines, SizeIs(1));
+  EXPECT_EQ(amd.lines[0].at, 2.5);
+}
+
+TEST(ResultFiguresTest, HostOrderIsTheMedianByHost) {
+  const std::vector<Figure> figures = host_order(archive({row("mine", {3, 1, 2})}));
+  const FigureSeries& medians = figures.at(0).panels.at(0).series.at(0);
+  EXPECT_THAT(medians.x, ElementsAre(1, 2));
+  EXPECT_THAT(medians.y, ElementsAre(2, 4));
+  const FigureSeries& seeds = figures.at(1).panels.at(1).series.at(0);
+  EXPECT_THAT(seeds.x, SizeIs(6));
+  EXPECT_EQ(seeds.y[0], -3);
+}
+
+TEST(ResultFiguresTest, OfManyPipelinesTheFirstAreDrawnTogether) {
+  std::vector<evaluation::Row> rows;
+  for (int i = 0; i < 40; ++i) rows.push_back(row("pipeline " + std::to_string(i), {1.0 + i}));
+  const std::vector<Figure> figures = distributions(archive(std::move(rows)));
+  EXPECT_THAT(figures, SizeIs(41));
+  EXPECT_THAT(figures[0].panels[0].series, SizeIs(12));
+  EXPECT_THAT(figures[0].caption, HasSubstr("first 12 of 40"));
+}
+
+TEST(BudgetFigureTest, ABarForEveryStageAndTheRemainder) {
+  evaluation::Budget budget;
+  budget.pipeline = "mine";
+  budget.amd_ms.total = {.values = {3}, .mean = 3, .p05 = 3, .p95 = 3};
+  budget.amd_ms.stages[5] = {.values = {2}, .mean = 2, .p05 = 1, .p95 = 4};
+  budget.amd_ms.remainder = {.values = {1}, .mean = 1, .p05 = 1, .p95 = 1};
+  const Figure figure = budget_figure(budget);
+  EXPECT_EQ(figure.pipeline, "mine");
+  const FigurePanel& amd = figure.panels.at(0);
+  ASSERT_THAT(amd.categories, SizeIs(evaluation::kStageCount + 1));
+  EXPECT_EQ(amd.categories[5], "host clock");
+  EXPECT_THAT(amd.series.at(0).y, ElementsAre(0, 0, 0, 0, 0, 2, 0, 1));
+  EXPECT_EQ(amd.series.at(2).y.at(5), 4);
+}
+
+}  // namespace
+}  // namespace simbench::reports
