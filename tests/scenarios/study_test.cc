@@ -1,0 +1,33 @@
+#include "scenarios/study.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenarios/builtin_files.h"
+#include "scenarios/json_schema.h"
+
+namespace simbench::scenarios {
+namespace {
+
+TEST(Study, EveryFileIsWhatTheSchemaSays) {
+  const JsonSchema schema(nlohmann::json::parse(study_schema_text()));
+  for (const BuiltinFile& file : study_files()) {
+    EXPECT_TRUE(schema.validate(nlohmann::json::parse(file.text)).empty()) << file.name;
+  }
+  auto wrong = nlohmann::json::parse(study_files().front().text);
+  wrong["tables"] = {"respons"};
+  EXPECT_FALSE(schema.validate(wrong).empty());
+}
+
+TEST(Study, IsFoundByName) {
+  const Study* study = find_study("scalability");
+  ASSERT_NE(study, nullptr);
+  EXPECT_EQ(study->scenario, "18cam_6host_45fps");
+  EXPECT_THAT(study->sweep, testing::ElementsAre(testing::HasSubstr("/hosts/count=")));
+  EXPECT_EQ(find_study("scalable"), nullptr);
+}
+
+}  // namespace
+}  // namespace simbench::scenarios
