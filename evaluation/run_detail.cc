@@ -60,6 +60,12 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_frame(frame, truth);
   }
 
+  // The world's own samples may be far apart (run_world.h).
+  void on_pulse(const PulseTruth& truth) override {
+    run_.clocks.push_back(clock_errors(truth.at, truth.host_errors));
+    ForwardingSink::on_pulse(truth);
+  }
+
   void on_adjustment(const ClockAdjustment& adjustment) override {
     for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
       if (run_.cameras[camera].host != adjustment.host) continue;

@@ -118,7 +118,7 @@ struct RunDetail {
   std::vector<CameraDetail> cameras;
   std::vector<LostFrame> lost;
   std::vector<SetDetail> sets;      // in order of emission
-  std::vector<ClockErrors> clocks;  // in order of time; empty if the world was not observed
+  std::vector<ClockErrors> clocks;  // in order of time; also at the evaluated pulses
   SeedScore score;                  // as evaluate() gives it, with pulses
 };
 

@@ -30,6 +30,14 @@ std::vector<LostFrame> gaps(const RunDetail& run) {
 
 }  // namespace
 
+ClockErrors clock_errors(TrueTime at, std::span<const Nanoseconds> errors) {
+  ClockErrors clocks{.at_ms = true_ms(at), .errors_ms = {}};
+  for (const Nanoseconds error : errors.first(std::min(errors.size(), kDetailCameras))) {
+    clocks.errors_ms.push_back(to_ms(error));
+  }
+  return clocks;
+}
+
 RunWorld::RunWorld(StreamKind stream, std::int64_t hosts, std::optional<Nanoseconds> service)
     : stream_(stream),
       service_(service.has_value()),
@@ -54,17 +62,15 @@ void RunWorld::on_frame(const ObservedFrame& frame) {
 }
 
 void RunWorld::on_clocks(TrueTime at, std::span<const Nanoseconds> errors) {
-  ClockErrors clocks{.at_ms = true_ms(at), .errors_ms = {}};
-  for (const Nanoseconds error : errors.first(std::min(errors.size(), kDetailCameras))) {
-    clocks.errors_ms.push_back(to_ms(error));
-  }
-  clocks_.push_back(std::move(clocks));
+  clocks_.push_back(clock_errors(at, errors));
 }
 
 void RunWorld::add_to(RunDetail& run, double wait_before_capture_ms) {
   run.service = service_;
   run.lost = start_ ? std::move(lost_) : gaps(run);
-  run.clocks = std::move(clocks_);
+  run.clocks.insert(run.clocks.end(), clocks_.begin(), clocks_.end());
+  std::stable_sort(run.clocks.begin(), run.clocks.end(),
+                   [](const ClockErrors& a, const ClockErrors& b) { return a.at_ms < b.at_ms; });
   if (start_) run.world_start_ms = true_ms(*start_);
   if (!capture_start_) return;
   run.capture_start_ms = true_ms(*capture_start_);

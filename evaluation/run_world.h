@@ -13,6 +13,9 @@
 
 namespace simbench::evaluation {
 
+// Of the hosts kept in detail.
+ClockErrors clock_errors(TrueTime at, std::span<const Nanoseconds> errors);
+
 class RunWorld final : public WorldObserver {
  public:
   // Frames of `stream` are of interest. `service`: how long a host_sync that does not end runs
@@ -28,7 +31,7 @@ class RunWorld final : public WorldObserver {
   void on_message(const ObservedMessage& message) override;
   void on_clocks(TrueTime at, std::span<const Nanoseconds> errors) override;
 
-  // When the run is over and `run` has its frames.
+  // When the run is over and `run` has its frames, and maybe clocks already.
   void add_to(RunDetail& run, double wait_before_capture_ms);
 
  private:

@@ -23,7 +23,7 @@ using evaluation::RunDetail;
 using evaluation::SetDetail;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBucketsOfACamera = 240;  // marks closer than this share of the axis are one
+constexpr double kBucketsOfACamera = 480;  // marks closer than this share of the axis are one
 
 // What became of a frame.
 enum class Lot : std::uint8_t { kGathered, kMixed, kPartial, kLeftOver, kDropped };
@@ -31,6 +31,9 @@ constexpr std::size_t kLots = 5;
 constexpr std::array<const char*, kLots> kLotNames = {"in a complete set of one pulse",
                                                       "in a set of several pulses",
                                                       "in a partial set", "in no set", "dropped"};
+
+// Beside the line of the camera's gathered frames, so that it stays to be seen.
+constexpr std::array<double, kLots> kBesideCamera = {0, 0.3, 0.3, -0.3, 0.3};
 
 // Where the frames of each lot are, by camera: buckets of the x axis.
 struct Timeline {
@@ -153,7 +156,7 @@ FigurePanel frames_panel(const RunDetail& run, const Timeline& timeline) {
     for (std::size_t camera = 0; camera < timeline.cameras.size(); ++camera) {
       for (const std::int64_t bucket : timeline.cameras[camera][lot]) {
         marks.x.push_back(timeline.middle(bucket));
-        marks.y.push_back(static_cast<double>(camera));
+        marks.y.push_back(static_cast<double>(camera) + kBesideCamera.at(lot));
       }
     }
     if (!marks.x.empty()) made.series.push_back(std::move(marks));

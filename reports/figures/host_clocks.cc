@@ -65,8 +65,8 @@ Figure host_clocks(const RunDetail& run) {
   }
   figure.caption = "System clock of each slave host minus the master's at the same instant.";
   if (run.clocks.size() > 1) {
-    figure.caption +=
-        fmt::format(" Looked at every {:.0f} ms.", run.clocks[1].at_ms - run.clocks[0].at_ms);
+    figure.caption += fmt::format(" Looked at every {:.0f} ms, and at every scored pulse.",
+                                  run.clocks[1].at_ms - run.clocks[0].at_ms);
   }
   if (run.host_count > run.clocks.front().errors_ms.size()) {
     figure.caption += " Only the first " + std::to_string(run.clocks.front().errors_ms.size()) +

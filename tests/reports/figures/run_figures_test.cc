@@ -127,9 +127,9 @@ TEST(RunFiguresTest, GatheringTellsWhatBecameOfEveryFrame) {
     }
   }
   EXPECT_EQ(lines, 3);
-  EXPECT_THAT(mixed, ElementsAre(std::pair(11, 0), std::pair(11, 1), std::pair(11, 2)));
-  EXPECT_THAT(left_over, ElementsAre(std::pair(12, 0), std::pair(12, 2)));
-  EXPECT_THAT(dropped, ElementsAre(std::pair(12, 1)));
+  EXPECT_THAT(mixed, ElementsAre(std::pair(11, 0.3), std::pair(11, 1.3), std::pair(11, 2.3)));
+  EXPECT_THAT(left_over, ElementsAre(std::pair(12, -0.3), std::pair(12, 1.7)));
+  EXPECT_THAT(dropped, ElementsAre(std::pair(12, 1.3)));
 }
 
 TEST(RunFiguresTest, WithoutTruthStampsAreComparedWithTheirMedian) {
