@@ -25,7 +25,7 @@ std::string system_reason() { return errno ? std::strerror(errno) : "write error
 // The full path; where a link stands, of what it leads to.
 fs::path full_path(const std::string& named) {
   std::error_code error;
-  const fs::path path = fs::weakly_canonical(fs::absolute(named), error);
+  fs::path path = fs::weakly_canonical(fs::absolute(named), error);
   if (error) fail(named, error.message());
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) fail(named, "is a folder; name a file, such as report.html");
