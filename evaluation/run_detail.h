@@ -36,27 +36,28 @@ namespace simbench::evaluation {
 // The cameras (and hosts) that are kept in detail: the first so many.
 inline constexpr std::size_t kDetailCameras = 18;
 
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
 struct FrameDetail {
   std::uint32_t counter = 0;
-  std::int64_t pulse = -1;    // that exposed it; -1: none, or not known
-  bool evaluated = false;     // of a pulse that is scored
-  bool in_warm_up = false;    // before the first of those
-  double sensor_ms = 0;       // device clock, unwrapped
-  double frame_ms = 0;        // device clock, unwrapped
-  double backend_ms = 0;      // host's system clock, from zero
-  double arrival_ms = 0;      // the same
-  double global_ms = kNan();  // by the pipeline, from zero; none in the warm-up
+  std::int64_t pulse = -1;      // that exposed it; -1: none, or not known
+  bool evaluated = false;       // of a pulse that is scored
+  bool in_warm_up = false;      // before the first of those
+  double sensor_ms = 0;         // device clock, unwrapped
+  double frame_ms = 0;          // device clock, unwrapped
+  double backend_ms = 0;        // host's system clock, from zero
+  double arrival_ms = 0;        // the same
+  double global_ms = kNoValue;  // by the pipeline, from zero; none in the warm-up
   // By the same estimator, started with the camera's first frame: what Fig. 7b shows. Of a relative
   // estimator only differences mean anything.
-  double from_start_ms = kNan();
-  double online_ms = kNan();          // by regression_30, from zero; none in the warm-up
-  double offline_ms = kNan();         // by regression_offline, from zero; none in the warm-up
-  double reference_ms = kNan();       // master's clock at mid-exposure, from zero: the truth
-  double exposure_start_ms = kNan();  // true time
-  double exposure_end_ms = kNan();    // true time
+  double from_start_ms = kNoValue;
+  double online_ms = kNoValue;          // by regression_30, from zero; none in the warm-up
+  double offline_ms = kNoValue;         // by regression_offline, from zero; none in the warm-up
+  double reference_ms = kNoValue;       // master's clock at mid-exposure, from zero: the truth
+  double exposure_start_ms = kNoValue;  // true time
+  double exposure_end_ms = kNoValue;    // true time
 
   double mid_exposure_ms() const { return (exposure_start_ms + exposure_end_ms) / 2; }
-  static constexpr double kNan() { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 struct CameraDetail {
@@ -71,7 +72,7 @@ struct LostFrame {
   std::uint32_t counter = 0;
   std::int64_t pulse = -1;
   FrameFate fate = FrameFate::kLostInCamera;
-  double mid_exposure_ms = FrameDetail::kNan();  // true time
+  double mid_exposure_ms = kNoValue;  // true time
 };
 
 // A set that gathering emitted (of those that count: set_counter.h).
@@ -108,12 +109,12 @@ struct RunDetail {
   bool has_pulses = false;  // false: no frame is known to be of a pulse
   bool service = false;     // host_sync goes on during the capture
   // True time; NaN where the world was not observed (a real rig) or there is none.
-  double world_start_ms = FrameDetail::kNan();
-  double sync_end_ms = FrameDetail::kNan();  // of a synchronisation that ends
-  double capture_start_ms = FrameDetail::kNan();
-  double evaluated_start_ms = FrameDetail::kNan();  // first scored exposure
-  double capture_end_ms = FrameDetail::kNan();      // last exposure
-  HostTime zero{};                                  // of the stamps on the hosts' scale
+  double world_start_ms = kNoValue;
+  double sync_end_ms = kNoValue;  // of a synchronisation that ends
+  double capture_start_ms = kNoValue;
+  double evaluated_start_ms = kNoValue;  // first scored exposure
+  double capture_end_ms = kNoValue;      // last exposure
+  HostTime zero{};                       // of the stamps on the hosts' scale
 
   std::vector<CameraDetail> cameras;
   std::vector<LostFrame> lost;
