@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "reports/html_report.h"
 #include "scenarios/loader.h"
 #include "tools/exit_status.h"
+#include "tools/messages.h"
 #include "tools/report_figures.h"
 #include "tools/watched.h"
 
@@ -87,8 +87,8 @@ int run(const ReportOptions& options) {
   }
   const std::string html = reports::html_report(input);
   file.write(html);
-  std::cerr << fmt::format("report written to {} ({:.1f} MB)\n", options.output,
-                           static_cast<double>(html.size()) / 1e6);
+  print_note(fmt::format("report written to {} ({:.1f} MB)", options.output,
+                         static_cast<double>(html.size()) / 1e6));
   return kOk;
 }
 
@@ -125,6 +125,7 @@ void add_report_command(CLI::App& app, Action& action, std::vector<std::string> 
       ->type_name("NAME,NAME")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_json_messages_option(*command);
   command->footer(kExamples);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
