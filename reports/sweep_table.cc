@@ -42,9 +42,13 @@ std::vector<std::string> point_cells(const SweepPlan& plan, const ResponseRow& r
   return cells;
 }
 
+std::string counted(std::uint64_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string heading(const SweepPlan& plan) {
-  return fmt::format("{}: {} points, {} pipelines, {} seeds\n\n", plan.scenario, plan.points(),
-                     plan.pipelines.size(), plan.seeds);
+  return fmt::format("{}: {}, {}, {}\n\n", plan.scenario, counted(plan.points(), "point"),
+                     counted(plan.pipelines.size(), "pipeline"), counted(plan.seeds, "seed"));
 }
 
 std::string percent_text(double share) {

@@ -2,6 +2,7 @@
 // random tables, what must hold of every layout.
 #include "reports/table_layout.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,8 +120,8 @@ TEST(TableLayout, LosesNoCellAndKeepsToThePage) {
       for (std::size_t c = 0; c < columns.size(); ++c) {
         std::string cell;
         for (int w = pick(1, 9); w > 0; --w) {
-          words.push_back("w" + std::to_string(words.size()));
-          cell += (cell.empty() ? "" : " ") + words.back();
+          words.push_back(fmt::format("w{}", words.size()));
+          cell += fmt::format("{}{}", cell.empty() ? "" : " ", words.back());
         }
         cells.push_back(cell);
       }
