@@ -93,7 +93,7 @@ TEST(TableLayout, AWordIsNeverBroken) {
   TextTable table({{"name", Align::kLeft}, {"value"}});
   table.add({"a", std::string(50, 'x')});
   const PageGuard page(20);
-  EXPECT_THAT(table.plain(), testing::HasSubstr("a     " + std::string(50, 'x') + "\n"));
+  EXPECT_THAT(table.plain(), testing::HasSubstr(fmt::format("a     {:x<50}\n", "")));
 }
 
 TEST(TableLayout, MarkdownKnowsNoPage) {
@@ -155,7 +155,7 @@ TEST(Fitted, BreaksLongLinesAtBlanksAndLeavesTheOthers) {
   EXPECT_EQ(fitted(text), text);
   const PageGuard page(20);
   EXPECT_EQ(fitted(text), "  short   line\n  a line that is\n    too long\nend");
-  EXPECT_EQ(fitted(std::string(30, 'x') + " y\n"), std::string(30, 'x') + "\n  y\n");
+  EXPECT_EQ(fitted(fmt::format("{:x<30} y\n", "")), fmt::format("{:x<30}\n  y\n", ""));
   EXPECT_EQ(fitted(""), "");
 }
 
