@@ -118,7 +118,6 @@ TEST_F(NullGate, ASingleMetricIsRejectedAboutOnceInTwenty) {
     // 10 are expected; outside of this in fewer than 1 of 1000.
     EXPECT_GE(rejected, 1) << all_->results.rows[row].pipeline;
     EXPECT_LE(rejected, 21) << all_->results.rows[row].pipeline;
-    
   }
 }
 
