@@ -1,5 +1,6 @@
 #include "evaluation/sweep_score.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -53,9 +54,9 @@ TEST(SweepScore, RefusesOtherTexts) {
   EXPECT_TRUE(score_of(text));
   EXPECT_FALSE(score_of(""));
   EXPECT_FALSE(score_of(text.substr(0, text.size() - 1)));
-  EXPECT_FALSE(score_of("1," + text));
+  EXPECT_FALSE(score_of(fmt::format("1,{}", text)));
   EXPECT_FALSE(score_of(text.substr(2)));
-  EXPECT_FALSE(score_of("x" + text.substr(1)));
+  EXPECT_FALSE(score_of(fmt::format("x{}", text.substr(1))));
   EXPECT_FALSE(score_of(text + "1,x"));
 }
 

@@ -1,5 +1,6 @@
 #include "evaluation/task_farm.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -30,7 +31,9 @@ TEST(ThreadFarm, EveryTaskOnceWithAnyNumberOfThreads) {
       EXPECT_TRUE(answers[task].empty());
       answers[task] = answer;
     });
-    for (std::size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i], "s" + std::to_string(i));
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      EXPECT_EQ(answers[i], fmt::format("s{}", i));
+    }
   }
 }
 
