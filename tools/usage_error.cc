@@ -17,6 +17,7 @@ std::string suggestion(const std::string& found, const std::vector<std::string>&
 
 std::vector<std::string> names_of(const std::vector<OptionEntry>& options) {
   std::vector<std::string> names;
+  names.reserve(options.size());
   for (const OptionEntry& option : options) names.push_back(option.names.back());
   return names;
 }
