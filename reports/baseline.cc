@@ -6,8 +6,8 @@
 #include <set>
 
 #include "reports/comparison_scenarios.h"
-#include "reports/gate_file.h"
 #include "reports/json_node.h"
+#include "reports/output_file.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -135,7 +135,7 @@ std::string baseline_json(const Baseline& baseline) {
 }
 
 void write_baseline(const Baseline& baseline, const std::string& path) {
-  write_whole_file("--save-baseline", path, baseline_json(baseline));
+  write_file(path, baseline_json(baseline));
 }
 
 Baseline read_baseline(const std::string& path) {

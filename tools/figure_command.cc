@@ -13,8 +13,8 @@
 #include "reports/archive_reader.h"
 #include "reports/figures/figure_catalogue.h"
 #include "reports/figures/figure_csv.h"
-#include "reports/figures/file_output.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/output_file.h"
 #include "reports/text_table.h"
 #include "scenarios/loader.h"
 #include "tools/exit_status.h"
@@ -178,7 +178,7 @@ int run(const FigureCommand& command) {
   }
   const FigureEntry& entry = entry_named(command.name);
   const FileKind kind = kind_of(command.output);
-  const reports::FileOutput file(command.output);
+  const reports::OutputFile file(command.output);
   const std::optional<ArchiveFigures> made =
       command.archive.empty() ? make_of_scenario(command, entry) : make_of_archive(command, entry);
   if (!made) return kInterrupted;

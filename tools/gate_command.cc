@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "reports/gate.h"
-#include "reports/gate_file.h"
 #include "reports/junit.h"
+#include "reports/output_file.h"
 #include "tools/exit_status.h"
 
 namespace simbench::tools {
@@ -70,7 +70,7 @@ int gate(const GateOptions& options) {
   const reports::GateReport report =
       reports::gate(reports::read_archive(options.result), baseline, mode);
   if (!options.junit.empty()) {
-    reports::write_whole_file("--junit", options.junit, reports::gate_junit(report));
+    reports::write_file(options.junit, reports::gate_junit(report));
   }
   print_result(formatted(report, options.format));
   return report.passed() ? kOk : kGateFailed;

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "reports/archive_reader.h"
-#include "reports/html_file.h"
 #include "reports/html_report.h"
+#include "reports/output_file.h"
 #include "scenarios/loader.h"
 #include "tools/exit_status.h"
 #include "tools/messages.h"
@@ -71,7 +71,7 @@ int run(const ReportOptions& options) {
   std::vector<reports::Archive> archives;
   for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
   check_pipelines(options.detail, archives);
-  reports::HtmlFile file(options.output);
+  const reports::OutputFile file(options.output);
 
   reports::ReportInput input{.archives = {}, .command = options.command};
   for (reports::Archive& archive : archives) {
@@ -87,6 +87,7 @@ int run(const ReportOptions& options) {
   }
   const std::string html = reports::html_report(input);
   file.write(html);
+  file.publish();
   print_note(fmt::format("report written to {} ({:.1f} MB)", options.output,
                          static_cast<double>(html.size()) / 1e6));
   return kOk;

@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "evaluation/pipeline_choice.h"
-#include "reports/figures/file_output.h"
+#include "reports/output_file.h"
 #include "reports/output_folder.h"
 #include "reports/trace_chrome.h"
 #include "reports/trace_csv.h"
@@ -115,7 +115,7 @@ class Output {
   }
 
   std::string name_;
-  std::optional<reports::FileOutput> file_;
+  std::optional<reports::OutputFile> file_;
   std::ofstream stream_;
 };
 

@@ -13,7 +13,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "reports/figures/file_output.h"
+#include "reports/output_file.h"
 #include "reports/output_folder.h"
 
 extern char** environ;
@@ -59,9 +59,9 @@ std::string content(const fs::path& path) {
 }  // namespace
 
 void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
-  FileOutput picture(output);
-  FileOutput script(picture.path().string() + ".gnuplot");
-  FileOutput log(picture.path().string() + ".log");
+  const OutputFile picture(output.string());
+  const OutputFile script(picture.path().string() + ".gnuplot");
+  const OutputFile log(picture.path().string() + ".log");
   script.write(gnuplot_script(figure, format, picture.path().string()));
   const int status = run_gnuplot(script.path(), log.path());
   std::error_code error;

@@ -1,4 +1,4 @@
-#include "reports/html_file.h"
+#include "reports/output_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& named, const std::string& problem) {
-  throw OutputError(fmt::format("--output {}: {}", named, problem));
+  throw OutputError(fmt::format("{}: {}", named, problem));
 }
 
 // Of the last call that failed; a stream keeps no reason of its own.
@@ -28,7 +28,7 @@ fs::path full_path(const std::string& named) {
   fs::path path = fs::weakly_canonical(fs::absolute(named), error);
   if (error) fail(named, error.message());
   const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) fail(named, "is a folder; name a file, such as report.html");
+  if (fs::is_directory(status)) fail(named, "is a folder; name a file in it");
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     fail(named, "is no file that can be replaced; name another one");
   }
@@ -40,7 +40,7 @@ fs::path full_path(const std::string& named) {
 
 }  // namespace
 
-HtmlFile::HtmlFile(const std::string& path) : named_(path), path_(full_path(path)) {
+OutputFile::OutputFile(const std::string& path) : named_(path), path_(full_path(path)) {
   temporary_ =
       path_.parent_path() / fmt::format(".{}.{}.unfinished", path_.filename().string(), getpid());
   errno = 0;
@@ -50,22 +50,31 @@ HtmlFile::HtmlFile(const std::string& path) : named_(path), path_(full_path(path
   }
 }
 
-HtmlFile::~HtmlFile() {
+OutputFile::~OutputFile() {
   std::error_code ignored;  // nothing more can be done about it
   fs::remove(temporary_, ignored);
 }
 
-void HtmlFile::write(std::string_view html) {
+void OutputFile::write(std::string_view content) const {
   errno = 0;
   std::ofstream file(temporary_, std::ios::binary);
-  file.write(html.data(), static_cast<std::streamsize>(html.size()));
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
   file.close();
   if (!file) {
     fail(named_, fmt::format("cannot be written: {}; nothing was kept", system_reason()));
   }
+}
+
+void OutputFile::publish() const {
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) fail(named_, fmt::format("cannot be written: {}", error.message()));
+}
+
+void write_file(const std::string& path, std::string_view content) {
+  const OutputFile file(path);
+  file.write(content);
+  file.publish();
 }
 
 }  // namespace simbench::reports

@@ -1,5 +1,5 @@
-// The file of a report: whole or not at all.
-#include "reports/html_file.h"
+// Whole or not at all.
+#include "reports/output_file.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -15,13 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class HtmlFileTest : public testing::Test {
+class OutputFileTest : public testing::Test {
  protected:
-  HtmlFileTest() {
-    std::string pattern = (fs::temp_directory_path() / "html_file.XXXXXX").string();
+  OutputFileTest() {
+    std::string pattern = (fs::temp_directory_path() / "output_file.XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
   }
-  ~HtmlFileTest() override { fs::remove_all(folder_); }
+  ~OutputFileTest() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   static std::string content(const std::string& path) {
@@ -33,7 +33,7 @@ class HtmlFileTest : public testing::Test {
   }
   static std::string problem(const std::string& path) {
     try {
-      const HtmlFile file(path);
+      const OutputFile file(path);
     } catch (const OutputError& error) {
       return error.what();
     }
@@ -44,39 +44,40 @@ class HtmlFileTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(HtmlFileTest, AppearsWhole) {
-  HtmlFile file(path("a.html"));
-  EXPECT_FALSE(fs::exists(path("a.html")));
+TEST_F(OutputFileTest, AppearsWhole) {
+  const OutputFile file(path("a.html"));
   file.write("<p>");
+  EXPECT_FALSE(fs::exists(path("a.html")));
+  file.publish();
   EXPECT_EQ(content(path("a.html")), "<p>");
   EXPECT_EQ(files(), 1);
 }
 
-TEST_F(HtmlFileTest, NothingIsLeftOfWhatWasNotWritten) {
-  { const HtmlFile file(path("a.html")); }
+TEST_F(OutputFileTest, NothingIsLeftOfWhatWasNotWritten) {
+  { const OutputFile file(path("a.html")); }
   EXPECT_EQ(files(), 0);
 }
 
-TEST_F(HtmlFileTest, AnEarlierFileStaysUntilThenAndIsReplaced) {
+TEST_F(OutputFileTest, AnEarlierFileStaysUntilThenAndIsReplaced) {
   std::ofstream(path("a.html")) << "earlier";
   {
-    const HtmlFile file(path("a.html"));
+    const OutputFile file(path("a.html"));
     EXPECT_EQ(content(path("a.html")), "earlier");
   }
   EXPECT_EQ(content(path("a.html")), "earlier");
-  HtmlFile(path("a.html")).write("later");
+  write_file(path("a.html"), "later");
   EXPECT_EQ(content(path("a.html")), "later");
 }
 
-TEST_F(HtmlFileTest, ALinkStaysALink) {
+TEST_F(OutputFileTest, ALinkStaysALink) {
   std::ofstream(path("real.html")) << "earlier";
   fs::create_symlink("real.html", path("link.html"));
-  HtmlFile(path("link.html")).write("later");
+  write_file(path("link.html"), "later");
   EXPECT_TRUE(fs::is_symlink(path("link.html")));
   EXPECT_EQ(content(path("real.html")), "later");
 }
 
-TEST_F(HtmlFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
+TEST_F(OutputFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   fs::create_directory(path("folder"));
   EXPECT_THAT(problem(path("folder")), HasSubstr("is a folder; name a file"));
   EXPECT_THAT(problem(path("missing/a.html")), HasSubstr("missing; make it first"));
