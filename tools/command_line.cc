@@ -43,7 +43,8 @@ Start here:
   simbench list                             scenarios and algorithms
   simbench run --help                       options, with examples
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing,
+130 interrupted.)";
 
 // `simbench --scenario S` means `simbench run --scenario S`.
 std::vector<std::string> with_default_command(std::vector<std::string> arguments) {
