@@ -33,7 +33,8 @@ fs::path full_path(const std::string& named) {
     fail(named, "is no file that can be replaced; name another one");
   }
   if (!fs::is_directory(path.parent_path(), error)) {
-    fail(named, fmt::format("there is no folder {}; make it first", path.parent_path().string()));
+    const fs::path folder = fs::path(named).parent_path();
+    fail(named, fmt::format("there is no folder {}; make it first", folder.string()));
   }
   return path;
 }
