@@ -22,6 +22,19 @@ target_include_directories(simbench_boost SYSTEM INTERFACE
   $<BUILD_INTERFACE:${SIMBENCH_BOOST_INCLUDE_DIR}>)
 target_link_libraries(simbench_boost INTERFACE Threads::Threads)
 
+# libsodium 1.0.18: seals what goes between the hosts of a rig.
+find_path(SIMBENCH_SODIUM_INCLUDE_DIR sodium.h HINTS ${SIMBENCH_DEPS_DIR}/usr/include NO_CACHE)
+find_library(SIMBENCH_SODIUM_LIBRARY sodium HINTS ${SIMBENCH_DEPS_DIR}/usr/lib NO_CACHE)
+if(NOT SIMBENCH_SODIUM_INCLUDE_DIR OR NOT SIMBENCH_SODIUM_LIBRARY)
+  message(FATAL_ERROR "libsodium: not found; run tools/setup")
+endif()
+add_library(simbench_sodium INTERFACE)
+set_target_properties(simbench_sodium PROPERTIES EXPORT_NAME sodium)
+target_include_directories(simbench_sodium SYSTEM INTERFACE
+  $<BUILD_INTERFACE:${SIMBENCH_SODIUM_INCLUDE_DIR}>)
+target_link_libraries(simbench_sodium INTERFACE
+  $<BUILD_INTERFACE:${SIMBENCH_SODIUM_LIBRARY}> $<INSTALL_INTERFACE:sodium>)
+
 # valijson 1.0: JSON Schema validation over nlohmann-json. Headers only, used inside scenarios/.
 find_path(SIMBENCH_VALIJSON_INCLUDE_DIR valijson/validator.hpp
   HINTS ${SIMBENCH_DEPS_DIR}/usr/include NO_CACHE)

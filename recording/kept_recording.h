@@ -13,11 +13,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <variant>
 #include <vector>
 
-#include "recording/recording.h"
+#include "recording/event.h"
 
 namespace simbench {
 
@@ -36,33 +34,11 @@ class KeptRecording final : public RecordingSink {
   void play(RecordingSink& sink) const;
 
   const RigLayout& layout() const { return layout_; }
-  std::size_t events() const { return events_.size(); }
+  const std::vector<RecordingEvent>& events() const { return events_; }
 
  private:
-  struct Frame {
-    FrameRecord record;
-    std::optional<FrameTruth> truth;
-  };
-  struct Pulse {
-    std::int64_t pulse;
-    TrueTime at;
-    std::vector<Nanoseconds> host_errors;
-  };
-  struct HostExchange {
-    std::uint32_t host;
-    Exchange exchange;
-  };
-  using Event = std::variant<Frame, Pulse, ClockAdjustment, DevicePoll, HostExchange, SyncOutcome>;
-
-  static void give(const Frame& frame, RecordingSink& sink);
-  static void give(const Pulse& pulse, RecordingSink& sink);
-  static void give(const ClockAdjustment& adjustment, RecordingSink& sink);
-  static void give(const DevicePoll& poll, RecordingSink& sink);
-  static void give(const HostExchange& exchange, RecordingSink& sink);
-  static void give(const SyncOutcome& outcome, RecordingSink& sink);
-
   RigLayout layout_;
-  std::vector<Event> events_;
+  std::vector<RecordingEvent> events_;
 };
 
 }  // namespace simbench

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -122,9 +123,20 @@ struct RecordingCost {
   std::uint64_t events = 0;
   double simulated_seconds = 0;  // 0 on a real rig
   std::uint64_t trace_hash = 0;  // of the simulated events; 0 on a real rig
+  // What went wrong while it was made, a line each for the user: a host that was lost, a camera
+  // that was unplugged. The recording holds what there was until then.
+  std::vector<std::string> notes{};
 };
 
-// A backend. Errors: throws what its own header documents; the sink may have seen part of it.
+// A capture that could not be made: what() is one line that says what is missing. Other captures of
+// the same source may succeed, so an evaluation goes on with those.
+class RecordingFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A backend. Errors: throws RecordingFailed, or what its own header documents; the sink may have
+// seen part of the capture.
 class RecordingSource {
  public:
   virtual ~RecordingSource() = default;

@@ -23,6 +23,7 @@ provide() {
   case $2 in
     libeigen3-dev) prove "$1/include/eigen3/Eigen/Dense" ;;
     nlohmann-json3-dev) prove "$1/include/nlohmann/json.hpp" ;;
+    libsodium-dev) prove "$1/include/sodium.h" ;;
     libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libvalijson-dev) prove "$1/include/valijson/validator.hpp" ;;

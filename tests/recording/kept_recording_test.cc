@@ -99,9 +99,9 @@ TEST(KeptRecordingTest, PlaysTheSameTwice) {
 TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   KeptRecording kept;
   record_something(kept);
-  EXPECT_EQ(kept.events(), 8U);
+  EXPECT_EQ(kept.events().size(), 8U);
   kept.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 50});
-  EXPECT_EQ(kept.events(), 0U);
+  EXPECT_EQ(kept.events().size(), 0U);
   EXPECT_EQ(kept.layout().cameras.size(), 1U);
 }
 

@@ -1,0 +1,106 @@
+// A camera as a node sees it, whoever made it: the port that all of hardware/ but one folder is
+// written against.
+//
+// Two kinds: hardware/realsense (librealsense2, where it is installed) and RecordedCamera, which
+// plays a recording in real time and needs no hardware. A driver finds cameras; a camera is
+// configured for a capture, started and stopped. Frames are stamps, never images.
+//
+// Contract
+//  - The frame handler and the event handler may be called from any thread, one call at a time per
+//    camera, never after stop() has returned. They must not block for long.
+//  - `arrived` and `backend` are taken as early as the source allows, in monotonic time.
+//  - Nothing a camera does throws out of a handler. What is wrong becomes an event.
+//
+// Errors: CameraError from open(), configure() and start(): one line that names the camera, what
+// was found, what is allowed or how to get it.
+//
+//   for (const CameraInfo& found : driver.list()) ...
+//   auto camera = driver.open("018322071234");
+//   camera->configure({.sync_mode = "genlock", ...});
+//   camera->start([&](const CameraFrame& frame) { ... }, [&](const CameraEvent& event) { ... });
+#ifndef SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
+#define SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hardware/clock/monotonic_time.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::hardware {
+
+class CameraError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct CameraInfo {
+  std::string serial;
+  std::string model;       // "Intel RealSense D455"
+  std::string firmware;    // empty if the source has none
+  std::string connection;  // "USB 3.2", ...
+};
+
+// What a capture asks of each camera: from the scenario.
+struct CameraSettings {
+  std::string sync_mode;                   // as scenarios::Cameras::sync_mode
+  std::vector<scenarios::Stream> streams;  // profiles
+  double exposure_ms = 0;
+  bool auto_exposure = false;
+  double trigger_rate_hz = 0;
+};
+
+struct CameraFrame {
+  StreamKind stream = StreamKind::kDepth;
+  StampDomain domain = StampDomain::kHardwareClock;
+  std::uint32_t counter = 0;
+  std::uint32_t exposure_us = 0;
+  DeviceStamp sensor;
+  DeviceStamp frame;
+  std::optional<MonotonicTime> backend;  // where the source has one
+  MonotonicTime arrived{};
+};
+
+// Something that happened to a camera during a capture and is not a frame.
+struct CameraEvent {
+  enum class Kind : std::uint8_t {
+    kDisconnected,     // unplugged
+    kReturned,         // plugged in again, and streaming
+    kStalled,          // no frame for much longer than a period
+    kMissingMetadata,  // frames lack stamps; told once, with how to get them
+    kNote,             // anything else worth a line
+  };
+  Kind kind = Kind::kNote;
+  std::string text;  // one line for the user, without the camera's name
+};
+
+using FrameHandler = std::function<void(const CameraFrame&)>;
+using CameraEventHandler = std::function<void(const CameraEvent&)>;
+
+class Camera {
+ public:
+  virtual ~Camera() = default;
+  virtual const CameraInfo& info() const = 0;
+  // Refuses (CameraError) what the camera does not support. Before start().
+  virtual void configure(const CameraSettings& settings) = 0;
+  virtual void start(FrameHandler on_frame, CameraEventHandler on_event) = 0;
+  // Idempotent; no handler runs after it.
+  virtual void stop() = 0;
+};
+
+class CameraDriver {
+ public:
+  virtual ~CameraDriver() = default;
+  virtual std::vector<CameraInfo> list() = 0;
+  virtual std::unique_ptr<Camera> open(const std::string& serial) = 0;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CAMERA_CAMERA_H_

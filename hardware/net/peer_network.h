@@ -1,0 +1,92 @@
+// A node's sockets: streams and datagrams to its peers, and streams from conductors.
+//
+// One TCP listener and one UDP socket on the same port. Between two hosts there is one
+// SecureStream, opened by the host of higher number and opened again when it is lost; datagrams of
+// the pair are sealed under a key of that stream's session, with a counter that is accepted once (a
+// window of 1024, as in RFC 6479). A host's MessageChannels (stream and datagram) are views of
+// these, and survive a reconnection: what was sent meanwhile is lost, as over any network.
+//
+// Contract
+//  - Bounded everywhere: 64 unauthenticated connections of 2 s, kChannelQueue received messages a
+//    channel (the oldest goes), 64 KiB a peer message, and a bucket of datagrams per second from
+//    outside a session before they cost more than a read.
+//  - Receive stamps come from the kernel where it stamps; the channel turns them into host and
+//    steady time by the node's clock. MessageChannel::transmit_stamp likewise.
+//  - A second connection that claims a host replaces the first only after it has proved the key.
+//  - Connections of conductors are handed to on_conductor with their handshake done.
+//  - `statistics()` counts what was refused and why.
+//  - One thread; the io_context must not run after this has gone.
+//
+//   PeerNetwork network(context, settings, clock);
+//   network.on_conductor([&](std::unique_ptr<SecureStream> stream) { ... });
+//   network.start();
+//   MessageChannel& channel = network.channel(2, Transport::kDatagram);
+#ifndef SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_
+#define SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/ports/host.h"
+#include "hardware/clock/node_clock.h"
+#include "hardware/net/secret_key.h"
+#include "hardware/net/secure_stream.h"
+
+namespace simbench::hardware {
+
+struct PeerAddress {
+  std::string address;  // numeric IPv4 or IPv6, or a name
+  std::uint16_t port = 0;
+};
+
+struct PeerNetworkSettings {
+  PeerId me = 0;
+  PeerAddress listen;              // port 0: any free one, see port()
+  std::vector<PeerAddress> peers;  // by host; this host's own is not used
+  SecretKey key;
+};
+
+struct NetworkStatistics {
+  std::uint64_t datagrams_received = 0;
+  std::uint64_t refused_forged = 0;     // seal broken, or no session
+  std::uint64_t refused_replayed = 0;   // counter seen before, or too old
+  std::uint64_t refused_malformed = 0;  // truncated, oversized, unknown
+  std::uint64_t refused_rate = 0;       // beyond the bucket
+  std::uint64_t refused_connections = 0;
+  std::uint64_t dropped_full_queue = 0;
+  std::uint64_t reconnections = 0;
+};
+
+class PeerNetwork {
+ public:
+  static constexpr std::size_t kChannelQueue = 1024;
+
+  // Throws StreamError if the address cannot be bound. `clock` outlives this.
+  PeerNetwork(boost::asio::io_context& context, PeerNetworkSettings settings, NodeClock& clock);
+  ~PeerNetwork();
+  PeerNetwork(const PeerNetwork&) = delete;
+  PeerNetwork& operator=(const PeerNetwork&) = delete;
+
+  void on_conductor(std::function<void(std::unique_ptr<SecureStream>)> handler);
+  void start();
+  std::uint16_t port() const;
+
+  // The same object each time; lives as long as this. kStream keeps message bounds.
+  MessageChannel& channel(PeerId peer, Transport transport);
+  // Forgets messages that wait in channels: a session begins with none of the last one's.
+  void clear();
+  bool connected(PeerId peer) const;
+  const NetworkStatistics& statistics() const;
+
+ private:
+  class State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NET_PEER_NETWORK_H_

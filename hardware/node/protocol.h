@@ -1,0 +1,82 @@
+// What the conductor of a rig and its nodes say to each other over a SecureStream.
+//
+// The conductor is the command (`simbench --backend hardware`); it asks, a node answers each
+// request in order of arrival, and tells by notices what happens in between. All are JSON objects
+// in UTF-8, one a message. Both sides check the protocol number of the handshake first
+// (secure_stream.h).
+//
+//   request  {"id": 7, "do": "begin", ...arguments}
+//   reply    {"id": 7, "result": {...}}   or   {"id": 7, "error": "one line for the user"}
+//   notice   {"notice": "synchronised", ...}
+//
+// | do          | arguments                          | result, or what happens |
+// |-------------|------------------------------------|---------------------------------------------|
+// | hello       |                                    | version, commit, name, clock {kind, | | | |
+// monotonic_zero_ns, steady_zero_ns,          | |             | | skew_ppm}, cameras [{serial,
+// model,         | |             |                                    | firmware, connection,
+// problem}], session    | |             |                                    | (of a live one, or
+// null), conductor         | | begin       | session, conductor, scenario,      | a session begins:
+// journal opened, clock     | |             | pipeline, pipeline's algorithms    | restarted,
+// channels emptied. Refused while  | |             | are known to the node              | another
+// conductor's session lives           | | synchronise | role "master" or "slave"           |
+// host_sync started; notice "synchronised"    | |             | | {error: text or null} when it has
+// returned  | | prepare     |                                    | cameras opened and set: problems
+// [{camera,  | |             |                                    | text}] | | start       | |
+// cameras started: problems                   | | stop        | | cameras stopped | | read        |
+// session, offset                    | text (of the journal from there, at most    | | | | 256
+// KiB), size (of the journal), closed     | | end         | session                            |
+// everything stopped, journal closed          | | ping        | | {} |
+//
+// A session's id is 16 hexadecimal digits that the conductor draws. A node whose conductor has said
+// nothing for kConductorSilence ends the session by itself: cameras stop, the journal is closed and
+// kept. Journals are files of event_text.h lines (and "note,text" lines) named after their session;
+// "read" works for any session whose journal is still there, also after a restart of the node.
+//
+// Errors: ProtocolError for bytes that are none of these. Any bytes are safe to parse.
+#ifndef SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
+#define SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "algorithms/ports/host.h"
+
+namespace simbench::hardware {
+
+inline constexpr Nanoseconds kConductorSilence = std::chrono::seconds(5);
+inline constexpr Nanoseconds kPingInterval = std::chrono::seconds(1);
+inline constexpr std::size_t kJournalChunkBytes = 256u << 10;
+
+class ProtocolError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Request {
+  std::uint64_t id = 0;
+  std::string verb;
+  nlohmann::json arguments;  // an object
+};
+
+// A reply if `notice` is empty.
+struct Answer {
+  std::uint64_t id = 0;
+  std::string error;  // empty: it worked
+  std::string notice;
+  nlohmann::json details;  // an object: the result, or what the notice tells
+};
+
+Bytes encode(const Request& request);
+Bytes encode(const Answer& answer);
+Request parse_request(std::span<const std::byte> message);
+Answer parse_answer(std::span<const std::byte> message);
+
+// 16 hexadecimal digits.
+bool is_session_id(const std::string& text);
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NODE_PROTOCOL_H_

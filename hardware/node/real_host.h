@@ -1,0 +1,55 @@
+// A real host: what algorithms/ports/host.h promises, over sockets, the node's clock and timers.
+//
+// The real side of the seam of DESIGN section 4: the same coroutines that run in the simulator run
+// on this. Steady time follows the node's oscillator, sleep_until(HostTime) its system clock and is
+// re-armed when that is adjusted. There is no card clock and no pulse input (an algorithm that
+// needs them is refused before it starts); the feed gives the frames of the host's own cameras.
+//
+// Exchanges, outcomes and clock adjustments go to `sink` as they happen.
+// One thread. Coroutines that use it end before it does.
+//
+//   RealHost host(context, 3, clock, network, sink);
+//   co_spawn(context, host_sync.run_slave(host, 0), detached);
+#ifndef SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
+#define SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
+
+#include <boost/asio/io_context.hpp>
+#include <memory>
+
+#include "algorithms/ports/host.h"
+#include "hardware/clock/node_clock.h"
+#include "hardware/net/peer_network.h"
+#include "recording/event.h"
+
+namespace simbench::hardware {
+
+class RealHost final : public Host {
+ public:
+  using EventSink = std::function<void(const RecordingEvent&)>;
+
+  RealHost(boost::asio::io_context& context, PeerId id, NodeClock& clock, PeerNetwork& network,
+           EventSink sink);
+  ~RealHost() override;
+
+  PeerId id() const override;
+  HostClock& clock() override;
+  const SteadyClock& steady_clock() const override;
+  FrameFeed* frame_feed() override;
+  MessageChannel& open_channel(PeerId peer, Transport transport) override;
+  Task<void> sleep_for(Nanoseconds interval) override;
+  Task<void> sleep_until(HostTime at) override;
+  double random_uniform() override;
+  void report_exchange(const Exchange& exchange) override;
+  void report_outcome(const SyncOutcome& outcome) override;
+
+  // A frame of one of this host's cameras, for the feed.
+  void deliver(const FrameArrival& frame);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NODE_REAL_HOST_H_

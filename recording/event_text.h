@@ -1,0 +1,42 @@
+// An event of a recording as one line of text, and back.
+//
+// The lines of a node's journal and of a recording folder's events.csv: comma-separated, the kind
+// first, then the members in the order of their structs. Stamps are integer nanoseconds of their
+// own base (device stamps: microseconds), absent ones empty, doubles in the shortest form that
+// reads back as the same number; texts have backslash, comma and line ends escaped by a backslash.
+// So from_line(to_line(e)) is e, bit for bit.
+//
+//   frame,camera,stream,domain,counter,exposure_us,sensor_us,frame_us,backend_ns,arrival_ns,
+//     arrival_steady_ns[,pulse,exposure_start_ns,exposure_end_ns,reference_ns,own_host_ns,
+//     own_steady_ns,delivered_ns]
+//   pulse,pulse,at_ns,error_ns;error_ns;...
+//   adjustment,host,at_steady_ns,before_ns,after_ns,rate_ppb
+//   poll,camera,device_us,t0_ns,t1_ns,t0_steady_ns,t1_steady_ns
+//   exchange,host,peer,t1_ns,t2_ns,t3_ns,t4_ns
+//   outcome,slave,synchronised,passes,message
+//
+// Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
+// does not write. Any bytes are safe to give to it. Complexity: linear in the line.
+#ifndef SIMBENCH_RECORDING_EVENT_TEXT_H_
+#define SIMBENCH_RECORDING_EVENT_TEXT_H_
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "recording/event.h"
+
+namespace simbench {
+
+class EventTextError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Without an end of line.
+std::string to_line(const RecordingEvent& event);
+RecordingEvent from_line(std::string_view line);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_EVENT_TEXT_H_

@@ -1,0 +1,105 @@
+// Recordings as files: a folder that every backend writes alike, and that plays back as recorded.
+//
+//   DIR/manifest.json              format, simbench version and commit, backend, resolved scenario,
+//                                  names of hosts and cameras, and the captures with seed,
+//                                  pipeline, layout, cost, notes, and whether they are complete
+//   DIR/<pipeline>/<seed>/frames.csv   one line a frame, with a header: order, then the columns of
+//                                  recording/event_text.h (truth columns empty without truth)
+//   DIR/<pipeline>/<seed>/events.csv   the other events: order, then a line of event_text.h
+//
+// `order` counts the events of a capture across both files; playing merges by it, so a sink is told
+// the same calls with the same values in the same order as when it was recorded, and scores of a
+// replay equal those of the run.
+//
+// Nothing that was recorded is lost when the writer dies: frames are written through to the kernel
+// at least every 100 ms or 1000 events, and a folder whose capture has no end is readable up to its
+// last whole line (Capture::complete is false then, and a note says so). A new recording never
+// overwrites: the folder must be new or empty.
+//
+// Errors: RecordingFolderError, "FILE:LINE: ..." with what was found and allowed; a disk that is
+// full is one of them, thrown by the call that noticed, and what was written stays readable.
+//
+//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
+//   source.record(request, writer.begin("yoon2021_both", 1));
+//   writer.end(cost);
+//
+//   RecordingFolder folder("monday");
+//   folder.play(folder.find("yoon2021_both", 1), scorer);
+#ifndef SIMBENCH_RECORDING_RECORDING_FOLDER_H_
+#define SIMBENCH_RECORDING_RECORDING_FOLDER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "recording/recording.h"
+
+namespace simbench {
+
+class RecordingFolderError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// What all captures of a folder share.
+struct RecordingDescription {
+  std::string backend;               // "sim" or "hardware"
+  std::string scenario_json;         // resolved
+  std::vector<std::string> hosts;    // names, by number; empty: "host0", ...
+  std::vector<std::string> cameras;  // serials, by number; empty: "camera0", ...
+};
+
+// One capture of a folder.
+struct RecordedCapture {
+  std::string pipeline;
+  std::uint64_t seed = 1;  // on a real rig: which repetition
+  RigLayout layout;
+  RecordingCost cost;
+  bool complete = false;
+  std::vector<std::string> notes;  // what went wrong, a line each
+};
+
+class RecordingWriter {
+ public:
+  RecordingWriter(std::string folder, RecordingDescription description);
+  ~RecordingWriter();
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  // The sink of a new capture, valid until end(); one at a time. If it is given events without an
+  // on_start, nothing is written.
+  RecordingSink& begin(const std::string& pipeline, std::uint64_t seed);
+  void end(const RecordingCost& cost, std::vector<std::string> notes = {});
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+class RecordingFolder {
+ public:
+  explicit RecordingFolder(std::string folder);
+
+  const RecordingDescription& description() const { return description_; }
+  const std::vector<RecordedCapture>& captures() const { return captures_; }
+  std::optional<std::size_t> find(const std::string& pipeline, std::uint64_t seed) const;
+  // Streams a capture; its memory does not grow with it.
+  void play(std::size_t capture, RecordingSink& sink) const;
+
+ private:
+  std::string folder_;
+  RecordingDescription description_;
+  std::vector<RecordedCapture> captures_;
+};
+
+// A folder as a backend: a request for a pipeline and seed that was recorded is played, any other
+// throws RecordingFailed. `folder` outlives it.
+std::unique_ptr<RecordingSource> make_recorded_source(const RecordingFolder& folder);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_RECORDING_FOLDER_H_
