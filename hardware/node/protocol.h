@@ -9,23 +9,35 @@
 //   reply    {"id": 7, "result": {...}}   or   {"id": 7, "error": "one line for the user"}
 //   notice   {"notice": "synchronised", ...}
 //
-// | do          | arguments                          | result, or what happens |
-// |-------------|------------------------------------|---------------------------------------------|
-// | hello       |                                    | version, commit, name, clock {kind, | | | |
-// monotonic_zero_ns, steady_zero_ns,          | |             | | skew_ppm}, cameras [{serial,
-// model,         | |             |                                    | firmware, connection,
-// problem}], session    | |             |                                    | (of a live one, or
-// null), conductor         | | begin       | session, conductor, scenario,      | a session begins:
-// journal opened, clock     | |             | pipeline, pipeline's algorithms    | restarted,
-// channels emptied. Refused while  | |             | are known to the node              | another
-// conductor's session lives           | | synchronise | role "master" or "slave"           |
-// host_sync started; notice "synchronised"    | |             | | {error: text or null} when it has
-// returned  | | prepare     |                                    | cameras opened and set: problems
-// [{camera,  | |             |                                    | text}] | | start       | |
-// cameras started: problems                   | | stop        | | cameras stopped | | read        |
-// session, offset                    | text (of the journal from there, at most    | | | | 256
-// KiB), size (of the journal), closed     | | end         | session                            |
-// everything stopped, journal closed          | | ping        | | {} |
+// clang-format off
+// do           arguments                        result, or what happens
+// hello                                         version, commit, name, clock {kind, monotonic_zero_ns,
+//                                               steady_zero_ns, skew_ppm}, cameras [{serial, model,
+//                                               firmware, connection, problem}], session (of a live
+//                                               one, or null)
+// begin        session, conductor, scenario,    a session begins: journal opened, clock restarted,
+//              pipeline[, version, commit]      channels emptied. Refused while another conductor's
+//                                               session lives, and if the pipeline's algorithms are
+//                                               not known to the node
+// synchronise  role "master" or "slave"         host_sync started; notice "synchronised" {error: text
+//                                               or null} when it has returned
+// prepare                                       cameras opened and set: problems [{camera, text}]
+// start                                         cameras started: problems
+// stop                                          cameras stopped, what they delivered is on disk
+// read         session, offset                  text (of the journal from there, whole lines, at most
+//                                               256 KiB), size (of the journal's whole lines), closed
+// end          session                          everything stopped, journal closed
+// ping                                          {}
+// clang-format on
+//
+// A connection belongs to the session that it began, or that a request of it named: any request may
+// carry "session", and one that is about a session but names none is about the connection's. So a
+// conductor that has lost its connection opens another and goes on by naming its session. A begin
+// over a connection that has a session ends that one first.
+//
+// Requests that take long (cameras that are opened) are worked on while nothing else of that
+// connection is: the node then sends notice "working" every second. Other notices: "note" {text}.
+// Who does not know a notice ignores it.
 //
 // A session's id is 16 hexadecimal digits that the conductor draws. A node whose conductor has said
 // nothing for kConductorSilence ends the session by itself: cameras stop, the journal is closed and
