@@ -1,0 +1,131 @@
+// The fields of a comma-separated line, strictly: read back is exactly what was written.
+//
+// A whole number has no plus sign, no needless zero and no "-0"; a double is finite and in the
+// shortest form; a text has backslash, comma and line ends as \\ \, \n \r. So a line that is read
+// without an error is the one that would be written for the same values.
+//
+// Errors: TextFieldError, "column 5 (counter): found '1x', allowed: ...". Any bytes are safe.
+//
+//   std::string line = "poll";
+//   append_field(line, poll.camera);
+//
+//   FieldReader fields(line);
+//   fields.next("kind");
+//   const auto camera = fields.whole<std::uint32_t>("camera");
+//   fields.end();
+#ifndef SIMBENCH_RECORDING_TEXT_FIELDS_H_
+#define SIMBENCH_RECORDING_TEXT_FIELDS_H_
+
+#include <charconv>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace simbench {
+
+class TextFieldError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// For a message: in quotes, cut after 40 bytes, what is no printable ASCII as \xHH.
+std::string quoted_bytes(std::string_view bytes);
+
+template <std::integral Number>
+void append_number(std::string& line, Number value) {
+  char digits[24];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  line.append(digits, end);
+}
+void append_number(std::string& line, double value);
+void append_escaped(std::string& line, std::string_view text);
+
+template <class Number>
+void append_field(std::string& line, Number value) {
+  line += ',';
+  append_number(line, value);
+}
+
+// The number that is the whole of `text`.
+template <std::integral Number>
+bool read_whole(std::string_view text, Number& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return false;
+  const std::size_t first = text.front() == '-' ? 1 : 0;
+  return text[first] != '0' || text.size() == 1;
+}
+
+class FieldReader {
+ public:
+  // `line` must outlive this.
+  explicit FieldReader(std::string_view line) : rest_(line) {}
+
+  // The field at which the reader stands; `name` is for the message.
+  std::string_view next(const char* name) {
+    if (done_) fail_missing(name);
+    ++column_;
+    const std::size_t comma = rest_.find(',');
+    field_ = rest_.substr(0, comma);
+    done_ = comma == std::string_view::npos;
+    rest_.remove_prefix(done_ ? rest_.size() : comma + 1);
+    return field_;
+  }
+
+  template <std::integral Number>
+  Number whole(const char* name) {
+    next(name);
+    return whole_of_field<Number>(name);
+  }
+  // Nothing if the field is empty.
+  template <std::integral Number>
+  std::optional<Number> optional_whole(const char* name) {
+    if (next(name).empty()) return std::nullopt;
+    return whole_of_field<Number>(name);
+  }
+  double finite(const char* name);
+  // A text is the last field of its line.
+  std::string text(const char* name);
+
+  // Throws if there is another field.
+  void end() const;
+  bool at_end() const { return done_; }
+  // Takes the rest of the line if that is `count` empty fields.
+  bool take_empty(std::size_t count) {
+    if (done_ || rest_.size() + 1 != count) return false;
+    if (rest_.find_first_not_of(',') != std::string_view::npos) return false;
+    rest_ = {};
+    return done_ = true;
+  }
+
+  // About the field that was read last.
+  [[noreturn]] void fail(const char* name, std::string_view allowed) const;
+
+ private:
+  template <std::integral Number>
+  Number whole_of_field(const char* name) const {
+    Number value{};
+    if (!read_whole(field_, value)) {
+      fail_range(name, std::to_string(std::numeric_limits<Number>::min()),
+                 std::to_string(std::numeric_limits<Number>::max()));
+    }
+    return value;
+  }
+  [[noreturn]] void fail_missing(const char* name) const;
+  [[noreturn]] void fail_range(const char* name, const std::string& from,
+                               const std::string& to) const;
+
+  std::string_view rest_;
+  std::string_view field_;
+  std::size_t column_ = 0;
+  bool done_ = false;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_RECORDING_TEXT_FIELDS_H_

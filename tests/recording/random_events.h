@@ -1,0 +1,24 @@
+// Random events of a recording, with extreme values among them, and their comparison.
+#ifndef SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_
+#define SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_
+
+#include <random>
+
+#include "recording/event.h"
+
+namespace simbench {
+
+struct RandomEventBounds {
+  std::uint32_t hosts = 0xffffffff;  // numbers below it
+  std::uint32_t cameras = 0xffffffff;
+};
+
+RecordingEvent random_event(std::mt19937_64& random, const RandomEventBounds& bounds = {});
+
+// Member by member, doubles bit by bit.
+bool same(const RecordingEvent& a, const RecordingEvent& b);
+bool same(const RigLayout& a, const RigLayout& b);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_TESTS_RECORDING_RANDOM_EVENTS_H_
