@@ -13,13 +13,16 @@
 // recording/ wants it; present() is the adjustment that changes nothing with which a log begins.
 // Used by one thread.
 //
+// Errors: what a clock refuses to do (a rate that is no clock's, a step above the limit, no
+// permission) is a ClockError, one line for the user; the clock is then as it was.
+//
 //   clock.observe([&](const ClockAdjustment& adjustment) { journal.write(adjustment); });
 //   HostTime received = clock.system_at(kernel_stamp);
 #ifndef SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_
 #define SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_
 
 #include <functional>
-#include <optional>
+#include <stdexcept>
 
 #include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/host.h"
@@ -27,7 +30,13 @@
 
 namespace simbench::hardware {
 
+class ClockError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // steady = steady_zero + (1 + skew) * (monotonic - monotonic_zero). The default is the identity.
+// Rounded down to 1 ns; instants that the monotonic clock cannot reach become its last or first.
 struct NodeOscillator {
   MonotonicTime monotonic_zero{};
   SteadyTime steady_zero{};
@@ -42,9 +51,10 @@ class NodeClock : public HostClock {
  public:
   using Observer = std::function<void(const ClockAdjustment&)>;
 
+  // The oscillator as it runs now.
   virtual const NodeOscillator& oscillator() const = 0;
   // What the clocks read at an instant, now or in the recent past (the last 64 adjustments).
-  SteadyTime steady_at(MonotonicTime at) const { return oscillator().steady(at); }
+  virtual SteadyTime steady_at(MonotonicTime at) const { return oscillator().steady(at); }
   virtual HostTime system_at(MonotonicTime at) const = 0;
   // When the system clock will read `at`, not before `now`, if nobody adjusts it meanwhile.
   virtual MonotonicTime when(HostTime at, MonotonicTime now) const = 0;

@@ -1,0 +1,71 @@
+// A node's own clock over the kernel's monotonic clock: what a node disciplines by default.
+//
+// Nothing of the operating system is changed. It begins at what the operating system's clock reads
+// (plus an offset, for nodes of tests), at rate 0, and goes on by itself from there
+// (system_timeline.h has the semantics of adjustments and the precision).
+//
+// Calls of HostClock do not suspend: they act on the present instant. While somebody observes, the
+// planned end of a slew is told when it comes, by a timer of `context`; observe(nullptr) ends that
+// timer, so that the context can run out of work.
+//
+//   SoftwareClock clock(context, {.host = 3});
+//   SoftwareClock skewed(context, {.host = 3,
+//                                  .oscillator = {monotonic_now(), SteadyTime{}, 30},
+//                                  .offset = from_ms(-300)});
+#ifndef SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_
+#define SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdint>
+#include <functional>
+
+#include "hardware/clock/node_clock.h"
+#include "hardware/clock/system_timeline.h"
+
+namespace simbench::hardware {
+
+// What the operating system's clock reads (CLOCK_REALTIME).
+HostTime read_system_clock();
+
+class SoftwareClock final : public NodeClock {
+ public:
+  struct Settings {
+    std::uint32_t host = 0;     // under which adjustments are told
+    NodeOscillator oscillator;  // of tests; the default is the kernel's own
+    Nanoseconds offset{};       // of tests: ahead of the operating system's clock at the beginning
+    std::function<HostTime()> system_clock = read_system_clock;
+  };
+
+  // The context must not run after the clock has gone.
+  SoftwareClock(boost::asio::io_context& context, Settings settings);
+  ~SoftwareClock() override = default;
+  SoftwareClock(const SoftwareClock&) = delete;
+  SoftwareClock& operator=(const SoftwareClock&) = delete;
+
+  Task<HostTime> now() override;
+  Task<void> set(HostTime value) override;
+  Task<void> adjust_frequency(double ppb) override;
+  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+
+  const NodeOscillator& oscillator() const override { return timeline_.oscillator(); }
+  HostTime system_at(MonotonicTime at) const override { return timeline_.read(at); }
+  MonotonicTime when(HostTime at, MonotonicTime now) const override {
+    return timeline_.when(at, now);
+  }
+  ClockAdjustment present(MonotonicTime now) const override { return timeline_.present(now); }
+  void observe(Observer observer) override;
+  void restart() override;
+
+ private:
+  void settle_in_time();
+
+  Settings settings_;
+  SystemTimeline timeline_;
+  bool observed_ = false;
+  boost::asio::steady_timer settle_timer_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CLOCK_SOFTWARE_CLOCK_H_
