@@ -27,7 +27,6 @@
 #ifndef SIMBENCH_HARDWARE_CONDUCTOR_RIG_SOURCE_H_
 #define SIMBENCH_HARDWARE_CONDUCTOR_RIG_SOURCE_H_
 
-#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -44,7 +43,11 @@ struct RigSourceSettings {
   std::function<void(const std::string& line)> progress;  // may be empty
   // For "manual" triggers: shows the text and returns when the user has done it; false: given up.
   std::function<bool(const std::string& text)> prompt;
-  const std::atomic<bool>* cancel = nullptr;  // may be set by a signal handler
+  // Looked at every 50 ms; once true, cameras are stopped and record() throws. May be empty.
+  std::function<bool()> cancelled;
+  // Instead of a new session, fetches what the nodes' journals have of this one (record()'s step
+  // 5), after a conductor was killed. Empty: a new session.
+  std::string collect_session;
 };
 
 // What is known of a host after a session.
@@ -64,6 +67,7 @@ class RigSource final : public RecordingSource {
 
   // Of the last session.
   const std::vector<HostReport>& hosts() const { return hosts_; }
+  const std::string& session() const { return session_; }
 
  private:
   Rig rig_;
@@ -71,6 +75,7 @@ class RigSource final : public RecordingSource {
   const scenarios::Scenario& scenario_;
   RigSourceSettings settings_;
   std::vector<HostReport> hosts_;
+  std::string session_;
 };
 
 }  // namespace simbench::hardware

@@ -1,0 +1,72 @@
+#include "hardware/conductor/journals.h"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+#include <variant>
+
+#include "hardware/node/journal.h"
+#include "recording/event_text.h"
+
+namespace simbench::hardware {
+
+void HostJournal::append(std::string_view text) {
+  bytes_ += text.size();
+  rest_ += text;
+  std::size_t begin = 0;
+  for (std::size_t end = rest_.find('\n'); end != std::string::npos;
+       end = rest_.find('\n', begin)) {
+    take(std::string_view(rest_).substr(begin, end - begin));
+    begin = end + 1;
+  }
+  rest_.erase(0, begin);
+}
+
+void HostJournal::take(std::string_view line) {
+  if (const auto note = note_of_line(line)) {
+    notes_.push_back(*note);
+    return;
+  }
+  try {
+    events_.push_back(from_line(line));
+  } catch (const EventTextError&) {
+    ++damaged_;
+    return;
+  }
+  const auto* frame = std::get_if<FrameEvent>(&events_.back());
+  if (frame == nullptr) return;
+  ++frames_;
+  const FrameRecord& record = frame->record;
+  const auto [found, is_first] = counters_.try_emplace({record.camera, record.stream});
+  if (is_first) found->second.first = record.counter;
+  found->second.last = record.counter;
+}
+
+std::int64_t HostJournal::covered(std::uint32_t camera, StreamKind stream) const {
+  const auto found = counters_.find({camera, stream});
+  if (found == counters_.end()) return 0;
+  // The counter is of 32 bits and may wrap.
+  return static_cast<std::int64_t>(found->second.last - found->second.first) + 1;
+}
+
+void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink) {
+  // The next event of each host; one that is no frame goes before all frames.
+  using Head = std::pair<HostTime, std::size_t>;
+  std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
+  std::vector<std::size_t> next(journals.size(), 0);
+  const auto push = [&](std::size_t host) {
+    const std::vector<RecordingEvent>& events = journals[host].events();
+    if (next[host] == events.size()) return;
+    const auto* frame = std::get_if<FrameEvent>(&events[next[host]]);
+    heads.emplace(frame != nullptr ? frame->record.arrival : HostTime::min(), host);
+  };
+  for (std::size_t host = 0; host < journals.size(); ++host) push(host);
+  while (!heads.empty()) {
+    const std::size_t host = heads.top().second;
+    heads.pop();
+    tell(journals[host].events()[next[host]++], sink);
+    push(host);
+  }
+}
+
+}  // namespace simbench::hardware

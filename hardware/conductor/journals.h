@@ -1,0 +1,58 @@
+// What the nodes' journals say, joined to one recording.
+//
+// A HostJournal takes a journal's text as it is fetched, in pieces that may end anywhere, and turns
+// whole lines into events. tell_in_order() hands the events of all hosts to a sink: frames in order
+// of arrival on their hosts' system clocks, which synchronisation has made one scale; the order of
+// each host is kept whatever its clock does, and what is no frame comes as soon as its turn does.
+//
+// A line that is no event is counted and left out (damaged()): nodes are trusted, their disks are
+// not. Memory: the events. Complexity of the merge: n log h.
+#ifndef SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
+#define SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/event.h"
+
+namespace simbench::hardware {
+
+class HostJournal {
+ public:
+  void append(std::string_view text);
+
+  std::uint64_t bytes() const { return bytes_; }  // taken so far; where to go on fetching
+  const std::vector<RecordingEvent>& events() const { return events_; }
+  const std::vector<std::string>& notes() const { return notes_; }
+  std::uint64_t damaged() const { return damaged_; }
+  std::uint64_t frames() const { return frames_; }
+
+  // How many periods a camera's scored stream has covered, by its frame counters: from its first
+  // frame to its last. 0: no frame.
+  std::int64_t covered(std::uint32_t camera, StreamKind stream) const;
+
+ private:
+  struct Counters {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+  };
+
+  void take(std::string_view line);
+
+  std::string rest_;  // the beginning of a line
+  std::uint64_t bytes_ = 0;
+  std::vector<RecordingEvent> events_;
+  std::vector<std::string> notes_;
+  std::uint64_t damaged_ = 0;
+  std::uint64_t frames_ = 0;
+  std::map<std::pair<std::uint32_t, StreamKind>, Counters> counters_;
+};
+
+void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink);
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_

@@ -1,0 +1,69 @@
+#include "hardware/conductor/trigger_switch.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <future>
+#include <utility>
+
+namespace simbench::hardware {
+namespace {
+
+namespace asio = boost::asio;
+
+// GNU timeout ends a command that hangs; the parentheses keep the user's own redirections.
+std::string run(const std::string& command) {
+  const std::string line =
+      fmt::format("timeout {} /bin/sh -c '{}' 1>&2", TriggerSwitch::kCommandLimitSeconds, [&] {
+        std::string quoted;
+        for (const char c : command) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+        return quoted;
+      }());
+  const int status = std::system(line.c_str());
+  if (status == 0) return {};
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 124) {
+    return fmt::format("'{}' took longer than {} s", command, TriggerSwitch::kCommandLimitSeconds);
+  }
+  if (WIFEXITED(status)) {
+    return fmt::format("'{}' ended with exit status {}", command, WEXITSTATUS(status));
+  }
+  return fmt::format("'{}' could not be run, or was killed", command);
+}
+
+}  // namespace
+
+TriggerSwitch::TriggerSwitch(asio::io_context& context, std::optional<RigTrigger> trigger,
+                             Prompt prompt)
+    : context_(context), trigger_(std::move(trigger)), prompt_(std::move(prompt)) {}
+
+std::string TriggerSwitch::problem(bool on) const {
+  if (trigger_->manual) {
+    const char* text = on ? "Switch the trigger on now" : "Switch the trigger off now";
+    if (!prompt_) return "it is switched by hand, and there is nobody to ask";
+    return prompt_(text) ? "" : "given up at the prompt";
+  }
+  return run(on ? trigger_->on_command : trigger_->off_command);
+}
+
+Task<void> TriggerSwitch::turn(bool on) {
+  if (!trigger_) co_return;
+  std::future<std::string> done =
+      std::async(std::launch::async, [this, on] { return problem(on); });
+  asio::steady_timer timer(context_);
+  while (done.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    timer.expires_after(std::chrono::milliseconds(5));
+    boost::system::error_code ignored;
+    co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  }
+  const std::string problem = done.get();
+  if (!problem.empty()) {
+    throw TriggerError(fmt::format("trigger {}: {}", on ? "on" : "off", problem));
+  }
+}
+
+}  // namespace simbench::hardware

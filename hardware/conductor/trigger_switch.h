@@ -1,0 +1,51 @@
+// The trigger of a rig, switched on and off: by the commands of the rig file, or by the user's
+// hand.
+//
+// Commands run in the shell (/bin/sh -c) of the machine that conducts, with standard output sent to
+// standard error; switching waits for their end, at most kCommandLimit. The calls are made in a
+// thread of their own, so that the conductor goes on hearing its nodes.
+//
+// Errors: TriggerError with the command and how it ended, or that the user gave up.
+//
+//   TriggerSwitch trigger(context, rig.trigger, prompt);
+//   co_await trigger.turn(true);
+#ifndef SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_
+#define SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "algorithms/ports/host.h"
+#include "hardware/rig/rig.h"
+
+namespace simbench::hardware {
+
+class TriggerError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class TriggerSwitch {
+ public:
+  using Prompt = std::function<bool(const std::string& text)>;
+  static constexpr int kCommandLimitSeconds = 30;
+
+  // Without a trigger, turn() does nothing.
+  TriggerSwitch(boost::asio::io_context& context, std::optional<RigTrigger> trigger, Prompt prompt);
+
+  Task<void> turn(bool on);
+
+ private:
+  std::string problem(bool on) const;  // empty: it is done
+
+  boost::asio::io_context& context_;
+  std::optional<RigTrigger> trigger_;
+  Prompt prompt_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CONDUCTOR_TRIGGER_SWITCH_H_
