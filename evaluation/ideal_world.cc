@@ -96,7 +96,10 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.cameras.sensor_stamp_jitter_sigma_us = 0;
     world.hosts.clock.arrival_quantum_ms = 0;
   }
-  if (ideal.has(Stage::kDeviceClock)) idealise_device_clock(world.cameras.oscillator);
+  if (ideal.has(Stage::kDeviceClock)) {
+    idealise_device_clock(world.cameras.oscillator);
+    world.cameras.skew_of_camera_ppm.clear();
+  }
   if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
   if (ideal.has(Stage::kHostClock)) world.pipelines.front().host_sync = kOracle;
   if (ideal.has(Stage::kGathering)) world.pipelines.front().gathering = kOracle;

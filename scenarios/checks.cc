@@ -52,6 +52,39 @@ void check_hosts(const Scenario& scenario) {
   }
 }
 
+void check_skews(const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  const std::size_t found = cameras.skew_of_camera_ppm.size();
+  if (found == 0 || found == static_cast<std::size_t>(cameras.count)) return;
+  fail_at(scenario, "/cameras/skew_of_camera_ppm",
+          fmt::format("found {} skews, allowed none or one for each of the {} cameras", found,
+                      cameras.count));
+}
+
+void check_quantiles(const Scenario& scenario, const std::string& pointer,
+                     const std::vector<double>& table) {
+  if (table.size() == 1) {
+    fail_at(scenario, pointer,
+            "found 1 number, allowed none or 2 to 1001, from the least to the largest");
+  }
+  const auto descent = std::is_sorted_until(table.begin(), table.end());
+  if (descent == table.end()) return;
+  fail_at(scenario, fmt::format("{}/{}", pointer, descent - table.begin()),
+          fmt::format("found {}, allowed at least {}, the number before it: a table of quantiles "
+                      "ascends",
+                      *descent, *(descent - 1)));
+}
+
+void check_tables(const Scenario& scenario) {
+  check_quantiles(scenario, "/network/latency_quantiles_ms", scenario.network.latency_quantiles_ms);
+  check_quantiles(scenario, "/usb/delivery_quantiles_ms", scenario.usb.delivery_quantiles_ms);
+  const Usb& usb = scenario.usb;
+  if (!usb.delivery_quantiles_ms.empty() || usb.delivery_correlation == 0) return;
+  fail_at(scenario, "/usb/delivery_correlation",
+          fmt::format("found {}, allowed 0 without /usb/delivery_quantiles_ms",
+                      usb.delivery_correlation));
+}
+
 void check_streams(const Scenario& scenario) {
   std::set<std::string> kinds;
   const std::vector<Stream>& streams = scenario.cameras.streams;
@@ -168,6 +201,8 @@ void check_pipelines(const Scenario& scenario) {
 void check(const Scenario& scenario) {
   check_name(scenario, "/name", scenario.name);
   check_hosts(scenario);
+  check_skews(scenario);
+  check_tables(scenario);
   check_streams(scenario);
   check_rates(scenario);
   check_shutters(scenario);

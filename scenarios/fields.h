@@ -51,11 +51,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Hosts, count, clock, send_cost_ms, send_cost_
                                    load_log_sigma, nic, pulse_lines, load_burst)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Network, latency_fixed_ms, latency_exponential_ms,
                                    latency_session_exponential_ms, asymmetry_sigma_ms,
-                                   spike_probability, spike_max_ms, burst, bandwidth_mbit_per_s,
-                                   overhead_bytes, loss_probability, duplicate_probability,
-                                   reorder_probability, reorder_max_ms, retransmit_timeout_ms,
-                                   nagle, delayed_ack_ms, stamp_point, capture_traffic_share,
-                                   switch_clock, switch_clock_error_ns)
+                                   spike_probability, spike_max_ms, latency_quantiles_ms, burst,
+                                   bandwidth_mbit_per_s, overhead_bytes, loss_probability,
+                                   duplicate_probability, reorder_probability, reorder_max_ms,
+                                   retransmit_timeout_ms, nagle, delayed_ack_ms, stamp_point,
+                                   capture_traffic_share, switch_clock, switch_clock_error_ns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,
@@ -68,18 +68,17 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClockPoll, interval_ms, request_ms, request_e
                                    reply_ms, reply_exponential_ms, tail_probability, tail_max_ms,
                                    calibrated_asymmetry_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cameras, count, cameras_per_host, host_of_camera, model,
-                                   sync_mode, common_start, start_spread_ms, streams, oscillator,
-                                   clock_epoch_max_ms, latency_camera_max_ms, exposure_ms,
-                                   exposure_camera_periods, exposure_host_periods,
-                                   trigger_to_exposure_us, genlock_guard_fraction,
-                                   slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
-                                   drop_probability, unstable_start_ms,
-                                   unstable_start_jitter_sigma_ms, clock_poll, auto_exposure)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(
+    Cameras, count, cameras_per_host, host_of_camera, skew_of_camera_ppm, model, sync_mode,
+    common_start, start_spread_ms, streams, oscillator, clock_epoch_max_ms, latency_camera_max_ms,
+    exposure_ms, exposure_camera_periods, exposure_host_periods, trigger_to_exposure_us,
+    genlock_guard_fraction, slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
+    drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per_controller,
                                    buffered_frames, kernel_copy_exponential_ms,
                                    delivery_jitter_transfers, host_jitter_transfers,
-                                   host_jitter_correlation, spike_probability, spike_max_transfers)
+                                   host_jitter_correlation, spike_probability, spike_max_transfers,
+                                   delivery_quantiles_ms, delivery_correlation)
 // What a kind of fault does not use is 0.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Fault, kind, camera, host, at_ms, duration_ms,
                                                 step_ms)

@@ -112,6 +112,8 @@ struct Network {
   double asymmetry_sigma_ms = 0;              // per link: forward minus backward fixed latency
   double spike_probability = 0;
   double spike_max_ms = 0;  // a spike adds U(0, this)
+  // In place of fixed, exponential and spike: the latency at equally spaced probabilities 0 to 1.
+  std::vector<double> latency_quantiles_ms{};
   Burst burst;
   double bandwidth_mbit_per_s = 0;   // of each switch port, queueing in order (0: infinite)
   double overhead_bytes = 0;         // headers per message
@@ -182,6 +184,7 @@ struct Cameras {
   std::int64_t count = 0;
   std::int64_t cameras_per_host = 0;         // camera j is on host j / cameras_per_host, unless
   std::vector<std::int64_t> host_of_camera;  // this names a host for each camera (else empty)
+  std::vector<double> skew_of_camera_ppm{};  // in place of the drawn skew (else empty)
   std::string model;                         // a profile of scenarios/cameras
   std::string sync_mode;  // "default", "master", "slave", "full_slave", "genlock"
   // genlock: trigger off, start all, trigger on; else the cameras start one by one
@@ -216,6 +219,10 @@ struct Usb {
   double host_jitter_correlation = 0;     //   this coefficient from frame to frame
   double spike_probability = 0;           // rare big jumps
   double spike_max_transfers = 0;         // of U(0, this * transfer time)
+  // In place of kernel copy, delivery jitter and spikes: the delay after the end of the transfer at
+  // equally spaced probabilities 0 to 1.
+  std::vector<double> delivery_quantiles_ms{};
+  double delivery_correlation = 0;  // from frame to frame (Gaussian copula); 0 without the table
 };
 
 // Something that goes wrong, at a time after the start of the capture. Members that the kind does

@@ -10,7 +10,6 @@
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/document.h"
-#include "scenarios/json_schema.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -164,7 +163,10 @@ nlohmann::ordered_json in_order_of(const nlohmann::ordered_json* node, const jso
 }  // namespace
 
 void validate(const json& document, Completeness completeness, const Places& places) {
-  const JsonSchema& schema = checker(completeness);
+  validate(document, checker(completeness), places);
+}
+
+void validate(const json& document, const JsonSchema& schema, const Places& places) {
   const std::vector<JsonSchema::Refusal> refusals = schema.validate(document);
   if (refusals.empty()) return;
 

@@ -1,4 +1,5 @@
-// Validation against scenarios/schema.json, with messages for people.
+// Validation against scenarios/schema.json (or another schema of its kind), with messages for
+// people.
 //
 // The validator gives the verdict and the place; the message is then made from the schema's own
 // words for that place: "found X, allowed Y".
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "scenarios/json_schema.h"
 #include "scenarios/places.h"
 
 namespace simbench::scenarios {
@@ -19,6 +21,8 @@ enum class Completeness {
 
 // Throws InputError about the first line that the schema refuses.
 void validate(const nlohmann::json& document, Completeness completeness, const Places& places);
+// The same against a schema of the caller's.
+void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places);
 
 // scenarios/schema.json with its properties in the order of the file.
 const nlohmann::ordered_json& ordered_schema();

@@ -54,6 +54,9 @@ class OscillatorModel {
   // The constant part of the frequency error, as a fraction (1e-6 = 1 ppm).
   double skew() const { return skew_; }
 
+  // A measured skew in place of the drawn one.
+  void set_skew(double skew) { skew_ = skew; }
+
   // Local minus true time elapsed since true zero.
   double deviation_ns(TrueTime t) const {
     const double linear_ns = skew_ * static_cast<double>(t.time_since_epoch().count());

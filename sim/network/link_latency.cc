@@ -12,26 +12,38 @@ double asymmetry_ms(double sigma_ms, std::uint64_t run_seed, PeerId from, PeerId
   return from < to ? forward_minus_backward_ms : -forward_minus_backward_ms;
 }
 
+// What no message is faster than, but for the asymmetry.
+double least_ms(const scenarios::Network& network) {
+  return network.latency_quantiles_ms.empty() ? network.latency_fixed_ms
+                                              : network.latency_quantiles_ms.front();
+}
+
 }  // namespace
 
 LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from,
                          PeerId to, double session_latency_ms)
     : network_(&network),
-      fixed_ms_(network.latency_fixed_ms + session_latency_ms +
+      table_ms_(network.latency_quantiles_ms),
+      fixed_ms_((table_ms_.empty() ? network.latency_fixed_ms : 0) + session_latency_ms +
                 asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2),
-      cable_(from_ms(
-          std::max(0.0, network.latency_fixed_ms +
-                            asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2))),
+      cable_(from_ms(std::max(
+          0.0,
+          least_ms(network) + asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2))),
       bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {}
 
 Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
-  double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);
+  double latency_ms =
+      table_ms_.empty() ? draw_parametric_ms(draw) : fixed_ms_ + table_ms_.value_at(draw.uniform());
+  if (bursts_.active(left)) latency_ms += network_->burst.latency_ms;
+  return from_ms(std::max(0.0, latency_ms));
+}
+
+double LinkLatency::draw_parametric_ms(RandomStream& draw) const {
+  const double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);
   // Both are drawn whatever comes of them, so that the draws after them stay in place.
   const bool has_spike = draw.chance(network_->spike_probability);
   const double spike_ms = draw.uniform(0, network_->spike_max_ms);
-  if (has_spike) latency_ms += spike_ms;
-  if (bursts_.active(left)) latency_ms += network_->burst.latency_ms;
-  return from_ms(std::max(0.0, latency_ms));
+  return has_spike ? latency_ms + spike_ms : latency_ms;
 }
 
 }  // namespace simbench::sim

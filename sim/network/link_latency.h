@@ -2,6 +2,11 @@
 //
 //   fixed +- asymmetry / 2 + Exp + spike (with a probability) + burst (while one lasts) + session
 //
+// or, where the scenario has a table of measured latencies (network/latency_quantiles_ms), which
+// takes the place of fixed, Exp and spike:
+//
+//   table +- asymmetry / 2 + burst (while one lasts) + session
+//
 // The asymmetry is the fixed latency from the host of lower number to that of higher number minus
 // the fixed latency back, one draw per link. A latency is never negative.
 //
@@ -14,6 +19,7 @@
 #include "algorithms/ports/exchange.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
+#include "sim/engine/quantile_table.h"
 #include "sim/engine/random.h"
 #include "sim/network/burst_process.h"
 
@@ -33,15 +39,19 @@ class LinkLatency {
   LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
               double session_latency_ms);
 
-  // What of it is the cable's: the fixed latency and the asymmetry.
+  // What of it is the cable's: the fixed latency (the table's least) and the asymmetry.
   Nanoseconds cable() const { return cable_; }
 
   // The latency of a message that leaves at `left`; `draw` is the message's own stream.
   Nanoseconds draw(RandomStream& draw, TrueTime left);
 
  private:
+  // Without bursts.
+  double draw_parametric_ms(RandomStream& draw) const;
+
   const scenarios::Network* network_;
-  double fixed_ms_;
+  QuantileTable table_ms_;
+  double fixed_ms_;  // of every message
   Nanoseconds cable_;
   BurstProcess bursts_;
 };

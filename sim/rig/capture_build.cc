@@ -1,6 +1,7 @@
 // How a capture is put together from its scenario; what it then does is in capture.cc.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "scenarios/rates.h"
@@ -68,10 +69,13 @@ void Capture::build_clocks(TrueTime at) {
   for (std::size_t camera = 0; camera < static_cast<std::size_t>(cameras.count); ++camera) {
     RandomStream epoch(seed_, "camera/epoch", camera);
     const TrueTime started = camera_start(camera, at);
-    device_clocks_.emplace_back(
-        OscillatorModel(cameras.oscillator, seed_, "camera/oscillator/" + std::to_string(camera),
-                        started),
-        epoch.uniform(0, cameras.clock_epoch_max_ms), at);
+    OscillatorModel oscillator(cameras.oscillator, seed_,
+                               "camera/oscillator/" + std::to_string(camera), started);
+    if (!cameras.skew_of_camera_ppm.empty()) {
+      oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
+    }
+    device_clocks_.emplace_back(std::move(oscillator), epoch.uniform(0, cameras.clock_epoch_max_ms),
+                                at);
     exposures_.emplace_back(cameras.auto_exposure, exposure_of(camera), seed_, camera, started);
   }
   for (std::size_t host = 0; host < clocks_.size(); ++host) {

@@ -1,8 +1,16 @@
 #include "sim/usb/host_stack.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace simbench::sim {
+namespace {
+
+// The probability of a standard normal variate below z.
+double normal_probability(double z) { return std::erfc(-z / std::numbers::sqrt2) / 2; }
+
+}  // namespace
 
 HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
                        TrueTime capture_start, double period_ns)
@@ -27,15 +35,26 @@ FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std
       jitter_transfers_(settings.delivery_jitter_transfers),
       spike_probability_(settings.spike_probability),
       spike_max_transfers_(settings.spike_max_transfers),
+      table_ms_(settings.delivery_quantiles_ms),
+      correlation_(settings.delivery_correlation),
+      innovation_(std::sqrt(1 - correlation_ * correlation_)),
       stream_(seed, "usb/frame_delays", stream) {}
 
 FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
+  if (!table_ms_.empty()) return {.kernel_copy_ns = 0, .delivery_ns = draw_from_table_ms() * 1e6};
   Draw draw{stream_.exponential(kernel_copy_mean_ns_),
             stream_.exponential(jitter_transfers_ * transfer_ns)};
   if (spike_probability_ > 0 && stream_.chance(spike_probability_)) {
     draw.delivery_ns += stream_.uniform(0, spike_max_transfers_ * transfer_ns);
   }
   return draw;
+}
+
+double FrameDelays::draw_from_table_ms() {
+  const double fresh = stream_.normal(1);
+  variate_ = has_variate_ ? correlation_ * variate_ + innovation_ * fresh : fresh;
+  has_variate_ = true;
+  return table_ms_.value_at(normal_probability(variate_));
 }
 
 }  // namespace simbench::sim

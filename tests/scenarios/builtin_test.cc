@@ -183,6 +183,8 @@ TEST(Describe, ALineForEveryParameter) {
   EXPECT_EQ(line("/usb/bandwidth_mb_per_s").unit, "MB/s");
   EXPECT_EQ(line("/cameras/streams/0/width").unit, "pixels");
   EXPECT_EQ(line("/cameras/host_of_camera").value, "[]");
+  EXPECT_EQ(line("/usb/delivery_quantiles_ms").unit, "ms");
+  EXPECT_EQ(line("/cameras/skew_of_camera_ppm").unit, "ppm");
   EXPECT_THAT(line("/cameras/model").source, HasSubstr("profile of the RealSense D455"));
   EXPECT_THAT(line("/cameras/streams/0/mode_rate_hz").source, HasSubstr("d455.py"));
   EXPECT_EQ(line("/algorithms/yoon2021/latency_estimate").value, "literal");

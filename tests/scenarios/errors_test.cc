@@ -81,6 +81,27 @@ TEST(Checks, Names) {
             "yoon2021_both?");
 }
 
+TEST(Errors, TablesAscendAndAreWhole) {
+  EXPECT_EQ(
+      error_of(R"("usb": {"delivery_quantiles_ms": [0.5]})"),
+      "my.json:3: /usb/delivery_quantiles_ms: found 1 number, allowed none or 2 to 1001, from "
+      "the least to the largest");
+  EXPECT_EQ(error_of("\"network\": {\"latency_quantiles_ms\": [0.1, 0.3,\n 0.2]}"),
+            "my.json:4: /network/latency_quantiles_ms/2: found 0.2, allowed at least 0.3, the "
+            "number before it: a table of quantiles ascends");
+  EXPECT_EQ(error_of(R"("usb": {"delivery_quantiles_ms": [-1, 0]})"),
+            "my.json:3: /usb/delivery_quantiles_ms/0: found -1, allowed a number from 0 to "
+            "1000000");
+  EXPECT_EQ(error_of(R"("usb": {"delivery_correlation": 0.5})"),
+            "my.json:3: /usb/delivery_correlation: found 0.5, allowed 0 without "
+            "/usb/delivery_quantiles_ms");
+  EXPECT_EQ(error_of(R"("cameras": {"skew_of_camera_ppm": [1, 2]})"),
+            "my.json:3: /cameras/skew_of_camera_ppm: found 2 skews, allowed none or one for each "
+            "of the 18 cameras");
+  EXPECT_EQ(error_of(R"("usb": {"delivery_quantiles_ms": [0, 0], "delivery_correlation": -0.5})"),
+            "");
+}
+
 TEST(Checks, CamerasAndHosts) {
   EXPECT_EQ(error_of(R"("hosts": {"count": 5})"),
             place_in_base("/cameras/cameras_per_host") +

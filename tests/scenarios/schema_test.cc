@@ -27,7 +27,10 @@ json full_document() {
       {"kind": "camera_vanishes", "camera": 1, "at_ms": 1, "duration_ms": 2},
       {"kind": "clock_step", "host": 1, "at_ms": 3, "step_ms": 4}],
     "trigger": {"pauses": [{"at_ms": 5, "duration_ms": 6}]},
-    "cameras": {"host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5]})");
+    "network": {"latency_quantiles_ms": [0.1, 0.2]},
+    "usb": {"delivery_quantiles_ms": [0, 0.3], "delivery_correlation": 0.1},
+    "cameras": {"host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5],
+                "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3]})");
   return resolve({"my.json", text, false}, {}).document;
 }
 
