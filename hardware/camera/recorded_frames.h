@@ -1,0 +1,56 @@
+// The frames of a recording as they are played: when each is due, and what it carries.
+//
+// A recording is a folder of recording/recording_folder.h (its first capture, or the one that
+// "FOLDER#PIPELINE" or "FOLDER#PIPELINE/SEED" names) or a CSV of recording/rs_csv.h. It is read
+// once for all cameras that are wanted of it; only their frames are kept, 32 bytes each.
+//
+// Due times count from the recording's zero, which is one for all its cameras:
+//  - with truth, the earliest start of an exposure that a trigger pulse began; a frame is due at
+//  its
+//    true mid-exposure plus its delay, as its host's steady clock measured it. So what is played is
+//    the recorded world without its hosts' clocks, which are the player's own;
+//  - without truth (and where no pulse began an exposure), the earliest arrival.
+//
+// Errors: CameraError that names the camera: a recording that cannot be read, that has no such
+// capture or camera (with those there are), no frame of the camera, frames with and without truth.
+// Complexity: linear in the recording.
+#ifndef SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
+#define SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hardware/rig/rig.h"
+#include "recording/recording.h"
+
+namespace simbench::hardware {
+
+// The back-end stamp's place where a recording has none.
+inline constexpr std::int32_t kNoBackend = std::numeric_limits<std::int32_t>::max();
+
+struct PlayedFrame {
+  std::int64_t due_ns = 0;  // after the recording's zero
+  std::uint32_t counter = 0;
+  std::uint32_t exposure_us = 0;
+  DeviceStamp sensor;
+  DeviceStamp frame;
+  std::int32_t backend_lead_ns = kNoBackend;  // of the back-end stamp before the arrival
+  StreamKind stream = StreamKind::kDepth;
+  StampDomain domain = StampDomain::kHardwareClock;
+};
+
+struct PlayedCamera {
+  std::string name;                 // in the recording
+  std::vector<PlayedFrame> frames;  // in order of due time; at least one
+};
+
+// One for each of `wanted`, which are cameras of one recording.
+std::vector<std::shared_ptr<const PlayedCamera>> load_played_cameras(
+    const std::string& recording, const std::vector<RigCamera>& wanted);
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
