@@ -42,9 +42,9 @@ inline constexpr std::uint16_t kDefaultPort = 47110;
 
 struct RigCamera {
   std::string serial;
-  std::string recording;        // empty: a real camera
-  std::string recorded_camera;  // empty: the one of this serial, or the first
-  std::string trigger_file;     // empty: plays from its start
+  std::string recording{};        // empty: a real camera
+  std::string recorded_camera{};  // empty: the one of this serial, or the first
+  std::string trigger_file{};     // empty: plays from its start
   friend bool operator==(const RigCamera&, const RigCamera&) = default;
 };
 
