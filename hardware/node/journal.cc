@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -29,14 +30,6 @@ constexpr std::string_view kFrameKind = "frame,";
 
 std::string journal_path(const std::string& folder, const std::string& session) {
   return fmt::format("{}/{}.csv", folder, session);
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  const bool made = fs::create_directories(folder, error);
-  if (error) throw JournalError(fmt::format("{}: cannot be made: {}", folder, error.message()));
-  if (made) fs::permissions(folder, fs::perms::owner_all, error);
-  if (error) throw JournalError(fmt::format("{}: {}", folder, error.message()));
 }
 
 // Leaves room for one more.
@@ -103,10 +96,22 @@ std::uint64_t whole_size(int file, const std::string& path) {
 
 }  // namespace
 
+void make_journal_folder(const std::string& folder) {
+  std::error_code error;
+  const bool made = fs::create_directories(folder, error);
+  if (error) throw JournalError(fmt::format("{}: cannot be made: {}", folder, error.message()));
+  if (made) fs::permissions(folder, fs::perms::owner_all, error);
+  if (error) throw JournalError(fmt::format("{}: {}", folder, error.message()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw JournalError(
+        fmt::format("{}: no journal can be made there: {}", folder, std::strerror(errno)));
+  }
+}
+
 Journal::Journal(boost::asio::io_context& context, const std::string& folder,
                  const std::string& session, Trouble trouble)
     : path_(journal_path(folder, session)), trouble_(std::move(trouble)), timer_(context) {
-  make_folder(folder);
+  make_journal_folder(folder);
   delete_old(folder);
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file_ < 0) {
@@ -124,7 +129,11 @@ void Journal::write(const RecordingEvent& event) {
   append(to_line(event));
 }
 
-void Journal::note(const std::string& text) { append(note_line(text)); }
+void Journal::note(const std::string& text) {
+  using nlohmann::json;
+  const std::string clean = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+  append(note_line(json::parse(clean).get<std::string>()));
+}
 
 void Journal::append(const std::string& line) {
   if (failed_ || file_ < 0) return;

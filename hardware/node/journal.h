@@ -16,7 +16,7 @@
 //
 //   Journal journal(context, folder, "0123456789abcdef", [&](const std::string& text) { ... });
 //   journal.write(FrameEvent{record, std::nullopt});
-//   journal.note("host3: camera 018322071234: unplugged");
+//   journal.note("camera 018322071234: unplugged");
 //   JournalChunk chunk = read_journal(folder, "0123456789abcdef", 0);
 #ifndef SIMBENCH_HARDWARE_NODE_JOURNAL_H_
 #define SIMBENCH_HARDWARE_NODE_JOURNAL_H_
@@ -43,6 +43,9 @@ class JournalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Makes the folder if it is not there, and finds out whether files can be made in it.
+void make_journal_folder(const std::string& folder);
+
 class Journal {
  public:
   using Trouble = std::function<void(const std::string& text)>;
@@ -54,6 +57,7 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
 
   void write(const RecordingEvent& event);
+  // Bytes that are no UTF-8 are replaced.
   void note(const std::string& text);
   // Hands over what waits, now.
   void flush();

@@ -28,6 +28,7 @@
 #include "hardware/camera/camera.h"
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/secret_key.h"
+#include "hardware/node/protocol.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"
 
@@ -43,14 +44,18 @@ struct NodeSettings {
   PeerId me = 0;
   SecretKey key;
   std::string journal_folder;  // made if it is not there
+  std::string clock_kind = "software";
+  // How long a session outlives the last word of its conductor.
+  Nanoseconds conductor_silence = kConductorSilence;
 };
 
 class Node {
  public:
   using Log = std::function<void(const std::string& line)>;
 
-  // `clock` and `cameras` outlive the node. Throws StreamError if the port is taken, and
-  // CameraError or scenarios::InputError for what is wrong with the rig's cameras at once.
+  // `clock` and `cameras` outlive the node and its context. Throws StreamError if the port is
+  // taken, CameraError if a camera of the rig file is not there, JournalError if journals cannot be
+  // kept, and scenarios::InputError for a rig that is open to everybody.
   Node(boost::asio::io_context& context, NodeSettings settings, NodeClock& clock,
        CameraDriver& cameras, HostSyncFactory make_host_sync, Log log);
   ~Node();
@@ -59,7 +64,8 @@ class Node {
 
   void start();
   std::uint16_t port() const;
-  // Ends the session, if there is one, and closes everything; the context then runs out of work.
+  // Ends the session, if there is one, and closes everything; the context then runs out of work,
+  // and must be run until it has.
   void stop();
 
  private:

@@ -19,8 +19,8 @@
 //              pipeline[, version, commit]      channels emptied. Refused while another conductor's
 //                                               session lives, and if the pipeline's algorithms are
 //                                               not known to the node
-// synchronise  role "master" or "slave"         host_sync started; notice "synchronised" {error: text
-//                                               or null} when it has returned
+// synchronise  role "master" or "slave",        host_sync started; notice "synchronised" {error: text
+//              [slaves]                         or null} when it has returned
 // prepare                                       cameras opened and set: problems [{camera, text}]
 // start                                         cameras started: problems
 // stop                                          cameras stopped, what they delivered is on disk
@@ -35,9 +35,9 @@
 // conductor that has lost its connection opens another and goes on by naming its session. A begin
 // over a connection that has a session ends that one first.
 //
-// Requests that take long (cameras that are opened) are worked on while nothing else of that
-// connection is: the node then sends notice "working" every second. Other notices: "note" {text}.
-// Who does not know a notice ignores it.
+// Read, synchronise and ping are answered at once; the others one after the other in the order in
+// which they came, and some take seconds (cameras that are opened). Replies are told apart by id.
+// Other notices: "note" {text}. Who does not know a notice ignores it.
 //
 // A session's id is 16 hexadecimal digits that the conductor draws. A node whose conductor has said
 // nothing for kConductorSilence ends the session by itself: cameras stop, the journal is closed and

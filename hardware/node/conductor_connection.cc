@@ -1,0 +1,111 @@
+#include "hardware/node/conductor_connection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <exception>
+#include <utility>
+
+namespace simbench::hardware {
+namespace {
+
+namespace asio = boost::asio;
+
+bool is_quick(const std::string& verb) {
+  return verb == "read" || verb == "ping" || verb == "synchronise";
+}
+
+}  // namespace
+
+ConductorConnection::ConductorConnection(asio::io_context& context,
+                                         std::unique_ptr<SecureStream> stream, Handler handler)
+    : context_(context), stream_(std::move(stream)), handler_(std::move(handler)) {}
+
+Task<std::string> ConductorConnection::serve() {
+  const auto self = shared_from_this();
+  std::string why;
+  while (why.empty()) {
+    try {
+      const StreamMessage message = co_await stream_->receive(monotonic_now() + kIdleConnection);
+      if (message.bytes.size() > kMaxRequestBytes) {
+        throw ProtocolError(fmt::format("a request of {} bytes, allowed: {}", message.bytes.size(),
+                                        kMaxRequestBytes));
+      }
+      Request request = parse_request(message.bytes);
+      co_await throttle();
+      co_await take(std::move(request));
+    } catch (const std::exception& error) {
+      why = error.what();
+    }
+  }
+  stream_->close();
+  co_return why;
+}
+
+Task<void> ConductorConnection::take(Request request) {
+  if (is_quick(request.verb)) {
+    co_await answer(std::move(request));
+    co_return;
+  }
+  if (waiting_.size() >= kWaitingRequests) {
+    throw ProtocolError(fmt::format("more than {} requests at a time", kWaitingRequests));
+  }
+  waiting_.push_back(std::move(request));
+  if (!answering_) asio::co_spawn(context_, answer_waiting(shared_from_this()), asio::detached);
+  answering_ = true;
+}
+
+Task<void> ConductorConnection::answer_waiting(Self self) {
+  while (!self->waiting_.empty()) {
+    Request request = std::move(self->waiting_.front());
+    self->waiting_.pop_front();
+    co_await self->answer(std::move(request));
+  }
+  self->answering_ = false;
+}
+
+Task<void> ConductorConnection::throttle() {
+  const MonotonicTime now = monotonic_now();
+  allowance_ += to_seconds(now - allowance_at_) * kRequestsPerSecond;
+  allowance_ = std::min(allowance_, kRequestsPerSecond) - 1;
+  allowance_at_ = now;
+  if (allowance_ >= 0) co_return;
+  const Nanoseconds wait = from_ms(-allowance_ / kRequestsPerSecond * 1000);
+  asio::steady_timer timer(context_, for_timer(now + wait));
+  boost::system::error_code ignored;
+  co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+}
+
+Task<void> ConductorConnection::answer(Request request) {
+  Answer reply;
+  reply.id = request.id;
+  try {
+    reply.details = co_await handler_(shared_from_this(), std::move(request));
+  } catch (const std::exception& error) {
+    reply.error = error.what();
+    if (reply.error.empty()) reply.error = "failed";
+  }
+  co_await send(shared_from_this(), std::move(reply));
+}
+
+Task<void> ConductorConnection::send(Self self, Answer answer) {
+  try {
+    co_await self->stream_->send(encode(answer));
+  } catch (const StreamError&) {
+    self->stream_->close();  // serve() learns of it and says so
+  }
+}
+
+void ConductorConnection::tell(const std::string& notice, const nlohmann::json& details) {
+  Answer answer;
+  answer.notice = notice;
+  answer.details = details;
+  asio::co_spawn(context_, send(shared_from_this(), std::move(answer)), asio::detached);
+}
+
+}  // namespace simbench::hardware

@@ -1,0 +1,73 @@
+// A conductor's connection as its node sees it: requests in, replies and notices out.
+//
+// Contract
+//  - Requests are bounded: kMaxRequestBytes each, kRequestsPerSecond (more are made to wait, and
+//    with them the sender), kWaitingRequests at a time that wait for slow ones before them.
+//  - What is no request ends this connection, and nothing else.
+//  - Read, synchronise and ping are answered at once, all others one after the other.
+//  - What the handler throws is the reply's error.
+//
+// One thread. Held by a shared_ptr.
+//
+//   auto connection = std::make_shared<ConductorConnection>(context, std::move(stream), handler);
+//   co_await connection->serve();    // returns why it ended
+#ifndef SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_
+#define SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_
+
+#include <boost/asio/io_context.hpp>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "hardware/net/secure_stream.h"
+#include "hardware/node/protocol.h"
+
+namespace simbench::hardware {
+
+inline constexpr std::size_t kMaxRequestBytes = 1u << 20;
+inline constexpr double kRequestsPerSecond = 500;
+inline constexpr std::size_t kWaitingRequests = 32;
+// A connection that says nothing for so long is closed.
+inline constexpr Nanoseconds kIdleConnection = std::chrono::minutes(1);
+
+class ConductorConnection : public std::enable_shared_from_this<ConductorConnection> {
+ public:
+  using Handler =
+      std::function<Task<nlohmann::json>(std::shared_ptr<ConductorConnection>, Request)>;
+
+  ConductorConnection(boost::asio::io_context& context, std::unique_ptr<SecureStream> stream,
+                      Handler handler);
+
+  Task<std::string> serve();
+  void tell(const std::string& notice, const nlohmann::json& details);
+  void close() { stream_->close(); }
+
+  std::string address() const { return stream_->peer_address(); }
+  // The session to which it belongs; empty: none.
+  const std::string& session() const { return session_; }
+  void join(const std::string& session) { session_ = session; }
+
+ private:
+  Task<void> take(Request request);
+  Task<void> throttle();
+  Task<void> answer(Request request);
+
+  using Self = std::shared_ptr<ConductorConnection>;
+  static Task<void> answer_waiting(Self self);
+  static Task<void> send(Self self, Answer answer);
+
+  boost::asio::io_context& context_;
+  std::unique_ptr<SecureStream> stream_;
+  Handler handler_;
+  std::string session_;
+  std::deque<Request> waiting_;
+  bool answering_ = false;
+  double allowance_ = kRequestsPerSecond;
+  MonotonicTime allowance_at_ = monotonic_now();
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NODE_CONDUCTOR_CONNECTION_H_

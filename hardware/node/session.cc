@@ -1,0 +1,221 @@
+#include "hardware/node/session.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <boost/asio/bind_cancellation_slot.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <ctime>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace simbench::hardware {
+namespace {
+
+namespace asio = boost::asio;
+using nlohmann::json;
+
+// A host_sync that is cancelled returns at its next wait; one that never does is left behind.
+constexpr auto kCancelLimit = std::chrono::seconds(2);
+
+std::string time_of_day() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local = {};
+  localtime_r(&now, &local);
+  return fmt::format("{:%H:%M:%S}", local);
+}
+
+CameraSettings settings_of(const scenarios::Scenario& scenario) {
+  const scenarios::Cameras& cameras = scenario.cameras;
+  return {.sync_mode = cameras.sync_mode,
+          .streams = cameras.streams,
+          .exposure_ms = cameras.exposure_ms,
+          .auto_exposure = cameras.auto_exposure.step_interval_exponential_ms > 0,
+          .trigger_rate_hz = scenario.trigger.rate_hz};
+}
+
+}  // namespace
+
+Session::Session(SessionWorld world, SessionPlan plan)
+    : world_(std::move(world)),
+      plan_(std::move(plan)),
+      since_(time_of_day()),
+      scored_(plan_.scenario.evaluation.stream == "colour" ? StreamKind::kColour
+                                                           : StreamKind::kDepth),
+      journal_(world_.context, world_.journal_folder, plan_.id,
+               [this](const std::string& trouble) { note(trouble); }),
+      sync_ended_(world_.context) {
+  world_.network->clear();
+  world_.clock.restart();
+  ClockAdjustment present = world_.clock.present(monotonic_now());
+  present.host = world_.me;
+  journal_.write(present);
+  host_ =
+      std::make_unique<RealHost>(world_.context, world_.me, world_.clock, *world_.network,
+                                 [this](const RecordingEvent& event) { journal_.write(event); });
+  feed_ = std::make_shared<CameraFeed>(
+      world_.context,
+      CameraFeedSink{
+          .on_frame = [this](std::uint32_t camera, const CameraFrame& f) { on_frame(camera, f); },
+          .on_event = [this](std::uint32_t camera, const CameraEvent& e) { on_event(camera, e); }});
+  world_.log(fmt::format("session {} begun by {}: scenario {}, pipeline {}", plan_.id,
+                         plan_.conductor, plan_.scenario.name, plan_.pipeline));
+}
+
+void Session::require_not_ending() const {
+  if (ending_) throw SessionError(fmt::format("session {} is ending", plan_.id));
+}
+
+void Session::synchronise(const std::string& role, std::vector<PeerId> slaves) {
+  require_not_ending();
+  if (role != "master" && role != "slave") {
+    throw SessionError(fmt::format("role: found '{}', allowed: master, slave", role));
+  }
+  if (sync_was_started_) throw SessionError("host_sync was started before in this session");
+  sync_was_started_ = true;
+  sync_runs_ = true;
+  const bool all = slaves.empty();
+  for (PeerId host = 0; all && host < world_.hosts; ++host) {
+    if (host != world_.me) slaves.push_back(host);
+  }
+  Task<void> run = role == "master" ? plan_.host_sync->run_master(*host_, std::move(slaves))
+                                    : plan_.host_sync->run_slave(*host_, 0);
+  world_.log(
+      fmt::format("session {}: host_sync of {} started as {}", plan_.id, plan_.pipeline, role));
+  asio::co_spawn(
+      world_.context, std::move(run),
+      asio::bind_cancellation_slot(
+          sync_cancel_.slot(), [session = shared_from_this()](const std::exception_ptr& failure) {
+            session->on_synchronised(failure);
+          }));
+}
+
+void Session::on_synchronised(const std::exception_ptr& failure) {
+  sync_runs_ = false;
+  sync_ended_.cancel();
+  if (ending_) return;
+  json error = nullptr;
+  try {
+    if (failure) std::rethrow_exception(failure);
+    world_.log(fmt::format("session {}: host_sync has ended", plan_.id));
+  } catch (const std::exception& exception) {
+    error = exception.what();
+    world_.log(fmt::format("session {}: host_sync failed: {}", plan_.id, exception.what()));
+  }
+  world_.notify("synchronised", {{"session", plan_.id}, {"error", error}});
+}
+
+Task<CameraProblems> Session::prepare() {
+  require_not_ending();
+  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras run: stop them first");
+  const auto self = shared_from_this();
+  CameraProblems problems = co_await world_.cameras.prepare(settings_of(plan_.scenario));
+  require_not_ending();
+  cameras_ = Cameras::kPrepared;
+  note_problems(problems);
+  co_return problems;
+}
+
+Task<CameraProblems> Session::start() {
+  require_not_ending();
+  if (cameras_ == Cameras::kClosed) throw SessionError("the cameras are not prepared");
+  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras run already");
+  const auto self = shared_from_this();
+  cameras_ = Cameras::kStarted;
+  CameraProblems problems = co_await world_.cameras.start(feed_);
+  world_.log(fmt::format("session {}: cameras started", plan_.id));
+  note_problems(problems);
+  co_return problems;
+}
+
+Task<CameraProblems> Session::stop() {
+  require_not_ending();
+  const auto self = shared_from_this();
+  CameraProblems problems;
+  if (cameras_ != Cameras::kStarted) co_return problems;
+  problems = co_await world_.cameras.stop();
+  require_not_ending();
+  feed_->drain();
+  cameras_ = Cameras::kPrepared;
+  note_problems(problems);
+  journal_.flush();
+  world_.log(
+      fmt::format("session {}: cameras stopped, {} frames so far", plan_.id, journal_.frames()));
+  co_return problems;
+}
+
+Task<void> Session::end(std::string reason) {
+  if (std::exchange(ending_, true)) co_return;
+  const auto self = shared_from_this();
+  co_await end_host_sync();
+  const CameraProblems problems = co_await world_.cameras.close();
+  feed_->drain();
+  note_problems(problems);
+  if (feed_->dropped() > 0) {
+    note(fmt::format("{} frames dropped: the host was too busy", feed_->dropped()));
+  }
+  if (journal_.frames_not_kept() > 0) {
+    note(fmt::format("{} frames not kept", journal_.frames_not_kept()));
+  }
+  feed_->close();
+  journal_.close();
+  world_.log(fmt::format("session {} ended ({}): {} frames, {} not kept", plan_.id, reason,
+                         journal_.frames(), journal_.frames_not_kept() + feed_->dropped()));
+}
+
+Task<void> Session::end_host_sync() {
+  if (!sync_runs_) co_return;
+  sync_ended_.expires_after(kCancelLimit);
+  sync_cancel_.emit(asio::cancellation_type::terminal);
+  if (!sync_runs_) co_return;
+  boost::system::error_code ignored;
+  co_await sync_ended_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  if (sync_runs_) {
+    world_.log(fmt::format("session {}: host_sync of {} does not end", plan_.id, plan_.pipeline));
+  }
+}
+
+void Session::on_frame(std::uint32_t camera, const CameraFrame& frame) {
+  FrameRecord record;
+  record.camera = camera;
+  record.stream = frame.stream;
+  record.domain = frame.domain;
+  record.counter = frame.counter;
+  record.exposure_us = frame.exposure_us;
+  record.sensor = frame.sensor;
+  record.frame = frame.frame;
+  record.arrival = world_.clock.system_at(frame.arrived);
+  record.arrival_steady = world_.clock.steady_at(frame.arrived);
+  record.backend = frame.backend ? world_.clock.system_at(*frame.backend) : record.arrival;
+  journal_.write(FrameEvent{record, std::nullopt});
+  if (frame.stream != scored_ || ending_) return;
+  host_->deliver({.camera = record.camera,
+                  .counter = record.counter,
+                  .exposure_us = record.exposure_us,
+                  .sensor = record.sensor,
+                  .arrival = record.arrival,
+                  .arrival_steady = record.arrival_steady});
+}
+
+void Session::on_event(std::uint32_t camera, const CameraEvent& event) {
+  note(fmt::format("camera {}: {}", world_.cameras.serial_of(camera), event.text));
+}
+
+void Session::note_problems(const CameraProblems& problems) {
+  for (const CameraProblem& problem : problems) {
+    note(fmt::format("camera {}: {}", problem.camera, problem.text));
+  }
+}
+
+// A journal is of one host; elsewhere the host is named.
+void Session::note(const std::string& text) {
+  journal_.note(text);
+  const std::string line = fmt::format("{}: {}", world_.host_name, text);
+  world_.notify("note", {{"session", plan_.id}, {"text", line}});
+  world_.log(line);
+}
+
+}  // namespace simbench::hardware

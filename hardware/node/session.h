@@ -1,0 +1,123 @@
+// One session of a node: from a conductor's begin to its end.
+//
+// Holds everything that belongs to one session and to no other: the journal, the real host on which
+// host_sync runs, the feed of the cameras. What belongs to the node (clock, sockets, cameras) it is
+// lent.
+//
+//   begun ── synchronise ──► host_sync runs; notice "synchronised" when it returns
+//         ── prepare ──► start ──► stop ──► (prepare ...)     cameras
+//         ── end ──► host_sync cancelled, cameras closed, journal closed
+//
+// host_sync and the cameras do not know of each other: a service is started before the capture and
+// runs until end(). Calls that do not fit the state are SessionErrors and change nothing.
+//
+// One thread, the context's. Always held by a shared_ptr: the coroutine of host_sync keeps its
+// session alive until it has ended, so that its host outlives it.
+//
+//   auto session = std::make_shared<Session>(lent, std::move(plan));
+//   session->synchronise("slave");
+//   co_await session->end();
+#ifndef SIMBENCH_HARDWARE_NODE_SESSION_H_
+#define SIMBENCH_HARDWARE_NODE_SESSION_H_
+
+#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "algorithms/ports/host_sync.h"
+#include "hardware/clock/node_clock.h"
+#include "hardware/net/peer_network.h"
+#include "hardware/node/camera_bench.h"
+#include "hardware/node/camera_feed.h"
+#include "hardware/node/journal.h"
+#include "hardware/node/real_host.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::hardware {
+
+class SessionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// What was agreed with the conductor.
+struct SessionPlan {
+  std::string id;
+  std::string conductor;
+  scenarios::Scenario scenario;
+  std::string pipeline;
+  std::unique_ptr<HostSync> host_sync;
+};
+
+// What the node lends; outlives the session.
+struct SessionWorld {
+  boost::asio::io_context& context;
+  NodeClock& clock;
+  std::shared_ptr<PeerNetwork> network;
+  CameraBench& cameras;
+  PeerId me = 0;
+  PeerId hosts = 0;
+  std::string host_name;
+  std::string journal_folder;
+  std::function<void(const std::string& notice, const nlohmann::json& details)> notify;
+  std::function<void(const std::string& line)> log;
+};
+
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  // Restarts the clock, empties the channels, opens the journal. Throws JournalError.
+  Session(SessionWorld world, SessionPlan plan);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const std::string& id() const { return plan_.id; }
+  const std::string& conductor() const { return plan_.conductor; }
+  const std::string& since() const { return since_; }  // "14:03:59", local time
+  bool ending() const { return ending_; }
+
+  // `role`: "master" or "slave"; the master's slaves, all other hosts if empty.
+  void synchronise(const std::string& role, std::vector<PeerId> slaves = {});
+  Task<CameraProblems> prepare();
+  Task<CameraProblems> start();
+  // When it returns, all frames are on disk.
+  Task<CameraProblems> stop();
+  // Once; `reason` is for the log.
+  Task<void> end(std::string reason);
+
+ private:
+  enum class Cameras : std::uint8_t { kClosed, kPrepared, kStarted };
+
+  void on_frame(std::uint32_t camera, const CameraFrame& frame);
+  void on_event(std::uint32_t camera, const CameraEvent& event);
+  void on_synchronised(const std::exception_ptr& failure);
+  void note(const std::string& text);
+  void note_problems(const CameraProblems& problems);
+  void require_not_ending() const;
+  Task<void> end_host_sync();
+
+  SessionWorld world_;
+  SessionPlan plan_;
+  std::string since_;
+  StreamKind scored_;
+  Journal journal_;
+  std::unique_ptr<RealHost> host_;
+  std::shared_ptr<CameraFeed> feed_;
+  Cameras cameras_ = Cameras::kClosed;
+  bool ending_ = false;
+
+  bool sync_runs_ = false;
+  bool sync_was_started_ = false;
+  boost::asio::cancellation_signal sync_cancel_;
+  boost::asio::steady_timer sync_ended_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NODE_SESSION_H_
