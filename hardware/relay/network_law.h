@@ -1,0 +1,76 @@
+// What a scenario's network does to each message: the law that the relay applies for real.
+//
+// The same law as the simulated network's (sim/network/network.h): a latency per direction of a
+// link (fixed, exponential and now and then a spike, or drawn from a table; half of the link's
+// asymmetry with its sign), and
+//
+//  - datagrams: lost, doubled (the copy has a latency of its own), reordered (delayed on their own
+//    by up to reorder_max_ms); those that are not reordered keep their order;
+//  - streams: in order and complete; a lost message arrives a retransmission timeout later, doubled
+//    each time, and holds up what follows it.
+//
+// All numbers of a message are keyed by (seed, direction, kind, index of the message), so they do
+// not depend on what else was sent. Not the simulator's own draws: the two are compared by their
+// distributions.
+//
+// What a relay cannot imitate is refused (check_relay_can): bursts, bandwidth, Nagle's algorithm,
+// capture traffic, switches that know PTP, latencies per session.
+//
+//   NetworkLaw law(scenario.network, seed, 0, 3);
+//   for (MonotonicTime at : law.datagram(received)) send_at(at);
+#ifndef SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_
+#define SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_
+
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+
+#include "algorithms/ports/exchange.h"
+#include "hardware/clock/monotonic_time.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::hardware {
+
+// Throws scenarios::InputError that names the member, what was found and what is allowed.
+void check_relay_can(const scenarios::Scenario& scenario);
+
+// What became of the messages of one direction.
+struct LawCounts {
+  std::uint64_t datagrams = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t duplicated = 0;
+  std::uint64_t reordered = 0;
+  std::uint64_t stream_messages = 0;
+  std::uint64_t retransmissions = 0;
+};
+
+// One direction of a link.
+class NetworkLaw {
+ public:
+  // After so many, a stream message is let through: the simulated stream would break.
+  static constexpr int kMaxRetransmissions = 15;
+
+  NetworkLaw(const scenarios::Network& network, std::uint64_t seed, PeerId from, PeerId to);
+
+  // When a datagram that came at `received` arrives: never, once, or twice.
+  using Arrivals = boost::container::static_vector<MonotonicTime, 2>;
+  Arrivals datagram(MonotonicTime received);
+  // When the next message of the stream arrives. A new connection goes on with the same count.
+  MonotonicTime stream(MonotonicTime received);
+
+  const LawCounts& counts() const { return counts_; }
+
+ private:
+  class Draws;
+  Nanoseconds latency(Draws& draws) const;
+
+  scenarios::Network network_;
+  std::uint64_t key_;
+  double fixed_ms_;
+  MonotonicTime last_datagram_ = MonotonicTime::min();
+  MonotonicTime last_stream_ = MonotonicTime::min();
+  LawCounts counts_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_RELAY_NETWORK_LAW_H_

@@ -1,0 +1,265 @@
+#include "hardware/relay/relay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "hardware/net/kernel_stamps.h"
+#include "hardware/relay/delay_queue.h"
+#include "hardware/relay/receive_stamps.h"
+#include "hardware/relay/relayed_stream.h"
+
+namespace simbench::hardware {
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::asio::ip::udp;
+using Error = boost::system::error_code;
+
+constexpr std::size_t kLargestDatagram = 65536;
+constexpr Nanoseconds kPauseAfterError = std::chrono::milliseconds(10);
+
+// Loopback, or an address of RFC 1918, which nobody routes.
+bool is_private(const boost::asio::ip::address& address) {
+  if (address.is_loopback()) return true;
+  if (!address.is_v4()) return false;
+  const std::uint32_t bits = address.to_v4().to_uint();
+  return bits >> 24 == 10 || bits >> 20 == 0xac1 || bits >> 16 == 0xc0a8;
+}
+
+boost::asio::ip::address address_of(const Rig& rig, const RigHost& host) {
+  Error error;
+  const auto address = boost::asio::ip::make_address(host.address, error);
+  if (error || !is_private(address)) {
+    throw RelayError(fmt::format(
+        "{}: host '{}': found address '{}', allowed for a relay: a numeric loopback or private one",
+        rig.file, host.name, host.address));
+  }
+  return address;
+}
+
+// As many tokens a second as datagrams are let through.
+class TokenBucket {
+ public:
+  explicit TokenBucket(double per_second) : per_second_(per_second), tokens_(per_second) {}
+
+  bool take(MonotonicTime now) {
+    tokens_ = std::min(per_second_, tokens_ + per_second_ * to_seconds(now - last_));
+    last_ = now;
+    if (tokens_ < 1) return false;
+    tokens_ -= 1;
+    return true;
+  }
+
+ private:
+  double per_second_;
+  double tokens_;
+  MonotonicTime last_ = monotonic_now();
+};
+
+// What node `from` takes for node `to`.
+struct Gate {
+  Gate(boost::asio::io_context& context, NetworkLaw its_law)
+      : acceptor(context), socket(context), law(std::move(its_law)) {}
+
+  PeerId from = 0;
+  PeerId to = 0;
+  tcp::acceptor acceptor;
+  udp::socket socket;
+  NetworkLaw law;  // of what comes from `from`
+  TokenBucket bucket{Relay::kMaxDatagramsPerSecond};
+  std::weak_ptr<RelayedStream> stream;
+};
+
+void bind(Gate& gate, const Rig& rig, const RigHost& host) {
+  try {
+    const tcp::endpoint endpoint(address_of(rig, host), host.port);
+    gate.acceptor.open(endpoint.protocol());
+    gate.acceptor.set_option(tcp::acceptor::reuse_address(true));
+    gate.acceptor.bind(endpoint);
+    gate.acceptor.listen();
+    const udp::endpoint datagrams(endpoint.address(), endpoint.port());
+    gate.socket.open(datagrams.protocol());
+    gate.socket.bind(datagrams);
+    gate.socket.non_blocking(true);
+    request_receive_stamps(gate.socket.native_handle());
+  } catch (const boost::system::system_error& error) {
+    throw RelayError(fmt::format("{}: host '{}': cannot listen on {}:{}: {}", rig.file, host.name,
+                                 host.address, host.port, error.code().message()));
+  }
+}
+
+}  // namespace
+
+class Relay::State : public std::enable_shared_from_this<Relay::State> {
+ public:
+  State(boost::asio::io_context& context, const RelaySettings& settings)
+      : context_(context), queue_(context) {
+    const std::size_t count = settings.nodes.size();
+    for (PeerId node = 0; node < count; ++node) {
+      const Rig& rig = settings.nodes[node];
+      if (rig.hosts.size() != count) {
+        throw RelayError(fmt::format("{}: found {} hosts, allowed: {}, one for each of the files",
+                                     rig.file, rig.hosts.size(), count));
+      }
+      nodes_.emplace_back(address_of(rig, rig.hosts[node]), rig.hosts[node].port);
+    }
+    for (PeerId from = 0; from < count; ++from) {
+      for (PeerId to = 0; to < count; ++to) {
+        auto gate = std::make_unique<Gate>(
+            context, NetworkLaw(settings.scenario->network, settings.seed, from, to));
+        gate->from = from;
+        gate->to = to;
+        const Rig& rig = settings.nodes[from];
+        if (from != to) bind(*gate, rig, rig.hosts[to]);
+        gates_.push_back(std::move(gate));
+      }
+    }
+  }
+
+  void start() {
+    for (const auto& gate : gates_) {
+      if (gate->from == gate->to) continue;
+      boost::asio::co_spawn(context_, accept(shared_from_this(), *gate), boost::asio::detached);
+      boost::asio::co_spawn(context_, receive(shared_from_this(), *gate), boost::asio::detached);
+    }
+  }
+
+  void stop() {
+    queue_.stop();
+    Error ignored;
+    for (const auto& gate : gates_) {
+      gate->acceptor.close(ignored);
+      gate->socket.close(ignored);
+      if (const auto stream = gate->stream.lock()) stream->close();
+    }
+  }
+
+  RelayStatistics statistics() const {
+    RelayStatistics all = statistics_;
+    for (const auto& gate : gates_) {
+      const LawCounts& law = gate->law.counts();
+      all.law.datagrams += law.datagrams;
+      all.law.lost += law.lost;
+      all.law.duplicated += law.duplicated;
+      all.law.reordered += law.reordered;
+      all.law.stream_messages += law.stream_messages;
+      all.law.retransmissions += law.retransmissions;
+    }
+    all.late_p50 = queue_.lateness(0.5);
+    all.late_p95 = queue_.lateness(0.95);
+    return all;
+  }
+
+ private:
+  Gate& gate(PeerId from, PeerId to) { return *gates_[from * nodes_.size() + to]; }
+
+  // `gate` is a member of `self`; so in receive().
+  static Task<void> accept(std::shared_ptr<State> self, Gate& gate) {
+    while (gate.acceptor.is_open()) {
+      tcp::socket socket(self->context_);
+      Error error;
+      co_await gate.acceptor.async_accept(
+          socket, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+      if (!gate.acceptor.is_open()) co_return;
+      if (error) {
+        boost::asio::steady_timer pause(self->context_, kPauseAfterError);
+        co_await pause.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
+        continue;
+      }
+      if (const auto last = gate.stream.lock()) last->close();
+      const auto stream = std::make_shared<RelayedStream>(
+          self->queue_, gate.law, self->gate(gate.to, gate.from).law, std::move(socket));
+      gate.stream = stream;
+      ++self->statistics_.streams;
+      stream->start(self->nodes_[gate.to], [self] { ++self->statistics_.broken_streams; });
+    }
+  }
+
+  static Task<void> receive(std::shared_ptr<State> self, Gate& gate) {
+    Bytes buffer(kLargestDatagram);
+    while (gate.socket.is_open()) {
+      const ReceivedPiece piece = receive_stamped(gate.socket.native_handle(), buffer, nullptr);
+      if (piece.error == 0) {
+        if (!piece.truncated) self->relay(gate, piece, buffer);
+      } else if (piece.error != EAGAIN && piece.error != EWOULDBLOCK) {
+        // One that the socket tells once, such as "connection refused" of a datagram sent before.
+        continue;
+      }
+      Error error;
+      co_await gate.socket.async_wait(
+          udp::socket::wait_read, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    }
+  }
+
+  void relay(Gate& gate, const ReceivedPiece& piece, const Bytes& buffer) {
+    if (!gate.bucket.take(monotonic_now())) {
+      ++statistics_.dropped_rate;
+      return;
+    }
+    for (const MonotonicTime at : gate.law.datagram(piece.received)) {
+      Bytes message(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(piece.bytes));
+      const bool taken = queue_.add(
+          at, std::move(message),
+          [self = shared_from_this(), &gate](const Bytes& due) { self->send(gate, due); });
+      if (!taken) ++statistics_.dropped_full;
+    }
+  }
+
+  void send(Gate& gate, const Bytes& message) {
+    const tcp::endpoint& node = nodes_[gate.to];
+    Error ignored;
+    this->gate(gate.to, gate.from)
+        .socket.send_to(boost::asio::buffer(message), udp::endpoint(node.address(), node.port()), 0,
+                        ignored);
+  }
+
+  boost::asio::io_context& context_;
+  DelayQueue queue_;
+  std::vector<tcp::endpoint> nodes_;
+  std::vector<std::unique_ptr<Gate>> gates_;  // [from * nodes + to]; none listens from == to
+  RelayStatistics statistics_;
+};
+
+Relay::Relay(boost::asio::io_context& context, const RelaySettings& settings)
+    : state_(std::make_shared<State>(context, settings)) {
+  state_->start();
+}
+
+Relay::~Relay() { stop(); }
+
+void Relay::stop() { state_->stop(); }
+
+RelayStatistics Relay::statistics() const { return state_->statistics(); }
+
+std::string statistics_json(const RelayStatistics& statistics) {
+  const auto microseconds = [](std::optional<Nanoseconds> late) {
+    return late ? nlohmann::ordered_json(static_cast<double>(late->count()) * 1e-3)
+                : nlohmann::ordered_json(nullptr);
+  };
+  return nlohmann::ordered_json{{"datagrams", statistics.law.datagrams},
+                                {"lost", statistics.law.lost},
+                                {"duplicated", statistics.law.duplicated},
+                                {"reordered", statistics.law.reordered},
+                                {"stream_messages", statistics.law.stream_messages},
+                                {"retransmissions", statistics.law.retransmissions},
+                                {"dropped_full", statistics.dropped_full},
+                                {"dropped_rate", statistics.dropped_rate},
+                                {"streams", statistics.streams},
+                                {"broken_streams", statistics.broken_streams},
+                                {"late_p50_us", microseconds(statistics.late_p50)},
+                                {"late_p95_us", microseconds(statistics.late_p95)}}
+      .dump();
+}
+
+}  // namespace simbench::hardware

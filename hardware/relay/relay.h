@@ -1,0 +1,85 @@
+// A relay: stands between each pair of nodes on one machine and is the network between them.
+//
+// For tests and for the real-network experiment (hardware/experiment), not for rigs. Where the rig
+// file of node i has host j, the relay listens, with TCP and UDP on one port; what comes there goes
+// on to node j after the delay that the scenario's network has for it (network_law.h). Datagrams go
+// on from the relay's own socket for (j, i), which is where node j would answer to. A stream is
+// relayed message by message (message_splitter.h), each way with its own delays.
+//
+//   node i --> [relay's address for j in i's file]  ... delay ...  --> node j's own address
+//
+// Delays count from the kernel's receive stamp, and what is due is sent by a queue that wakes up
+// early (delay_queue.h), so that the relay's own scheduling does not come on top.
+//
+// Contract
+//  - Addresses must be loopback, or private ones (RFC 1918) for namespaces made by a test: a relay
+//    never listens to the world. It opens connections only to the nodes in its files.
+//  - Bounded: kMaxDatagramsPerSecond in each direction (the rest is counted and dropped), the
+//    queue's limits, one stream a pair (a new one replaces the last).
+//  - Nothing it receives can end it. One thread.
+//
+// Errors: RelayError from the constructor: an address that cannot be bound, is not allowed, or is
+// missing.
+//
+//   Relay relay(context, {.nodes = rigs, .scenario = &scenario, .seed = 1});
+//   context.run();   // until relay.stop()
+//   std::string json = relay.statistics_json();
+#ifndef SIMBENCH_HARDWARE_RELAY_RELAY_H_
+#define SIMBENCH_HARDWARE_RELAY_RELAY_H_
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hardware/relay/message_splitter.h"
+#include "hardware/relay/network_law.h"
+#include "hardware/rig/rig.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::hardware {
+
+struct RelaySettings {
+  // nodes[i] is the rig file of node i: its own entry is where it listens, the others are the
+  // relay's addresses.
+  std::vector<Rig> nodes;
+  const scenarios::Scenario* scenario = nullptr;  // only looked at by the constructor
+  std::uint64_t seed = 1;
+};
+
+struct RelayStatistics {
+  LawCounts law;  // of all directions
+  std::uint64_t dropped_full = 0;
+  std::uint64_t dropped_rate = 0;
+  std::uint64_t streams = 0;         // connections relayed
+  std::uint64_t broken_streams = 0;  // of those, ended because they were no SecureStream
+  std::optional<Nanoseconds> late_p50;
+  std::optional<Nanoseconds> late_p95;
+};
+
+class Relay {
+ public:
+  static constexpr double kMaxDatagramsPerSecond = 20'000;
+
+  Relay(boost::asio::io_context& context, const RelaySettings& settings);
+  ~Relay();
+  Relay(const Relay&) = delete;
+  Relay& operator=(const Relay&) = delete;
+
+  // Closes everything; the context then runs out of work.
+  void stop();
+  RelayStatistics statistics() const;
+
+ private:
+  class State;
+  std::shared_ptr<State> state_;
+};
+
+// One line of JSON: the members of RelayStatistics, delays in microseconds.
+std::string statistics_json(const RelayStatistics& statistics);
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_RELAY_RELAY_H_
