@@ -7,7 +7,7 @@
 // Schedule. A camera plays from an instant T0, its recording's zero:
 //  - without a trigger file, 20 ms after start();
 //  - with one, the instant that the file holds: nanoseconds of CLOCK_MONOTONIC, as decimal text.
-//    It is looked for every 2 ms. A file that was there before start() counts too, unless its
+//    It is looked for every 4 ms. A file that was there before start() counts too, unless its
 //    instant is more than 1 s before start(). When it is removed playing ends, and begins anew with
 //    the next file: `"trigger": {"on_command", "off_command"}` of a rig can write and remove it.
 // Frames that were due before start() are not played, as no camera was on. A recording is played

@@ -14,7 +14,7 @@ namespace simbench::hardware {
 namespace {
 
 constexpr Nanoseconds kBeforeZero = std::chrono::milliseconds(20);
-constexpr Nanoseconds kLookWaiting = std::chrono::milliseconds(2);
+constexpr Nanoseconds kLookWaiting = std::chrono::milliseconds(4);
 constexpr Nanoseconds kLookPlaying = std::chrono::milliseconds(10);
 constexpr Nanoseconds kLongestSleep = std::chrono::milliseconds(250);
 constexpr Nanoseconds kOldTrigger = std::chrono::seconds(1);
@@ -155,7 +155,7 @@ void RecordedPlayer::remove(RecordedPlay& play) {
 }
 
 void RecordedPlayer::look_at_triggers(MonotonicTime now) {
-  bool waiting = false;
+  waiting_ = false;
   const std::string* path = nullptr;
   TriggerFile file;
   for (RecordedPlay* play : plays_) {
@@ -164,9 +164,9 @@ void RecordedPlayer::look_at_triggers(MonotonicTime now) {
     if (path == nullptr || *path != play->trigger_file) file = read_trigger(play->trigger_file);
     path = &play->trigger_file;
     apply(*play, file, now);
-    waiting = waiting || play->state == RecordedPlay::State::kWaiting;
+    waiting_ = waiting_ || play->state == RecordedPlay::State::kWaiting;
   }
-  next_look_ = now + (path == nullptr ? kLongestSleep : waiting ? kLookWaiting : kLookPlaying);
+  next_look_ = now + (waiting_ ? kLookWaiting : kLookPlaying);
 }
 
 MonotonicTime RecordedPlayer::turn(MonotonicTime now) {
@@ -182,7 +182,9 @@ MonotonicTime RecordedPlayer::turn(MonotonicTime now) {
   for (RecordedPlay* each : plays_) {
     if (each->state == RecordedPlay::State::kPlaying) each->watch.check(now, each->on_event);
   }
-  const MonotonicTime wake_up = std::min(next_look_, now + kLongestSleep);
+  // Between frames nobody need know that the trigger is off.
+  const MonotonicTime wake_up =
+      waiting_ ? std::min(next_look_, now + kLongestSleep) : now + kLongestSleep;
   return play == nullptr ? wake_up : std::min(wake_up, due(*play));
 }
 

@@ -64,6 +64,7 @@ class RecordedPlayer {
   std::condition_variable changed_;
   std::vector<RecordedPlay*> plays_;
   MonotonicTime next_look_{};  // at trigger files
+  bool waiting_ = false;       // a camera, for its trigger
   bool ending_ = false;
   std::thread thread_;
 };
