@@ -1,0 +1,122 @@
+#include "hardware/node/real_host.h"
+
+#include <sys/prctl.h>
+
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/intrusive/list.hpp>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <random>
+#include <utility>
+
+#include "hardware/node/kept_frames.h"
+
+namespace simbench::hardware {
+namespace {
+
+class NodeSteadyClock final : public SteadyClock {
+ public:
+  explicit NodeSteadyClock(const NodeClock& clock) : clock_(clock) {}
+  SteadyTime now() const override { return clock_.steady_at(monotonic_now()); }
+
+ private:
+  const NodeClock& clock_;
+};
+
+// A sleep_until() under way; out of the list when its coroutine ends in whatever way.
+using AutoUnlink =
+    boost::intrusive::list_base_hook<boost::intrusive::link_mode<boost::intrusive::auto_unlink>>;
+struct Sleeper : AutoUnlink {
+  explicit Sleeper(boost::asio::io_context& context) : timer(context) {}
+  boost::asio::steady_timer timer;
+};
+
+// Timers of this thread fire when they are due, not up to 50 us later.
+void ask_for_exact_timers() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
+
+}  // namespace
+
+class RealHost::State {
+ public:
+  struct Parts {
+    boost::asio::io_context& context;
+    PeerId id;
+    NodeClock& clock;
+    PeerNetwork& network;
+    EventSink sink;
+  };
+
+  explicit State(Parts given)
+      : parts(std::move(given)), steady_clock(parts.clock), frames(parts.context, parts.clock) {}
+
+  void on_adjustment(ClockAdjustment adjustment) {
+    adjustment.host = parts.id;
+    parts.sink(adjustment);
+    for (Sleeper& sleeper : sleepers) sleeper.timer.cancel();
+  }
+
+  Parts parts;
+  NodeSteadyClock steady_clock;
+  KeptFrames frames;
+  boost::random::mt19937_64 engine{std::random_device{}()};
+  boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers;
+};
+
+RealHost::RealHost(boost::asio::io_context& context, PeerId id, NodeClock& clock,
+                   PeerNetwork& network, EventSink sink)
+    : state_(std::make_unique<State>(State::Parts{context, id, clock, network, std::move(sink)})) {
+  ask_for_exact_timers();
+  clock.observe([state = state_.get()](const ClockAdjustment& adjustment) {
+    state->on_adjustment(adjustment);
+  });
+}
+
+RealHost::~RealHost() { state_->parts.clock.observe(nullptr); }
+
+PeerId RealHost::id() const { return state_->parts.id; }
+
+HostClock& RealHost::clock() { return state_->parts.clock; }
+
+const SteadyClock& RealHost::steady_clock() const { return state_->steady_clock; }
+
+FrameFeed* RealHost::frame_feed() { return &state_->frames; }
+
+MessageChannel& RealHost::open_channel(PeerId peer, Transport transport) {
+  return state_->parts.network.channel(peer, transport);
+}
+
+Task<void> RealHost::sleep_for(Nanoseconds interval) {
+  const SteadyTime deadline = state_->steady_clock.now() + interval;
+  boost::asio::steady_timer timer(state_->parts.context);
+  timer.expires_at(for_timer(state_->parts.clock.oscillator().when(deadline)));
+  co_await timer.async_wait(boost::asio::use_awaitable);
+}
+
+Task<void> RealHost::sleep_until(HostTime at) {
+  Sleeper sleeper(state_->parts.context);
+  state_->sleepers.push_back(sleeper);
+  for (;;) {
+    const MonotonicTime now = monotonic_now();
+    const MonotonicTime wake = state_->parts.clock.when(at, now);
+    if (wake <= now) break;
+    sleeper.timer.expires_at(for_timer(wake));
+    // An adjustment ends the wait; a cancelled coroutine is not resumed beyond the next one.
+    boost::system::error_code adjusted;
+    co_await sleeper.timer.async_wait(
+        boost::asio::redirect_error(boost::asio::use_awaitable, adjusted));
+  }
+}
+
+double RealHost::random_uniform() { return boost::random::uniform_01<double>{}(state_->engine); }
+
+void RealHost::report_exchange(const Exchange& exchange) {
+  state_->parts.sink(ExchangeEvent{state_->parts.id, exchange});
+}
+
+void RealHost::report_outcome(const SyncOutcome& outcome) { state_->parts.sink(outcome); }
+
+void RealHost::deliver(const FrameArrival& frame) { state_->frames.deliver(frame); }
+
+}  // namespace simbench::hardware
