@@ -160,6 +160,10 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
 
   std::vector<const Row*> paired;
   for (const char* pipeline : statement.pipelines) paired.push_back(find_row(rows, pipeline));
+  if (std::any_of(paired.begin(), paired.end(), [](const Row* row) { return !row->verified(); })) {
+    claim.needs = "captures whose ground truth is known: simulated ones, or real ones in genlock";
+    return claim;
+  }
   std::int64_t holds = 0;
   std::int64_t told = 0;
   for (std::size_t index = 0; index < paired.front()->seeds.size(); ++index) {

@@ -15,9 +15,9 @@
 namespace simbench::evaluation {
 
 // C1 ... C10, in order. `rows` are of one scenario, all with the same seeds in the same order. A
-// claim about pipelines that are not among the rows, about another trigger rate or about two
-// scenarios has no fraction but says what it needs. Seeds in which a quantity of the claim does not
-// exist are left out.
+// claim about pipelines that are not among the rows or not verified, about another trigger rate or
+// about two scenarios has no fraction but says what it needs. Seeds in which a quantity of the
+// claim does not exist are left out.
 std::vector<Claim> check_claims(const std::vector<Row>& rows, double trigger_rate_hz);
 
 // Whether a claim needs SeedScore::offline_amd_ms of this pipeline.

@@ -97,15 +97,9 @@ class Evaluation {
     const PipelineChoice& choice = choices_[pipeline_of(job)];
     const std::uint64_t seed = seed_of(job);
     try {
-      PipelineScorer scorer(scorer_setup(scenario_, choice));
-      const std::unique_ptr<HostSync> host_sync =
-          choice.host_sync.make(choice.host_sync_parameters);
-      const RecordingCost cost = source.record(
-          {.seed = seed, .pipeline = choice.pipeline.name, .host_sync = host_sync.get()}, scorer);
-      SeedScore score = scorer.finish();
-      score.seed = seed;
-      score.cost = cost;
-      scores_[job] = std::move(score);
+      scores_[job] = score_of(choice, seed, source);
+    } catch (const RecordingFailed& failure) {
+      scores_[job] = missing_score(seed, failure.what());
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -120,6 +114,18 @@ class Evaluation {
     const std::lock_guard lock(mutex_);
     ++done_;
     if (progress_) progress_(done_, scores_.size());
+  }
+
+  SeedScore score_of(const PipelineChoice& choice, std::uint64_t seed,
+                     RecordingSource& source) const {
+    PipelineScorer scorer(scorer_setup(scenario_, choice));
+    const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+    const RecordingCost cost = source.record(
+        {.seed = seed, .pipeline = choice.pipeline.name, .host_sync = host_sync.get()}, scorer);
+    SeedScore score = scorer.finish();
+    score.seed = seed;
+    score.cost = cost;
+    return score;
   }
 
   // Of the jobs that are done; takes their scores.

@@ -2,7 +2,12 @@
 //
 // Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
 // threads; results do not depend on how many. A job that throws ends the evaluation after the
-// running jobs have finished; finished jobs are kept in the error (EvaluationFailed).
+// running jobs have finished; finished jobs are kept in the error (EvaluationFailed). A capture
+// that could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing
+// from its row, whose notes say why, and so do what other captures noted (RecordingCost::notes).
+//
+// With one thread the source is called in order: every pipeline at the first seed, then at the
+// next.
 //
 //   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
 //                        nullptr);

@@ -240,6 +240,7 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
                             const GatheringSetup& gathering) {
     return make(parameters, gathering);
   };
+  setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.make) {
     setup.make_estimator =
         [make = choice.device_time.make, parameters = choice.device_time_parameters,

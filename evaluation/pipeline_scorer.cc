@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -62,16 +61,17 @@ void PipelineScorer::on_start(const RigLayout& layout) {
 void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
   if (frame.stream != setup_.stream) return;
   SIMBENCH_ASSERT(frame.camera < sources_.size(), "a frame of a camera that the rig does not have");
+  if (!ground_truth_) learn_ground_truth(truth);
   Source& source = sources_[frame.camera];
-  const DeferredFrame delivered = [&] {
-    const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
-    return DeferredFrame{frame.camera,
-                         pulse_of(source, truth, sensor),
-                         {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
-                         on_global_scale(truth != nullptr ? truth->delivered : frame.arrival)};
-  }();
+  const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
+  const Place place = place_of(source, frame, truth, sensor);
+  const DeferredFrame delivered = {
+      frame.camera,
+      place.pulse,
+      {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
+      on_global_scale(truth != nullptr ? truth->delivered : frame.arrival)};
   note_anchor(frame);
-  if (in_warm_up(delivered.pulse)) {
+  if (place.warm_up) {
     GlobalTime global = on_global_scale(frame.arrival);
     if (stamp_warm_up_ && !deferred_) global = estimate(source, delivered.sample, truth);
     if (gather_warm_up_) gather(delivered, global);
@@ -86,6 +86,41 @@ void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth)
   } else {
     settle(delivered, estimate(source, delivered.sample, truth));
   }
+}
+
+void PipelineScorer::learn_ground_truth(const FrameTruth* truth) {
+  if (truth != nullptr) {
+    ground_truth_ = GroundTruth::kSimulation;
+  } else if (setup_.genlock) {
+    ground_truth_ = GroundTruth::kGenlockOrder;
+  } else {
+    ground_truth_ = GroundTruth::kNone;
+    unverified_.emplace(layout_, setup_.median, observer_);
+    if (setup_.gatherer_needs_pulses) {
+      throw RecordingFailed(
+          "gathering \"oracle\" needs the pulse of every frame, which only a simulation or a "
+          "genlock "
+          "capture has");
+    }
+  }
+}
+
+GroundTruth PipelineScorer::ground_truth() const {
+  if (ground_truth_) return *ground_truth_;
+  if (pulses_with_truth_) return GroundTruth::kSimulation;
+  return setup_.genlock ? GroundTruth::kGenlockOrder : GroundTruth::kNone;
+}
+
+PipelineScorer::Place PipelineScorer::place_of(Source& source, const FrameRecord& frame,
+                                               const FrameTruth* truth, DeviceTime sensor) {
+  if (unverified_) {
+    using Part = UnverifiedScores::Part;
+    const Part part = unverified_->part_of(frame);
+    return {.pulse = part == Part::kEvaluated ? kUnknownPulse : kNoPulse,
+            .warm_up = part == Part::kWarmUp};
+  }
+  const std::int64_t pulse = pulse_of(source, truth, sensor);
+  return {.pulse = pulse, .warm_up = in_warm_up(pulse)};
 }
 
 std::int64_t PipelineScorer::pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor) {
@@ -112,7 +147,7 @@ GlobalTime PipelineScorer::estimate(Source& source, const DeviceSample& sample,
                                     const FrameTruth* truth) {
   if (source.estimator) return source.estimator->stamp(sample);
   if (truth == nullptr) {
-    throw std::runtime_error(
+    throw RecordingFailed(
         "device_time \"oracle\" needs the true exposure times, which only a simulation has");
   }
   return on_global_scale(truth->own_host);
@@ -125,13 +160,18 @@ Nanoseconds PipelineScorer::anchor_shift() const {
 }
 
 void PipelineScorer::gather(const DeferredFrame& frame, GlobalTime global) {
-  sets_->before_push(frame.delivered, anchor_shift());
-  gatherer_->push({.source = frame.source,
-                   .stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global))),
-                   .arrival = frame.delivered,
-                   .sensor = frame.sample.sensor,
-                   .tag = frame.pulse},
-                  *sets_);
+  const GatherFrame gathered = {.source = frame.source,
+                                .stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global))),
+                                .arrival = frame.delivered,
+                                .sensor = frame.sample.sensor,
+                                .tag = frame.pulse};
+  if (unverified_) {
+    unverified_->before_push(frame.delivered);
+    gatherer_->push(gathered, *unverified_);
+  } else {
+    sets_->before_push(frame.delivered, anchor_shift());
+    gatherer_->push(gathered, *sets_);
+  }
 }
 
 void PipelineScorer::settle(const DeferredFrame& frame, GlobalTime global) {
@@ -141,6 +181,7 @@ void PipelineScorer::settle(const DeferredFrame& frame, GlobalTime global) {
 }
 
 void PipelineScorer::on_pulse(const PulseTruth& truth) {
+  pulses_with_truth_ = true;
   if (table_->holds(truth.pulse)) host_errors_->add(truth.host_errors);
 }
 
@@ -185,6 +226,8 @@ SeedScore PipelineScorer::finish() {
   for (const CameraLayout& camera : layout_.cameras) scoring.host_of_source.push_back(camera.host);
   score_pulses(*table_, scoring, score);
   sets_->score(score);
+  if (unverified_) unverified_->score(score);
+  score.ground_truth = ground_truth();
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
   score.host_error_ms = host_errors_->mean_absolute_ms();
   score.host_errors_ms = host_errors_->signed_means_ms();

@@ -7,8 +7,10 @@
 //
 // The rules (DESIGN section 8):
 //  - Which frames belong together is known from the truth (the pulse that exposed them) or, on a
-//    real genlock rig, from GenLock order. Other captures without truth have no pulses: every score
-//    that needs them is NaN.
+//    real genlock rig, from GenLock order. In other captures without truth nobody knows: they are
+//    scored over the sets that gathering emitted, unverified (unverified_scores.h says what that is
+//    worth), and every score that needs pulses is NaN. The first frame decides: SeedScore says
+//    which it was (ground_truth).
 //  - device_time and gathering begin where the warm-up ends, with the first evaluated pulse. Only
 //    those that ask for it (relative(), from_first_frame()) see all of it.
 //    Frames that no pulse exposed (free-running) are taken from the moment another source's
@@ -41,6 +43,7 @@
 #include "evaluation/results.h"
 #include "evaluation/score_observer.h"
 #include "evaluation/set_counter.h"
+#include "evaluation/unverified_scores.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
@@ -55,6 +58,7 @@ struct ScorerSetup {
   EstimatorFactory make_estimator;          // empty: the oracle, the true time on the own host
   EstimatorFactory make_second_estimator;   // for SeedScore::offline_amd_ms; empty: none
   GathererFactory make_gatherer;
+  bool gatherer_needs_pulses = false;  // the oracle of gathering
 };
 
 class PipelineScorer final : public RecordingSink {
@@ -65,7 +69,8 @@ class PipelineScorer final : public RecordingSink {
   void watch(ScoreObserver& observer) { observer_ = &observer; }
 
   void on_start(const RigLayout& layout) override;
-  // Throws std::runtime_error if the oracle gets a frame without truth.
+  // Throws RecordingFailed if an oracle, of device_time or of gathering, gets a frame without the
+  // truth it needs: no such capture can be scored.
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_pulse(const PulseTruth& truth) override;
   void on_adjustment(const ClockAdjustment& adjustment) override;
@@ -83,6 +88,14 @@ class PipelineScorer final : public RecordingSink {
     std::unique_ptr<DeviceTimeEstimator> estimator;
   };
 
+  struct Place {
+    std::int64_t pulse = 0;
+    bool warm_up = false;
+  };
+
+  void learn_ground_truth(const FrameTruth* truth);
+  Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,
+                 DeviceTime sensor);
   std::int64_t pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor);
   bool in_warm_up(std::int64_t pulse);
   void note_anchor(const FrameRecord& frame);
@@ -93,6 +106,7 @@ class PipelineScorer final : public RecordingSink {
   Nanoseconds anchor_shift() const;
   double second_amd_ms() const;
   Nanoseconds period() const;
+  GroundTruth ground_truth() const;
 
   ScorerSetup setup_;
   ScoreObserver* observer_ = nullptr;
@@ -107,9 +121,12 @@ class PipelineScorer final : public RecordingSink {
   std::optional<HostTime> anchor_;
   std::optional<HostTime> first_arrival_;
   std::optional<std::int64_t> first_true_pulse_;  // of the capture's first frame
+  std::optional<GroundTruth> ground_truth_;       // of the frames, from the first on
+  bool pulses_with_truth_ = false;
   // Made when the capture starts.
   std::optional<PulseTable> table_;
   std::optional<SetCounter> sets_;
+  std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
   std::optional<DeferredStamps> deferred_;         // if the estimator is offline
   std::optional<DeferredStamps> second_deferred_;  // if a second one was asked for

@@ -1,7 +1,8 @@
 // What an evaluation found: a score per seed and pipeline, and the table made of them.
 //
 // Definitions: DESIGN section 8. Units in the names. A quantity that does not exist (0/0, no truth,
-// no evaluated frame) is NaN here and null in JSON; it is left out of medians and bands.
+// no evaluated frame, no recording) is NaN here and null in JSON; it is left out of medians and
+// bands.
 #ifndef SIMBENCH_EVALUATION_RESULTS_H_
 #define SIMBENCH_EVALUATION_RESULTS_H_
 
@@ -16,15 +17,22 @@
 
 namespace simbench::evaluation {
 
-// One evaluated pulse, as frames.csv has it.
+// How it is known which frames belong together.
+enum class GroundTruth : std::uint8_t {
+  kSimulation,    // frames came with their truth
+  kGenlockOrder,  // the order of the sensor stamps in a genlock capture
+  kNone,          // not at all: scores are over gathered sets (unverified_scores.h)
+};
+
+// One evaluated pulse, as frames.csv has it; one set of an unverified capture.
 struct PulseScore {
-  std::int64_t pulse = 0;
+  std::int64_t pulse = 0;   // of an unverified capture: the set's number
   double spread_ms = 0;     // max - min of the global stamps: this pulse's term of AMD
   double deviation_ms = 0;  // this pulse's term of RMDV
 };
 
 struct FrameCounts {
-  std::int64_t expected = 0;  // evaluated pulses x sources
+  std::int64_t expected = 0;  // evaluated pulses x sources; unverified: by the cameras' counters
   std::int64_t delivered = 0;
   std::int64_t dropped = 0;
 };
@@ -39,9 +47,12 @@ struct SetCounts {
   std::int64_t index_errors = 0;  // members of emitted sets that are not of most members' pulse
 };
 
-// One pipeline, one seed.
+// One pipeline, one seed (on a real rig: one repetition).
 struct SeedScore {
   std::uint64_t seed = 0;
+  // False: no capture could be made (cost.notes says why), and there is no score at all.
+  bool recorded = true;
+  GroundTruth ground_truth = GroundTruth::kSimulation;
   double amd_ms = 0;
   double rmdv_ms = 0;
   double absolute_error_ms = 0;
@@ -102,6 +113,9 @@ struct Row {
   std::string device_time;
   std::string gathering;
   bool offline = false;  // device_time needs the whole recording
+  // The weakest of the seeds that were recorded; kNone if none was.
+  GroundTruth ground_truth = GroundTruth::kSimulation;
+  bool verified() const { return ground_truth != GroundTruth::kNone; }
   Series amd_ms;
   Series rmdv_ms;
   Series absolute_error_ms;
@@ -119,9 +133,10 @@ struct Row {
   Series emission_latency_ms;
   double emission_latency_max_ms = std::numeric_limits<double>::quiet_NaN();  // of all seeds
   FrameCounts frames;
-  std::int64_t evaluated_pulses = 0;
+  std::int64_t evaluated_pulses = 0;      // that the scores rest on; unverified: sets
   std::int64_t unsynchronised_hosts = 0;  // over all seeds
   std::optional<PublishedComparison> published;
+  std::vector<std::string> notes;  // what went wrong, a line each: "repetition 3: ..."
   std::vector<SeedScore> seeds;
 };
 

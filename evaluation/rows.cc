@@ -1,6 +1,11 @@
 #include "evaluation/rows.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "evaluation/statistics.h"
@@ -8,6 +13,7 @@
 namespace simbench::evaluation {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMarginQuantile = 0.999;
 
 Series series_of(const std::vector<SeedScore>& seeds, double SeedScore::*score) {
@@ -22,12 +28,34 @@ double ratio(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
+bool is_verified(const SeedScore& seed) { return seed.ground_truth != GroundTruth::kNone; }
+
 // A share of each seed's own counts.
 Series share_of(const std::vector<SeedScore>& seeds, std::int64_t SetCounts::*whole) {
   std::vector<double> values;
   values.reserve(seeds.size());
-  for (const SeedScore& seed : seeds) values.push_back(ratio(seed.sets.pure, seed.sets.*whole));
+  for (const SeedScore& seed : seeds) {
+    values.push_back(is_verified(seed) ? ratio(seed.sets.pure, seed.sets.*whole) : kNan);
+  }
   return make_series(std::move(values));
+}
+
+GroundTruth weakest(const std::vector<SeedScore>& seeds) {
+  std::optional<GroundTruth> found;
+  for (const SeedScore& seed : seeds) {
+    if (seed.recorded) found = std::max(found.value_or(seed.ground_truth), seed.ground_truth);
+  }
+  return found.value_or(GroundTruth::kNone);
+}
+
+std::vector<std::string> notes_of(const std::vector<SeedScore>& seeds) {
+  std::vector<std::string> notes;
+  for (const SeedScore& seed : seeds) {
+    for (const std::string& note : seed.cost.notes) {
+      notes.push_back(fmt::format("repetition {}: {}", seed.seed, note));
+    }
+  }
+  return notes;
 }
 
 double margin_ms(const std::vector<SeedScore>& seeds, double gathering_interval_ms) {
@@ -45,6 +73,22 @@ RowSetting row_setting(const scenarios::Scenario& scenario) {
   return {.gathering_interval_ms = scenario.evaluation.gathering_interval_periods * period_ms,
           .sources = static_cast<std::size_t>(scenario.cameras.count),
           .median = median_kind(scenario.evaluation.rmdv_median)};
+}
+
+SeedScore missing_score(std::uint64_t seed, const std::string& reason) {
+  SeedScore score;
+  score.seed = seed;
+  score.recorded = false;
+  score.ground_truth = GroundTruth::kNone;
+  for (double SeedScore::*quantity :
+       {&SeedScore::amd_ms, &SeedScore::rmdv_ms, &SeedScore::absolute_error_ms, &SeedScore::bias_ms,
+        &SeedScore::host_error_ms, &SeedScore::exposure_spread_ms, &SeedScore::offline_amd_ms,
+        &SeedScore::spread_in_host_ms, &SeedScore::spread_between_hosts_ms, &SeedScore::trend_ms,
+        &SeedScore::share_below_half_period}) {
+    score.*quantity = kNan;
+  }
+  score.cost.notes = {reason};
+  return score;
 }
 
 Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
@@ -83,10 +127,17 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
     row.frames.dropped += seed.frames.dropped;
     row.unsynchronised_hosts += static_cast<std::int64_t>(seed.failures.size());
   }
-  row.precision = ratio(sets.pure, sets.emitted);
-  row.recall = ratio(sets.pure, sets.complete_pulses);
-  row.evaluated_pulses = sets.complete_pulses;
-  row.margin_ms = margin_ms(seeds, setting.gathering_interval_ms);
+  row.ground_truth = weakest(seeds);
+  row.notes = notes_of(seeds);
+  if (row.verified()) {
+    row.precision = ratio(sets.pure, sets.emitted);
+    row.recall = ratio(sets.pure, sets.complete_pulses);
+    row.evaluated_pulses = sets.complete_pulses;
+    row.margin_ms = margin_ms(seeds, setting.gathering_interval_ms);
+  } else {  // the range of a gathered set says nothing of how close it came to failing
+    row.precision = row.recall = row.margin_ms = kNan;
+    row.evaluated_pulses = sets.emitted;
+  }
   row.seeds = std::move(seeds);
   return row;
 }

@@ -1,8 +1,13 @@
 // From the scores of all seeds to one row of the table, with what the paper published beside it.
+//
+// A seed without a recording keeps its place: its values are NaN in every series, so that rows stay
+// paired by seed, and the row has its notes.
 #ifndef SIMBENCH_EVALUATION_ROWS_H_
 #define SIMBENCH_EVALUATION_ROWS_H_
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "evaluation/metrics.h"
@@ -19,6 +24,9 @@ struct RowSetting {
 };
 
 RowSetting row_setting(const scenarios::Scenario& scenario);
+
+// The score of a seed of which no recording could be made, and why: every quantity is NaN.
+SeedScore missing_score(std::uint64_t seed, const std::string& reason);
 
 // The row over these seeds, which must still have their pulses (for the margin).
 Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,

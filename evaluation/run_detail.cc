@@ -90,7 +90,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     if (!index) return;
     FrameDetail& detail = run_.cameras[frame.source].frames[*index];
     detail.in_warm_up = false;
-    detail.pulse = frame.pulse;
+    detail.pulse = std::max<std::int64_t>(frame.pulse, -1);
     detail.evaluated =
         frame.pulse >= run_.first_pulse && frame.pulse < run_.first_pulse + run_.pulses;
     companions_[frame.source].global[*index] = global;

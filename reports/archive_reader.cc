@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "reports/ground_truth_text.h"
 #include "reports/json_node.h"
 
 namespace simbench::reports {
@@ -34,6 +35,26 @@ std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
                                          .rmdv_percentile = percentile(node, "rmdv_percentile")};
 }
 
+// Null where a row is not verified.
+std::int64_t count_or_none(const JsonNode& node) { return node.is_null() ? 0 : node.count(); }
+
+// Archives of simbench 0.1 do not have these members: they are all of simulations.
+void read_ground_truth(const JsonNode& node, Row& row) {
+  if (!node.has("ground_truth")) return;
+  using evaluation::GroundTruth;
+  const JsonNode name = node["ground_truth"];
+  const std::string text = name.text();
+  bool known = false;
+  for (const GroundTruth truth :
+       {GroundTruth::kSimulation, GroundTruth::kGenlockOrder, GroundTruth::kNone}) {
+    if (text != ground_truth_name(truth)) continue;
+    row.ground_truth = truth;
+    known = true;
+  }
+  if (!known) name.refuse("\"simulation\", \"genlock_order\" or \"none\"");
+  for (const JsonNode& note : node["notes"].elements()) row.notes.push_back(note.text());
+}
+
 void read_gathering(const JsonNode& node, std::size_t seeds, Row& row) {
   row.precision = node["precision"].number();
   row.recall = node["recall"].number();
@@ -41,11 +62,11 @@ void read_gathering(const JsonNode& node, std::size_t seeds, Row& row) {
   row.seed_precision = node["seed_precision"].series(seeds);
   row.seed_recall = node["seed_recall"].series(seeds);
   row.sets = {.emitted = node["sets"].count(),
-              .pure = node["pure_sets"].count(),
-              .complete_pulses = node["complete_pulses"].count(),
+              .pure = count_or_none(node["pure_sets"]),
+              .complete_pulses = count_or_none(node["complete_pulses"]),
               .discarded_frames = node["discarded_frames"].count(),
               .partial = node["partial_sets"].count(),
-              .index_errors = node["index_errors"].count()};
+              .index_errors = count_or_none(node["index_errors"])};
   row.set_amd_ms = node["set_amd_ms"].series(seeds);
   row.set_absolute_error_ms = node["set_absolute_error_ms"].series(seeds);
   row.emission_latency_ms = node["emission_latency_ms"].series(seeds);
@@ -73,6 +94,7 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   row.evaluated_pulses = node["evaluated_pulses"].count();
   row.unsynchronised_hosts = node["unsynchronised_hosts"].count();
   row.published = published(node["published"]);
+  read_ground_truth(node, row);
   return row;
 }
 

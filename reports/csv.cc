@@ -7,6 +7,8 @@
 #include <iterator>
 #include <vector>
 
+#include "reports/ground_truth_text.h"
+
 namespace simbench::reports {
 namespace {
 
@@ -76,7 +78,10 @@ std::string csv_cell(std::string_view text) {
 std::string csv_cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 std::string csv(const evaluation::Results& results) {
-  std::string out = line(header());
+  const bool real = has_real_rows(results);
+  std::vector<std::string> names = header();
+  if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
+  std::string out = line(names);
   for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                       csv_cell(row.device_time), csv_cell(row.gathering)};
@@ -95,13 +100,20 @@ std::string csv(const evaluation::Results& results) {
     }
     const std::vector<std::string> published = published_cells(row);
     cells.insert(cells.end(), published.begin(), published.end());
-    for (const std::int64_t count : {row.sets.emitted, row.sets.pure, row.sets.partial,
-                                     row.sets.index_errors, row.sets.discarded_frames}) {
-      cells.push_back(std::to_string(count));
-    }
+    const auto if_verified = [&row](std::int64_t count) {
+      return row.verified() ? std::to_string(count) : std::string();
+    };
+    cells.insert(cells.end(), {std::to_string(row.sets.emitted), if_verified(row.sets.pure),
+                               std::to_string(row.sets.partial), if_verified(row.sets.index_errors),
+                               std::to_string(row.sets.discarded_frames)});
     for (const double value : {row.set_amd_ms.median, row.set_absolute_error_ms.median,
                                row.emission_latency_ms.median, row.emission_latency_max_ms}) {
       cells.push_back(csv_cell(value));
+    }
+    if (real) {
+      cells.insert(cells.end(),
+                   {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",
+                    csv_cell(fmt::format("{}", fmt::join(row.notes, "; ")))});
     }
     out += line(cells);
   }

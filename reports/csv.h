@@ -12,7 +12,8 @@
 namespace simbench::reports {
 
 // One line per pipeline: medians and bands, gathering score, frames, published values, scores over
-// the gathered sets (medians).
+// the gathered sets (medians). If a row is not of a simulation, three more columns at the end:
+// ground_truth (as in reports/json.h), verified ("verified" or "unverified") and notes.
 std::string csv(const evaluation::Results& results);
 
 // frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.

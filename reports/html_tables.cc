@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "evaluation/leaderboard.h"
+#include "reports/ground_truth_text.h"
 #include "reports/html_text.h"
 #include "reports/leaderboard_report.h"
 #include "reports/number_text.h"
@@ -56,6 +57,8 @@ std::string paper_section(const Results& results) {
                                    {"published RMDV is", Align::kLeft},
                                    {"at percentile [95 % interval]"}});
   }
+  const bool real = has_real_rows(results);
+  if (real) columns.push_back({"ground truth", Align::kLeft});
   HtmlTable table("The paper's metrics", columns);
   for (const Row& row : results.rows) {
     Cells cells = {row.pipeline, number_text(row.amd_ms.median), band_text(row.amd_ms),
@@ -64,15 +67,19 @@ std::string paper_section(const Results& results) {
       const Cells more = row.published ? published_cells(*row.published) : Cells(6, "-");
       cells.insert(cells.end(), more.begin(), more.end());
     }
+    if (real) cells.push_back(ground_truth_label(row));
     table.add(cells);
   }
+  const std::string unverified = unverified_legend(results);
   return section(
       "The paper's metrics", table.html(),
-      "AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS "
-      "deviation of these from their median. Every pipeline meets the same worlds, one "
-      "per seed; a value is the median over the seeds, [a, b] their band from 5 to 95 %. "
-      "Published: the paper's one recording. Inside: within the band. Not attainable: "
-      "under eq. (4) no data have that RMDV with that AMD.");
+      fmt::format(
+          "AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS "
+          "deviation of these from their median. Every pipeline meets the same worlds, one "
+          "per seed; a value is the median over the seeds, [a, b] their band from 5 to 95 %. "
+          "Published: the paper's one recording. Inside: within the band. Not attainable: "
+          "under eq. (4) no data have that RMDV with that AMD.{}{}",
+          unverified.empty() ? "" : " ", unverified));
 }
 
 std::string truth_section(const Results& results) {
@@ -195,11 +202,14 @@ std::string stages_section(const Results& results) {
 }
 
 std::string warnings_section(const Results& results) {
-  if (results.warnings.empty()) return "";
   std::string items;
   for (const std::string& warning : results.warnings) {
     items += fmt::format("<li>{}</li>\n", html_escaped(warning));
   }
+  for (const std::string& note : note_lines(results)) {
+    items += fmt::format("<li>{}</li>\n", html_escaped(note));
+  }
+  if (items.empty()) return "";
   return fmt::format("<section class=\"warnings\">\n<h3>Warnings</h3>\n<ul>\n{}</ul>\n</section>\n",
                      items);
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "recording/version.h"
+#include "reports/ground_truth_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -31,6 +32,11 @@ Json published_json(const std::optional<evaluation::PublishedComparison>& publis
           {"rmdv_percentile_interval", Json::array({rmdv.low, rmdv.high})}};
 }
 
+// Of what only a verified row can count.
+Json count_json(const evaluation::Row& row, std::int64_t count) {
+  return row.verified() ? Json(count) : Json();
+}
+
 Json row_json(const evaluation::Row& row) {
   return {{"pipeline", row.pipeline},
           {"host_sync", row.host_sync},
@@ -50,10 +56,10 @@ Json row_json(const evaluation::Row& row) {
             {"seed_precision", series_json(row.seed_precision)},
             {"seed_recall", series_json(row.seed_recall)},
             {"sets", row.sets.emitted},
-            {"pure_sets", row.sets.pure},
-            {"complete_pulses", row.sets.complete_pulses},
+            {"pure_sets", count_json(row, row.sets.pure)},
+            {"complete_pulses", count_json(row, row.sets.complete_pulses)},
             {"partial_sets", row.sets.partial},
-            {"index_errors", row.sets.index_errors},
+            {"index_errors", count_json(row, row.sets.index_errors)},
             {"discarded_frames", row.sets.discarded_frames},
             {"set_amd_ms", series_json(row.set_amd_ms)},
             {"set_absolute_error_ms", series_json(row.set_absolute_error_ms)},
@@ -65,6 +71,9 @@ Json row_json(const evaluation::Row& row) {
             {"dropped", row.frames.dropped}}},
           {"evaluated_pulses", row.evaluated_pulses},
           {"unsynchronised_hosts", row.unsynchronised_hosts},
+          {"ground_truth", ground_truth_name(row.ground_truth)},
+          {"verified", row.verified()},
+          {"notes", row.notes},
           {"published", published_json(row.published)}};
 }
 
@@ -103,7 +112,8 @@ std::string json(const evaluation::Results& results) {
                          {"simulated_seconds_per_second", cost.simulated_seconds_per_second},
                          {"cpu_seconds", cost.cpu_seconds},
                          {"wall_seconds", cost.wall_seconds}};
-  return root.dump(2) + "\n";
+  // A note may quote what another machine said.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace simbench::reports

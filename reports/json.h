@@ -1,8 +1,9 @@
 // results.json: the results for programs.
 //
 // schema_version 1. Members only ever get added within a version. What does not exist (0/0, no
-// truth) is null. The text is a function of the results alone: equal results give equal bytes, with
-// every compiler and any number of threads; only /performance differs from run to run.
+// truth, no recording of that seed) is null. The text is a function of the results alone: equal
+// results give equal bytes, with every compiler and any number of threads; only /performance
+// differs from run to run.
 //
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
 //    "seeds": {"first": 1, "count": 32},
@@ -16,6 +17,9 @@
 //                "emission_latency_max_ms"},
 //              "frames": {"expected", "delivered", "dropped"}, "evaluated_pulses": ...,
 //              "unsynchronised_hosts": ...,
+//              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
+//                known which frames belong together (else "evaluated_pulses" counts sets; what
+//                needs pulses is null), "notes": [what went wrong, "repetition 3: ..."],
 //              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside",
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evaluation/leaderboard.h"
+#include "reports/ground_truth_text.h"
 #include "reports/json.h"
 #include "reports/number_text.h"
 #include "reports/sets_block.h"
@@ -29,13 +30,14 @@ std::string own_name(const Board& board, const Row& row) {
 void add_ranks(const Board& board, const std::vector<Rank>& ranks, TextTable& table) {
   for (const Rank& rank : ranks) {
     const Row& row = *rank.row;
-    table.add({own_name(board, row), row.offline ? "offline" : "online",
-               number_text(row.absolute_error_ms.median), band_text(row.absolute_error_ms),
-               number_text(rank.to_oracle.error.median), number_text(rank.to_paper.error.median),
-               number_text(row.amd_ms.median), band_text(row.amd_ms),
-               number_text(rank.to_oracle.amd.median), number_text(rank.to_paper.amd.median),
-               number_text(row.host_error_ms.median), share_text(row.precision),
-               share_text(row.recall)});
+    const bool unverified = ground_truth_label(row) == "unverified";
+    table.add({own_name(board, row) + (unverified ? " (unverified)" : ""),
+               row.offline ? "offline" : "online", number_text(row.absolute_error_ms.median),
+               band_text(row.absolute_error_ms), number_text(rank.to_oracle.error.median),
+               number_text(rank.to_paper.error.median), number_text(row.amd_ms.median),
+               band_text(row.amd_ms), number_text(rank.to_oracle.amd.median),
+               number_text(rank.to_paper.amd.median), number_text(row.host_error_ms.median),
+               share_text(row.precision), share_text(row.recall)});
   }
 }
 
@@ -108,6 +110,9 @@ std::string report(const Results& results, std::string_view summary, bool as_mar
           "with the oracle in its place, and to the paper's proposal. Every pipeline meets the "
           "same "
           "worlds. Online stamps a frame when it arrives; offline has seen the whole recording."));
+  for (const std::string& line : note_lines(results)) text += fmt::format("\n{}", wrapped(line));
+  const std::string unverified = unverified_legend(results);
+  if (!unverified.empty()) text += fmt::format("\n{}", wrapped(unverified));
   if (any_of_gathering(results)) text += fmt::format("\n{}", wrapped(kSetsLegend));
   const std::string asymmetry = asymmetry_line(results);
   return asymmetry.empty() ? text : fmt::format("{}\n{}", text, wrapped(asymmetry));

@@ -20,7 +20,7 @@ TextTable sets_block(const std::vector<const evaluation::Row*>& rows) {
   for (const evaluation::Row* each : rows) {
     const evaluation::Row& row = *each;
     block.add({row.pipeline, row.gathering, count_text(row.sets.emitted), share_text(row.precision),
-               share_text(row.recall), count_text(row.sets.index_errors),
+               share_text(row.recall), row.verified() ? count_text(row.sets.index_errors) : "-",
                count_text(row.sets.partial), count_text(row.sets.discarded_frames),
                number_text(row.set_amd_ms.median), number_text(row.set_absolute_error_ms.median),
                number_text(row.emission_latency_ms.median),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "reports/ground_truth_text.h"
 #include "reports/leaderboard_report.h"
 #include "reports/number_text.h"
 #include "reports/sets_block.h"
@@ -42,7 +43,10 @@ std::string rmdv_verdict(const PublishedComparison& published) {
 // The paper's two metrics, beside what the paper says.
 TextTable paper_block(const Results& results) {
   const bool published = any_published(results);
-  std::vector<Column> columns = {{"pipeline", Align::kLeft}, {"AMD\nmedian ms"}, {"AMD\n5-95 %"}};
+  const bool real = has_real_rows(results);
+  std::vector<Column> columns = {{"pipeline", Align::kLeft}};
+  if (real) columns.push_back({"ground\ntruth", Align::kLeft});
+  columns.insert(columns.end(), {{"AMD\nmedian ms"}, {"AMD\n5-95 %"}});
   const std::vector<Column> amd_published = {{"published\nAMD ms"},
                                              {"published\nAMD is", Align::kLeft},
                                              {"at percentile\n[95 % interval]"}};
@@ -54,8 +58,9 @@ TextTable paper_block(const Results& results) {
 
   TextTable block(columns);
   for (const Row& row : results.rows) {
-    std::vector<std::string> cells = {row.pipeline, number_text(row.amd_ms.median),
-                                      band_text(row.amd_ms)};
+    std::vector<std::string> cells = {row.pipeline};
+    if (real) cells.push_back(ground_truth_label(row));
+    cells.insert(cells.end(), {number_text(row.amd_ms.median), band_text(row.amd_ms)});
     std::vector<std::string> amd_cells = {"-", "-", "-"};
     std::vector<std::string> rmdv_cells = {"-", "-"};
     if (const auto& known = row.published) {
@@ -117,8 +122,12 @@ std::string stages_text(const Row& row) {
 // A line each: what the columns mean.
 std::vector<std::string> legend(const Results& results) {
   std::vector<std::string> lines = {
-      "Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, "
-      "[a, b] their band from 5 to 95 %.",
+      has_real_rows(results)
+          ? "Every repetition of a pipeline is a capture of its own. A value is the median over "
+            "the "
+            "repetitions, [a, b] their band from 5 to 95 %."
+          : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
+            "seeds, [a, b] their band from 5 to 95 %.",
       "AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation "
       "of these from their median.",
       "absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with "
@@ -127,6 +136,9 @@ std::vector<std::string> legend(const Results& results) {
       "really were, a limit for AMD.",
       "precision: gathered sets that hold one pulse only; recall: complete pulses found whole; "
       "margin: from the range to the limit of a set."};
+  if (const std::string unverified = unverified_legend(results); !unverified.empty()) {
+    lines.push_back(unverified);
+  }
   if (any_published(results)) {
     lines.emplace_back(
         "published: the paper's one recording. inside: within the band. not attainable: under eq. "
@@ -150,6 +162,9 @@ TextTable claims_block(const Results& results) {
 
 std::string cost_line(const Results& results) {
   const evaluation::Performance& cost = results.performance;
+  if (cost.simulated_seconds == 0) {
+    return fmt::format("Cost: {:.2f} s ({:.2f} s of CPU).", cost.wall_seconds, cost.cpu_seconds);
+  }
   return fmt::format(
       "Cost: {} events in {:.2f} s ({:.2f} s of CPU): {} events/s, {} simulated seconds per "
       "second.",
@@ -200,6 +215,10 @@ std::string report(const Results& results, std::string_view summary, const Layou
   }
   for (const Row& row : results.rows) {
     if (row.unsynchronised_hosts > 0) out += fmt::format("\n{}\n", unsynchronised_line(row));
+  }
+  if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
+    out += layout.heading("What went wrong");
+    for (const std::string& note : notes) out += layout.line(note);
   }
   out += layout.heading("How to read it");
   for (const std::string& text : legend(results)) out += layout.line(text);

@@ -2,7 +2,9 @@
 //
 // Two blocks, each with a row per pipeline: the paper's metrics beside the published values, and
 // what only a bench with true time can tell; a third about the gathered sets if the pipelines
-// gather in different ways. Below them a legend that a newcomer can start from,
+// gather in different ways. Rows that are not of a simulation say what ground truth they rest on;
+// "unverified" are those without (evaluation/unverified_scores.h). Below them what went wrong, if
+// anything, a legend that a newcomer can start from,
 // the paper's claims with the fraction of seeds in which each holds, and what the run cost. About
 // 145 columns wide. Source of the definitions: DESIGN section 8.
 //
