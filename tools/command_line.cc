@@ -22,6 +22,7 @@
 #include "tools/list_command.h"
 #include "tools/messages.h"
 #include "tools/mpi_launch.h"
+#include "tools/relay_command.h"
 #include "tools/replay_command.h"
 #include "tools/report_command.h"
 #include "tools/run_command.h"
@@ -89,6 +90,8 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_diagnose_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings of real cameras");
+  tools::add_relay_command(app, action);
+  tools::group_commands(app, "Real rigs");
   tools::add_list_command(app, action);
   tools::add_describe_command(app, action);
   tools::add_validate_command(app, action);
