@@ -1,0 +1,25 @@
+// A TCP connection by a deadline: names are resolved, and each of a name's addresses is tried.
+#ifndef SIMBENCH_HARDWARE_NET_CONNECT_H_
+#define SIMBENCH_HARDWARE_NET_CONNECT_H_
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <string>
+
+#include "algorithms/ports/host.h"
+#include "hardware/clock/monotonic_time.h"
+
+namespace simbench::hardware {
+
+// Throws StreamError(kUnreachable), also for a name that nobody knows and at the deadline.
+Task<boost::asio::ip::tcp::socket> connect_socket(boost::asio::any_io_executor executor,
+                                                  std::string address, std::uint16_t port,
+                                                  MonotonicTime deadline);
+
+// The same without waiting: an address as a number, or a name by the system's own means. For what
+// is done once at the start.
+boost::asio::ip::address resolved_now(const std::string& address);
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NET_CONNECT_H_

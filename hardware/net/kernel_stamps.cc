@@ -1,0 +1,144 @@
+#include "hardware/net/kernel_stamps.h"
+
+#include <linux/errqueue.h>
+#include <linux/net_tstamp.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace simbench::hardware {
+namespace {
+
+constexpr unsigned kWithoutNumbers = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_TX_SOFTWARE |
+                                     SOF_TIMESTAMPING_SOFTWARE | SOF_TIMESTAMPING_OPT_TSONLY;
+
+// How far two readings may be apart because the process was interrupted between them.
+constexpr Nanoseconds kReadingError = std::chrono::milliseconds(1);
+
+bool set_flags(int socket, unsigned flags) {
+  return setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPING, &flags, sizeof flags) == 0;
+}
+
+Nanoseconds reading(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + Nanoseconds(now.tv_nsec);
+}
+
+// CLOCK_REALTIME less CLOCK_MONOTONIC, from the closest of a few bracketed readings.
+Nanoseconds realtime_offset() {
+  constexpr Nanoseconds kCloseEnough{500};
+  Nanoseconds best{};
+  Nanoseconds best_gap = Nanoseconds::max();
+  for (int i = 0; i < 4 && best_gap > kCloseEnough; ++i) {
+    const Nanoseconds before = reading(CLOCK_MONOTONIC);
+    const Nanoseconds realtime = reading(CLOCK_REALTIME);
+    const Nanoseconds gap = reading(CLOCK_MONOTONIC) - before;
+    if (gap < best_gap) {
+      best_gap = gap;
+      best = realtime - before - gap / 2;
+    }
+  }
+  return best;
+}
+
+// What the control messages of a read say.
+struct ControlMessages {
+  std::optional<timespec> stamp;
+  std::optional<sock_extended_err> error;
+};
+
+ControlMessages control_messages(msghdr& header) {
+  ControlMessages found;
+  for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
+    const std::size_t size = part->cmsg_len - CMSG_LEN(0);
+    if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SCM_TIMESTAMPING &&
+        size >= sizeof(timespec)) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
+      if (stamp.tv_sec != 0 || stamp.tv_nsec != 0) found.stamp = stamp;
+    }
+    const bool ip = part->cmsg_level == SOL_IP && part->cmsg_type == IP_RECVERR;
+    const bool ip6 = part->cmsg_level == SOL_IPV6 && part->cmsg_type == IPV6_RECVERR;
+    if ((ip || ip6) && size >= sizeof(sock_extended_err)) {
+      sock_extended_err error{};
+      std::memcpy(&error, CMSG_DATA(part), sizeof error);
+      found.error = error;
+    }
+  }
+  return found;
+}
+
+using ControlBuffer = std::array<std::byte, 512>;
+
+}  // namespace
+
+bool request_kernel_stamps(int socket) {
+  return set_flags(socket, kWithoutNumbers | SOF_TIMESTAMPING_OPT_ID);
+}
+
+void restart_stamp_numbers(int socket) {
+  set_flags(socket, kWithoutNumbers);
+  set_flags(socket, kWithoutNumbers | SOF_TIMESTAMPING_OPT_ID);
+}
+
+std::optional<MonotonicTime> monotonic_of(const timespec& realtime) {
+  const Nanoseconds offset = realtime_offset();
+  const Nanoseconds wall = std::chrono::seconds(realtime.tv_sec) + Nanoseconds(realtime.tv_nsec);
+  const MonotonicTime at(wall - offset);
+  const MonotonicTime now = monotonic_now();
+  if (at > now + kReadingError || at < now - kOldestStamp) return std::nullopt;
+  return std::min(at, now);
+}
+
+ReceivedPiece receive_stamped(int socket, std::span<std::byte> to, sockaddr_storage* from) {
+  iovec piece{to.data(), to.size()};
+  alignas(cmsghdr) ControlBuffer control;
+  msghdr header{};
+  header.msg_iov = &piece;
+  header.msg_iovlen = 1;
+  header.msg_name = from;
+  header.msg_namelen = from == nullptr ? 0 : sizeof *from;
+  header.msg_control = control.data();
+  header.msg_controllen = control.size();
+  ssize_t got = 0;
+  do {
+    got = recvmsg(socket, &header, MSG_DONTWAIT);
+  } while (got < 0 && errno == EINTR);
+  if (got < 0) return {.error = errno};
+  ReceivedPiece received{.bytes = static_cast<std::size_t>(got),
+                         .truncated = (header.msg_flags & MSG_TRUNC) != 0,
+                         .received = monotonic_now()};
+  if (const auto stamp = control_messages(header).stamp) {
+    if (const auto at = monotonic_of(*stamp)) {
+      received.received = *at;
+      received.stamped_by_kernel = true;
+    }
+  }
+  return received;
+}
+
+std::optional<TransmitStamp> next_transmit_stamp(int socket) {
+  for (;;) {
+    alignas(cmsghdr) ControlBuffer control;
+    msghdr header{};
+    header.msg_control = control.data();
+    header.msg_controllen = control.size();
+    if (recvmsg(socket, &header, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) {
+      if (errno == EINTR) continue;
+      return std::nullopt;
+    }
+    const ControlMessages found = control_messages(header);
+    const bool sent = found.error && found.error->ee_origin == SO_EE_ORIGIN_TIMESTAMPING &&
+                      found.error->ee_info == SCM_TSTAMP_SND;
+    if (!sent || !found.stamp) continue;
+    if (const auto at = monotonic_of(*found.stamp)) {
+      return TransmitStamp{.number = found.error->ee_data, .at = *at};
+    }
+  }
+}
+
+}  // namespace simbench::hardware
