@@ -7,6 +7,9 @@
 //                                  recording/event_text.h (truth columns empty without truth)
 //   DIR/<pipeline>/<seed>/events.csv   the other events: order, then a line of event_text.h
 //
+// In the name of a pipeline's folder, bytes other than letters, digits, _ - and inner dots stand as
+// %XX.
+//
 // `order` counts the events of a capture across both files; playing merges by it, so a sink is told
 // the same calls with the same values in the same order as when it was recorded, and scores of a
 // replay equal those of the run.
@@ -21,7 +24,7 @@
 //
 //   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
 //   source.record(request, writer.begin("yoon2021_both", 1));
-//   writer.end(cost);
+//   writer.end(cost);                // or abandon(notes)
 //
 //   RecordingFolder folder("monday");
 //   folder.play(folder.find("yoon2021_both", 1), scorer);
@@ -47,10 +50,10 @@ class RecordingFolderError : public std::runtime_error {
 
 // What all captures of a folder share.
 struct RecordingDescription {
-  std::string backend;               // "sim" or "hardware"
-  std::string scenario_json;         // resolved
-  std::vector<std::string> hosts;    // names, by number; empty: "host0", ...
-  std::vector<std::string> cameras;  // serials, by number; empty: "camera0", ...
+  std::string backend{};               // "sim" or "hardware"
+  std::string scenario_json{};         // resolved
+  std::vector<std::string> hosts{};    // names, by number; empty: "host0", ...
+  std::vector<std::string> cameras{};  // serials, by number; empty: "camera0", ...
 };
 
 // One capture of a folder.
@@ -60,7 +63,10 @@ struct RecordedCapture {
   RigLayout layout;
   RecordingCost cost;
   bool complete = false;
-  std::vector<std::string> notes;  // what went wrong, a line each
+  std::vector<std::string> notes{};  // what went wrong, a line each
+  // Lines of frames.csv and of events.csv; 0 unless complete.
+  std::uint64_t frames = 0;
+  std::uint64_t other_events = 0;
 };
 
 class RecordingWriter {
@@ -70,10 +76,13 @@ class RecordingWriter {
   RecordingWriter(const RecordingWriter&) = delete;
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-  // The sink of a new capture, valid until end(); one at a time. If it is given events without an
-  // on_start, nothing is written.
+  // The sink of a new capture, valid until end() or abandon(); one at a time, each pipeline and
+  // seed once. If it is given events without an on_start, nothing is written.
   RecordingSink& begin(const std::string& pipeline, std::uint64_t seed);
+  // The notes of `cost` and `notes` are kept.
   void end(const RecordingCost& cost, std::vector<std::string> notes = {});
+  // Without an end: what was recorded until now stays, as of a writer that died.
+  void abandon(std::vector<std::string> notes = {});
 
  private:
   class State;
@@ -87,7 +96,8 @@ class RecordingFolder {
   const RecordingDescription& description() const { return description_; }
   const std::vector<RecordedCapture>& captures() const { return captures_; }
   std::optional<std::size_t> find(const std::string& pipeline, std::uint64_t seed) const;
-  // Streams a capture; its memory does not grow with it.
+  // Streams a capture; its memory does not grow with it. Of a damaged one, the sink is told what
+  // comes before the damage, then RecordingFolderError is thrown.
   void play(std::size_t capture, RecordingSink& sink) const;
 
  private:
@@ -97,7 +107,8 @@ class RecordingFolder {
 };
 
 // A folder as a backend: a request for a pipeline and seed that was recorded is played, any other
-// throws RecordingFailed. `folder` outlives it.
+// throws RecordingFailed. The capture's notes, and its damage if it is damaged, are among the notes
+// of the cost. `folder` outlives it.
 std::unique_ptr<RecordingSource> make_recorded_source(const RecordingFolder& folder);
 
 }  // namespace simbench

@@ -148,7 +148,8 @@ RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
       PulseEvent event;
       event.pulse = any_number<std::int64_t>(random);
       set_any(event.at, random);
-      for (std::uint64_t left = random() % 5; left > 0; --left) {
+      const std::uint64_t errors = bounds.hosts < 100 ? bounds.hosts : random() % 5;
+      for (std::uint64_t left = errors; left > 0; --left) {
         event.host_errors.emplace_back(any_number<std::int64_t>(random));
       }
       return event;

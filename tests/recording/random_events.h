@@ -9,7 +9,8 @@
 namespace simbench {
 
 struct RandomEventBounds {
-  std::uint32_t hosts = 0xffffffff;  // numbers below it
+  // Numbers below it; where it is below 100, a pulse has an error of each.
+  std::uint32_t hosts = 0xffffffff;
   std::uint32_t cameras = 0xffffffff;
 };
 
