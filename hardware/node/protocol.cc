@@ -83,6 +83,7 @@ Answer parse_answer(std::span<const std::byte> message) {
   answer.id = take_id(parsed);
   if (parsed.contains("error")) {
     answer.error = take_text(parsed, "error");
+    if (answer.error.empty()) throw ProtocolError("a reply with an empty error");
     return answer;
   }
   const auto result = parsed.find("result");
