@@ -1,0 +1,199 @@
+#include "hardware/experiment/child_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <thread>
+#include <utility>
+
+#include "hardware/experiment/network_sandbox.h"
+
+namespace simbench::hardware {
+namespace {
+
+constexpr Nanoseconds kPatience = std::chrono::seconds(2);
+constexpr int kCannotRun = 127;
+
+struct Pipe {
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ChildError("no pipe can be made");
+    read = ends[0];
+    write = ends[1];
+  }
+  ~Pipe() {
+    close_read();
+    close_write();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_read() { close_once(read); }
+  void close_write() { close_once(write); }
+  static void close_once(int& end) {
+    if (end >= 0) close(end);
+    end = -1;
+  }
+
+  int read = -1;
+  int write = -1;
+};
+
+// What the child needs between fork() and exec(), where only async-signal-safe calls are allowed.
+struct Plan {
+  const char* program;
+  char* const* arguments;
+  int log;
+  int output;
+  pid_t parent;
+  std::optional<unsigned> member;
+  int left_hub;   // the child writes a byte here when it has its namespace
+  int connected;  // and waits here until it is connected
+};
+
+[[noreturn]] void become(const Plan& plan) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != plan.parent) _exit(kCannotRun);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
+  if (plan.member) {
+    char byte = 0;
+    const bool connected = NetworkSandbox::leave_hub() && write(plan.left_hub, &byte, 1) == 1 &&
+                           read(plan.connected, &byte, 1) == 1 &&
+                           NetworkSandbox::set_up_member(*plan.member);
+    if (!connected) _exit(kCannotRun);
+  }
+  const int input = open("/dev/null", O_RDONLY);
+  if (input < 0 || dup2(input, 0) < 0 || dup2(plan.output, 1) < 0 || dup2(plan.log, 2) < 0) {
+    _exit(kCannotRun);
+  }
+  execv(plan.program, plan.arguments);
+  _exit(kCannotRun);
+}
+
+std::string last_lines(const std::string& file) {
+  std::ifstream in(file);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  constexpr std::size_t kMost = 400;
+  if (text.size() > kMost) text.erase(0, text.size() - kMost);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const Settings& settings)
+    : name_(settings.arguments.empty() ? settings.program : settings.arguments.front()),
+      log_(settings.log) {
+  std::vector<char*> arguments = {const_cast<char*>(settings.program.c_str())};
+  for (const std::string& each : settings.arguments) {
+    arguments.push_back(const_cast<char*>(each.c_str()));
+  }
+  arguments.push_back(nullptr);
+  const int log = open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (log < 0) throw ChildError(fmt::format("{}: {}", log_, std::strerror(errno)));
+  Pipe output;
+  Pipe left_hub;
+  Pipe connected;
+  const Plan plan{.program = settings.program.c_str(),
+                  .arguments = arguments.data(),
+                  .log = log,
+                  .output = output.write,
+                  .parent = getpid(),
+                  .member = settings.sandbox_member,
+                  .left_hub = left_hub.write,
+                  .connected = connected.read};
+  process_ = fork();
+  if (process_ == 0) become(plan);
+  const int fork_error = errno;
+  close(log);
+  if (process_ < 0) throw ChildError(fmt::format("fork: {}", std::strerror(fork_error)));
+  output_ = std::exchange(output.read, -1);
+  if (!settings.sandbox_member) return;
+  left_hub.close_write();
+  char byte = 0;
+  try {
+    if (read(left_hub.read, &byte, 1) != 1) fail("has no network namespace of its own");
+    NetworkSandbox::connect(*settings.sandbox_member, process_);
+    if (write(connected.write, &byte, 1) != 1) fail("ended at once");
+  } catch (...) {
+    end(Nanoseconds(0));
+    throw;
+  }
+}
+
+ChildProcess::~ChildProcess() { end(kPatience); }
+
+void ChildProcess::fail(const std::string& problem) const {
+  const std::string said = last_lines(log_);
+  throw ChildError(
+      fmt::format("simbench {}: {}{}{}", name_, problem, said.empty() ? "" : ": ", said));
+}
+
+bool ChildProcess::read_more(MonotonicTime deadline) {
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - monotonic_now());
+    pollfd waits{output_, POLLIN, 0};
+    const int ready = poll(&waits, 1, std::max(0, static_cast<int>(left.count())));
+    if (ready == 0) return false;
+    if (ready < 0 && errno == EINTR) continue;
+    std::array<char, 4096> buffer;
+    const ssize_t size = read(output_, buffer.data(), buffer.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return false;
+    read_.append(buffer.data(), static_cast<std::size_t>(size));
+    return true;
+  }
+}
+
+std::string ChildProcess::read_line(MonotonicTime deadline) {
+  std::size_t end = 0;
+  while ((end = read_.find('\n')) == std::string::npos) {
+    if (!read_more(deadline)) {
+      fail(monotonic_now() < deadline ? "ended before it was ready" : "was not ready in time");
+    }
+  }
+  const std::string line = read_.substr(0, end);
+  read_.erase(0, end + 1);
+  return line;
+}
+
+bool ChildProcess::collect(Nanoseconds patience) {
+  const MonotonicTime deadline = monotonic_now() + patience;
+  while (true) {
+    const pid_t collected = waitpid(process_, nullptr, WNOHANG);
+    if (collected == process_ || (collected < 0 && errno == ECHILD)) return true;
+    if (monotonic_now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+std::string ChildProcess::end(Nanoseconds patience) {
+  if (process_ > 0) {
+    kill(process_, SIGTERM);
+    if (!collect(patience)) {
+      kill(process_, SIGKILL);
+      waitpid(process_, nullptr, 0);
+    }
+    process_ = -1;
+    while (read_more(monotonic_now())) {
+    }
+  }
+  Pipe::close_once(output_);
+  return std::exchange(read_, {});
+}
+
+}  // namespace simbench::hardware

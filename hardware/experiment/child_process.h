@@ -1,0 +1,67 @@
+// A program started as a child, which cannot outlive its parent.
+//
+// It dies with the thread that started it (PR_SET_PDEATHSIG: SIGKILL), and the destructor ends it:
+// SIGTERM, SIGKILL if that does not help, and its status is collected. Its standard output is read
+// line by line; standard error goes to a file.
+//
+// Errors: ChildError, with the last lines of its standard error.
+//
+//   ChildProcess node({.program = "/proc/self/exe", .arguments = {"node", ...}, .log =
+//   "node0.log"}); std::string line = node.read_line(deadline);    // "node host0: listening on
+//   ..."
+#ifndef SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
+#define SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
+
+#include <sys/types.h>
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hardware/clock/monotonic_time.h"
+
+namespace simbench::hardware {
+
+class ChildError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ChildProcess {
+ public:
+  struct Settings {
+    std::string program;
+    std::vector<std::string> arguments;  // without the program's own name
+    std::string log;                     // a file; for standard error
+    // The member of a NetworkSandbox whose namespace it runs in; the caller's if there is none.
+    std::optional<unsigned> sandbox_member;
+  };
+
+  explicit ChildProcess(const Settings& settings);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  pid_t id() const { return process_; }
+  // The next line of its standard output. Throws ChildError at the deadline, or if there is none.
+  std::string read_line(MonotonicTime deadline);
+  // SIGTERM, and what it still wrote to its standard output. Waits `patience` at most.
+  std::string end(Nanoseconds patience);
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const;
+  // False: the end of its output, or the deadline.
+  bool read_more(MonotonicTime deadline);
+  bool collect(Nanoseconds patience);
+
+  std::string name_;
+  std::string log_;
+  pid_t process_ = -1;
+  int output_ = -1;
+  std::string read_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_

@@ -1,0 +1,59 @@
+// Network namespaces for processes of one machine, joined by veth pairs to a hub: a rig's network
+// that touches nothing outside and is gone with its processes.
+//
+//   hub (this thread's namespace)                    member i's own namespace
+//   hub_address(i) 10.77.i.1 --- veth "hub<i>" ... "eth0" --- member_address(i) 10.77.i.2
+//
+// Members reach the hub only, not each other. Nothing is set up with other programs (netlink and
+// ioctl), and the kernel removes a pair when its namespace ends.
+//
+// Contract
+//  - enter() moves the calling thread (and whoever it starts from then on) into a fresh namespace,
+//    for good: call it before other threads are made. As an ordinary user it also needs a fresh
+//    user namespace, which the kernel gives to processes of one thread only. Where that is not
+//    permitted it returns the reason and nothing has changed.
+//  - leave_hub() is for the member's own process, between fork() and exec(): async-signal-safe.
+//  - connect() is called in the hub once the member has left it.
+//
+// Errors: SandboxError.
+//
+// Source: namespaces(7), veth(4), rtnetlink(7), netdevice(7).
+#ifndef SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_
+#define SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace simbench::hardware {
+
+class SandboxError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class NetworkSandbox {
+ public:
+  static constexpr unsigned kMaxMembers = 250;
+
+  // Nothing if the thread is in a fresh namespace now; else why not.
+  static std::optional<std::string> enter();
+
+  static std::string hub_address(unsigned member);
+  static std::string member_address(unsigned member);
+
+  // In the member's process: moves it into a namespace of its own. False: not permitted.
+  static bool leave_hub();
+  // In the hub: a pair from here to the process's namespace; sets the hub's side up. Removes what
+  // was left there by an earlier member of the number.
+  static void connect(unsigned member, pid_t process);
+  // In the member's process, after connect(): sets its side up. False: it failed.
+  static bool set_up_member(unsigned member);
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_EXPERIMENT_NETWORK_SANDBOX_H_
