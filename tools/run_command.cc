@@ -15,10 +15,12 @@
 #include "reports/csv.h"
 #include "reports/json.h"
 #include "reports/leaderboard_report.h"
+#include "reports/prediction_report.h"
 #include "reports/table.h"
 #include "sim/rig/simulation.h"
 #include "tools/exit_status.h"
 #include "tools/interrupt.h"
+#include "tools/rig_backend.h"
 #include "tools/watched.h"
 
 namespace simbench::tools {
@@ -32,12 +34,17 @@ Examples:
   simbench run --scenario 3cam_1host_30fps --format json > results.json
   simbench run --scenario 18cam_6host_45fps_lan --pipelines yoon2021_both --budget
   simbench run --scenario 3cam_1host_30fps --output results/monday
+  simbench run --scenario 18cam_6host_45fps --backend hardware --rig rig.json --key-file rig.key
+
+On a real rig each pipeline is captured --seeds times (once, if not said), and the simulator's
+prediction for the same scenario is printed beside what was measured.
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
 struct RunOptions {
   std::string scenario;
   evaluation::EvaluationOptions evaluation;
+  BackendOptions backend;
   std::vector<std::string> sets;
   std::string format;
   std::string output;
@@ -66,11 +73,31 @@ evaluation::WorldFactory make_world() {
 }
 
 std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
+                                            const evaluation::SourceFactory& make_source,
                                             const evaluation::EvaluationOptions& options) {
   return watched<evaluation::Results>([&](const evaluation::Progress& progress) {
-    return evaluation::evaluate(
-        scenario, [&] { return make_world()(scenario); }, options, progress);
+    return evaluation::evaluate(scenario, make_source, options, progress);
   });
+}
+
+std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
+                                            const evaluation::EvaluationOptions& options) {
+  return evaluate(
+      scenario, [&] { return make_world()(scenario); }, options);
+}
+
+// The rig is one: captures are made one after the other.
+std::optional<evaluation::Results> measure(const scenarios::Scenario& scenario,
+                                           const RunOptions& options) {
+  evaluation::EvaluationOptions evaluation = options.evaluation;
+  evaluation.jobs = 1;
+  evaluation.keep_pulses = !options.output.empty();
+  return evaluate(
+      scenario,
+      [&]() -> std::unique_ptr<RecordingSource> {
+        return interruptible(make_rig_source(options.backend, scenario));
+      },
+      evaluation);
 }
 
 // An error budget of every pipeline in place of the table.
@@ -109,6 +136,41 @@ void check_budget_options(const RunOptions& options) {
   if (!options.output.empty()) {
     throw scenarios::InputError("--output: a result archive holds no budget; use --format json");
   }
+  if (options.backend.backend == "hardware") {
+    throw scenarios::InputError("--budget: only in the simulator, which can idealise each stage");
+  }
+}
+
+std::string formatted_with_prediction(const evaluation::Results& measured,
+                                      const evaluation::Results& simulated,
+                                      const scenarios::Scenario& scenario,
+                                      const std::string& format) {
+  if (format == "json") return reports::json_with_prediction(measured, simulated);
+  const std::string results = formatted(measured, scenario, format);
+  if (format == "csv") return results;
+  return results + "\n" +
+         (format == "markdown" ? reports::prediction_markdown(measured, simulated)
+                               : reports::prediction_table(measured, simulated));
+}
+
+// The same pipelines on the rig, with the simulator's prediction beside them.
+int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
+               reports::Provenance provenance) {
+  std::unique_ptr<reports::OutputFolder> output;
+  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+  const std::optional<evaluation::Results> measured = measure(scenario, options);
+  if (!measured) return kInterrupted;
+  print_warnings(measured->warnings);
+  provenance.finished = std::chrono::system_clock::now();
+  if (output) {
+    reports::write_archive(*output, *measured, scenario, provenance);
+    print_note("results written to " + options.output);
+  }
+  const std::optional<evaluation::Results> predicted =
+      simulate(scenario, {.pipelines = options.evaluation.pipelines});
+  if (!predicted) return kInterrupted;
+  print_result(formatted_with_prediction(*measured, *predicted, scenario, options.format));
+  return kOk;
 }
 
 int run(const RunOptions& options) {
@@ -120,13 +182,14 @@ int run(const RunOptions& options) {
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
+  if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(provenance));
   if (options.budget) return run_budgets(options, scenario);
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
 
   evaluation::EvaluationOptions evaluation = options.evaluation;
   evaluation.keep_pulses = output != nullptr;
-  const std::optional<evaluation::Results> results = evaluate(scenario, evaluation);
+  const std::optional<evaluation::Results> results = simulate(scenario, evaluation);
   if (!results) return kInterrupted;
   print_warnings(results->warnings);
   provenance.finished = std::chrono::system_clock::now();
@@ -151,11 +214,12 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
                    "Name of a scenario (see `simbench list`) or path of a scenario file")
       ->type_name("SCENARIO")
       ->required();
-  command
-      ->add_option("--seeds", evaluation.seeds,
-                   "How many seeds: runs of each pipeline. Default: 32")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
+  CLI::Option* seeds =
+      command
+          ->add_option("--seeds", evaluation.seeds,
+                       "How many seeds: runs of each pipeline. Default: 32; on a real rig 1")
+          ->type_name("N")
+          ->check(whole_number(1, 1'000'000));
   command->add_option("--first-seed", evaluation.first_seed, "The first seed. Default: 1")
       ->type_name("K")
       ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
@@ -169,6 +233,7 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
       ->delimiter(',')
       ->allow_extra_args(false);
   add_set_option(*command, options->sets);
+  add_backend_options(*command, options->backend);
   add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
   command
       ->add_option("--output", options->output,
@@ -179,7 +244,12 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
                     "Instead of the table, divide each pipeline's error among the stages that\n"
                     "cause it (128 runs for every seed)");
   command->footer(kExamples);
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback([options, seeds, &action] {
+    if (options->backend.backend == "hardware" && seeds->count() == 0) {
+      options->evaluation.seeds = 1;
+    }
+    action = [options] { return run(*options); };
+  });
 }
 
 }  // namespace simbench::tools
