@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/recording_folder.h"
 #include "recording/rs_csv.h"
 #include "recording/version.h"
 #include "reports/output_folder.h"
@@ -22,6 +23,7 @@
 #include "tools/list_command.h"
 #include "tools/messages.h"
 #include "tools/mpi_launch.h"
+#include "tools/record_command.h"
 #include "tools/relay_command.h"
 #include "tools/replay_command.h"
 #include "tools/report_command.h"
@@ -86,10 +88,11 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_compare_command(app, action);
   tools::add_gate_command(app, action);
   tools::group_commands(app, "Compare results");
+  tools::add_record_command(app, action);
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
   tools::add_convert_ibl_command(app, action);
-  tools::group_commands(app, "Recordings of real cameras");
+  tools::group_commands(app, "Recordings");
   tools::add_relay_command(app, action);
   tools::group_commands(app, "Real rigs");
   tools::add_list_command(app, action);
@@ -145,6 +148,8 @@ int run_command_line(int argc, char** argv, evaluation::TaskFarm* farm) {
   } catch (const reports::OutputError& error) {
     return bad_input(error);
   } catch (const CsvError& error) {
+    return bad_input(error);
+  } catch (const RecordingFolderError& error) {
     return bad_input(error);
   } catch (const std::exception& error) {
     tools::print_internal_error(

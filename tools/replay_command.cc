@@ -1,6 +1,10 @@
 #include "tools/replay_command.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,18 +13,24 @@
 #include "reports/replay_report.h"
 #include "tools/exit_status.h"
 #include "tools/recordings.h"
+#include "tools/replay_folder.h"
 
 namespace simbench::tools {
 namespace {
 
 constexpr const char* kExamples = R"(
-Takes the CSV of librealsense's rs-data-collect:
+Takes a folder that `simbench record` wrote, and prints the table of the run that was recorded. Of a
+recording that was cut off or is damaged, it scores what there is and says so.
+
+Or takes the CSV of librealsense's rs-data-collect:
   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
 one file per camera, or one file of several cameras with two more columns, `camera` and `host`.
 Arrivals of several cameras must count from one instant. device_time and gathering are run on them;
 host_sync cannot be replayed.
 
 Examples:
+  simbench replay monday                            a recording folder
+  simbench replay monday --pipelines genlock --format markdown
   simbench replay front.csv
   simbench replay front.csv back.csv --format json > replay.json
   simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
@@ -29,6 +39,7 @@ Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
 
 struct ReplayOptions {
   std::vector<std::string> files;
+  std::vector<std::string> pipelines;
   std::string format;
   std::string output;
   std::vector<std::string> command;
@@ -40,7 +51,19 @@ std::string formatted(const evaluation::Replay& replay, const ReplayOptions& opt
   return reports::replay_table(replay);
 }
 
-int run_replay(const ReplayOptions& options) {
+// What only goes with a recording folder.
+void check_options_for_files(const ReplayOptions& options) {
+  if (options.format == "markdown") {
+    throw scenarios::InputError(
+        "--format: found 'markdown', allowed with CSV files: table, json, csv");
+  }
+  if (!options.pipelines.empty()) {
+    throw scenarios::InputError("--pipelines: only a recording folder has pipelines");
+  }
+}
+
+int run_files(const ReplayOptions& options) {
+  check_options_for_files(options);
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
@@ -63,19 +86,43 @@ int run_replay(const ReplayOptions& options) {
   return kOk;
 }
 
+int run_replay(const ReplayOptions& options) {
+  const auto folder =
+      std::find_if(options.files.begin(), options.files.end(),
+                   [](const std::string& name) { return std::filesystem::is_directory(name); });
+  if (folder == options.files.end()) return run_files(options);
+  if (options.files.size() > 1) {
+    throw scenarios::InputError(
+        fmt::format("{}: is a folder, allowed: one recording folder, or files only", *folder));
+  }
+  return replay_folder({.folder = *folder,
+                        .pipelines = options.pipelines,
+                        .format = options.format,
+                        .output = options.output,
+                        .command = options.command});
+}
+
 }  // namespace
 
 void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
-  CLI::App* command =
-      app.add_subcommand("replay", "Run device_time and gathering on recordings of real cameras");
+  CLI::App* command = app.add_subcommand(
+      "replay", "Score a recording folder, or device_time and gathering on CSV of real cameras");
   auto options = std::make_shared<ReplayOptions>();
   options->command = std::move(arguments);
-  command->add_option("files", options->files, "Recordings")->type_name("FILE.csv...")->required();
-  add_format_option(*command, options->format, {"table", "json", "csv"});
+  command->add_option("recordings", options->files, "A recording folder, or CSV files")
+      ->type_name("FILE.csv...|DIR")
+      ->required();
+  command
+      ->add_option("--pipelines", options->pipelines,
+                   "Of a folder: only these of the recorded pipelines, in this order")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_format_option(*command, options->format, {"table", "markdown", "json", "csv"});
   command
       ->add_option("--output", options->output,
-                   "Write manifest.json, results.json and frames.csv to this folder.\n"
-                   "An earlier result there is replaced")
+                   "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
+                   "hosts.csv) to this folder. An earlier result there is replaced")
       ->type_name("DIR");
   command->footer(kExamples);
   command->callback([options, &action] { action = [options] { return run_replay(*options); }; });

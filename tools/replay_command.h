@@ -1,4 +1,5 @@
-// simbench replay: device_time and gathering over recordings of real cameras.
+// simbench replay: the scores of a recording folder; device_time and gathering over CSV of real
+// cameras.
 #ifndef SIMBENCH_TOOLS_REPLAY_COMMAND_H_
 #define SIMBENCH_TOOLS_REPLAY_COMMAND_H_
 
