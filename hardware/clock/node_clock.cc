@@ -13,7 +13,7 @@ constexpr double kFar = 2305843009213693952.0;
 
 SteadyTime NodeOscillator::steady(MonotonicTime at) const {
   const Nanoseconds elapsed = at - monotonic_zero;
-  const double ahead_ns = std::floor(skew_ppm * 1e-6 * static_cast<double>(elapsed.count()));
+  const double ahead_ns = std::floor(skew_ppm / 1e6 * static_cast<double>(elapsed.count()));
   return steady_zero + elapsed + Nanoseconds(static_cast<std::int64_t>(ahead_ns));
 }
 
@@ -23,7 +23,7 @@ MonotonicTime NodeOscillator::when(SteadyTime at) const {
   if (about_ns > kFar) return MonotonicTime::max();
   if (about_ns < -kFar) return MonotonicTime::min();
   const Nanoseconds local = at - steady_zero;
-  const double skew = skew_ppm * 1e-6;
+  const double skew = skew_ppm / 1e6;
   const double ahead_ns = static_cast<double>(local.count()) * skew / (1 + skew);
   MonotonicTime found = monotonic_zero + local - Nanoseconds(std::llround(ahead_ns));
   constexpr Nanoseconds kStep(1);

@@ -43,12 +43,12 @@ SystemTimeline::SystemTimeline(std::uint32_t host, const NodeOscillator& oscilla
 
 double SystemTimeline::counted_ns(const Setting& setting, MonotonicTime at) const {
   const auto elapsed_ns = static_cast<double>((at - setting.since).count());
-  return elapsed_ns + oscillator_.skew_ppm * 1e-6 * elapsed_ns;
+  return elapsed_ns + oscillator_.skew_ppm / 1e6 * elapsed_ns;
 }
 
 SystemTimeline::Reading SystemTimeline::reading(const Setting& setting, MonotonicTime at) const {
   const Nanoseconds elapsed = at - setting.since;
-  const double ahead_ns = oscillator_.skew_ppm * 1e-6 * static_cast<double>(elapsed.count());
+  const double ahead_ns = oscillator_.skew_ppm / 1e6 * static_cast<double>(elapsed.count());
   const double extra_ns =
       setting.base_part_ns + ahead_ns + setting.rate() * counted_ns(setting, at);
   const double floor_ns = std::floor(extra_ns);
@@ -69,7 +69,7 @@ HostTime SystemTimeline::read(MonotonicTime at) const { return reading(setting_a
 MonotonicTime SystemTimeline::when(const Setting& setting, HostTime at) const {
   const HostTime wanted = limited(at);
   const Nanoseconds ahead = wanted - setting.base;
-  const double pace = (1 + oscillator_.skew_ppm * 1e-6) * (1 + setting.rate());
+  const double pace = (1 + oscillator_.skew_ppm / 1e6) * (1 + setting.rate());
   const double counted = (static_cast<double>(ahead.count()) - setting.base_part_ns) / pace;
   constexpr double kFar = 2e18;  // 63 years
   if (counted > kFar) return MonotonicTime::max();
@@ -139,7 +139,7 @@ void SystemTimeline::add(const Setting& setting) {
   begin(setting);
   if (setting.slew_rate == 0) return;
   const double counted_ns = std::max(0.0, setting.slew_left_ns / setting.slew_rate);
-  const double elapsed_ns = counted_ns / (1 + oscillator_.skew_ppm * 1e-6);
+  const double elapsed_ns = counted_ns / (1 + oscillator_.skew_ppm / 1e6);
   constexpr double kNever = 2e18;
   if (elapsed_ns > kNever) return;
   Setting end = gone_on(setting, setting.since + Nanoseconds(std::llround(elapsed_ns)));

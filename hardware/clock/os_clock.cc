@@ -1,0 +1,218 @@
+#include "hardware/clock/os_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "hardware/clock/os_clock_dry_run.h"
+#include "hardware/clock/paired_reading.h"
+
+namespace simbench::hardware {
+namespace {
+
+// Closer than this, two readings of how far the clocks are apart are the same number.
+constexpr Nanoseconds kSame = std::chrono::microseconds(20);
+
+[[noreturn]] void fail(const char* what, int error) {
+  if (error != EPERM) {
+    throw ClockError(fmt::format("system clock: {}: {}", what, std::strerror(error)));
+  }
+  throw ClockError(fmt::format(
+      "system clock: {}: not permitted; --set-system-clock needs CAP_SYS_TIME: "
+      "AmbientCapabilities=CAP_SYS_TIME in the systemd unit, or setcap cap_sys_time+ep on the "
+      "program",
+      what));
+}
+
+}  // namespace
+
+std::unique_ptr<NodeClock> make_os_clock(boost::asio::io_context& context, ClockCalls& calls,
+                                         OsClockSettings settings) {
+  if (!settings.log) settings.log = [](const std::string&) {};
+  if (settings.dry_run) return std::make_unique<DryRunClock>(context, calls, std::move(settings));
+  return std::make_unique<OsClock>(context, calls, std::move(settings));
+}
+
+OsClock::OsClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSettings settings)
+    : calls_(calls),
+      options_(std::move(settings)),
+      limits_(options_.max_step, read_kernel_clock(calls).freq),
+      kernel_frequency_(limits_.original_frequency()),
+      slew_timer_(context) {
+  if (!options_.log) options_.log = [](const std::string&) {};
+  if (const std::string line = other_keeper(read_kernel_clock(calls)); !line.empty()) {
+    options_.log(line);
+  }
+  // Changes nothing, and shows at once whether it is permitted.
+  set_kernel_frequency(kernel_frequency_);
+  const MonotonicTime now = calls_.monotonic();
+  settings_.push_back({.since = now, .ahead = measured_ahead(), .oscillator = {}, .rate_ppb = 0});
+}
+
+OsClock::~OsClock() {
+  if (kernel_frequency_ == limits_.original_frequency()) return;
+  timex request{};
+  request.modes = ADJ_FREQUENCY;
+  request.freq = limits_.original_frequency();
+  calls_.adjust(request);
+}
+
+Task<HostTime> OsClock::now() { co_return calls_.system(); }
+
+Task<void> OsClock::set(HostTime value) {
+  look_for_others();
+  const Nanoseconds step = limits_.check_step(system_at(calls_.monotonic()), value);
+  if (const int error = calls_.set_system(value); error != 0) fail("cannot be set", error);
+  options_.log(fmt::format("system clock: stepped by {:+.6f} s", to_seconds(step)));
+  run(frequency_ppb_, 0, 0, measured_ahead());
+  co_return;
+}
+
+Task<void> OsClock::adjust_frequency(double ppb) {
+  look_for_others();
+  run(ppb, slew_left_ns(), max_slew_ppb_, settings_.back().ahead);
+  co_return;
+}
+
+Task<void> OsClock::slew(Nanoseconds offset, double max_rate_ppb) {
+  look_for_others();
+  run(frequency_ppb_, static_cast<double>(offset.count()), max_rate_ppb, settings_.back().ahead);
+  co_return;
+}
+
+const OsClock::Setting& OsClock::setting_at(MonotonicTime at) const {
+  const auto later =
+      std::upper_bound(settings_.begin(), settings_.end(), at,
+                       [](MonotonicTime t, const Setting& setting) { return t < setting.since; });
+  return later == settings_.begin() ? settings_.front() : *std::prev(later);
+}
+
+SteadyTime OsClock::steady_at(MonotonicTime at) const {
+  return setting_at(at).oscillator.steady(at);
+}
+
+HostTime OsClock::system_at(MonotonicTime at) const {
+  return HostTime(at.time_since_epoch() + setting_at(at).ahead);
+}
+
+MonotonicTime OsClock::when(HostTime at, MonotonicTime now) const {
+  const Nanoseconds ahead = settings_.back().ahead;
+  constexpr double kFar = 9.2e18;  // what 64 bits hold
+  const double about_ns =
+      static_cast<double>(nanoseconds_of(at)) - static_cast<double>(ahead.count());
+  if (about_ns > kFar) return MonotonicTime::max();
+  if (about_ns < -kFar) return now;
+  return std::max(now, MonotonicTime(at.time_since_epoch() - ahead));
+}
+
+ClockAdjustment OsClock::present(MonotonicTime now) const {
+  const HostTime reads = system_at(now);
+  return {.host = options_.host,
+          .at = steady_at(now),
+          .before = reads,
+          .after = reads,
+          .rate_ppb = setting_at(now).rate_ppb};
+}
+
+void OsClock::observe(Observer observer) {
+  observer_ = std::move(observer);
+  if (!observer_ && slew_rate_ppb_ != 0) end_slew();
+}
+
+void OsClock::end_slew() {
+  try {
+    run(frequency_ppb_, 0, 0, settings_.back().ahead);
+  } catch (const ClockError& refused) {
+    options_.log(refused.what());
+  }
+}
+
+Nanoseconds OsClock::measured_ahead() const {
+  const PairedReading reading =
+      paired_reading([this] { return calls_.system(); }, [this] { return calls_.monotonic(); });
+  return offset_between(reading.reads, reading.at);
+}
+
+double OsClock::slew_left_ns() const {
+  if (slew_rate_ppb_ == 0) return 0;
+  const auto counted_ns =
+      static_cast<double>((steady_at(calls_.monotonic()) - slew_since_).count());
+  const double left_ns = slew_ns_ - slew_rate_ppb_ * 1e-9 * counted_ns;
+  return std::signbit(left_ns) == std::signbit(slew_ns_) ? left_ns : 0;
+}
+
+void OsClock::run(double frequency_ppb, double slew_ns, double max_slew_ppb, Nanoseconds ahead) {
+  double slew_ppb = 0;
+  if (std::abs(slew_ns) >= 0.5) {
+    const Nanoseconds offset(static_cast<std::int64_t>(std::llround(slew_ns)));
+    slew_ppb = std::copysign(limits_.slew_rate_ppb(offset, max_slew_ppb, frequency_ppb), slew_ns);
+  }
+  set_kernel_frequency(limits_.kernel_frequency(frequency_ppb + slew_ppb));
+  frequency_ppb_ = frequency_ppb;
+  slew_rate_ppb_ = slew_ppb;
+  max_slew_ppb_ = max_slew_ppb;
+  slew_ns_ = slew_ns;
+  begin(ahead);
+  slew_since_ = settings_.back().oscillator.steady_zero;
+  end_slew_in_time();
+}
+
+void OsClock::end_slew_in_time() {
+  slew_timer_.cancel();
+  if (slew_rate_ppb_ == 0) return;
+  constexpr double kNever = 2e18;
+  const double counted_ns = std::min(kNever, slew_ns_ / slew_rate_ppb_ * 1e9);
+  slew_end_ = slew_since_ + Nanoseconds(std::llround(counted_ns));
+  slew_timer_.expires_at(for_timer(oscillator().when(slew_end_)));
+  slew_timer_.async_wait([this, end = slew_end_](const boost::system::error_code& error) {
+    // The timer of an earlier slew may have been too late to be stopped.
+    if (!error && slew_rate_ppb_ != 0 && end == slew_end_) end_slew();
+  });
+}
+
+void OsClock::set_kernel_frequency(long frequency) {
+  timex request{};
+  request.modes = ADJ_FREQUENCY;
+  request.freq = frequency;
+  if (const int error = calls_.adjust(request); error != 0) fail("its rate cannot be set", error);
+  kernel_frequency_ = frequency;
+}
+
+void OsClock::begin(Nanoseconds ahead) {
+  const MonotonicTime now = calls_.monotonic();
+  const HostTime before = system_at(now);
+  const SteadyTime steady = steady_at(now);
+  const double rate_ppb = limits_.rate_ppb(kernel_frequency_);
+  const double skew_ppm = (1 / (1 + rate_ppb * 1e-9) - 1) * 1e6;
+  settings_.push_back(
+      {.since = now, .ahead = ahead, .oscillator = {now, steady, skew_ppm}, .rate_ppb = rate_ppb});
+  if (settings_.size() > kHistory + 1) settings_.pop_front();
+  if (!observer_) return;
+  observer_({.host = options_.host,
+             .at = steady,
+             .before = before,
+             .after = system_at(now),
+             .rate_ppb = rate_ppb});
+}
+
+void OsClock::look_for_others() {
+  if (read_kernel_clock(calls_).freq != kernel_frequency_ &&
+      !std::exchange(told_of_others_, true)) {
+    options_.log(
+        "system clock: another program has changed its rate; two keepers fight: stop that one "
+        "while "
+        "the rig runs (systemctl stop systemd-timesyncd chronyd ntpd)");
+  }
+  const Nanoseconds ahead = measured_ahead();
+  const Nanoseconds moved = ahead - settings_.back().ahead;
+  if (moved < kSame && moved > -kSame) return;
+  options_.log(
+      fmt::format("system clock: another program has stepped it by {:+.6f} s", to_seconds(moved)));
+  begin(ahead);
+}
+
+}  // namespace simbench::hardware

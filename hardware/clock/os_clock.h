@@ -1,0 +1,115 @@
+// The operating system's clock as the clock of a node (--set-system-clock).
+//
+// Steps are clock_settime, rates are the kernel's frequency (adjtimex), a slew is a change of
+// frequency for as long as it takes. On Linux the kernel's frequency moves the monotonic clock in
+// the same way as the system clock, which therefore stay a fixed number apart between steps; it is
+// the steady clock that runs at another rate against both: here it is what the monotonic clock
+// would be at the frequency that was found.
+//
+// Contract
+//  - A step beyond max_step, or a rate beyond the kernel's 500 ppm, is refused (ClockError). A slew
+//    takes what the kernel has left, so it may take longer.
+//  - Without the privilege (CAP_SYS_TIME) construction throws ClockError, which says how to get it.
+//  - `log` is told of each step, and once of another program that keeps or changes this clock.
+//  - The end of a slew is a timer of the context. observe(nullptr) and destruction end a slew at
+//    once; destruction puts the frequency back to what was found. A kill leaves it as it was last.
+//  - restart() does nothing.
+//  - dry_run: all is checked and told to `log`, nothing is set; the node's clock is then a software
+//    clock.
+//
+// Source: adjtimex(2); kernel/time/ntp.c (the frequency is part of both clocks' rate).
+//
+//   auto clock = make_os_clock(context, kernel_clock_calls(), {.host = 3, .log = log_line});
+#ifndef SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_
+#define SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hardware/clock/node_clock.h"
+#include "hardware/clock/os_clock_calls.h"
+#include "hardware/clock/os_clock_limits.h"
+
+namespace simbench::hardware {
+
+struct OsClockSettings {
+  std::uint32_t host = 0;  // under which adjustments are told
+  Nanoseconds max_step = std::chrono::seconds(1);
+  bool dry_run = false;
+  std::function<void(const std::string&)> log;
+};
+
+// `calls` outlive the clock; the context must not run after the clock has gone.
+std::unique_ptr<NodeClock> make_os_clock(boost::asio::io_context& context, ClockCalls& calls,
+                                         OsClockSettings settings);
+
+class OsClock final : public NodeClock {
+ public:
+  static constexpr std::size_t kHistory = 64;
+
+  // Not for dry runs.
+  OsClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSettings settings);
+  ~OsClock() override;
+  OsClock(const OsClock&) = delete;
+  OsClock& operator=(const OsClock&) = delete;
+
+  Task<HostTime> now() override;
+  Task<void> set(HostTime value) override;
+  Task<void> adjust_frequency(double ppb) override;
+  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+
+  const NodeOscillator& oscillator() const override { return settings_.back().oscillator; }
+  SteadyTime steady_at(MonotonicTime at) const override;
+  HostTime system_at(MonotonicTime at) const override;
+  MonotonicTime when(HostTime at, MonotonicTime now) const override;
+  ClockAdjustment present(MonotonicTime now) const override;
+  void observe(Observer observer) override;
+  void restart() override {}
+
+ private:
+  // What held from an instant until the next one's.
+  struct Setting {
+    MonotonicTime since;
+    Nanoseconds ahead;  // of the system clock before the monotonic clock
+    NodeOscillator oscillator;
+    double rate_ppb = 0;  // of both against the steady clock
+  };
+
+  const Setting& setting_at(MonotonicTime at) const;
+  Nanoseconds measured_ahead() const;
+  double slew_left_ns() const;
+  // From now on: this rate, and a slew of this much, at most so fast, on top. Throws ClockError
+  // before anything has changed.
+  void run(double frequency_ppb, double slew_ns, double max_slew_ppb, Nanoseconds ahead);
+  void end_slew();
+  void end_slew_in_time();
+  void set_kernel_frequency(long frequency);
+  void begin(Nanoseconds ahead);
+  // Notes what another program has done to the clock meanwhile.
+  void look_for_others();
+
+  ClockCalls& calls_;
+  OsClockSettings options_;
+  OsClockLimits limits_;
+  long kernel_frequency_;  // as set last
+  bool told_of_others_ = false;
+  double frequency_ppb_ = 0;  // that stays
+  double slew_rate_ppb_ = 0;  // that ends with the slew
+  double max_slew_ppb_ = 0;   // as asked for
+  double slew_ns_ = 0;        // to be added from slew_since_ on
+  SteadyTime slew_since_{};
+  SteadyTime slew_end_{};
+  std::deque<Setting> settings_;
+  Observer observer_;
+  boost::asio::steady_timer slew_timer_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_CLOCK_OS_CLOCK_H_
