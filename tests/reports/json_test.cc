@@ -44,6 +44,7 @@ TEST(ResultsJson, ARowHasEverything) {
       "emission_latency_max_ms": 6.0},
     "frames": {"expected": 34560, "delivered": 34557, "dropped": 3},
     "evaluated_pulses": 960, "unsynchronised_hosts": 1,
+    "ground_truth": "simulation", "verified": true, "notes": [],
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
                   "rmdv_attainable": false,
                   "amd_percentile": 50.0, "amd_percentile_interval": [1.25, 98.75],
