@@ -10,6 +10,7 @@ namespace simbench::hardware {
 namespace {
 
 constexpr Nanoseconds kLeastPatience = std::chrono::seconds(1);
+constexpr Nanoseconds kStartPatience = std::chrono::seconds(4);
 constexpr int kPatiencePeriods = 10;
 constexpr Nanoseconds kBetweenNotes = std::chrono::seconds(10);
 // A counter that goes forward by more than this went back: the camera restarted.
@@ -104,7 +105,9 @@ void StreamWatch::check(MonotonicTime now, const CameraEventHandler& tell) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     Stream& stream = streams_[i];
     const bool awaited = stream.seen || (stream.expected && !waits_);
-    if (!awaited || stream.stalled || now - stream.last <= stream.patience) continue;
+    const Nanoseconds patience =
+        stream.seen ? stream.patience : std::max(stream.patience, kStartPatience);
+    if (!awaited || stream.stalled || now - stream.last <= patience) continue;
     stream.stalled = true;
     tell({CameraEvent::Kind::kStalled,
           fmt::format("{}: no frame for {:.1f} s{}", name_of(static_cast<StreamKind>(i)),

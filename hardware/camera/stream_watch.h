@@ -4,7 +4,8 @@
 // camera, for all its streams; used by one thread at a time.
 //
 //  - A stream without a frame for more than max(10 periods, 1 s): kStalled, once; a kNote when
-//    frames come again. In a mode that waits for triggers the watch begins with the first frame.
+//    frames come again. The first frame may take 4 s, as a camera takes time to start; in a mode
+//    that waits for triggers it may take for ever.
 //  - A gap of the frame counter (32 bits, it may wrap): a kNote with the loss, then at most one
 //    every 10 s with the sum, so that a bus which drops every second frame does not fill a log.
 //  - A counter that starts again, and a device clock that leaves the host's by more than a second

@@ -105,7 +105,8 @@ TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
   const auto stalls_at = [](const CameraSettings& wanted, double ms) {
     Told told;
     StreamWatch watch(wanted, false);
-    watch.start(at_ms(0));
+    watch.start(at_ms(-5));
+    watch.on_frame(frame(0, 0), told.handler());
     watch.check(at_ms(ms), told.handler());
     return !told.events.empty();
   };
@@ -114,6 +115,17 @@ TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
   EXPECT_FALSE(stalls_at(depth("slave", 30, 5), 1999));
   EXPECT_TRUE(stalls_at(depth("slave", 30, 5), 2001));
   EXPECT_TRUE(stalls_at(depth("default", 30, 5), 1001));  // a trigger that nobody follows
+}
+
+TEST(StreamWatch, ACameraIsGivenTimeToStart) {
+  Told told;
+  StreamWatch watch(depth("default", 30), false);
+  watch.start(at_ms(0));
+  watch.check(at_ms(4000), told.handler());
+  EXPECT_THAT(told.events, IsEmpty());
+  watch.check(at_ms(4001), told.handler());
+  ASSERT_EQ(told.kinds(), std::vector{Kind::kStalled});
+  EXPECT_EQ(told.events[0].text, "depth: no frame for 4.0 s");
 }
 
 TEST(StreamWatch, ACameraThatWaitsForTriggersIsWatchedFromItsFirstFrame) {

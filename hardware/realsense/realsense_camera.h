@@ -1,0 +1,74 @@
+// A RealSense camera as a Camera (hardware/camera/camera.h), over a device handle.
+//
+// The handle may be any rs2::device, so that an rs2::software_device can stand in. Which options
+// and profiles it is given: realsense_settings.h; what is read of each frame: realsense_frame.h;
+// what is noticed of its streams: hardware/camera/stream_watch.h. Images are not looked at.
+//
+// A camera that is unplugged while it is started is started again, with the same settings, when its
+// driver hands over its new device.
+//
+// Contract
+//  - `arrived` is read first of all in librealsense's callback.
+//  - Handlers run one at a time, also those of two sensors, and must not call stop().
+//  - unplugged() and plugged_in() may be called by any thread.
+//
+// Errors: CameraError: those of realsense_settings.h, a start without configure(), a second one, a
+// device that another program streams from, one that is unplugged. rs2::error never comes out.
+//
+//   RealsenseCamera camera(device);
+//   camera.configure(settings);
+//   camera.start(on_frame, on_event);
+#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_
+#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_
+
+#include <librealsense2/rs.hpp>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "hardware/camera/camera.h"
+#include "hardware/realsense/realsense_settings.h"
+
+namespace simbench::hardware {
+
+// Serial number, name, firmware and USB type, as far as the device tells them.
+CameraInfo realsense_info(const rs2::device& device);
+
+class RealsenseCamera : public Camera {
+ public:
+  explicit RealsenseCamera(rs2::device device);
+  ~RealsenseCamera() override;
+  RealsenseCamera(const RealsenseCamera&) = delete;
+  RealsenseCamera& operator=(const RealsenseCamera&) = delete;
+
+  const CameraInfo& info() const override { return info_; }
+  void configure(const CameraSettings& settings) override;
+  void start(FrameHandler on_frame, CameraEventHandler on_event) override;
+  void stop() override;
+
+  rs2::device device() const;
+  void unplugged();
+  // `device` is the same camera's.
+  void plugged_in(rs2::device device);
+
+ private:
+  class Outlet;  // to the handlers
+
+  void open_sensors();
+  void close_sensors();
+
+  CameraInfo info_;
+  std::shared_ptr<Outlet> outlet_;
+  mutable std::mutex mutex_;  // guards what follows
+  rs2::device device_;
+  bool present_ = true;
+  std::optional<CameraSettings> settings_;
+  std::vector<ChosenSensor> sensors_;
+  std::size_t opened_ = 0;  // of sensors_
+  bool started_ = false;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_CAMERA_H_

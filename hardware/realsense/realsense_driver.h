@@ -1,0 +1,41 @@
+// The RealSense cameras that are plugged into this host.
+//
+// Holds librealsense2's context and hands what it says of cameras that are unplugged and plugged in
+// again to those that were opened. Taking it down takes librealsense2 about two seconds.
+//
+// Cameras may outlive the driver; they are then told nothing of plugging.
+// Errors: CameraError: librealsense2 does not start; no camera of this serial number (with those
+// there are).
+//
+//   RealsenseDriver driver;
+//   auto camera = driver.open("018322071234");
+#ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_
+#define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_
+
+#include <librealsense2/rs.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hardware/camera/camera.h"
+
+namespace simbench::hardware {
+
+class RealsenseDriver final : public CameraDriver {
+ public:
+  RealsenseDriver();
+  // With a context of the caller's, to which software devices can be added.
+  explicit RealsenseDriver(const rs2::context& context);
+  ~RealsenseDriver() override;
+
+  std::vector<CameraInfo> list() override;
+  std::unique_ptr<Camera> open(const std::string& serial) override;
+
+ private:
+  class State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_REALSENSE_REALSENSE_DRIVER_H_

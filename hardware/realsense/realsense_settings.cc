@@ -1,0 +1,215 @@
+#include "hardware/realsense/realsense_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "hardware/realsense/realsense_error.h"
+
+namespace simbench::hardware {
+namespace {
+
+constexpr double kGenlockTolerance = 1.02;
+constexpr std::size_t kNearestShown = 5;
+
+struct SyncMode {
+  const char* name;
+  int value;
+  const char* firmware;  // the first that has it
+};
+
+constexpr std::array<SyncMode, 5> kSyncModes = {{{"default", 0, "5.9.15.1"},
+                                                 {"master", 1, "5.9.15.1"},
+                                                 {"slave", 2, "5.9.15.1"},
+                                                 {"full_slave", 3, "5.12.4.0"},
+                                                 {"genlock", 4, "5.12.4.0"}}};
+
+[[noreturn]] void fail(const std::string& serial, const std::string& problem) {
+  throw CameraError(fmt::format("camera {}: {}", serial, problem));
+}
+
+struct Profile {
+  std::size_t sensor = 0;
+  rs2::video_stream_profile profile;
+
+  bool has_size_of(const scenarios::Stream& stream) const {
+    return profile.width() == stream.width && profile.height() == stream.height;
+  }
+  bool fits(const scenarios::Stream& stream) const {
+    return has_size_of(stream) && std::abs(profile.fps() - stream.mode_rate_hz) < 0.5;
+  }
+  std::string text() const {
+    return fmt::format("{}x{} at {} Hz", profile.width(), profile.height(), profile.fps());
+  }
+  // How different it is from what is wanted: in size and in rate.
+  double distance(const scenarios::Stream& stream) const {
+    const double size = static_cast<double>(profile.width()) * profile.height();
+    const double wanted = static_cast<double>(stream.width) * static_cast<double>(stream.height);
+    return std::abs(std::log(std::max(size, 1.0) / std::max(wanted, 1.0))) +
+           std::abs(std::log(std::max(1, profile.fps()) / std::max(stream.mode_rate_hz, 1.0)));
+  }
+};
+
+std::vector<Profile> profiles_of(const std::vector<rs2::sensor>& sensors, rs2_stream type) {
+  std::vector<Profile> result;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    for (const rs2::stream_profile& each : sensors[i].get_stream_profiles()) {
+      if (each.stream_type() != type || !each.is<rs2::video_stream_profile>()) continue;
+      result.push_back({i, each.as<rs2::video_stream_profile>()});
+    }
+  }
+  return result;
+}
+
+[[noreturn]] void refuse_profile(const std::string& serial, const scenarios::Stream& stream,
+                                 std::vector<Profile> profiles) {
+  std::stable_sort(profiles.begin(), profiles.end(), [&](const Profile& a, const Profile& b) {
+    return a.distance(stream) < b.distance(stream);
+  });
+  std::vector<std::string> nearest;
+  for (const Profile& profile : profiles) {
+    const std::string text = profile.text();
+    if (nearest.size() == kNearestShown) break;
+    if (std::find(nearest.begin(), nearest.end(), text) == nearest.end()) nearest.push_back(text);
+  }
+  const std::string allowed = nearest.empty()
+                                  ? fmt::format("it has no {} stream", stream.kind)
+                                  : fmt::format("the nearest it has: {}", fmt::join(nearest, ", "));
+  fail(serial, fmt::format("no {} profile {}x{} at {} Hz, {}", stream.kind, stream.width,
+                           stream.height, stream.mode_rate_hz, allowed));
+}
+
+Profile choose_profile(const std::string& serial, const std::vector<rs2::sensor>& sensors,
+                       const scenarios::Stream& stream) {
+  const bool colour = stream.kind == "colour";
+  const std::vector<Profile> all =
+      profiles_of(sensors, colour ? RS2_STREAM_COLOR : RS2_STREAM_DEPTH);
+  const rs2_format preferred = colour ? RS2_FORMAT_YUYV : RS2_FORMAT_Z16;
+  const Profile* found = nullptr;
+  for (const Profile& profile : all) {
+    if (!profile.fits(stream)) continue;
+    if (found == nullptr || profile.profile.format() == preferred) found = &profile;
+    if (found->profile.format() == preferred) break;
+  }
+  if (found == nullptr) refuse_profile(serial, stream, all);
+  return *found;
+}
+
+void set_option(const ChosenSensor& sensor, rs2_option option, float value) {
+  if (sensor.sensor.get_option(option) != value) sensor.sensor.set_option(option, value);
+}
+
+void apply_sync_mode(const rs2::device& device, const CameraInfo& info,
+                     const CameraSettings& settings) {
+  const auto* mode = std::find_if(kSyncModes.begin(), kSyncModes.end(), [&](const SyncMode& each) {
+    return settings.sync_mode == each.name;
+  });
+  if (mode == kSyncModes.end()) {
+    fail(info.serial, fmt::format("found sync mode '{}', allowed default, master, slave, "
+                                  "full_slave, genlock",
+                                  settings.sync_mode));
+  }
+  const std::string firmware = info.firmware.empty() ? "its firmware" : "firmware " + info.firmware;
+  for (const rs2::sensor& sensor : device.query_sensors()) {
+    if (!sensor.supports(RS2_OPTION_INTER_CAM_SYNC_MODE)) continue;
+    const rs2::option_range range = sensor.get_option_range(RS2_OPTION_INTER_CAM_SYNC_MODE);
+    if (static_cast<float>(mode->value) > range.max) {
+      fail(info.serial,
+           fmt::format("sync mode {} is {} of Inter Cam Sync Mode, {} allows 0 to {}: it needs "
+                       "firmware {} or newer (rs-fw-update) and a global shutter",
+                       mode->name, mode->value, firmware, range.max, mode->firmware));
+    }
+    if (sensor.is_option_read_only(RS2_OPTION_INTER_CAM_SYNC_MODE)) {
+      fail(info.serial, fmt::format("sync mode {} cannot be set now: is the camera streaming in "
+                                    "another program?",
+                                    mode->name));
+    }
+    sensor.set_option(RS2_OPTION_INTER_CAM_SYNC_MODE, static_cast<float>(mode->value));
+    return;
+  }
+  if (mode->value == 0) return;
+  fail(info.serial, fmt::format("sync mode {}: {} has no option Inter Cam Sync Mode; it needs "
+                                "firmware {} or newer, and a D405 has none",
+                                mode->name, firmware, mode->firmware));
+}
+
+void apply_exposure(const ChosenSensor& sensor, const std::string& serial,
+                    const CameraSettings& settings) {
+  const rs2::sensor& device = sensor.sensor;
+  if (device.supports(RS2_OPTION_ENABLE_AUTO_EXPOSURE)) {
+    set_option(sensor, RS2_OPTION_ENABLE_AUTO_EXPOSURE, settings.auto_exposure ? 1.F : 0.F);
+  } else if (settings.auto_exposure) {
+    fail(serial, "auto exposure is wanted, and this camera cannot switch it on");
+  }
+  if (settings.auto_exposure) return;
+  if (!device.supports(RS2_OPTION_EXPOSURE)) {
+    fail(serial, fmt::format("an exposure of {} ms is wanted, and this camera cannot set it",
+                             settings.exposure_ms));
+  }
+  const rs2::option_range range = device.get_option_range(RS2_OPTION_EXPOSURE);
+  const double unit_ms = sensor.exposure_unit_us * 1e-3;
+  const double value = std::round(settings.exposure_ms / unit_ms);
+  if (value < range.min || value > range.max) {
+    fail(serial, fmt::format("found exposure {} ms, allowed {} to {}", settings.exposure_ms,
+                             range.min * unit_ms, range.max * unit_ms));
+  }
+  device.set_option(RS2_OPTION_EXPOSURE, static_cast<float>(value));
+}
+
+void check_trigger(const std::string& serial, const CameraSettings& settings) {
+  if (settings.sync_mode != "genlock") return;
+  for (const scenarios::Stream& stream : settings.streams) {
+    const double most_hz = stream.mode_rate_hz / 2;
+    if (settings.trigger_rate_hz <= most_hz * kGenlockTolerance) continue;
+    fail(serial, fmt::format("found triggers at {} Hz, allowed in genlock: at most {} Hz, half of "
+                             "the {} mode's {} Hz",
+                             settings.trigger_rate_hz, most_hz, stream.kind, stream.mode_rate_hz));
+  }
+}
+
+}  // namespace
+
+std::vector<ChosenSensor> choose_sensors(const rs2::device& device, const std::string& serial,
+                                         const CameraSettings& settings) {
+  if (settings.streams.empty()) fail(serial, "no stream is wanted");
+  check_trigger(serial, settings);
+  return guarded(serial, "reading its profiles", [&] {
+    const std::vector<rs2::sensor> sensors = device.query_sensors();
+    std::vector<std::optional<ChosenSensor>> chosen(sensors.size());
+    for (const scenarios::Stream& stream : settings.streams) {
+      const Profile profile = choose_profile(serial, sensors, stream);
+      auto& sensor = chosen[profile.sensor];
+      if (!sensor) {
+        const rs2::sensor& handle = sensors[profile.sensor];
+        const bool has_depth = !profiles_of({handle}, RS2_STREAM_DEPTH).empty();
+        sensor = ChosenSensor{handle, {}, has_depth ? 1 : 100};
+      }
+      sensor->profiles.push_back(profile.profile);
+    }
+    std::vector<ChosenSensor> result;
+    for (auto& sensor : chosen) {
+      if (sensor) result.push_back(std::move(*sensor));
+    }
+    return result;
+  });
+}
+
+void apply_settings(const rs2::device& device, const std::vector<ChosenSensor>& sensors,
+                    const CameraInfo& info, const CameraSettings& settings) {
+  guarded(info.serial, "setting its sync mode", [&] { apply_sync_mode(device, info, settings); });
+  for (const ChosenSensor& sensor : sensors) {
+    guarded(info.serial, "setting its exposure",
+            [&] { apply_exposure(sensor, info.serial, settings); });
+    guarded(info.serial, "switching global time off", [&] {
+      if (!sensor.sensor.supports(RS2_OPTION_GLOBAL_TIME_ENABLED)) return;
+      set_option(sensor, RS2_OPTION_GLOBAL_TIME_ENABLED, 0.F);
+    });
+  }
+}
+
+}  // namespace simbench::hardware
