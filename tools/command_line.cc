@@ -34,6 +34,7 @@
 #include "tools/trace_command.h"
 #include "tools/usage_error.h"
 #include "tools/validate_command.h"
+#include "tools/validate_model_command.h"
 
 namespace simbench {
 namespace {
@@ -93,6 +94,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_diagnose_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings");
+  tools::add_validate_model_command(app, action);
   tools::add_relay_command(app, action);
   tools::group_commands(app, "Real rigs");
   tools::add_list_command(app, action);
