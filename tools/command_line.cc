@@ -18,6 +18,7 @@
 #include "tools/diagnose_command.h"
 #include "tools/exit_status.h"
 #include "tools/figure_command.h"
+#include "tools/fit_command.h"
 #include "tools/gate_command.h"
 #include "tools/help_format.h"
 #include "tools/list_command.h"
@@ -92,6 +93,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_record_command(app, action);
   tools::add_replay_command(app, action, arguments);
   tools::add_diagnose_command(app, action);
+  tools::add_fit_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings");
   tools::add_validate_model_command(app, action);
