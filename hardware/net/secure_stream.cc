@@ -66,10 +66,8 @@ KeyBytes SecureStream::derived_key(std::uint64_t purpose) const {
   return derive_key(state_->session_key(), "simbench derived key", which);
 }
 
-// NOLINTNEXTLINE(misc-unused-parameters): a coroutine's parameters live as long as it does.
 Task<MessageId> SecureStream::send(Bytes message) {
-  const std::shared_ptr<State> state = state_;
-  co_return state->send(message);
+  return State::send(state_, std::move(message));
 }
 
 Task<StreamMessage> SecureStream::receive(MonotonicTime deadline) {

@@ -126,6 +126,8 @@ Task<bool> SecureStream::State::fill(Self self, std::span<std::byte> to) {
     if (self->failure_) co_return false;
     const ReceivedPiece piece = receive_stamped(self->socket_.native_handle(), to, nullptr);
     if (piece.error == EAGAIN || piece.error == EWOULDBLOCK) {
+      // The wait ends for transmit stamps as well, and would at once if they stayed.
+      self->take_stamps();
       boost::system::error_code closed;
       co_await self->socket_.async_wait(
           tcp::socket::wait_read, boost::asio::redirect_error(boost::asio::use_awaitable, closed));

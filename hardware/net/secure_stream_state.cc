@@ -80,10 +80,15 @@ Task<void> SecureStream::State::shake_hands(Self self, MonotonicTime deadline) {
     self->fail(Kind::kTimeout,
                "connected, but found no answer in time; is a simbench node listening there?");
   }
-  if (self->failure_) self->throw_failure();
+  // What it sent before it ended, if it did, is for receive().
+  if (!self->confirmed_) self->throw_failure();
 }
 
-MessageId SecureStream::State::send(const Bytes& message) {
+Task<MessageId> SecureStream::State::send(Self self, Bytes message) {
+  co_return self->send_now(message);
+}
+
+MessageId SecureStream::State::send_now(const Bytes& message) {
   if (failure_) throw_failure();
   if (message.size() > kMaxMessageBytes) {
     throw StreamError(Kind::kNotUnderstood,

@@ -34,7 +34,7 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
   // Returns when the other side has proved that it holds the key; throws StreamError.
   static Task<void> shake_hands(Self self, MonotonicTime deadline);
 
-  MessageId send(const Bytes& message);
+  static Task<MessageId> send(Self self, Bytes message);
   static Task<StreamMessage> receive(Self self, MonotonicTime deadline);
   static Task<std::optional<MonotonicTime>> transmit_stamp(Self self, MessageId id,
                                                            MonotonicTime deadline);
@@ -59,6 +59,7 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
   bool take_version(std::span<const std::byte, kHelloStartBytes> start);
   void derive_keys();
 
+  MessageId send_now(const Bytes& message);
   void queue(Bytes bytes, std::optional<MessageId> id);
   void flush();
   bool write_front();

@@ -37,10 +37,9 @@ template <class T>
 class Running {
  public:
   Running(boost::asio::io_context& context, Task<T> task) : context_(context) {
-    boost::asio::co_spawn(context, std::move(task),
-                          [end = end_](std::exception_ptr error, T value) {
+    boost::asio::co_spawn(context, keep(std::move(task), end_),
+                          [end = end_](const std::exception_ptr& error) {
                             end->error = error;
-                            if (!error) end->value.emplace(std::move(value));
                             end->done = true;
                           });
   }
@@ -63,6 +62,9 @@ class Running {
     std::optional<T> value;
     bool done = false;
   };
+  static Task<void> keep(Task<T> task, std::shared_ptr<End> end) {
+    end->value.emplace(co_await std::move(task));
+  }
   boost::asio::io_context& context_;
   std::shared_ptr<End> end_ = std::make_shared<End>();
 };
