@@ -21,6 +21,7 @@
 #include "tools/fit_command.h"
 #include "tools/gate_command.h"
 #include "tools/help_format.h"
+#include "tools/keygen_command.h"
 #include "tools/list_command.h"
 #include "tools/messages.h"
 #include "tools/mpi_launch.h"
@@ -96,6 +97,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_fit_command(app, action);
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings");
+  tools::add_keygen_command(app, action);
   tools::add_validate_model_command(app, action);
   tools::add_relay_command(app, action);
   tools::group_commands(app, "Real rigs");
