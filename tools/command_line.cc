@@ -25,6 +25,7 @@
 #include "tools/list_command.h"
 #include "tools/messages.h"
 #include "tools/mpi_launch.h"
+#include "tools/node_command.h"
 #include "tools/record_command.h"
 #include "tools/relay_command.h"
 #include "tools/replay_command.h"
@@ -98,6 +99,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::add_convert_ibl_command(app, action);
   tools::group_commands(app, "Recordings");
   tools::add_keygen_command(app, action);
+  tools::add_node_command(app, action);
   tools::add_validate_model_command(app, action);
   tools::add_relay_command(app, action);
   tools::group_commands(app, "Real rigs");

@@ -162,6 +162,8 @@ Task<void> Session::end(std::string reason) {
   }
   feed_->close();
   journal_.close();
+  // The next session's host observes the same clock.
+  if (!sync_runs_) host_.reset();
   world_.log(fmt::format("session {} ended ({}): {} frames, {} not kept", plan_.id, reason,
                          journal_.frames(), journal_.frames_not_kept() + feed_->dropped()));
 }
@@ -191,7 +193,7 @@ void Session::on_frame(std::uint32_t camera, const CameraFrame& frame) {
   record.arrival_steady = world_.clock.steady_at(frame.arrived);
   record.backend = frame.backend ? world_.clock.system_at(*frame.backend) : record.arrival;
   journal_.write(FrameEvent{record, std::nullopt});
-  if (frame.stream != scored_ || ending_) return;
+  if (frame.stream != scored_ || ending_ || !host_) return;
   host_->deliver({.camera = record.camera,
                   .counter = record.counter,
                   .exposure_us = record.exposure_us,
