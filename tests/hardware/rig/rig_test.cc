@@ -118,7 +118,8 @@ TEST(RigErrors, NoJsonAndWrongShape) {
   EXPECT_THAT(error_of("{"), HasSubstr("broken JSON"));
   EXPECT_THAT(error_of(""), HasSubstr("nothing in it"));
   EXPECT_EQ(error_of("[]"), "rigs/my.json:1: found an array of 0, allowed an object");
-  EXPECT_EQ(error_of(R"({"schema_version": 2, "name": "a", "hosts": [1]})"),
+  EXPECT_EQ(error_of(R"({"schema_version": 2, "name": "a")"
+                     ",\n\"hosts\": [1]}"),
             "rigs/my.json:1: /schema_version: found 2, allowed a whole number equal to 1");
   EXPECT_EQ(error_of(rig_of("")),
             "rigs/my.json:2: /hosts: found an array of 0, allowed an array of 1 to 1000");
