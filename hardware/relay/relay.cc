@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "hardware/net/kernel_stamps.h"
+#include "hardware/net/token_bucket.h"
 #include "hardware/relay/delay_queue.h"
 #include "hardware/relay/receive_stamps.h"
 #include "hardware/relay/relayed_stream.h"
@@ -48,25 +49,6 @@ boost::asio::ip::address address_of(const Rig& rig, const RigHost& host) {
   return address;
 }
 
-// As many tokens a second as datagrams are let through.
-class TokenBucket {
- public:
-  explicit TokenBucket(double per_second) : per_second_(per_second), tokens_(per_second) {}
-
-  bool take(MonotonicTime now) {
-    tokens_ = std::min(per_second_, tokens_ + per_second_ * to_seconds(now - last_));
-    last_ = now;
-    if (tokens_ < 1) return false;
-    tokens_ -= 1;
-    return true;
-  }
-
- private:
-  double per_second_;
-  double tokens_;
-  MonotonicTime last_ = monotonic_now();
-};
-
 // What node `from` takes for node `to`.
 struct Gate {
   Gate(boost::asio::io_context& context, NetworkLaw its_law)
@@ -77,7 +59,7 @@ struct Gate {
   tcp::acceptor acceptor;
   udp::socket socket;
   NetworkLaw law;  // of what comes from `from`
-  TokenBucket bucket{Relay::kMaxDatagramsPerSecond};
+  TokenBucket bucket;
   std::weak_ptr<RelayedStream> stream;
 };
 
@@ -203,7 +185,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
   }
 
   void relay(Gate& gate, const ReceivedPiece& piece, const Bytes& buffer) {
-    if (!gate.bucket.take(monotonic_now())) {
+    if (!gate.bucket.take(monotonic_now(), kMaxDatagramsPerSecond, kMaxDatagramsPerSecond)) {
       ++statistics_.dropped_rate;
       return;
     }
