@@ -89,7 +89,8 @@ double ks_critical_distance(std::size_t n, std::size_t m) {
   }
   // Not every multiple of 1 / (n m) is a distance that occurs: those of their common step are.
   const std::int64_t step = std::gcd(rows, columns);
-  return static_cast<double>((unlikely + step - 1) / step * step) / product;
+  const std::int64_t steps = (unlikely + step - 1) / step;
+  return static_cast<double>(steps * step) / product;
 }
 
 }  // namespace simbench::evaluation

@@ -4,8 +4,9 @@
 // what it should judge. It can say how far apart the stamps of a set are, how many frames came and
 // how late sets were emitted. It cannot say whether the frames of a set were exposed together: a
 // gatherer that mixes neighbours consistently looks perfect, and one that gives up all difficult
-// sets looks better than one that does not. Precision, recall and the errors do not exist. Such
-// scores are labelled "unverified" wherever they are shown.
+// sets looks better than one that does not; stamps that count from each camera's own first frame
+// (relative estimators) agree by construction, whenever the cameras were started. Precision, recall
+// and the errors do not exist. Such scores are labelled "unverified" wherever they are shown.
 //
 // The warm-up is counted in time, for each host on its steady clock from its first frame: as long
 // as layout.first_pulse frames take; as much as layout.pulses frames take is evaluated then. Frames

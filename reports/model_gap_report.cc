@@ -26,7 +26,8 @@ constexpr const char* kLegend[] = {
     "(simulated), which are independent of each other.",
     "KS: largest distance between the two distribution functions, 0 (equal) to 1 (no overlap). "
     "From the critical distance on they differ at the 5 % level; it is exact for these sample "
-    "sizes, and coarse for few repetitions: with 5 against 5 only 1 is significant.",
+    "sizes, and coarse for few repetitions: with 5 against 5 only 1 is significant; none: so few "
+    "that no distance is.",
     "gap: of the simulated median from the measured one. within 20 %: of medians above 0.05 ms; "
     "below that noise decides.",
     "The experiment validates how transport and protocols are implemented. It has no cameras: see "
@@ -79,24 +80,34 @@ TextTable gap_block(const std::vector<ModelGapRow>& rows) {
   return block;
 }
 
-TextTable evidence_block() {
+// In markdown with the reasons as a column; else they stand below, since they are long.
+TextTable evidence_block(bool with_reasons) {
   std::vector<Column> columns = {{"stage", Align::kLeft}};
   for (const Evidence evidence : evaluation::kAllEvidence) {
     std::string name(evaluation::name_of(evidence));
     std::replace(name.begin(), name.end(), ' ', '\n');
     columns.push_back({name, Align::kLeft});
   }
-  columns.push_back({"why", Align::kLeft});
+  if (with_reasons) columns.push_back({"why", Align::kLeft});
   TextTable block(columns);
   for (const StageEvidence& stage : evaluation::model_evidence()) {
     std::vector<std::string> cells = {std::string(stage.stage)};
     for (const Evidence evidence : evaluation::kAllEvidence) {
       cells.emplace_back(stage.has(evidence) ? "x" : "");
     }
-    cells.emplace_back(stage.why);
+    if (with_reasons) cells.emplace_back(stage.why);
     block.add(cells);
   }
   return block;
+}
+
+std::string evidence_text(bool markdown) {
+  if (markdown) return evidence_block(true).markdown();
+  std::string out = evidence_block(false).plain() + "\n";
+  for (const StageEvidence& stage : evaluation::model_evidence()) {
+    out += wrapped(fmt::format("{}: {}.", stage.stage, stage.why), 2);
+  }
+  return out;
 }
 
 // The sentence that sums up: how many of the judged rows are within the limit.
@@ -149,7 +160,7 @@ std::string report_text(const ModelGapReport& report, bool markdown) {
   }
   out += heading("How to read it");
   for (const char* text : kLegend) out += line(text);
-  return out + heading("What each stage of the model rests on") + block(evidence_block());
+  return out + heading("What each stage of the model rests on") + evidence_text(markdown);
 }
 
 Json side_json(const GapSide& side) {

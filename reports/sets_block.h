@@ -17,6 +17,11 @@ inline constexpr const char* kSetsLegend =
     "after: from the last member's arrival. AMD of sets is small where sets were given up: see "
     "recall.";
 
+// What is different about them on a real rig.
+inline constexpr const char* kRealArrivalsLegend =
+    "Arrivals on a real rig are read from the hosts' own clocks: where these are apart, \"emitted "
+    "after\" is wrong by as much, and may be negative.";
+
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_REPORTS_SETS_BLOCK_H_

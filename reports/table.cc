@@ -222,7 +222,10 @@ std::string report(const Results& results, std::string_view summary, const Layou
   }
   out += layout.heading("How to read it");
   for (const std::string& text : legend(results)) out += layout.line(text);
-  if (gatherings_differ(results)) out += layout.line(kSetsLegend);
+  if (gatherings_differ(results)) {
+    out += layout.line(kSetsLegend);
+    if (has_real_rows(results)) out += layout.line(kRealArrivalsLegend);
+  }
   const std::string asymmetry = asymmetry_line(results);
   if (!asymmetry.empty()) out += layout.line(asymmetry);
   out += layout.heading("Pipelines = host_sync + device_time + gathering");
