@@ -1,0 +1,127 @@
+// How well the two-way hull synchronises two nodes over this machine's loopback.
+//
+// Two processes, one node each: a software clock (300 ms apart, oscillators of +30 and -30 ppm),
+// the sockets, the algorithm; as in `simbench node` but for cameras. The clocks are functions of
+// the one monotonic clock of the machine, so the true error is known at any instant: the slave
+// prints what its clock reads each 10 ms, the parent subtracts.
+//
+//   build/release/bin/hull_loopback            (10 s, then 5 s of samples)
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "algorithms/registry.h"
+#include "hardware/clock/software_clock.h"
+#include "hardware/net/peer_network.h"
+#include "hardware/node/real_host.h"
+
+namespace {
+
+using namespace simbench;
+using namespace simbench::hardware;
+
+constexpr Nanoseconds kSettle = std::chrono::seconds(10);
+constexpr Nanoseconds kMeasure = std::chrono::seconds(5);
+constexpr Nanoseconds kEach = std::chrono::milliseconds(10);
+
+// The node's clock at an instant that both processes sample.
+struct Sample {
+  std::int64_t at_ns;
+  std::int64_t reads_ns;
+};
+
+Task<void> sample(const SoftwareClock& clock, MonotonicTime begin, std::vector<Sample>& samples,
+                  boost::asio::io_context& context) {
+  boost::asio::steady_timer timer(context);
+  for (MonotonicTime at = begin + kSettle; at < begin + kSettle + kMeasure; at += kEach) {
+    timer.expires_at(for_timer(at));
+    co_await timer.async_wait(boost::asio::use_awaitable);
+    samples.push_back({at.time_since_epoch().count(), nanoseconds_of(clock.system_at(at))});
+  }
+  context.stop();
+}
+
+std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe,
+                             MonotonicTime begin) {
+  boost::asio::io_context context(1);
+  SoftwareClock clock(
+      context, {.host = me,
+                .oscillator = {begin, SteadyTime(std::chrono::hours(1)), me == 0 ? 30. : -30.},
+                .offset = me == 0 ? Nanoseconds(0) : from_ms(300),
+                .system_clock = read_system_clock});
+  PeerNetwork network(context,
+                      {.me = me,
+                       .listen = {"127.0.0.1", 0},
+                       .peers = {{"127.0.0.1", master_port}, {"127.0.0.1", 0}},
+                       .key = {}},
+                      clock);
+  const std::uint16_t port = network.port();
+  if (me == 0 && write(port_pipe, &port, sizeof port) != sizeof port) std::abort();
+  RealHost host(context, me, clock, network, [](const RecordingEvent&) {});
+  const HostSyncEntry* entry = find_host_sync("two_way_hull");
+  const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
+  network.start();
+  boost::asio::co_spawn(context,
+                        me == 0 ? host_sync->run_master(host, {1}) : host_sync->run_slave(host, 0),
+                        boost::asio::detached);
+  std::vector<Sample> samples;
+  boost::asio::co_spawn(context, sample(clock, begin, samples, context), boost::asio::detached);
+  context.run();
+  return samples;
+}
+
+// Everything that the other process samples comes through the pipe.
+std::vector<Sample> read_samples(int pipe) {
+  std::vector<Sample> samples;
+  Sample one{};
+  while (read(pipe, &one, sizeof one) == sizeof one) samples.push_back(one);
+  return samples;
+}
+
+}  // namespace
+
+int main() {
+  int ports[2];
+  int results[2];
+  if (pipe(ports) != 0 || pipe(results) != 0) return 1;
+  const MonotonicTime begin = monotonic_now();
+  const pid_t master = fork();
+  if (master == 0) {
+    for (const Sample& one : run_node(0, 0, ports[1], begin)) {
+      if (write(results[1], &one, sizeof one) != sizeof one) std::_Exit(1);
+    }
+    std::_Exit(0);
+  }
+  close(results[1]);
+  std::uint16_t port = 0;
+  if (read(ports[0], &port, sizeof port) != sizeof port) return 1;
+  const std::vector<Sample> slave = run_node(1, port, -1, begin);
+  const std::vector<Sample> truth = read_samples(results[0]);
+  waitpid(master, nullptr, 0);
+
+  std::vector<double> errors_us;
+  std::vector<double> absolute_us;
+  for (std::size_t i = 0; i < std::min(slave.size(), truth.size()); ++i) {
+    errors_us.push_back(static_cast<double>(slave[i].reads_ns - truth[i].reads_ns) * 1e-3);
+    absolute_us.push_back(std::abs(errors_us.back()));
+  }
+  if (errors_us.empty()) return 1;
+  std::sort(errors_us.begin(), errors_us.end());
+  std::sort(absolute_us.begin(), absolute_us.end());
+  const std::size_t n = absolute_us.size();
+  fmt::print(
+      "samples {}  error of the clock (us): median {:+.2f}  |error| median {:.2f}  p95 {:.2f}"
+      "  max {:.2f}\n",
+      n, errors_us[n / 2], absolute_us[n / 2], absolute_us[n * 95 / 100], absolute_us.back());
+  return 0;
+}
