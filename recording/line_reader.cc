@@ -13,7 +13,7 @@
 namespace simbench {
 namespace {
 
-constexpr std::size_t kBlock = 256U << 10U;
+constexpr std::size_t kBlock = 64U << 10U;
 
 [[noreturn]] void fail(const std::string& path, int reason) {
   throw RecordingFolderError(fmt::format("{}: cannot be read: {}", path, std::strerror(reason)));
