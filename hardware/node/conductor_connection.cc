@@ -56,8 +56,8 @@ Task<void> ConductorConnection::take(Request request) {
     throw ProtocolError(fmt::format("more than {} requests at a time", kWaitingRequests));
   }
   waiting_.push_back(std::move(request));
-  if (!answering_) asio::co_spawn(context_, answer_waiting(shared_from_this()), asio::detached);
-  answering_ = true;
+  if (std::exchange(answering_, true)) co_return;
+  asio::co_spawn(context_, answer_waiting(shared_from_this()), asio::detached);
 }
 
 Task<void> ConductorConnection::answer_waiting(Self self) {
