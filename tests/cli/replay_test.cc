@@ -80,6 +80,16 @@ TEST_F(ReplayCommand, EqualCommandsGiveEqualBytes) {
   EXPECT_EQ(once.out, run({"replay", "a.csv", "--format", "json"}).out);
 }
 
+TEST_F(ReplayCommand, WhatOnlyAFolderTakesIsRefusedForFiles) {
+  const std::string name = file("a.csv", recording(0));
+  const ProgramResult markdown = run({"replay", name, "--format", "markdown"});
+  EXPECT_EQ(markdown.status, 2);
+  EXPECT_THAT(markdown.err, HasSubstr("--format: found 'markdown', allowed with CSV files: "));
+  const ProgramResult pipelines = run({"replay", name, "--pipelines", "oracle"});
+  EXPECT_EQ(pipelines.status, 2);
+  EXPECT_THAT(pipelines.err, HasSubstr("--pipelines: only a recording folder has pipelines"));
+}
+
 TEST_F(ReplayCommand, ARealRecordingIsConvertedAndReplayed) {
   if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "not run: data absent";
   const ProgramResult converted = run({"convert-ibl", kBody});
