@@ -105,10 +105,8 @@ class RealsenseCamera::Outlet {
   std::thread checker_;
 };
 
-RealsenseCamera::RealsenseCamera(rs2::device device)
-    : info_(realsense_info(device)),
-      outlet_(std::make_shared<Outlet>()),
-      device_(std::move(device)) {}
+RealsenseCamera::RealsenseCamera(const rs2::device& device)
+    : info_(realsense_info(device)), outlet_(std::make_shared<Outlet>()), device_(device) {}
 
 RealsenseCamera::~RealsenseCamera() { stop(); }
 
@@ -192,10 +190,10 @@ void RealsenseCamera::unplugged() {
   close_sensors();
 }
 
-void RealsenseCamera::plugged_in(rs2::device device) {
+void RealsenseCamera::plugged_in(const rs2::device& device) {
   const std::lock_guard lock(mutex_);
   if (present_) close_sensors();
-  device_ = std::move(device);
+  device_ = device;
   present_ = true;
   if (!settings_) return;
   try {

@@ -37,7 +37,7 @@ CameraInfo realsense_info(const rs2::device& device);
 
 class RealsenseCamera : public Camera {
  public:
-  explicit RealsenseCamera(rs2::device device);
+  explicit RealsenseCamera(const rs2::device& device);
   ~RealsenseCamera() override;
   RealsenseCamera(const RealsenseCamera&) = delete;
   RealsenseCamera& operator=(const RealsenseCamera&) = delete;
@@ -50,7 +50,7 @@ class RealsenseCamera : public Camera {
   rs2::device device() const;
   void unplugged();
   // `device` is the same camera's.
-  void plugged_in(rs2::device device);
+  void plugged_in(const rs2::device& device);
 
  private:
   class Outlet;  // to the handlers

@@ -44,8 +44,8 @@ class OpenCameras {
 
 class OpenCamera final : public RealsenseCamera {
  public:
-  OpenCamera(rs2::device device, std::shared_ptr<OpenCameras> open)
-      : RealsenseCamera(std::move(device)), open_(std::move(open)) {
+  OpenCamera(const rs2::device& device, std::shared_ptr<OpenCameras> open)
+      : RealsenseCamera(device), open_(std::move(open)) {
     open_->add(*this);
   }
   ~OpenCamera() override { open_->remove(*this); }

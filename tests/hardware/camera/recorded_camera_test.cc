@@ -1,5 +1,6 @@
 #include "hardware/camera/recorded_camera.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -27,14 +28,14 @@ std::string lines(const std::string& name, int count, int first_ms = 100,
                   const std::string& stream = "Depth") {
   std::string text;
   for (int i = 0; i < count; ++i) {
-    text += stream + ",0," + std::to_string(i) + "," + std::to_string(5000 + 4 * i) + "," +
-            std::to_string(first_ms + 4 * i) + "," + name + ",h\n";
+    text += fmt::format("{},0,{},{},{},{},h\n", stream, i, 5000 + 4 * i, first_ms + 4 * i, name);
   }
   return text;
 }
 
 std::vector<std::uint32_t> counters(const std::vector<CameraFrame>& frames) {
   std::vector<std::uint32_t> result;
+  result.reserve(frames.size());
   for (const CameraFrame& frame : frames) result.push_back(frame.counter);
   return result;
 }
@@ -167,16 +168,15 @@ TEST(RecordedCamera, NoHandlerRunsAfterStopAndStartPlaysAgain) {
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 1000));
   RecordedCameraDriver driver({recorded("front", csv)});
   const auto camera = driver.open("front");
-  std::size_t played = 0;
-  {
-    SeenFrames seen;
-    camera->start(seen.on_frame(), seen.on_event());
-    ASSERT_TRUE(seen.wait_for_frames(5));
-    camera->stop();
-    camera->stop();
-    played = seen.frames().size();
-    EXPECT_LT(played, 1000U);
-  }  // a handler that ran now would touch what is gone
+  SeenFrames seen;
+  camera->start(seen.on_frame(), seen.on_event());
+  ASSERT_TRUE(seen.wait_for_frames(5));
+  camera->stop();
+  camera->stop();
+  const std::size_t played = seen.frames().size();
+  EXPECT_LT(played, 1000U);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // a dozen frames
+  EXPECT_EQ(seen.frames().size(), played);
   SeenFrames again;
   camera->start(again.on_frame(), again.on_event());
   ASSERT_TRUE(again.wait_for_frames(2));

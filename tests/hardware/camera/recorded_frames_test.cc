@@ -76,6 +76,7 @@ std::string folder_of(const TemporaryFolder& folder, const std::vector<FrameEven
 
 std::vector<std::int64_t> due(const PlayedCamera& camera) {
   std::vector<std::int64_t> result;
+  result.reserve(camera.frames.size());
   for (const PlayedFrame& frame : camera.frames) result.push_back(frame.due_ns);
   return result;
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -13,33 +14,34 @@
 
 namespace simbench::hardware {
 
+// Handlers share what they write to, so a test may end while its camera plays.
 class SeenFrames {
  public:
   FrameHandler on_frame() {
-    return [this](const CameraFrame& frame) {
-      const std::lock_guard lock(mutex_);
-      frames_.push_back(frame);
-      changed_.notify_all();
+    return [state = state_](const CameraFrame& frame) {
+      const std::lock_guard lock(state->mutex);
+      state->frames.push_back(frame);
+      state->changed.notify_all();
     };
   }
   CameraEventHandler on_event() {
-    return [this](const CameraEvent& event) {
-      const std::lock_guard lock(mutex_);
-      events_.push_back(event);
-      changed_.notify_all();
+    return [state = state_](const CameraEvent& event) {
+      const std::lock_guard lock(state->mutex);
+      state->events.push_back(event);
+      state->changed.notify_all();
     };
   }
 
   // Bounded; false if it took more than ten seconds.
   bool wait_for_frames(std::size_t count) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(10),
-                             [&] { return frames_.size() >= count; });
+    std::unique_lock lock(state_->mutex);
+    return state_->changed.wait_for(lock, std::chrono::seconds(10),
+                                    [&] { return state_->frames.size() >= count; });
   }
   bool wait_for_event(CameraEvent::Kind kind, const std::string& text) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(10), [&] {
-      for (const CameraEvent& event : events_) {
+    std::unique_lock lock(state_->mutex);
+    return state_->changed.wait_for(lock, std::chrono::seconds(10), [&] {
+      for (const CameraEvent& event : state_->events) {
         if (event.kind == kind && event.text.find(text) != std::string::npos) return true;
       }
       return false;
@@ -47,12 +49,12 @@ class SeenFrames {
   }
 
   std::vector<CameraFrame> frames() const {
-    const std::lock_guard lock(mutex_);
-    return frames_;
+    const std::lock_guard lock(state_->mutex);
+    return state_->frames;
   }
   std::vector<CameraEvent> events() const {
-    const std::lock_guard lock(mutex_);
-    return events_;
+    const std::lock_guard lock(state_->mutex);
+    return state_->events;
   }
   std::size_t events_of(CameraEvent::Kind kind) const {
     std::size_t count = 0;
@@ -61,10 +63,14 @@ class SeenFrames {
   }
 
  private:
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<CameraFrame> frames_;
-  std::vector<CameraEvent> events_;
+  struct State {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::vector<CameraFrame> frames;
+    std::vector<CameraEvent> events;
+  };
+
+  std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 }  // namespace simbench::hardware

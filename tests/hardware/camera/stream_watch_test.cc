@@ -21,6 +21,7 @@ struct Told {
   }
   std::vector<Kind> kinds() const {
     std::vector<Kind> result;
+    result.reserve(events.size());
     for (const CameraEvent& event : events) result.push_back(event.kind);
     return result;
   }

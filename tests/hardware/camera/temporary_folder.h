@@ -28,7 +28,7 @@ class TemporaryFolder {
 
   // Whole or not at all, as a reader beside it sees it.
   std::string write(const std::string& name, const std::string& content) const {
-    const std::string path = *this / name;
+    std::string path = *this / name;
     std::ofstream(path + ".part") << content;
     std::filesystem::rename(path + ".part", path);
     return path;

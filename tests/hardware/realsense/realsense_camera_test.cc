@@ -160,12 +160,12 @@ TEST(RealsenseCamera, NoHandlerRunsAfterStopAndStartStreamsAgain) {
   RealsenseCamera camera(software.device);
   camera.configure(wanted());
   software.set_all(1, 1000, 2000);
-  {
-    SeenFrames seen;
-    camera.start(seen.on_frame(), seen.on_event());
-    camera.stop();
-  }
+  SeenFrames seen;
+  camera.start(seen.on_frame(), seen.on_event());
   software.inject();
+  camera.stop();
+  software.inject();
+  EXPECT_EQ(seen.frames().size(), 1U);
   SeenFrames again;
   camera.start(again.on_frame(), again.on_event());
   software.inject();
