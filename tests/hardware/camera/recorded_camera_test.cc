@@ -124,12 +124,14 @@ TEST(RecordedCamera, RemovingTheTriggerEndsPlayingAndTheNextBeginsAnew) {
 
 TEST(RecordedCamera, ATriggerOfLongAgoIsNoTrigger) {
   const TemporaryFolder folder;
-  const std::string csv = folder.write("a.csv", kHeader + lines("front", 3));
+  const std::string csv = folder.write("a.csv", kHeader + lines("front", 1000));
   RecordedCameraDriver driver({recorded(
       "front", csv, "", folder.write("trigger", instant(monotonic_now() - from_ms(1500))))});
   const auto camera = driver.open("front");
   SeenFrames seen;
   camera->start(seen.on_frame(), seen.on_event());
+  // Were it one, the recording would be in its second second.
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const MonotonicTime zero = monotonic_now() + from_ms(50);
   folder.write("trigger", instant(zero));
   ASSERT_TRUE(seen.wait_for_frames(3));
