@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <span>
 
 #include "algorithms/device_time/lower_hull.h"
@@ -87,35 +86,7 @@ double rise_ms(std::span<const LinePoint> points, const SupportLine& line) {
   return worst;
 }
 
-// How high the edge of the hull lies above the least delay, on average over the block.
-double floor_ms(std::span<const LinePoint> points, const std::vector<double>& heights_ms) {
-  constexpr int kDraws = 20;
-  constexpr double kNs = 1e6;
-  std::mt19937_64 random(heights_ms.size());
-  double sum = 0;
-  for (int i = 0; i < kDraws; ++i) {
-    LowerHull hull;
-    for (const LinePoint& point : points) {
-      const double height = heights_ms[random() % heights_ms.size()];
-      hull.add({.x = point.x, .y = std::llround(height * kNs)});
-    }
-    const std::int64_t middle = (points.front().x + points.back().x) / 2;
-    sum += middle_line(hull.vertices()).at(middle) / kNs;
-  }
-  return sum / kDraws;
-}
-
-void add_block(std::span<const LinePoint> points, std::vector<double>& excess_ms) {
-  const SupportLine line = hull_line(points);
-  std::vector<double> heights_ms;
-  heights_ms.reserve(points.size());
-  for (const LinePoint& point : points) {
-    heights_ms.push_back(std::max(0.0, height_ms(line, point)));
-  }
-  const double floor = floor_ms(points, heights_ms);
-  for (const double height : heights_ms) excess_ms.push_back(height + floor);
-}
-
+// Height above the hull of each frame's block.
 std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) {
   const std::size_t by_frames = points.size() / kBlockFrames;
   const auto by_time = static_cast<std::size_t>(span_s / kBlockS);
@@ -125,7 +96,9 @@ std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) 
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t begin = i * points.size() / blocks;
     const std::size_t end = (i + 1) * points.size() / blocks;
-    add_block(points.subspan(begin, end - begin), excess_ms);
+    const std::span<const LinePoint> block = points.subspan(begin, end - begin);
+    const SupportLine line = hull_line(block);
+    for (const LinePoint& point : block) excess_ms.push_back(std::max(0.0, height_ms(line, point)));
   }
   return excess_ms;
 }

@@ -5,12 +5,10 @@
 // device stamps.
 //
 // A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its
-// height above the lower hull's edge of its block. Blocks last kBlockS at least, and have
-// kBlockFrames at least, so that a rate that changes over minutes is not taken for delay. The
-// earliest of a block's frames came late as well: how much is found by drawing frames of the block
-// again at random and looking how high the edge of their hull lies; that is added. Excess holds
-// everything else that varies between the camera's stamp and the arrival stamp: bus, kernel,
-// scheduling, noise and steps of both stamps.
+// height above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at
+// least, so that a rate that changes over minutes is not taken for delay. Excess holds everything
+// else that varies between the camera's stamp and the arrival stamp: bus, kernel, scheduling, noise
+// and steps of both stamps.
 //
 // The standard error of the rate is that of the hull lines of kParts interleaved parts (every
 // kParts-th frame each), over sqrt(kParts): cautious, since a hull's error falls faster than that.
@@ -18,8 +16,7 @@
 //
 // Correlation is Spearman's between the excess of a frame and of the next by the counter.
 //
-// Source: reference/device_time.md section 1 (hull); algorithms/device_time/lower_hull.h;
-// drawing again: Efron 1979, "Bootstrap methods".
+// Source: reference/device_time.md section 1 (hull); algorithms/device_time/lower_hull.h.
 // Complexity: O(n log n). Errors: FitError: too few frames, device stamps or arrivals that go back.
 //
 //   const StreamFit fit = fit_stream("left", stream);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 
 #include "evaluation/two_sample_ks.h"
+#include "sim/engine/random.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -79,11 +79,10 @@ TEST(FitExchanges, FindsOffsetRateAndLatency) {
 }
 
 TEST(FitExchanges, ErrorsHoldTheTruth) {
-  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    std::mt19937 random(seed);
-    std::exponential_distribution<double> extra(10);  // mean 0.1 ms
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    sim::RandomStream random(seed, "test");
     const NetworkFit fit =
-        fit_exchanges(exchanges(Slave{}, 400, [&] { return 0.1 + extra(random); }));
+        fit_exchanges(exchanges(Slave{}, 400, [&] { return 0.1 + random.exponential(0.1); }));
     ASSERT_TRUE(fit.hosts[0].skew_ppm) << "seed " << seed;
     EXPECT_NEAR(fit.hosts[0].skew_ppm->value, 25, 5 * fit.hosts[0].skew_ppm->error)
         << "seed " << seed;
@@ -125,10 +124,10 @@ TEST(FitExchanges, NeedsAllStampsAndEnoughOfThem) {
 }
 
 // 20,000 draws of what two independent ways of a table make.
-std::vector<double> sums_of(const std::vector<double>& table, std::mt19937& random) {
-  std::uniform_real_distribution<double> place(0, static_cast<double>(table.size() - 1));
+std::vector<double> sums_of(const std::vector<double>& table, sim::RandomStream& random) {
+  const auto end = static_cast<double>(table.size() - 1);
   const auto draw = [&] {
-    const double at = place(random);
+    const double at = random.uniform(0, end);
     const auto below = static_cast<std::size_t>(at);
     return table[below] + (at - static_cast<double>(below)) * (table[below + 1] - table[below]);
   };
@@ -141,10 +140,12 @@ std::vector<double> sums_of(const std::vector<double>& table, std::mt19937& rand
 }
 
 TEST(OneWayTable, OfExponentialWaysIsExponential) {
-  std::mt19937 random(3);
-  std::exponential_distribution<double> extra(5);  // mean 0.2
+  sim::RandomStream random(3, "test");
   std::vector<double> trips;
-  for (int i = 0; i < 20'000; ++i) trips.push_back(1 + extra(random) + extra(random));
+  for (int i = 0; i < 20'000; ++i) {
+    const double there = random.exponential(0.2);
+    trips.push_back(1 + there + random.exponential(0.2));
+  }
   const std::vector<double> table = one_way_table(trips);
   ASSERT_EQ(table.size(), 101U);
   EXPECT_TRUE(std::is_sorted(table.begin(), table.end()));
@@ -159,12 +160,11 @@ TEST(OneWayTable, OfExponentialWaysIsExponential) {
 }
 
 TEST(OneWayTable, KeepsRareSpikes) {
-  std::mt19937 random(4);
-  std::exponential_distribution<double> extra(20);  // mean 0.05
-  std::uniform_real_distribution<double> uniform(0, 1);
+  sim::RandomStream random(4, "test");
   const auto way = [&] {
-    const double spike = uniform(random) < 0.05 ? 2 * uniform(random) : 0;
-    return 0.1 + extra(random) + spike;
+    const double extra = random.exponential(0.05);
+    const double spike = random.chance(0.05) ? random.uniform(0, 2) : 0;
+    return 0.1 + extra + spike;
   };
   std::vector<double> trips;
   for (int i = 0; i < 20'000; ++i) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 
 #include "evaluation/statistics.h"
+#include "sim/engine/random.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -42,10 +42,10 @@ TEST(FitStream, WithoutDelaysIsTheRateAndNoExcess) {
 }
 
 TEST(FitStream, GivesBackAUniformDelay) {
-  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> delay(0, 1);
-    const StreamFit fit = fit_stream("a", stream_of(900, -215, [&](int) { return delay(random); }));
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    sim::RandomStream random(seed, "test");
+    const StreamFit fit =
+        fit_stream("a", stream_of(900, -215, [&](int) { return random.uniform(); }));
     // The edge of the hull lies some 1 / 900 above the least delay, at both its ends.
     EXPECT_NEAR(fit.skew_ppm, -215, 5 * fit.skew_error_ppm) << "seed " << seed;
     EXPECT_LT(fit.skew_error_ppm, 3) << "seed " << seed;
@@ -57,32 +57,12 @@ TEST(FitStream, GivesBackAUniformDelay) {
   }
 }
 
-// Delays with a thin lower tail: the hull lies well above their least. Each fit to delays that were
-// drawn from a fit would lose that height again.
-TEST(FitStream, AFitToAFitDoesNotShrink) {
-  constexpr int kSeeds = 40;
-  double first = 0;
-  double second = 0;
-  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    const auto delay = [&](int) { return std::cbrt(uniform(random)); };  // density 3 x^2
-    const StreamFit fit = fit_stream("a", stream_of(300, 0, delay));
-    const auto again = [&](int) { return fit.excess_ms[random() % 300]; };
-    first += quantile(fit.excess_ms, 0.5) / kSeeds;
-    second += quantile(fit_stream("a", stream_of(300, 0, again)).excess_ms, 0.5) / kSeeds;
-  }
-  // The median's standard error is some 0.02 / sqrt(40); the hull's height some 0.1.
-  EXPECT_NEAR(second, first, 0.025) << "seeds 1 to 40";
-}
-
 // The rate changes by 2 ppm in a minute: a line through all would be off by 30 us.
 TEST(FitStream, ARateThatChangesIsNotTakenForDelay) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> uniform(0, 0.1);
+  sim::RandomStream random(5, "test");
   const auto delay_ms = [&](int i) {
     const double s = i / 30.0;
-    return s * s / 60 * 1e-6 * 1e3 + uniform(random);
+    return s * s / 60 * 1e-6 * 1e3 + random.uniform(0, 0.1);
   };
   const StreamFit fit = fit_stream("a", stream_of(1800 * 2, 0, delay_ms));
   EXPECT_NEAR(quantile(fit.excess_ms, 0.5), 0.05, 0.01) << "seed 5";

@@ -1,0 +1,114 @@
+// `simbench fit` through the real program.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
+const std::string kBody =
+    SIMBENCH_SOURCE_DIR "/../shared/data/ibl/_iblrig_bodyCamera.timestamps.ssv";
+
+class FitCommand : public ProgramTest {
+ protected:
+  // At 30 FPS; the camera's clock is 100 ppm fast, every third frame 0.3 ms late.
+  static std::string recording(int frames) {
+    std::string text = kHeader;
+    for (int i = 0; i < frames; ++i) {
+      const double ms = i * 1000.0 / 30;
+      text += fmt::format("Depth,0,{},{:.3f},{:.6f}\n", i + 1, 700 + ms * 1.0001,
+                          ms + (i % 3 == 0 ? 0.3 : 0));
+    }
+    return text;
+  }
+};
+
+TEST_F(FitCommand, MakesAScenarioThatIsValidAndRuns) {
+  const ProgramResult fitted = run({"fit", file("a.csv", recording(600)), "-o", "model.json"});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_THAT(fitted.out, AllOf(HasSubstr("drift of a, ppm"), HasSubstr("Hold-out"),
+                                HasSubstr("the constant part of the delivery delay")));
+  EXPECT_EQ(run({"validate", "model.json"}).status, 0);
+  const ProgramResult described = run({"describe", "model.json"});
+  EXPECT_THAT(described.out, HasSubstr("/usb/delivery_quantiles_ms"));
+  const ProgramResult ran = run({"--scenario", "model.json", "--seeds", "2", "--set",
+                                 "/timeline/frames=20", "--format", "json"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_FALSE(Json::parse(ran.out)["rows"].empty());
+}
+
+TEST_F(FitCommand, JsonHasBothChecks) {
+  const ProgramResult fitted =
+      run({"fit", file("a.csv", recording(600)), file("b.csv", recording(300)), "--one-host", "-o",
+           "model.json", "--format", "json"});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const Json root = Json::parse(fitted.out);
+  EXPECT_EQ(root["schema_version"], 1);
+  EXPECT_EQ(root["base"], "3cam_1host_30fps");
+  ASSERT_EQ(root["checks"].size(), 2U);
+  EXPECT_EQ(root["checks"][1]["check"], "hold_out");
+  EXPECT_EQ(root["checks"][0]["excess_ms"].size(), 8U);
+  EXPECT_NEAR(root["checks"][0]["skew_ppm"][0]["recorded"]["value"].get<double>(), 100, 0.5);
+  EXPECT_NEAR(root["checks"][0]["skew_ppm"][0]["simulated"]["value"].get<double>(), 100, 0.5);
+}
+
+TEST_F(FitCommand, ARealRecordingAgreesWithItsSimulatedModel) {
+  if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "no recorded data here";
+  file("body.csv", run({"convert-ibl", kBody}).out);
+  const ProgramResult fitted = run({"fit", "body.csv", "-o", "body.json", "--format", "json"});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const Json whole = Json::parse(fitted.out)["checks"][0];
+  EXPECT_LT(whole["ks"].get<double>(), whole["ks_limit"].get<double>());
+  // data/ibl: -214.932 ppm of host against device by the lower envelope.
+  EXPECT_NEAR(whole["skew_ppm"][0]["recorded"]["value"].get<double>(), 214.98, 0.2);
+}
+
+TEST_F(FitCommand, ARecordingFolderIsFittedOverItsOwnScenario) {
+  const ProgramResult recorded =
+      run({"record", "--scenario", "3cam_1host_30fps", "--seed", "3", "-o", "monday"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  const ProgramResult fitted = run({"fit", "monday", "-o", "model.json", "--format", "json"});
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_EQ(Json::parse(fitted.out)["base"], "3cam_1host_30fps");
+  EXPECT_EQ(Json::parse(content("model.json"))["base"], "3cam_1host_30fps");
+  const ProgramResult other = run({"fit", "monday", "--seed", "9", "-o", "model.json"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("monday: found no such capture, allowed "));
+}
+
+TEST_F(FitCommand, BadInputIsOneLineAndLeavesTheEarlierFile) {
+  file("model.json", "earlier");
+  const auto refused = [this](std::vector<std::string> inputs, const std::string& text) {
+    inputs.insert(inputs.begin(), "fit");
+    inputs.insert(inputs.end(), {"-o", "model.json"});
+    const ProgramResult result = run(inputs);
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(content("model.json"), "earlier");
+  };
+  refused({file("few.csv", recording(50))},
+          "camera few, Depth 0: found 50 frames, a fit needs 100");
+  const std::string back = recording(150) + "Depth,0,151,700,6000\n";
+  refused({file("back.csv", back)}, "camera back, Depth 0: found device stamp -");
+  refused({file("fast.csv", recording(150)), "--base", "no_such"}, "no_such");
+  refused({file("x.csv", recording(150)), "--seed", "1"}, "--pipeline and --seed choose");
+  std::filesystem::create_directory(folder() / "empty");
+  refused({"empty"}, "empty");
+  refused({"empty", "x.csv"}, "allowed one recording folder or CSV files");
+  EXPECT_THAT(names_in("empty"), ElementsAre());
+}
+
+}  // namespace
+}  // namespace simbench
