@@ -34,7 +34,7 @@ LineReader::~LineReader() {
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;
   while (true) {
-    const std::size_t stop = std::string_view(buffer_).substr(0, end_).find('\n', searched);
+    const std::size_t stop = std::string_view(buffer_.data(), end_).find('\n', searched);
     if (stop != std::string_view::npos) {
       const std::string_view line(buffer_.data() + begin_, stop - begin_);
       begin_ = stop + 1;

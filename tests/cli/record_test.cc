@@ -1,8 +1,8 @@
 // `simbench record`, and `simbench replay` of what it wrote, through the real program.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -130,6 +130,19 @@ TEST_F(RecordCommand, AFullDiskIsAClearErrorAndTheRestIsReplayed) {
   const ProgramResult replayed = run({"replay", "rec"});
   EXPECT_EQ(replayed.status, 0) << replayed.err;
   EXPECT_THAT(replayed.err, HasSubstr("note: pipeline oracle, seed 1: the recording has no end"));
+}
+
+TEST_F(RecordCommand, CtrlCKeepsWhatWasRecorded) {
+  const ProgramResult result =
+      run({"record", "--scenario", "18cam_6host_45fps", "--set", "/timeline/frames=500000",
+           "--pipelines", "genlock", "-o", "rec"},
+          {.interrupt_after = std::chrono::milliseconds(500)});
+  EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 1 captures; rec holds what was "));
+  const Json capture = Json::parse(content("rec/manifest.json"))["captures"][0];
+  EXPECT_EQ(capture["complete"], false);
+  EXPECT_EQ(capture["notes"][0], "interrupted");
+  EXPECT_EQ(content("rec/genlock/1/frames.csv").back(), '\n');
 }
 
 TEST_F(RecordCommand, ADamagedRecordingIsReplayedUpToTheDamage) {
