@@ -40,12 +40,7 @@ DatagramSession::DatagramSession(std::uint16_t me, const KeyBytes& send_key,
 
 Bytes DatagramSession::seal_next(std::span<const std::byte> message) {
   const std::uint64_t counter = next_++;
-  const HeaderBytes header = write_header(me_, counter);
-  Bytes datagram;
-  datagram.reserve(header.size() + message.size() + kSealBytes);
-  datagram.insert(datagram.end(), header.begin(), header.end());
-  seal_onto(datagram, send_key_, counter, header, message);
-  return datagram;
+  return header_and_sealed(send_key_, counter, write_header(me_, counter), message);
 }
 
 DatagramVerdict DatagramSession::open(const DatagramHeader& header,

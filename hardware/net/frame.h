@@ -34,12 +34,7 @@ inline std::optional<std::size_t> box_bytes(const FrameHeader& header) {
 // Header and box of a message.
 inline Bytes sealed_frame(const KeyBytes& key, std::uint64_t counter,
                           std::span<const std::byte> message) {
-  const FrameHeader header = frame_header(message.size());
-  Bytes frame;
-  frame.reserve(header.size() + message.size() + kSealBytes);
-  frame.insert(frame.end(), header.begin(), header.end());
-  seal_onto(frame, key, counter, header, message);
-  return frame;
+  return header_and_sealed(key, counter, frame_header(message.size()), message);
 }
 
 }  // namespace simbench::hardware

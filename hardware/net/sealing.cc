@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "hardware/net/wire_numbers.h"
@@ -22,6 +23,14 @@ NonceBytes nonce_of(std::uint64_t counter) {
 
 const unsigned char* plain(std::span<const std::byte> bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+void seal_into(std::span<std::byte> to, const KeyBytes& key, std::uint64_t counter,
+               std::span<const std::byte> header, std::span<const std::byte> message) {
+  const NonceBytes nonce = nonce_of(counter);
+  crypto_aead_chacha20poly1305_ietf_encrypt(reinterpret_cast<unsigned char*>(to.data()), nullptr,
+                                            plain(message), message.size(), plain(header),
+                                            header.size(), nullptr, nonce.data(), key.data());
 }
 
 }  // namespace
@@ -52,20 +61,18 @@ KeyBytes derive_key(const KeyBytes& key, std::string_view purpose,
   return derived;
 }
 
-void seal_onto(Bytes& out, const KeyBytes& key, std::uint64_t counter,
-               std::span<const std::byte> header, std::span<const std::byte> message) {
-  const NonceBytes nonce = nonce_of(counter);
-  const std::size_t before = out.size();
-  out.resize(before + message.size() + kSealBytes);
-  crypto_aead_chacha20poly1305_ietf_encrypt(reinterpret_cast<unsigned char*>(out.data()) + before,
-                                            nullptr, plain(message), message.size(), plain(header),
-                                            header.size(), nullptr, nonce.data(), key.data());
+Bytes header_and_sealed(const KeyBytes& key, std::uint64_t counter,
+                        std::span<const std::byte> header, std::span<const std::byte> message) {
+  Bytes all(header.size() + message.size() + kSealBytes);
+  std::copy(header.begin(), header.end(), all.begin());
+  seal_into(std::span(all).subspan(header.size()), key, counter, header, message);
+  return all;
 }
 
 Bytes seal(const KeyBytes& key, std::uint64_t counter, std::span<const std::byte> header,
            std::span<const std::byte> message) {
-  Bytes sealed;
-  seal_onto(sealed, key, counter, header, message);
+  Bytes sealed(message.size() + kSealBytes);
+  seal_into(sealed, key, counter, header, message);
   return sealed;
 }
 

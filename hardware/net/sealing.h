@@ -35,9 +35,12 @@ void fill_random(std::span<std::byte> bytes);
 KeyBytes derive_key(const KeyBytes& key, std::string_view purpose,
                     std::span<const std::byte> context);
 
-// Appends the sealed message to `out`. `header` is not in it, but is protected by it.
-void seal_onto(Bytes& out, const KeyBytes& key, std::uint64_t counter,
-               std::span<const std::byte> header, std::span<const std::byte> message);
+// `header` is not in what is sealed, but is protected by it.
+//
+// The header and, behind it, the sealed message.
+Bytes header_and_sealed(const KeyBytes& key, std::uint64_t counter,
+                        std::span<const std::byte> header, std::span<const std::byte> message);
+// The sealed message alone.
 Bytes seal(const KeyBytes& key, std::uint64_t counter, std::span<const std::byte> header,
            std::span<const std::byte> message);
 // Nothing if it was not sealed like this.
