@@ -55,7 +55,7 @@ bool needs_trigger(const Scenario& scenario) {
 }  // namespace
 
 void check_rig_fits(const Rig& rig, const Scenario& scenario) {
-  if (std::int64_t(rig.hosts.size()) != scenario.hosts.count) {
+  if (static_cast<std::int64_t>(rig.hosts.size()) != scenario.hosts.count) {
     fail(rig, "/hosts",
          fmt::format("found {}, allowed {}: as many as scenario {} has",
                      counted(rig.hosts.size(), "host"), scenario.hosts.count, scenario.name));
