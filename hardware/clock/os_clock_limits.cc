@@ -30,7 +30,7 @@ Nanoseconds OsClockLimits::check_step(HostTime from, HostTime to) const {
   }
   throw ClockError(
       fmt::format("system clock: found a step of {:+.6f} s, allowed at most {:.6f} s "
-                  "(--max-clock-step-ms); set the clock roughly by hand, or allow more",
+                  "(--max-step-ms); set the clock roughly by hand, or allow more",
                   step_s, to_seconds(max_step_)));
 }
 

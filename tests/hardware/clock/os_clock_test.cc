@@ -84,7 +84,7 @@ TEST_F(OsClockTest, RefusesAStepBeyondItsLimit) {
   EXPECT_THAT(
       error_of(clock->set(kernel.system_now_reads() - seconds(12))),
       testing::MatchesRegex("system clock: found a step of -12\\.00000[01] s, allowed at most "
-                            "1\\.000000 s \\(--max-clock-step-ms\\); set the clock roughly "
+                            "1\\.000000 s \\(--max-step-ms\\); set the clock roughly "
                             "by hand, or allow more"));
   EXPECT_THAT(error_of(clock->set(HostTime::max())), HasSubstr("found a step of +"));
   EXPECT_THAT(error_of(clock->set(HostTime::min())), HasSubstr("found a step of -"));
