@@ -35,7 +35,7 @@ Examples:
   simbench replay front.csv back.csv --format json > replay.json
   simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted (of a folder).)";
 
 struct ReplayOptions {
   std::vector<std::string> files;
