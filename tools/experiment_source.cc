@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "hardware/conductor/rig_source.h"
 #include "hardware/experiment/experiment_rig.h"
@@ -26,6 +27,11 @@ std::vector<hardware::NodeOscillator> oscillators_of(const hardware::RigSource& 
     oscillators.push_back(host.oscillator);
   }
   return oscillators;
+}
+
+// Where the recorded cameras come to their end is where the capture ends: nothing went wrong.
+bool is_end_of_recording(const std::string& note) {
+  return note.ends_with("the recording is over");
 }
 
 }  // namespace
@@ -63,6 +69,7 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
                                 .collect_session = {}});
     KeptRecording captured;
     RecordingCost cost = source.record(request, captured);
+    std::erase_if(cost.notes, is_end_of_recording);
     const std::optional<MonotonicTime> zero = rig.trigger_zero();
     if (!zero) throw RecordingFailed("the trigger was never switched on");
     add_truth({.played = played_, .zero = *zero, .oscillators = oscillators_of(source)}, captured,

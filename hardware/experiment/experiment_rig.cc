@@ -22,7 +22,7 @@ namespace {
 using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
 
-// Ten seconds are enough for a machine with more nodes than cores.
+// Much more than a machine with fewer cores than nodes takes.
 constexpr Nanoseconds kReadyLimit = std::chrono::seconds(20);
 constexpr Nanoseconds kRelayPatience = std::chrono::seconds(2);
 
