@@ -88,6 +88,7 @@ std::optional<Estimate> skew_ppm(const std::vector<RoundTrip>& trips) {
   constexpr double kLargestErrorPpm = 5;
   constexpr std::size_t kFewest = 10;
   std::vector<double> durations;
+  durations.reserve(trips.size());
   for (const RoundTrip& trip : trips) durations.push_back(trip.trip_ns);
   const double limit_ns = quantile(durations, 0.25);
   std::vector<double> at;

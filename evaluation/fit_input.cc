@@ -10,6 +10,8 @@
 namespace simbench::evaluation {
 namespace {
 
+const std::string kOneHost = "host0";
+
 void name_all(std::vector<std::string>& names, std::size_t count, const char* kind) {
   names.resize(std::min(names.size(), count));
   while (names.size() < count) names.push_back(fmt::format("{}{}", kind, names.size()));
@@ -90,7 +92,7 @@ FitInput fit_input(std::vector<CameraStream> streams, bool one_host) {
     return all.size() - 1;
   };
   for (CameraStream& stream : streams) {
-    const std::string host = one_host ? "host0" : stream.host;
+    const std::string& host = one_host ? kOneHost : stream.host;
     const std::size_t host_number = number_of(input.hosts, host, [&] { return host; });
     const std::size_t camera = number_of(input.cameras, stream.camera, [&] {
       return FitCamera{stream.camera, static_cast<std::uint32_t>(host_number)};
