@@ -74,6 +74,7 @@ struct CameraEvent {
     kReturned,         // plugged in again, and streaming
     kStalled,          // no frame for much longer than a period
     kMissingMetadata,  // frames lack stamps; told once, with how to get them
+    kEnded,            // a source that has an end is at it; nothing is wrong
     kNote,             // anything else worth a line
   };
   Kind kind = Kind::kNote;

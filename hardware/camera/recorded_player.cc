@@ -109,7 +109,7 @@ void skip(RecordedPlay& play) {
   while (play.next < frames && !is_played(play)) ++play.next;
   if (play.next < frames) return;
   play.state = RecordedPlay::State::kOver;
-  play.on_event({CameraEvent::Kind::kNote, "the recording is over"});
+  play.on_event({CameraEvent::Kind::kEnded, "the recording is over"});
 }
 
 // The earliest frame of all cameras.

@@ -62,7 +62,8 @@ RigSession::RigSession(boost::asio::io_context& context, const Rig& rig, const S
       settings_(settings),
       trigger_(context, rig.trigger, settings.prompt),
       id_(settings.collect_session.empty() ? fresh_session_id() : settings.collect_session),
-      layout_(layout_of(scenario)) {
+      layout_(layout_of(scenario)),
+      scored_(scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth) {
   hosts_.reserve(rig.hosts.size());
   for (std::size_t host = 0; host < rig.hosts.size(); ++host) {
     hosts_.push_back({NodeLink(context, rig.hosts[host], key,
@@ -170,39 +171,38 @@ Task<void> RigSession::end_all() {
       note(fmt::format("{}: {} damaged lines of its journal were left out", state.report.name,
                        state.journal.damaged()));
     }
+    // The node has told these already, when it wrote them.
     for (const std::string& line : state.journal.notes()) {
-      note(fmt::format("{}: {}", state.report.name, line));
+      notes_.push_back(fmt::format("{}: {}", state.report.name, line));
     }
   }
-  note_silent_cameras();
+  note_missing_frames();
 }
 
-void RigSession::note_silent_cameras() {
-  const StreamKind scored =
-      scenario_.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth;
+// Cameras that were on too short or not at all; single lost frames are in the scores.
+void RigSession::note_missing_frames() {
   const bool any = std::any_of(hosts_.begin(), hosts_.end(),
                                [](const HostState& host) { return host.journal.frames() > 0; });
   if (!any) return;
+  const std::int64_t wanted = layout_.first_pulse + layout_.pulses;
   std::uint32_t camera = 0;
   for (std::size_t host = 0; host < rig_.hosts.size(); ++host) {
     for (const RigCamera& which : rig_.hosts[host].cameras) {
-      if (hosts_[host].journal.covered(camera++, scored) == 0 && !hosts_[host].report.lost) {
-        note(
-            fmt::format("{}: camera {}: no frame came; is its trigger connected, and the rate one "
-                        "that its sync mode takes?",
-                        rig_.hosts[host].name, which.serial));
-      }
+      const std::int64_t covered = hosts_[host].journal.covered(camera++, scored_);
+      if (covered >= wanted || hosts_[host].report.lost) continue;
+      const std::string what =
+          covered > 0 ? fmt::format("its frames cover {} of {} periods", covered, wanted)
+                      : "no frame came; is its trigger connected, at a rate that its mode takes?";
+      note(fmt::format("{}: camera {}: {}", rig_.hosts[host].name, which.serial, what));
     }
   }
 }
 
 bool RigSession::all_covered() const {
-  const StreamKind scored =
-      scenario_.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth;
   for (std::uint32_t camera = 0; camera < layout_.cameras.size(); ++camera) {
     const HostState& host = hosts_[layout_.cameras[camera].host];
     if (host.ended) continue;
-    if (host.journal.covered(camera, scored) < layout_.first_pulse + layout_.pulses) return false;
+    if (host.journal.covered(camera, scored_) < layout_.first_pulse + layout_.pulses) return false;
   }
   return true;
 }

@@ -79,7 +79,7 @@ class RigSession {
   void give_up(std::size_t host, const std::string& why);
   void note(std::string line);
   void tell(const std::string& line) const;
-  void note_silent_cameras();
+  void note_missing_frames();
   bool all_covered() const;
   bool all_fetched() const;
   std::size_t hosts_left() const;
@@ -92,6 +92,7 @@ class RigSession {
   TriggerSwitch trigger_;
   std::string id_;
   RigLayout layout_;
+  StreamKind scored_;
   std::vector<HostState> hosts_;
   std::vector<std::string> notes_;
   bool sync_ended_ = false;  // the master's

@@ -203,6 +203,7 @@ void Session::on_frame(std::uint32_t camera, const CameraFrame& frame) {
 }
 
 void Session::on_event(std::uint32_t camera, const CameraEvent& event) {
+  if (event.kind == CameraEvent::Kind::kEnded) return;
   note(fmt::format("camera {}: {}", world_.cameras.serial_of(camera), event.text));
 }
 

@@ -51,7 +51,7 @@ TEST(RecordedCamera, PlaysEveryFrameAsRecordedAndNeverEarly) {
   const MonotonicTime before = monotonic_now();
   camera->start(seen.on_frame(), seen.on_event());
   ASSERT_TRUE(seen.wait_for_frames(20));
-  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kNote, "the recording is over"));
+  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kEnded, "the recording is over"));
   camera->stop();
   const auto frames = seen.frames();
   ASSERT_EQ(frames.size(), 20U);
@@ -207,7 +207,7 @@ TEST(RecordedCamera, PlaysTheStreamsThatAreWantedAndRefusesThoseItHasNot) {
   camera->configure(settings("genlock", {stream("colour", 90)}));
   SeenFrames seen;
   camera->start(seen.on_frame(), seen.on_event());
-  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kNote, "the recording is over"));
+  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kEnded, "the recording is over"));
   EXPECT_EQ(counters(seen.frames()), (std::vector<std::uint32_t>{0, 1, 2, 3}));
   for (const CameraFrame& frame : seen.frames()) EXPECT_EQ(frame.stream, StreamKind::kColour);
   EXPECT_THAT([&] { driver.open("mono")->configure(settings("genlock", {stream("colour", 90)})); },
@@ -238,7 +238,7 @@ TEST(RecordedCamera, AStreamThatStallsInTheRecordingIsToldLikeARealOne) {
   camera->configure(settings("default", {stream("depth", 90)}));
   SeenFrames seen;
   camera->start(seen.on_frame(), seen.on_event());
-  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kNote, "the recording is over"));
+  ASSERT_TRUE(seen.wait_for_event(CameraEvent::Kind::kEnded, "the recording is over"));
   EXPECT_EQ(seen.events_of(CameraEvent::Kind::kStalled), 1U);
   EXPECT_TRUE(seen.wait_for_event(CameraEvent::Kind::kNote, "from 2 to 9: 6 frames lost"));
 }

@@ -1,0 +1,148 @@
+#include "hardware/conductor/rig_source.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "recording/kept_recording.h"
+#include "tests/hardware/conductor/test_rig.h"
+
+namespace simbench::hardware {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// What a session gave, or why it failed.
+struct Outcome {
+  KeptRecording recording;
+  RecordingCost cost;
+  std::string failure;
+  std::vector<std::string> progress;
+
+  std::size_t frames(std::uint32_t camera) const {
+    std::size_t count = 0;
+    for (const RecordingEvent& event : recording.events()) {
+      const auto* frame = std::get_if<FrameEvent>(&event);
+      count += frame != nullptr && frame->record.camera == camera ? 1 : 0;
+    }
+    return count;
+  }
+};
+
+// `on_capture` is called, on another thread, once the capture has begun.
+Outcome record(const Rig& rig, const scenarios::Scenario& scenario,
+               const std::function<void()>& on_capture = {}, const std::string& collect = "",
+               std::string* session = nullptr) {
+  Outcome outcome;
+  std::jthread meanwhile;
+  RigSourceSettings settings;
+  settings.collect_session = collect;
+  settings.progress = [&](const std::string& line) {
+    outcome.progress.push_back(line);
+    if (on_capture && line.starts_with("capturing")) meanwhile = std::jthread(on_capture);
+  };
+  RigSource source(rig, SecretKey(), scenario, settings);
+  try {
+    outcome.cost = source.record({.seed = 1, .pipeline = kTestPipeline}, outcome.recording);
+  } catch (const RecordingFailed& error) {
+    outcome.failure = error.what();
+  }
+  if (session != nullptr) *session = source.session();
+  return outcome;
+}
+
+TEST(RigSource, RecordsAllFramesOfAllHostsInOrder) {
+  const TestRig rig({0, 50});
+  const Outcome outcome = record(rig.rig(), small_scenario());
+  EXPECT_EQ(outcome.failure, "");
+  EXPECT_THAT(outcome.cost.notes, IsEmpty());
+  EXPECT_EQ(outcome.recording.layout().hosts, 2U);
+  EXPECT_EQ(outcome.recording.layout().first_pulse, 3);
+  EXPECT_EQ(outcome.recording.layout().pulses, 20);
+  for (const std::uint32_t camera : {0U, 1U}) {
+    EXPECT_GE(outcome.frames(camera), 23U);
+    EXPECT_EQ(outcome.frames(camera), rig.frames_delivered(camera));
+  }
+  HostTime last = HostTime::min();
+  for (const RecordingEvent& event : outcome.recording.events()) {
+    const auto* frame = std::get_if<FrameEvent>(&event);
+    if (frame == nullptr) continue;
+    EXPECT_LE(last, frame->record.arrival);
+    last = frame->record.arrival;
+  }
+}
+
+TEST(RigSource, SaysWhichNodeIsNotThere) {
+  TestRig rig({0, 0});
+  rig.take_away(1);
+  const Outcome outcome = record(rig.rig(), small_scenario());
+  EXPECT_THAT(outcome.failure, AllOf(HasSubstr("greeting the nodes: host1 (127.0.0.1:"),
+                                     testing::Not(HasSubstr("host0"))));
+}
+
+TEST(RigSource, SaysWhichCameraRefuses) {
+  TestRig rig({0, 0});
+  rig.break_cameras(1);
+  const Outcome outcome = record(rig.rig(), small_scenario());
+  EXPECT_THAT(outcome.failure,
+              AllOf(HasSubstr("host1: camera cam1"), HasSubstr("it offers 640x480")));
+}
+
+TEST(RigSource, UnknownPipelinesAreRefusedByTheNodes) {
+  const TestRig rig({0, 0});
+  RigSource source(rig.rig(), SecretKey(), small_scenario(), {});
+  KeptRecording kept;
+  EXPECT_THROW(source.record({.seed = 1, .pipeline = "unheard_of"}, kept), RecordingFailed);
+}
+
+TEST(RigSource, ARigOfOtherSizeIsRefusedAtOnce) {
+  const TestRig rig({0});
+  EXPECT_THROW(RigSource(rig.rig(), SecretKey(), small_scenario(), {}), scenarios::InputError);
+}
+
+TEST(RigSource, ANodeThatIsRestartedDuringTheCaptureLosesNothingItHadRecorded) {
+  TestRig rig({0, 0});
+  const scenarios::Scenario scenario = small_scenario({{"/timeline/frames", "60"}});
+  std::size_t before = 0;
+  const Outcome outcome = record(rig.rig(), scenario, [&] {
+    while (rig.frames_delivered(1) < 20) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    before = rig.frames_delivered(1);
+    rig.restart(1);
+  });
+  EXPECT_EQ(outcome.failure, "");
+  EXPECT_GE(outcome.frames(1) + 5, before);  // but for what was on its way
+  EXPECT_GE(outcome.frames(0), 63U);
+  EXPECT_THAT(outcome.cost.notes, Contains(HasSubstr("host1")));
+}
+
+TEST(RigSource, TwoConductorsAreNotLetIn) {
+  const TestRig rig({0, 0});
+  const scenarios::Scenario scenario = small_scenario({{"/timeline/frames", "40"}});
+  Outcome second;
+  const Outcome first = record(rig.rig(), scenario, [&] { second = record(rig.rig(), scenario); });
+  EXPECT_EQ(first.failure, "");
+  EXPECT_GE(first.frames(0), 43U);
+  EXPECT_THAT(second.failure, AllOf(HasSubstr("host0"), HasSubstr("busy")));
+}
+
+TEST(RigSource, CollectsTheJournalsOfAnEarlierSession) {
+  const TestRig rig({0, 0});
+  std::string session;
+  const Outcome first = record(rig.rig(), small_scenario(), {}, "", &session);
+  const Outcome again = record(rig.rig(), small_scenario(), {}, session);
+  EXPECT_EQ(again.failure, "");
+  EXPECT_EQ(again.frames(0), first.frames(0));
+  EXPECT_EQ(again.frames(1), first.frames(1));
+  const Outcome never = record(rig.rig(), small_scenario(), {}, "0123456789abcdef");
+  EXPECT_THAT(never.failure, HasSubstr("no node has a journal of it"));
+}
+
+}  // namespace
+}  // namespace simbench::hardware
