@@ -12,9 +12,11 @@
 namespace simbench {
 namespace {
 
-SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
+SteadyTime at_second(double seconds) {
+  return SteadyTime(from_ms(seconds * 1e3));
+}
 
-double error_ns(const ClockLine& line, const ClockLine& truth, SteadyTime at) {
+double error_ns(const ClockLine &line, const ClockLine &truth, SteadyTime at) {
   return static_cast<double>((line.read(at) - truth.read(at)).count());
 }
 
@@ -36,18 +38,37 @@ TEST(TwoWayHullTest, WithoutJitterOffsetAndRateAreExact) {
   const ClockLine truth = remote_clock(from_ms(17), 23'456);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+    hull.add(
+        exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
   }
   EXPECT_NEAR(hull.line()->rate_ppb, 23'456, 0.1);
   EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 0, 10);
   EXPECT_NEAR(static_cast<double>(hull.width()->count()), 400'000, 20);
 }
 
+// Kernel stamps on a quiet link: in a tenth of a second the clocks drift apart
+// by more than a message takes, which is no jump.
+TEST(TwoWayHullTest, DelaysShorterThanTheDriftSayTheRateAtOnce) {
+  const ClockLine truth = remote_clock(from_ms(-300), 60'000);
+  TwoWayHull hull({});
+  double seconds = 0;
+  for (int i = 0; i < 40; ++i) {
+    hull.add(
+        exchange_at(truth, at_second(seconds), from_ms(0.002), from_ms(0.002)));
+    EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(seconds)), 0, 6000)
+        << "exchange " << i;
+    seconds += i < 16 ? 0.02 : 0.25;
+  }
+  EXPECT_EQ(hull.resets(), 0u);
+  EXPECT_NEAR(hull.line()->rate_ppb, 60'000, 1);
+}
+
 TEST(TwoWayHullTest, AsymmetryIsInTheOffsetWithItsHalfAndNotInTheRate) {
   const ClockLine truth = remote_clock(from_ms(0), -8'000);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.3), from_ms(0.1)));
+    hull.add(
+        exchange_at(truth, at_second(0.5 * i), from_ms(0.3), from_ms(0.1)));
   }
   EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 100'000, 10);
   EXPECT_NEAR(hull.line()->rate_ppb, -8'000, 0.1);
@@ -62,14 +83,16 @@ TEST(TwoWayHullTest, ExponentialTailsLeaveLittleAtTheEndOfTheWindow) {
   for (int run = 0; run < kRuns; ++run) {
     TwoWayHull hull({});
     for (int i = 0; i < 240; ++i) {
-      hull.add(exchange_at(truth, at_second(0.25 * i), from_ms(0.15 + tail(engine)),
+      hull.add(exchange_at(truth, at_second(0.25 * i),
+                           from_ms(0.15 + tail(engine)),
                            from_ms(0.15 + tail(engine))));
     }
     const double error = error_ns(*hull.line(), truth, at_second(60));
     squares += error * error;
     EXPECT_NEAR(hull.line()->rate_ppb, 31'000, 120) << "seed 11, run " << run;
   }
-  // beta / (sqrt(2) N) = 147 ns for a known rate; the rate, at the edge of the window, costs more.
+  // beta / (sqrt(2) N) = 147 ns for a known rate; the rate, at the edge of the
+  // window, costs more.
   EXPECT_LT(std::sqrt(squares / kRuns), 700);
 }
 
@@ -77,12 +100,14 @@ TEST(TwoWayHullTest, AStepOfTheRemoteClockStartsAfreshAndKeepsTheRate) {
   const ClockLine truth = remote_clock(from_ms(1), 12'000);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+    hull.add(
+        exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
   }
   EXPECT_EQ(hull.resets(), 0u);
   hull.line();
   for (const double step_ms : {7.0, -7.0}) {
-    const ClockLine later = remote_clock(from_ms(1 + std::max(step_ms, 0.0)), 12'000);
+    const ClockLine later =
+        remote_clock(from_ms(1 + std::max(step_ms, 0.0)), 12'000);
     const double at = step_ms > 0 ? 50 : 60;
     hull.add(exchange_at(later, at_second(at), from_ms(0.2), from_ms(0.2)));
     EXPECT_NEAR(error_ns(*hull.line(), later, at_second(at + 1)), 0, 10);
@@ -102,11 +127,14 @@ TEST(TwoWayHullTest, RatesBeyondTheLimitAreHeldAtIt) {
 
 TEST(TwoWayHullTest, ImpossibleExchangesAreRefused) {
   TwoWayHull hull({});
-  TwoWayExchange exchange =
-      exchange_at(remote_clock({}, 0), at_second(1), from_ms(0.2), from_ms(0.2));
-  exchange.replied += from_ms(1);  // longer at the peer than away
+  TwoWayExchange exchange = exchange_at(remote_clock({}, 0), at_second(1),
+                                        from_ms(0.2), from_ms(0.2));
+  exchange.replied += from_ms(1); // longer at the peer than away
   EXPECT_FALSE(hull.add(exchange));
-  exchange = {.sent = at_second(2), .arrived = {}, .replied = {}, .received = at_second(1)};
+  exchange = {.sent = at_second(2),
+              .arrived = {},
+              .replied = {},
+              .received = at_second(1)};
   EXPECT_FALSE(hull.add(exchange));
   EXPECT_FALSE(hull.line());
 }
@@ -121,5 +149,5 @@ TEST(TwoWayHullTest, IdenticalExchangesGiveOneFiniteLine) {
   EXPECT_EQ(hull.line()->rate_ppb, 0);
 }
 
-}  // namespace
-}  // namespace simbench
+} // namespace
+} // namespace simbench
