@@ -161,8 +161,8 @@ void Journal::flush() {
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
       const int error = done < 0 ? errno : ENOSPC;
-      const std::size_t written = batch.size() - left.size();
-      fail(error, std::string_view(batch).substr(0, written).rfind('\n') + 1, batch);
+      const std::string_view written(batch.data(), batch.size() - left.size());
+      fail(error, written.rfind('\n') + 1, batch);
       return;
     }
     left.remove_prefix(static_cast<std::size_t>(done));

@@ -37,7 +37,7 @@ std::string text_of(const json& arguments, const char* name) {
 }
 
 std::string session_of(const json& arguments) {
-  const std::string id = text_of(arguments, "session");
+  std::string id = text_of(arguments, "session");
   if (!is_session_id(id)) throw RequestError("'session': allowed: 16 hexadecimal digits");
   return id;
 }
