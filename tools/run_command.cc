@@ -12,14 +12,11 @@
 #include "evaluation/pipeline_choice.h"
 #include "reports/archive.h"
 #include "reports/budget_report.h"
-#include "reports/csv.h"
-#include "reports/json.h"
-#include "reports/leaderboard_report.h"
 #include "reports/prediction_report.h"
-#include "reports/table.h"
 #include "sim/rig/simulation.h"
 #include "tools/exit_status.h"
 #include "tools/interrupt.h"
+#include "tools/results_text.h"
 #include "tools/rig_backend.h"
 #include "tools/watched.h"
 
@@ -51,20 +48,6 @@ struct RunOptions {
   bool budget = false;
   std::vector<std::string> command;
 };
-
-std::string formatted(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                      const std::string& format) {
-  const std::string& summary = scenario.summary;
-  if (scenario.evaluation.table == "leaderboard") {
-    if (format == "json") return reports::leaderboard_json(results);
-    if (format == "markdown") return reports::leaderboard_markdown(results, summary);
-    if (format == "table") return reports::leaderboard_table(results, summary);
-  }
-  if (format == "json") return reports::json(results);
-  if (format == "csv") return reports::csv(results);
-  if (format == "markdown") return reports::markdown(results, summary);
-  return reports::table(results, summary);
-}
 
 evaluation::WorldFactory make_world() {
   return [](const scenarios::Scenario& scenario) {
@@ -141,12 +124,11 @@ void check_budget_options(const RunOptions& options) {
   }
 }
 
-std::string formatted_with_prediction(const evaluation::Results& measured,
-                                      const evaluation::Results& simulated,
-                                      const scenarios::Scenario& scenario,
-                                      const std::string& format) {
+std::string text_with_prediction(const evaluation::Results& measured,
+                                 const evaluation::Results& simulated,
+                                 const scenarios::Scenario& scenario, const std::string& format) {
   if (format == "json") return reports::json_with_prediction(measured, simulated);
-  const std::string results = formatted(measured, scenario, format);
+  const std::string results = results_text(measured, scenario, format);
   if (format == "csv") return results;
   return results + "\n" +
          (format == "markdown" ? reports::prediction_markdown(measured, simulated)
@@ -169,7 +151,7 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
   const std::optional<evaluation::Results> predicted =
       simulate(scenario, {.pipelines = options.evaluation.pipelines});
   if (!predicted) return kInterrupted;
-  print_result(formatted_with_prediction(*measured, *predicted, scenario, options.format));
+  print_result(text_with_prediction(*measured, *predicted, scenario, options.format));
   return kOk;
 }
 
@@ -197,7 +179,7 @@ int run(const RunOptions& options) {
     reports::write_archive(*output, *results, scenario, provenance);
     print_note("results written to " + options.output);
   }
-  print_result(formatted(*results, scenario, options.format));
+  print_result(results_text(*results, scenario, options.format));
   return kOk;
 }
 
