@@ -75,6 +75,7 @@ class NodeCommand : public ProgramTest {
       std::vector<std::string> words = {SIMBENCH_PROGRAM};
       words.insert(words.end(), arguments.begin(), arguments.end());
       std::vector<char*> argv;
+      argv.reserve(words.size() + 1);
       for (std::string& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);
       execv(SIMBENCH_PROGRAM, argv.data());
@@ -134,8 +135,10 @@ TEST_F(NodeCommand, TakesAKeyAndAClockOfTests) {
 }
 
 TEST_F(NodeCommand, AKeyThatOthersMayReadIsRefused) {
+  using std::filesystem::perms;
   ASSERT_EQ(run({"keygen", "rig.key"}).status, 0);
-  std::filesystem::permissions(folder() / "rig.key", std::filesystem::perms(0640));
+  const perms readable_by_group = perms::owner_read | perms::owner_write | perms::group_read;
+  std::filesystem::permissions(folder() / "rig.key", readable_by_group);
   const ProgramResult result = run(node({"--key-file", "rig.key"}));
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, AllOf(HasSubstr("0640"), HasSubstr("chmod 600")));

@@ -94,10 +94,10 @@ class NodeHarness : public testing::Test {
  public:
   static constexpr const char* kSession = "0123456789abcdef";
 
- protected:
   NodeHarness();
   ~NodeHarness() override;
 
+ protected:
   // A rig of the scenario's shape: cameras "serial0", ...; `me` is the node's host.
   void make_node(const std::string& scenario, PeerId me = 0);
   void stop_node();
