@@ -37,14 +37,15 @@ bool is_end_of_recording(const std::string& note) {
 }  // namespace
 
 ExperimentSource::ExperimentSource(const scenarios::Scenario& scenario, ExperimentOptions options)
-    : scenario_(scenario), options_(std::move(options)) {
+    : scenario_(scenario), cameras_(scenario), options_(std::move(options)) {
   hardware::check_relay_can(scenario);
+  cameras_.usb.kernel_copy_exponential_ms = 0;
 }
 
 std::string ExperimentSource::record_cameras(std::uint64_t seed) {
   const std::string folder = folder_.file(fmt::format("seed{}", seed));
   const RecordingRequest request = {.seed = seed, .pipeline = kPlayed};
-  sim::make_simulation(scenario_)->record(request, played_);
+  sim::make_simulation(cameras_)->record(request, played_);
   if (!std::filesystem::exists(folder)) {
     RecordingWriter writer(folder, {.backend = "sim", .scenario_json = scenario_.resolved_json});
     played_.play(writer.begin(kPlayed, seed));
@@ -72,10 +73,13 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
     std::erase_if(cost.notes, is_end_of_recording);
     const std::optional<MonotonicTime> zero = rig.trigger_zero();
     if (!zero) throw RecordingFailed("the trigger was never switched on");
-    add_truth({.played = played_, .zero = *zero, .oscillators = oscillators_of(source)}, captured,
-              sink);
-    const std::string said = rig.end_relay();
-    if (options_.relay_said) options_.relay_said(said);
+    const ExperimentTruth truth = {
+        .played = played_, .zero = *zero, .oscillators = oscillators_of(source)};
+    add_truth(truth, captured, sink);
+    if (options_.figures) {
+      options_.figures(
+          {.relay = rig.end_relay(), .deliveries_ms = delivery_lateness_ms(truth, captured)});
+    }
     return cost;
   } catch (const hardware::ChildError& error) {
     throw RecordingFailed(error.what());

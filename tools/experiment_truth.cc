@@ -20,12 +20,18 @@ FrameName name_of(const FrameRecord& frame) { return {frame.camera, frame.stream
 // What was played, counted from the zero of its recording.
 class Played {
  public:
+  struct Frame {
+    FrameTruth truth;
+    Nanoseconds delay;  // from the middle of the exposure to its delivery
+  };
+
   explicit Played(const KeptRecording& recording) {
     std::optional<TrueTime> zero;
     for (const RecordingEvent& event : recording.events()) {
       const auto* frame = std::get_if<FrameEvent>(&event);
       if (frame == nullptr || !frame->truth) continue;
-      truths_.emplace(name_of(frame->record), *frame->truth);
+      frames_.emplace(name_of(frame->record), Frame{*frame->truth, frame->record.arrival_steady -
+                                                                       frame->truth->own_steady});
       if (frame->truth->pulse < 0) continue;
       zero = std::min(zero.value_or(frame->truth->exposure_start), frame->truth->exposure_start);
     }
@@ -38,9 +44,9 @@ class Played {
                      [](const PulseEvent& a, const PulseEvent& b) { return a.at < b.at; });
   }
 
-  const FrameTruth& truth(const FrameRecord& frame) const {
-    const auto found = truths_.find(name_of(frame));
-    if (found == truths_.end()) {
+  const Frame& find(const FrameRecord& frame) const {
+    const auto found = frames_.find(name_of(frame));
+    if (found == frames_.end()) {
       throw RecordingFailed(
           fmt::format("camera {}: frame {} was never played", frame.camera, frame.counter));
     }
@@ -50,7 +56,7 @@ class Played {
   Nanoseconds since_zero(TrueTime at) const { return at - zero_; }
 
  private:
-  std::map<FrameName, FrameTruth> truths_;
+  std::map<FrameName, Frame> frames_;
   std::vector<PulseEvent> pulses_;
   TrueTime zero_;
 };
@@ -121,7 +127,7 @@ class Teller {
     const std::uint32_t host = layout_.cameras.at(frame.camera).host;
     const MonotonicTime arrived = clocks_.when(host, frame.arrival_steady);
     tell_pulses(arrived);
-    FrameTruth truth = played_.truth(frame);
+    FrameTruth truth = played_.find(frame).truth;
     const MonotonicTime middle = instant(truth.mid_exposure());
     truth.exposure_start = as_true(instant(truth.exposure_start));
     truth.exposure_end = as_true(instant(truth.exposure_end));
@@ -159,6 +165,24 @@ class Teller {
 
 void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink) {
   Teller(truth, captured, sink).tell_all(captured);
+}
+
+std::vector<double> delivery_lateness_ms(const ExperimentTruth& truth,
+                                         const KeptRecording& captured) {
+  const Played played(truth.played);
+  std::vector<double> lateness_ms;
+  for (const RecordingEvent& event : captured.events()) {
+    const auto* frame = std::get_if<FrameEvent>(&event);
+    if (frame == nullptr) continue;
+    const FrameRecord& record = frame->record;
+    const Played::Frame& original = played.find(record);
+    const MonotonicTime due =
+        truth.zero + played.since_zero(original.truth.mid_exposure()) + original.delay;
+    const std::uint32_t host = truth.played.layout().cameras.at(record.camera).host;
+    const MonotonicTime arrived = truth.oscillators.at(host).when(record.arrival_steady);
+    lateness_ms.push_back(to_ms(arrived - due));
+  }
+  return lateness_ms;
 }
 
 }  // namespace simbench::tools

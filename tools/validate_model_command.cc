@@ -9,12 +9,14 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/statistics.h"
 #include "hardware/experiment/network_sandbox.h"
 #include "reports/measured_study.h"
 #include "reports/model_gap_report.h"
@@ -90,12 +92,40 @@ std::string choose_network(ExperimentOptions& options) {
   return "loopback";
 }
 
+// What the machine added to what the scenario says, over all repetitions.
+class MachineFigures {
+ public:
+  void add(const ExperimentFigures& figures) {
+    for (const double late_ms : figures.deliveries_ms) deliveries_us_.push_back(late_ms * 1e3);
+    const auto relay = nlohmann::json::parse(figures.relay, nullptr, false);
+    if (!relay.is_object() || !relay["late_p50_us"].is_number()) return;
+    relay_p50_us_.push_back(relay["late_p50_us"].get<double>());
+    relay_p95_us_.push_back(relay["late_p95_us"].get<double>());
+  }
+  void print() const {
+    if (relay_p50_us_.empty() || deliveries_us_.empty()) return;
+    print_note(fmt::format(
+        "beyond the scenario's latencies, messages left the relay {:.0f} us late (95 %: {:.0f} us)",
+        evaluation::median(relay_p50_us_), evaluation::median(relay_p95_us_)));
+    print_note(fmt::format("played frames were delivered {:.0f} us late (95 %: {:.0f} us)",
+                           evaluation::median(deliveries_us_),
+                           evaluation::quantile(deliveries_us_, 0.95)));
+  }
+
+ private:
+  std::vector<double> deliveries_us_;
+  std::vector<double> relay_p50_us_;
+  std::vector<double> relay_p95_us_;
+};
+
 // Nothing: interrupted.
 std::optional<reports::MeasuredStudy> measure(const ValidateModelOptions& options,
                                               const scenarios::Scenario& scenario) {
   ExperimentOptions experiment;
   const std::string network = choose_network(experiment);
   experiment.cancelled = [] { return InterruptHandler::raised(); };
+  MachineFigures figures;
+  experiment.figures = [&figures](const ExperimentFigures& each) { figures.add(each); };
   const auto results = watched<evaluation::Results>(
       [&](const evaluation::Progress& progress) {
         return evaluation::evaluate(
@@ -106,6 +136,7 @@ std::optional<reports::MeasuredStudy> measure(const ValidateModelOptions& option
       "repetitions");
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
+  figures.print();
   return reports::measured_study(*results, today(), machine(network));
 }
 
