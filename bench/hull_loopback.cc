@@ -5,7 +5,11 @@
 // the one monotonic clock of the machine, so the true error is known at any instant: the slave
 // prints what its clock reads each 10 ms, the parent subtracts.
 //
+// With `flood` it is done a second time while a hostile neighbour sends the slave 10,000 forged,
+// replayed, truncated or oversized datagrams a second (bench/hostile_flood.h; root).
+//
 //   build/release/bin/hull_loopback            (10 s, then 5 s of samples)
+//   build/release/bin/hull_loopback flood
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,10 +21,13 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/registry.h"
+#include "bench/hostile_flood.h"
 #include "hardware/clock/software_clock.h"
 #include "hardware/net/peer_network.h"
 #include "hardware/node/real_host.h"
@@ -51,8 +58,9 @@ Task<void> sample(const SoftwareClock& clock, MonotonicTime begin, std::vector<S
   context.stop();
 }
 
+// `master_port` 0: this is the master, which tells its port through the pipe.
 std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe,
-                             MonotonicTime begin) {
+                             MonotonicTime begin, bool flooded) {
   boost::asio::io_context context(1);
   SoftwareClock clock(
       context, {.host = me,
@@ -67,6 +75,9 @@ std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe
                       clock);
   const std::uint16_t port = network.port();
   if (me == 0 && write(port_pipe, &port, sizeof port) != sizeof port) std::abort();
+  pid_t flood = 0;
+  if (flooded) flood = start_hostile_flood({.target_port = port, .pretended_port = master_port});
+  if (flood < 0) fmt::print(stderr, "raw sockets are not permitted here: no flood\n");
   RealHost host(context, me, clock, network, [](const RecordingEvent&) {});
   const HostSyncEntry* entry = find_host_sync("two_way_hull");
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, {}));
@@ -77,6 +88,14 @@ std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe
   std::vector<Sample> samples;
   boost::asio::co_spawn(context, sample(clock, begin, samples, context), boost::asio::detached);
   context.run();
+  if (flood > 0) {
+    kill(flood, SIGKILL);
+    waitpid(flood, nullptr, 0);
+    const NetworkStatistics& seen = network.statistics();
+    fmt::print("refused: {} forged, {} replayed, {} malformed, {} beyond the rate\n",
+               seen.refused_forged, seen.refused_replayed, seen.refused_malformed,
+               seen.refused_rate);
+  }
   return samples;
 }
 
@@ -88,24 +107,22 @@ std::vector<Sample> read_samples(int pipe) {
   return samples;
 }
 
-}  // namespace
-
-int main() {
+bool measure(bool flooded) {
   int ports[2];
   int results[2];
-  if (pipe(ports) != 0 || pipe(results) != 0) return 1;
+  if (pipe(ports) != 0 || pipe(results) != 0) return false;
   const MonotonicTime begin = monotonic_now();
   const pid_t master = fork();
   if (master == 0) {
-    for (const Sample& one : run_node(0, 0, ports[1], begin)) {
+    for (const Sample& one : run_node(0, 0, ports[1], begin, false)) {
       if (write(results[1], &one, sizeof one) != sizeof one) std::_Exit(1);
     }
     std::_Exit(0);
   }
   close(results[1]);
   std::uint16_t port = 0;
-  if (read(ports[0], &port, sizeof port) != sizeof port) return 1;
-  const std::vector<Sample> slave = run_node(1, port, -1, begin);
+  if (read(ports[0], &port, sizeof port) != sizeof port) return false;
+  const std::vector<Sample> slave = run_node(1, port, -1, begin, flooded);
   const std::vector<Sample> truth = read_samples(results[0]);
   waitpid(master, nullptr, 0);
 
@@ -115,13 +132,21 @@ int main() {
     errors_us.push_back(static_cast<double>(slave[i].reads_ns - truth[i].reads_ns) * 1e-3);
     absolute_us.push_back(std::abs(errors_us.back()));
   }
-  if (errors_us.empty()) return 1;
+  if (errors_us.empty()) return false;
   std::sort(errors_us.begin(), errors_us.end());
   std::sort(absolute_us.begin(), absolute_us.end());
   const std::size_t n = absolute_us.size();
   fmt::print(
-      "samples {}  error of the clock (us): median {:+.2f}  |error| median {:.2f}  p95 {:.2f}"
+      "{:<8} samples {}  error of the clock (us): median {:+.2f}  |error| median {:.2f}  p95 {:.2f}"
       "  max {:.2f}\n",
-      n, errors_us[n / 2], absolute_us[n / 2], absolute_us[n * 95 / 100], absolute_us.back());
-  return 0;
+      flooded ? "flooded" : "quiet", n, errors_us[n / 2], absolute_us[n / 2],
+      absolute_us[n * 95 / 100], absolute_us.back());
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool flood = argc > 1 && std::string_view(argv[1]) == "flood";
+  return measure(false) && (!flood || measure(true)) ? 0 : 1;
 }
