@@ -21,7 +21,8 @@ namespace simbench {
 namespace {
 
 using Payload = std::vector<unsigned char>;
-constexpr std::size_t kKept = 256;  // genuine datagrams, the newest
+constexpr std::size_t kKept = 256;        // genuine datagrams, the newest
+constexpr std::size_t kCounterByte = 10;  // hardware/net/datagram.h
 
 // What goes from the peer to the target, off the wire.
 void listen_in(int socket, const FloodPlan& plan, std::vector<Payload>& genuine) {
@@ -60,7 +61,8 @@ Payload hostile(const Payload& genuine, int kind) {
   Payload payload = genuine;
   switch (kind) {
     case 0:
-      payload.back() ^= 1U;
+      // A counter of the far future, or the seal would never be looked at.
+      if (payload.size() > kCounterByte) payload[kCounterByte] ^= 1U;
       break;
     case 1:
       break;
