@@ -40,6 +40,7 @@ ExperimentSource::ExperimentSource(const scenarios::Scenario& scenario, Experime
     : scenario_(scenario), cameras_(scenario), options_(std::move(options)) {
   hardware::check_relay_can(scenario);
   cameras_.usb.kernel_copy_exponential_ms = 0;
+  cameras_.usb.host_jitter_transfers = 0;
 }
 
 std::string ExperimentSource::record_cameras(std::uint64_t seed) {
