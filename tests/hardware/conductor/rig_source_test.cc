@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recording/kept_recording.h"
+#include "tests/hardware/conductor/cuttable_link.h"
 #include "tests/hardware/conductor/test_rig.h"
 
 namespace simbench::hardware {
@@ -120,6 +121,37 @@ TEST(RigSource, ANodeThatIsRestartedDuringTheCaptureLosesNothingItHadRecorded) {
   EXPECT_GE(outcome.frames(1) + 5, before);  // but for what was on its way
   EXPECT_GE(outcome.frames(0), 63U);
   EXPECT_THAT(outcome.cost.notes, Contains(HasSubstr("host1")));
+}
+
+TEST(RigSource, ACutLinkThatIsMendedCostsNothing) {
+  const TestRig rig({0, 0});
+  CuttableLink link(rig.rig().hosts[1].port);
+  Rig through_link = rig.rig();
+  through_link.hosts[1].port = link.port();
+  const scenarios::Scenario scenario = small_scenario({{"/timeline/frames", "60"}});
+  const Outcome outcome = record(through_link, scenario, [&] {
+    while (rig.frames_delivered(1) < 10) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    link.cut();
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    link.mend();
+  });
+  EXPECT_EQ(outcome.failure, "");
+  EXPECT_THAT(outcome.cost.notes, IsEmpty());
+  EXPECT_EQ(outcome.frames(1), rig.frames_delivered(1));
+}
+
+TEST(RigSource, AHostWhoseLinkStaysCutIsGivenUpAndTheOthersGoOn) {
+  const TestRig rig({0, 0});
+  CuttableLink link(rig.rig().hosts[1].port);
+  Rig through_link = rig.rig();
+  through_link.hosts[1].port = link.port();
+  const Outcome outcome = record(through_link, small_scenario(), [&] {
+    while (rig.frames_delivered(1) < 10) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    link.cut();
+  });
+  EXPECT_EQ(outcome.failure, "");
+  EXPECT_GE(outcome.frames(0), 23U);
+  EXPECT_THAT(outcome.cost.notes, Contains(HasSubstr("host1 was lost")));
 }
 
 TEST(RigSource, TwoConductorsAreNotLetIn) {
