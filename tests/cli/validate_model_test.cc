@@ -2,6 +2,8 @@
 // is in validate_model_slow_test.cc.
 #include <gmock/gmock.h>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -84,25 +86,34 @@ TEST_F(ValidateModelCommand, BadInputIsOneMessage) {
   EXPECT_THAT(result.err, HasSubstr("found true, allowed where a relay imitates the network"));
 }
 
+// Of loopback; the relay takes no port 0, since its nodes must know it beforehand.
+int free_port() {
+  using boost::asio::ip::tcp;
+  boost::asio::io_context context;
+  const tcp::acceptor acceptor(context, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
+  return acceptor.local_endpoint().port();
+}
+
 class RelayCommand : public ProgramTest {
  protected:
-  // The rig file of node `node` of two, at these ports of loopback.
-  std::string rig(int node, int port_0, int port_1) const {
-    const Json hosts = {
-        {{"name", "host0"}, {"address", "127.0.0.1"}, {"port", port_0}, {"cameras", Json::array()}},
-        {{"name", "host1"},
-         {"address", "127.0.0.1"},
-         {"port", port_1},
-         {"cameras", Json::array()}}};
+  // The rig file of node `node` of two, at free ports of loopback.
+  std::string rig(int node) const {
+    const Json hosts = {{{"name", "host0"},
+                         {"address", "127.0.0.1"},
+                         {"port", free_port()},
+                         {"cameras", Json::array()}},
+                        {{"name", "host1"},
+                         {"address", "127.0.0.1"},
+                         {"port", free_port()},
+                         {"cameras", Json::array()}}};
     return file("node" + std::to_string(node) + ".json",
                 Json{{"schema_version", 1}, {"name", "pair"}, {"hosts", hosts}}.dump());
   }
 };
 
 TEST_F(RelayCommand, EndsAfterItsTimeAndPrintsItsStatistics) {
-  const ProgramResult result =
-      run({"relay", "--scenario", "6node_relay", "--nodes",
-           rig(0, 47'901, 47'902) + "," + rig(1, 47'903, 47'904), "--for", "0.05"});
+  const ProgramResult result = run(
+      {"relay", "--scenario", "6node_relay", "--nodes", rig(0) + "," + rig(1), "--for", "0.05"});
   ASSERT_EQ(result.status, 0) << result.err;
   ASSERT_THAT(result.out, testing::StartsWith("ready\n"));
   const Json statistics = Json::parse(result.out.substr(6));
@@ -115,12 +126,11 @@ TEST_F(RelayCommand, BadInputIsOneMessage) {
       run({"relay", "--scenario", "6node_relay", "--nodes", "nothing.json", "--for", "1"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("nothing.json"));
-  result =
-      run({"relay", "--scenario", "6node_relay", "--nodes", rig(0, 47'911, 47'912), "--for", "1"});
+  result = run({"relay", "--scenario", "6node_relay", "--nodes", rig(0), "--for", "1"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("found 2 hosts, allowed: 1"));
-  result = run({"relay", "--scenario", "6node_relay", "--set", "/network/nagle=true", "--nodes",
-                rig(0, 47'911, 47'912)});
+  result = run(
+      {"relay", "--scenario", "6node_relay", "--set", "/network/nagle=true", "--nodes", rig(0)});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("nagle"));
 }

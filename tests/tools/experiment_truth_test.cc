@@ -45,7 +45,7 @@ class ExperimentTruthTest : public testing::Test {
       for (std::uint32_t camera = 0; camera < 2; ++camera) {
         const FrameTruth truth = {
             .pulse = pulse, .exposure_start = at, .exposure_end = at + from_ms(8)};
-        played_.on_frame({.camera = camera, .counter = counter(pulse)}, &truth);
+        played_.on_frame(frame(camera, pulse, SteadyTime{}), &truth);
       }
     }
     captured_.on_start({.hosts = 2, .cameras = {{0}, {1}}, .frame_rate_hz = 99});
@@ -54,8 +54,12 @@ class ExperimentTruthTest : public testing::Test {
     log(1, 10, 11.005, 11.001);
   }
 
-  static std::uint32_t counter(std::int64_t pulse) {
-    return static_cast<std::uint32_t>(700 + pulse);
+  static FrameRecord frame(std::uint32_t camera, std::int64_t pulse, SteadyTime arrived) {
+    FrameRecord record;
+    record.camera = camera;
+    record.counter = static_cast<std::uint32_t>(700 + pulse);
+    record.arrival_steady = arrived;
+    return record;
   }
   void log(std::uint32_t host, double at_s, double before_s, double after_s) {
     captured_.on_adjustment({.host = host,
@@ -65,8 +69,7 @@ class ExperimentTruthTest : public testing::Test {
   }
   // A frame of `pulse` that reached its host at this reading of the host's steady clock.
   void capture(std::uint32_t camera, std::int64_t pulse, SteadyTime arrived) {
-    captured_.on_frame({.camera = camera, .counter = counter(pulse), .arrival_steady = arrived},
-                       nullptr);
+    captured_.on_frame(frame(camera, pulse, arrived), nullptr);
   }
   KeptRecording told(double zero_s) const {
     KeptRecording result;
@@ -131,8 +134,8 @@ TEST_F(ExperimentTruthTest, HostErrorsFollowSkewAndSteps) {
 }
 
 TEST_F(ExperimentTruthTest, TheLayoutIsThePlayedOneAndAllElseIsHandedOn) {
-  captured_.on_outcome({.slave = 1, .synchronised = true});
-  captured_.on_exchange(1, {.peer = 0});
+  captured_.on_outcome(SyncOutcome());
+  captured_.on_exchange(1, Exchange());
   const KeptRecording result = told(5);
   EXPECT_EQ(result.layout().frame_rate_hz, 1);
   EXPECT_EQ(result.layout().pulses, 2);
@@ -145,7 +148,8 @@ TEST_F(ExperimentTruthTest, PulsesAreToldBeforeTheFramesThatFollowThem) {
   capture(0, 0, steady(5.05));
   capture(0, 1, steady(6.05));
   std::string order;
-  for (const RecordingEvent& event : told(5).events()) {
+  const KeptRecording result = told(5);
+  for (const RecordingEvent& event : result.events()) {
     if (std::holds_alternative<PulseEvent>(event)) order += 'p';
     if (std::holds_alternative<FrameEvent>(event)) order += 'f';
   }
