@@ -51,14 +51,14 @@ struct Pipe {
 
 // What the child needs between fork() and exec(), where only async-signal-safe calls are allowed.
 struct Plan {
-  const char* program;
-  char* const* arguments;
-  int log;
-  int output;
-  pid_t parent;
-  std::optional<unsigned> member;
-  int left_hub;   // the child writes a byte here when it has its namespace
-  int connected;  // and waits here until it is connected
+  const char* program = nullptr;
+  char* const* arguments = nullptr;
+  int log = -1;
+  int output = -1;
+  pid_t parent = 0;
+  std::optional<unsigned> member{};
+  int left_hub = -1;   // the child writes a byte here when it has its namespace
+  int connected = -1;  // and waits here until it is connected
 };
 
 [[noreturn]] void become(const Plan& plan) {
@@ -150,7 +150,7 @@ bool ChildProcess::read_more(MonotonicTime deadline) {
     const int ready = poll(&waits, 1, std::max(0, static_cast<int>(left.count())));
     if (ready == 0) return false;
     if (ready < 0 && errno == EINTR) continue;
-    std::array<char, 4096> buffer;
+    std::array<char, 4096> buffer{};
     const ssize_t size = read(output_, buffer.data(), buffer.size());
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) return false;
@@ -166,7 +166,7 @@ std::string ChildProcess::read_line(MonotonicTime deadline) {
       fail(monotonic_now() < deadline ? "ended before it was ready" : "was not ready in time");
     }
   }
-  const std::string line = read_.substr(0, end);
+  std::string line = read_.substr(0, end);
   read_.erase(0, end + 1);
   return line;
 }

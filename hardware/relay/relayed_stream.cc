@@ -80,7 +80,7 @@ Task<void> RelayedStream::run(std::shared_ptr<RelayedStream> self, tcp::endpoint
 // `from` and `to` are members of `self`.
 Task<void> RelayedStream::pump(std::shared_ptr<RelayedStream> self, Side& from, Side& to) {
   MessageSplitter splitter;
-  std::array<std::byte, 65536> buffer;
+  std::array<std::byte, 65536> buffer{};
   while (from.socket.is_open()) {
     const std::size_t size = std::min(buffer.size(), splitter.needed());
     const ReceivedPiece piece =
