@@ -197,7 +197,7 @@ std::optional<MonotonicTime> ExperimentRig::trigger_zero() const {
 
 std::string ExperimentRig::end_relay() {
   if (!relay_) return "";
-  const std::string said = relay_->end(kRelayPatience);
+  std::string said = relay_->end(kRelayPatience);
   relay_.reset();
   return said;
 }

@@ -40,7 +40,7 @@ bool is_private(const boost::asio::ip::address& address) {
 
 boost::asio::ip::address address_of(const Rig& rig, const RigHost& host) {
   Error error;
-  const auto address = boost::asio::ip::make_address(host.address, error);
+  auto address = boost::asio::ip::make_address(host.address, error);
   if (error || !is_private(address)) {
     throw RelayError(fmt::format(
         "{}: host '{}': found address '{}', allowed for a relay: a numeric loopback or private one",
