@@ -67,12 +67,11 @@ std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe
                 .oscillator = {begin, SteadyTime(std::chrono::hours(1)), me == 0 ? 30. : -30.},
                 .offset = me == 0 ? Nanoseconds(0) : from_ms(300),
                 .system_clock = read_system_clock});
-  PeerNetwork network(context,
-                      {.me = me,
-                       .listen = {"127.0.0.1", 0},
-                       .peers = {{"127.0.0.1", master_port}, {"127.0.0.1", 0}},
-                       .key = {}},
-                      clock);
+  PeerNetworkSettings settings;
+  settings.me = me;
+  settings.listen = {"127.0.0.1", 0};
+  settings.peers = {{"127.0.0.1", master_port}, {"127.0.0.1", 0}};
+  PeerNetwork network(context, settings, clock);
   const std::uint16_t port = network.port();
   if (me == 0 && write(port_pipe, &port, sizeof port) != sizeof port) std::abort();
   pid_t flood = 0;

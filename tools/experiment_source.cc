@@ -29,24 +29,17 @@ std::vector<hardware::NodeOscillator> oscillators_of(const hardware::RigSource& 
   return oscillators;
 }
 
-// Where the recorded cameras come to their end is where the capture ends: nothing went wrong.
-bool is_end_of_recording(const std::string& note) {
-  return note.ends_with("the recording is over");
-}
-
 }  // namespace
 
 ExperimentSource::ExperimentSource(const scenarios::Scenario& scenario, ExperimentOptions options)
-    : scenario_(scenario), cameras_(scenario), options_(std::move(options)) {
+    : scenario_(scenario), options_(std::move(options)) {
   hardware::check_relay_can(scenario);
-  cameras_.usb.kernel_copy_exponential_ms = 0;
-  cameras_.usb.host_jitter_transfers = 0;
 }
 
 std::string ExperimentSource::record_cameras(std::uint64_t seed) {
   const std::string folder = folder_.file(fmt::format("seed{}", seed));
   const RecordingRequest request = {.seed = seed, .pipeline = kPlayed};
-  sim::make_simulation(cameras_)->record(request, played_);
+  sim::make_simulation(scenario_)->record(request, played_);
   if (!std::filesystem::exists(folder)) {
     RecordingWriter writer(folder, {.backend = "sim", .scenario_json = scenario_.resolved_json});
     played_.play(writer.begin(kPlayed, seed));
@@ -71,16 +64,12 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
                                 .collect_session = {}});
     KeptRecording captured;
     RecordingCost cost = source.record(request, captured);
-    std::erase_if(cost.notes, is_end_of_recording);
     const std::optional<MonotonicTime> zero = rig.trigger_zero();
     if (!zero) throw RecordingFailed("the trigger was never switched on");
     const ExperimentTruth truth = {
         .played = played_, .zero = *zero, .oscillators = oscillators_of(source)};
     add_truth(truth, captured, sink);
-    if (options_.figures) {
-      options_.figures(
-          {.relay = rig.end_relay(), .deliveries_ms = delivery_lateness_ms(truth, captured)});
-    }
+    if (options_.relay_statistics) options_.relay_statistics(rig.end_relay());
     return cost;
   } catch (const hardware::ChildError& error) {
     throw RecordingFailed(error.what());

@@ -25,18 +25,12 @@
 
 namespace simbench::tools {
 
-// What this machine added in one repetition to what the scenario says.
-struct ExperimentFigures {
-  std::string relay;                  // its statistics, a line of JSON (hardware/relay/relay.h)
-  std::vector<double> deliveries_ms;  // lateness of the cameras' frames
-};
-
 struct ExperimentOptions {
   bool namespaces = false;                             // the caller is in a NetworkSandbox
   std::function<void(const std::string&)> progress{};  // a line for each step; may be empty
   std::function<bool()> cancelled{};                   // may be empty
-  // Told after each repetition; may be empty.
-  std::function<void(const ExperimentFigures&)> figures{};
+  // Told the relay's after each repetition, a line of JSON (hardware/relay/relay.h); may be empty.
+  std::function<void(const std::string&)> relay_statistics{};
   std::string program = "/proc/self/exe";  // simbench
 };
 
@@ -52,7 +46,6 @@ class ExperimentSource final : public RecordingSource {
   std::string record_cameras(std::uint64_t seed);
 
   const scenarios::Scenario& scenario_;
-  scenarios::Scenario cameras_;  // the world that is played
   ExperimentOptions options_;
   hardware::TemporaryFolder folder_;
   KeptRecording played_;

@@ -167,22 +167,4 @@ void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, Reco
   Teller(truth, captured, sink).tell_all(captured);
 }
 
-std::vector<double> delivery_lateness_ms(const ExperimentTruth& truth,
-                                         const KeptRecording& captured) {
-  const Played played(truth.played);
-  std::vector<double> lateness_ms;
-  for (const RecordingEvent& event : captured.events()) {
-    const auto* frame = std::get_if<FrameEvent>(&event);
-    if (frame == nullptr) continue;
-    const FrameRecord& record = frame->record;
-    const Played::Frame& original = played.find(record);
-    const MonotonicTime due =
-        truth.zero + played.since_zero(original.truth.mid_exposure()) + original.delay;
-    const std::uint32_t host = truth.played.layout().cameras.at(record.camera).host;
-    const MonotonicTime arrived = truth.oscillators.at(host).when(record.arrival_steady);
-    lateness_ms.push_back(to_ms(arrived - due));
-  }
-  return lateness_ms;
-}
-
 }  // namespace simbench::tools

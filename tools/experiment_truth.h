@@ -36,11 +36,6 @@ struct ExperimentTruth {
 // Tells `sink` all of `captured`, with the played capture's layout, truth and pulses.
 void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink);
 
-// How much later than their recording has it the cameras' frames were delivered, in milliseconds
-// and in the order of arrival: what this machine adds. Of the frames that were played.
-std::vector<double> delivery_lateness_ms(const ExperimentTruth& truth,
-                                         const KeptRecording& captured);
-
 }  // namespace simbench::tools
 
 #endif  // SIMBENCH_TOOLS_EXPERIMENT_TRUTH_H_

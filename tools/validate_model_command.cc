@@ -8,6 +8,7 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -51,6 +52,7 @@ struct ValidateModelOptions {
   std::string scenario;
   std::vector<std::string> sets;
   std::vector<std::string> pipelines;
+  std::uint64_t first_seed = 1;
   std::uint64_t repeats = 5;
   std::uint64_t seeds = 200;
   std::string measured;
@@ -92,30 +94,25 @@ std::string choose_network(ExperimentOptions& options) {
   return "loopback";
 }
 
-// What the machine added to what the scenario says, over all repetitions.
-class MachineFigures {
+// How late the relay was beyond the scenario's latencies, over all repetitions.
+class RelayLateness {
  public:
-  void add(const ExperimentFigures& figures) {
-    for (const double late_ms : figures.deliveries_ms) deliveries_us_.push_back(late_ms * 1e3);
-    const auto relay = nlohmann::json::parse(figures.relay, nullptr, false);
+  void add(const std::string& statistics) {
+    const auto relay = nlohmann::json::parse(statistics, nullptr, false);
     if (!relay.is_object() || !relay["late_p50_us"].is_number()) return;
-    relay_p50_us_.push_back(relay["late_p50_us"].get<double>());
-    relay_p95_us_.push_back(relay["late_p95_us"].get<double>());
+    p50_us_.push_back(relay["late_p50_us"].get<double>());
+    p95_us_.push_back(relay["late_p95_us"].get<double>());
   }
   void print() const {
-    if (relay_p50_us_.empty() || deliveries_us_.empty()) return;
+    if (p50_us_.empty()) return;
     print_note(fmt::format(
         "beyond the scenario's latencies, messages left the relay {:.0f} us late (95 %: {:.0f} us)",
-        evaluation::median(relay_p50_us_), evaluation::median(relay_p95_us_)));
-    print_note(fmt::format("played frames were delivered {:.0f} us late (95 %: {:.0f} us)",
-                           evaluation::median(deliveries_us_),
-                           evaluation::quantile(deliveries_us_, 0.95)));
+        evaluation::median(p50_us_), evaluation::median(p95_us_)));
   }
 
  private:
-  std::vector<double> deliveries_us_;
-  std::vector<double> relay_p50_us_;
-  std::vector<double> relay_p95_us_;
+  std::vector<double> p50_us_;
+  std::vector<double> p95_us_;
 };
 
 // Nothing: interrupted.
@@ -124,19 +121,23 @@ std::optional<reports::MeasuredStudy> measure(const ValidateModelOptions& option
   ExperimentOptions experiment;
   const std::string network = choose_network(experiment);
   experiment.cancelled = [] { return InterruptHandler::raised(); };
-  MachineFigures figures;
-  experiment.figures = [&figures](const ExperimentFigures& each) { figures.add(each); };
+  RelayLateness lateness;
+  experiment.relay_statistics = [&lateness](const std::string& each) { lateness.add(each); };
   const auto results = watched<evaluation::Results>(
       [&](const evaluation::Progress& progress) {
         return evaluation::evaluate(
             scenario,
             [&] { return interruptible(std::make_unique<ExperimentSource>(scenario, experiment)); },
-            {.seeds = options.repeats, .jobs = 1, .pipelines = options.pipelines}, progress);
+            {.first_seed = options.first_seed,
+             .seeds = options.repeats,
+             .jobs = 1,
+             .pipelines = options.pipelines},
+            progress);
       },
       "repetitions");
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
-  figures.print();
+  lateness.print();
   return reports::measured_study(*results, today(), machine(network));
 }
 
@@ -192,6 +193,11 @@ void add_measurement_options(CLI::App& command, ValidateModelOptions& options) {
       .add_option("--repeats", options.repeats, "Repetitions of each pipeline measured. Default: 5")
       ->type_name("N")
       ->check(whole_number(1, 1000));
+  command
+      .add_option("--first-seed", options.first_seed,
+                  "Seed of the first repetition's clocks, cameras and relay. Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
   command
       .add_option("--measured", options.measured,
                   "Instead of measuring now: a study that --save wrote")

@@ -11,11 +11,12 @@
 //    instant is more than 1 s before start(). When it is removed playing ends, and begins anew with
 //    the next file: `"trigger": {"on_command", "off_command"}` of a rig can write and remove it.
 // Frames that were due before start() are not played, as no camera was on. A recording is played
-// once; its end is told (kNote).
+// once; its end is told (kEnded).
 //
 // Frames carry the recorded counter, exposure and device stamps; `arrived` is the instant at which
-// the frame was really handed over, so the lateness of this machine's timers is in it, and
-// `backend` is as long before it as it was in the recording. Of the settings only the streams are
+// the frame was due, to the nanosecond, and `backend` as long before it as it was in the recording.
+// It is handed over as soon after that as this machine's timers allow: how late they are is no
+// property of any camera. Of the settings only the streams are
 // used: those that are wanted are played, one that the recording has not is refused.
 //
 // One thread plays all cameras of a driver, asleep but for the deliveries; it is there from the

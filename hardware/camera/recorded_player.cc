@@ -173,7 +173,7 @@ MonotonicTime RecordedPlayer::turn(MonotonicTime now) {
   if (now >= next_look_) look_at_triggers(now);
   RecordedPlay* play = earliest(plays_);
   if (play != nullptr && due(*play) <= now) {
-    const MonotonicTime arrived = monotonic_now();
+    const MonotonicTime arrived = due(*play);
     const CameraFrame frame = frame_at(play->camera->frames[play->next++], arrived);
     play->on_frame(frame);
     play->watch.on_frame(frame, play->on_event);
