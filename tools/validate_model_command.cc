@@ -38,8 +38,8 @@ scenario is simulated, and both distributions are printed side by side.
 
 It validates transport, protocols and what hosts cost, not cameras: see the matrix of evidence.
 Nodes get network namespaces of their own where that is permitted, else ports of loopback. A
-repetition of the paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their service
-runs before the capture. The machine should do nothing else meanwhile.
+repetition of the paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their
+service runs before the capture. The machine should do nothing else meanwhile.
 
 Examples:
   simbench validate-model --scenario 6node_relay

@@ -39,7 +39,7 @@
 namespace simbench {
 
 class TwoWayHull : public TwoWayEstimator {
-public:
+ public:
   struct Settings {
     Nanoseconds window = from_ms(60e3);
     double max_rate_ppm = 500;
@@ -49,7 +49,7 @@ public:
 
   explicit TwoWayHull(Settings settings);
 
-  bool add(const TwoWayExchange &exchange) override;
+  bool add(const TwoWayExchange& exchange) override;
   std::optional<ClockLine> line() override;
   // How often the hulls have crossed.
   std::uint64_t resets() const { return resets_; }
@@ -57,7 +57,7 @@ public:
   // corridor.
   std::optional<Nanoseconds> width() const;
 
-private:
+ private:
   // Intercepts, at x = 0, of the two lines of one rate that touch the hulls.
   struct Corridor {
     double above_ns = std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ private:
     bool is_contradictory() const;
   };
 
-  void add_bounds(const TwoWayExchange &exchange);
+  void add_bounds(const TwoWayExchange& exchange);
   double span_ns() const;
   double choose_rate() const;
   // Of the widest corridor.
@@ -79,8 +79,8 @@ private:
   Settings settings_;
   Envelope upper_bounds_;
   Envelope negated_lower_bounds_;
-  std::optional<SteadyTime> zero_; // x = 0
-  Nanoseconds zero_offset_{0};     // y = 0
+  std::optional<SteadyTime> zero_;  // x = 0
+  Nanoseconds zero_offset_{0};      // y = 0
   double latest_ns_ = 0;
   double rate_ = 0;
   // Of rate_. Points that have left the window may still be in it: then it is
@@ -90,6 +90,6 @@ private:
   std::uint64_t resets_ = 0;
 };
 
-} // namespace simbench
+}  // namespace simbench
 
-#endif // SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_HULL_H_
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_HULL_H_

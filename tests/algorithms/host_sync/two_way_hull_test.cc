@@ -12,11 +12,9 @@
 namespace simbench {
 namespace {
 
-SteadyTime at_second(double seconds) {
-  return SteadyTime(from_ms(seconds * 1e3));
-}
+SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
 
-double error_ns(const ClockLine &line, const ClockLine &truth, SteadyTime at) {
+double error_ns(const ClockLine& line, const ClockLine& truth, SteadyTime at) {
   return static_cast<double>((line.read(at) - truth.read(at)).count());
 }
 
@@ -38,8 +36,7 @@ TEST(TwoWayHullTest, WithoutJitterOffsetAndRateAreExact) {
   const ClockLine truth = remote_clock(from_ms(17), 23'456);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(
-        exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
   }
   EXPECT_NEAR(hull.line()->rate_ppb, 23'456, 0.1);
   EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 0, 10);
@@ -53,10 +50,8 @@ TEST(TwoWayHullTest, DelaysShorterThanTheDriftSayTheRateAtOnce) {
   TwoWayHull hull({});
   double seconds = 0;
   for (int i = 0; i < 40; ++i) {
-    hull.add(
-        exchange_at(truth, at_second(seconds), from_ms(0.002), from_ms(0.002)));
-    EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(seconds)), 0, 6000)
-        << "exchange " << i;
+    hull.add(exchange_at(truth, at_second(seconds), from_ms(0.002), from_ms(0.002)));
+    EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(seconds)), 0, 6000) << "exchange " << i;
     seconds += i < 16 ? 0.02 : 0.25;
   }
   EXPECT_EQ(hull.resets(), 0u);
@@ -67,8 +62,7 @@ TEST(TwoWayHullTest, AsymmetryIsInTheOffsetWithItsHalfAndNotInTheRate) {
   const ClockLine truth = remote_clock(from_ms(0), -8'000);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(
-        exchange_at(truth, at_second(0.5 * i), from_ms(0.3), from_ms(0.1)));
+    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.3), from_ms(0.1)));
   }
   EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 100'000, 10);
   EXPECT_NEAR(hull.line()->rate_ppb, -8'000, 0.1);
@@ -83,8 +77,7 @@ TEST(TwoWayHullTest, ExponentialTailsLeaveLittleAtTheEndOfTheWindow) {
   for (int run = 0; run < kRuns; ++run) {
     TwoWayHull hull({});
     for (int i = 0; i < 240; ++i) {
-      hull.add(exchange_at(truth, at_second(0.25 * i),
-                           from_ms(0.15 + tail(engine)),
+      hull.add(exchange_at(truth, at_second(0.25 * i), from_ms(0.15 + tail(engine)),
                            from_ms(0.15 + tail(engine))));
     }
     const double error = error_ns(*hull.line(), truth, at_second(60));
@@ -100,14 +93,12 @@ TEST(TwoWayHullTest, AStepOfTheRemoteClockStartsAfreshAndKeepsTheRate) {
   const ClockLine truth = remote_clock(from_ms(1), 12'000);
   TwoWayHull hull({});
   for (int i = 0; i < 100; ++i) {
-    hull.add(
-        exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
+    hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
   }
   EXPECT_EQ(hull.resets(), 0u);
   hull.line();
   for (const double step_ms : {7.0, -7.0}) {
-    const ClockLine later =
-        remote_clock(from_ms(1 + std::max(step_ms, 0.0)), 12'000);
+    const ClockLine later = remote_clock(from_ms(1 + std::max(step_ms, 0.0)), 12'000);
     const double at = step_ms > 0 ? 50 : 60;
     hull.add(exchange_at(later, at_second(at), from_ms(0.2), from_ms(0.2)));
     EXPECT_NEAR(error_ns(*hull.line(), later, at_second(at + 1)), 0, 10);
@@ -127,14 +118,11 @@ TEST(TwoWayHullTest, RatesBeyondTheLimitAreHeldAtIt) {
 
 TEST(TwoWayHullTest, ImpossibleExchangesAreRefused) {
   TwoWayHull hull({});
-  TwoWayExchange exchange = exchange_at(remote_clock({}, 0), at_second(1),
-                                        from_ms(0.2), from_ms(0.2));
-  exchange.replied += from_ms(1); // longer at the peer than away
+  TwoWayExchange exchange =
+      exchange_at(remote_clock({}, 0), at_second(1), from_ms(0.2), from_ms(0.2));
+  exchange.replied += from_ms(1);  // longer at the peer than away
   EXPECT_FALSE(hull.add(exchange));
-  exchange = {.sent = at_second(2),
-              .arrived = {},
-              .replied = {},
-              .received = at_second(1)};
+  exchange = {.sent = at_second(2), .arrived = {}, .replied = {}, .received = at_second(1)};
   EXPECT_FALSE(hull.add(exchange));
   EXPECT_FALSE(hull.line());
 }
@@ -149,5 +137,5 @@ TEST(TwoWayHullTest, IdenticalExchangesGiveOneFiniteLine) {
   EXPECT_EQ(hull.line()->rate_ppb, 0);
 }
 
-} // namespace
-} // namespace simbench
+}  // namespace
+}  // namespace simbench

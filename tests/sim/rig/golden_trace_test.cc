@@ -69,6 +69,7 @@ TEST(GoldenTrace, EveryScenarioDoesWhatItDid) {
       {"18cam_6host_90fps_full_slave", "yoon2021_both", 9116, 0xacf99c7537076e35},
       {"3cam_1host_30fps", "free_running", 285, 0xa2ed9dbbb2c5df47},
       {"6cam_2host_30fps", "yoon2021_both", 1356, 0xe12235e06711401b},
+      {"6node_relay", "yoon2021_both", 5505, 0x5a1324fd8ddfcf86},
       {"pulse_index_off_by_two", "yoon2021_both", 6668, 0x3820573813a832c},
       {"scale_18000cam_6000host_45fps", "yoon2021_both", 77848, 0xb8d08ea957b190ae},
       {"18cam_6host_45fps_asymmetric_links", "yoon2021_both", 6668, 0x66b507648f893faa},
