@@ -135,6 +135,20 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                : reports::prediction_table(measured, simulated));
 }
 
+// A table of dashes is no result.
+void check_anything_was_captured(const evaluation::Results& measured) {
+  for (const evaluation::Row& row : measured.rows) {
+    for (const evaluation::SeedScore& seed : row.seeds) {
+      if (seed.recorded) return;
+    }
+  }
+  std::string why = "nothing could be captured";
+  for (const evaluation::Row& row : measured.rows) {
+    for (const std::string& note : row.notes) why += fmt::format("\n  {}, {}", row.pipeline, note);
+  }
+  throw scenarios::InputError(why);
+}
+
 // The same pipelines on the rig, with the simulator's prediction beside them.
 int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
                reports::Provenance provenance) {
@@ -142,6 +156,7 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
   const std::optional<evaluation::Results> measured = measure(scenario, options);
   if (!measured) return kInterrupted;
+  check_anything_was_captured(*measured);
   print_warnings(measured->warnings);
   provenance.finished = std::chrono::system_clock::now();
   if (output) {

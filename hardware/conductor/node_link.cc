@@ -90,8 +90,11 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
   }
 
  private:
-  NodeError error(NodeError::Kind kind, const std::string& what) const {
-    return {kind, fmt::format("{} ({}:{}): {}", host_.name, host_.address, host_.port, what)};
+  // Streams name the address themselves.
+  NodeError error(NodeError::Kind kind, std::string what) const {
+    const std::string address = fmt::format("{}:{}", host_.address, host_.port);
+    if (what.starts_with(address + ": ")) what.erase(0, address.size() + 2);
+    return {kind, fmt::format("{} ({}): {}", host_.name, address, what)};
   }
 
   // The stream, opened by one of those who ask for it while the others wait.
