@@ -18,6 +18,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t kLongestListed = 32;
+
 // Units stand last in names; longer endings come before those they end in.
 std::string unit_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits = {{
@@ -69,6 +71,19 @@ std::string profile_source(const Cameras& cameras, const std::string& pointer) {
   return "";
 }
 
+// A measured table is one parameter; its numbers are in the file.
+bool is_table(const ordered_json& value) {
+  return value.is_array() && value.size() > kLongestListed && value.front().is_number();
+}
+
+std::string text_of(const ordered_json& value) {
+  if (is_table(value)) {
+    return fmt::format("[{}, ..., {}] ({} numbers)", value.front().dump(), value.back().dump(),
+                       value.size());
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
 class Walker {
  public:
   explicit Walker(const Scenario& scenario)
@@ -76,7 +91,7 @@ class Walker {
 
   void walk(const std::string& pointer, std::string_view name, const ordered_json* node,
             const ordered_json& value) {
-    if (!value.is_structured() || value.empty()) {
+    if (!value.is_structured() || value.empty() || is_table(value)) {
       add(pointer, name, node, value);
       return;
     }
@@ -93,7 +108,7 @@ class Walker {
            const ordered_json& value) {
     ParameterLine line;
     line.pointer = pointer;
-    line.value = value.is_string() ? value.get<std::string>() : value.dump();
+    line.value = text_of(value);
     line.unit = unit_of(name);
     if (node != nullptr) {
       line.meaning = node->value("description", "");

@@ -194,5 +194,16 @@ TEST(Describe, ALineForEveryParameter) {
   }
 }
 
+TEST(Describe, AMeasuredTableIsOneLine) {
+  std::string table = "[0";
+  for (int i = 1; i <= 100; ++i) table += "," + std::to_string(i);
+  const Scenario scenario = load_derived(R"("usb": {"delivery_quantiles_ms": )" + table + "]}");
+  for (const ParameterLine& each : describe(scenario)) {
+    EXPECT_FALSE(each.pointer.starts_with("/usb/delivery_quantiles_ms/"));
+    if (each.pointer != "/usb/delivery_quantiles_ms") continue;
+    EXPECT_EQ(each.value, "[0, ..., 100] (101 numbers)");
+  }
+}
+
 }  // namespace
 }  // namespace simbench::scenarios
