@@ -25,8 +25,7 @@ was cut off can be replayed up to there.
 Examples:
   simbench record --scenario 18cam_6host_45fps --seed 7 -o monday
   simbench record --scenario 3cam_1host_30fps --pipelines genlock,oracle -o short
-  simbench record --scenario 18cam_6host_45fps --backend hardware --rig rig.json \
-    --key-file rig.key --pipelines yoon2021_both --repeats 3 -o tuesday
+  simbench record --scenario my_rig.json --backend hardware --rig rig.json --repeats 3 -o tuesday
   simbench record ... --pipelines yoon2021_both --collect 6c6ef4237b75c240 -o rest
   simbench replay monday                           the table that `simbench run` prints
 

@@ -100,7 +100,7 @@ TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
   refuses({"describe"}, {"scenario is required"});
-  refuses({"validate"}, {"files is required"});
+  refuses({"validate"}, {"recordings is required"});
   refuses({"replay"}, {"files is required"});
   refuses({"run", "--scenario", "18cam_6host_45fps", "--colour"}, {"--colour"});
 }
