@@ -30,7 +30,8 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   EXPECT_EQ(all.status, 0);
   EXPECT_EQ(all.err, "");
   for (const char* command :
-       {"run", "list", "describe", "validate", "replay", "diagnose", "convert-ibl"}) {
+       {"run", "list", "describe", "validate", "replay", "diagnose", "convert-ibl", "record", "fit",
+        "node", "keygen", "relay", "validate-model"}) {
     EXPECT_THAT(all.out, HasSubstr(command));
     const ProgramResult result = run({command, "--help"});
     EXPECT_EQ(result.status, 0) << command;
@@ -100,8 +101,8 @@ TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
   refuses({"describe"}, {"scenario is required"});
-  refuses({"validate"}, {"recordings is required"});
-  refuses({"replay"}, {"files is required"});
+  refuses({"validate"}, {"files is required"});
+  refuses({"replay"}, {"recordings is required"});
   refuses({"run", "--scenario", "18cam_6host_45fps", "--colour"}, {"--colour"});
 }
 
