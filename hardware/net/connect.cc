@@ -101,7 +101,7 @@ Task<tcp::socket> connect_socket(boost::asio::any_io_executor executor, std::str
 
 boost::asio::ip::address resolved_now(const std::string& address) {
   error_code error;
-  const auto number = boost::asio::ip::make_address(address, error);
+  auto number = boost::asio::ip::make_address(address, error);
   if (!error) return number;
   boost::asio::io_context context;
   tcp::resolver resolver(context);
