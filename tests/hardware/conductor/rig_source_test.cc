@@ -98,7 +98,8 @@ TEST(RigSource, SaysWhichCameraRefuses) {
 
 TEST(RigSource, UnknownPipelinesAreRefusedByTheNodes) {
   const TestRig rig({0, 0});
-  RigSource source(rig.rig(), SecretKey(), small_scenario(), {});
+  const scenarios::Scenario scenario = small_scenario();
+  RigSource source(rig.rig(), SecretKey(), scenario, {});
   KeptRecording kept;
   EXPECT_THROW(source.record({.seed = 1, .pipeline = "unheard_of"}, kept), RecordingFailed);
 }
