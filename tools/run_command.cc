@@ -128,7 +128,7 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                  const evaluation::Results& simulated,
                                  const scenarios::Scenario& scenario, const std::string& format) {
   if (format == "json") return reports::json_with_prediction(measured, simulated);
-  const std::string results = results_text(measured, scenario, format);
+  std::string results = results_text(measured, scenario, format);
   if (format == "csv") return results;
   return results + "\n" +
          (format == "markdown" ? reports::prediction_markdown(measured, simulated)
