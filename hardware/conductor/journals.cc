@@ -16,7 +16,8 @@ void HostJournal::append(std::string_view text) {
   std::size_t begin = 0;
   for (std::size_t end = rest_.find('\n'); end != std::string::npos;
        end = rest_.find('\n', begin)) {
-    take(std::string_view(rest_).substr(begin, end - begin));
+    const std::string_view text_so_far = rest_;
+    take(text_so_far.substr(begin, end - begin));
     begin = end + 1;
   }
   rest_.erase(0, begin);
