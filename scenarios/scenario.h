@@ -263,6 +263,44 @@ struct Published {
   double rmdv_ms = 0;
 };
 
+// What stands in a studio and how it moves; the scripts: reconstruction/motion.h.
+struct StudioSubject {
+  std::string kind;       // "person" or "mesh"
+  std::string mesh_file;  // mesh: PLY, OBJ, OFF or STL; of a person ""
+  double height_m = 0;    // of a person
+  std::string motion;     // "stand", "turn", "walk", "walk_and_turn", "raise_arms"
+  double walk_speed_m_per_s = 0;
+  double turn_rate_rad_per_s = 0;
+  double arm_rate_rad_per_s = 0;
+};
+
+// A published reconstruction that a pipeline's row is put beside.
+struct PublishedReprojection {
+  double mean_cm = 0;
+  double std_cm = 0;
+};
+
+// What depth cameras look at, for `simbench reconstruct`. The cameras' depth stream sees it.
+struct Studio {
+  double radius_m = 0;          // of the circle on which the cameras stand
+  double azimuth_step_deg = 0;  // camera j has the azimuth j / heights, the height j % heights
+  std::vector<double> heights_m;
+  double look_at_height_m = 0;
+  bool portrait = false;                        // cameras are rolled by 90 degrees
+  double calibration_translation_sigma_mm = 0;  // of the extrinsics, per axis
+  double calibration_rotation_sigma_deg = 0;    // likewise
+  double stereo_baseline_mm = 0;
+  double subpixel_error_px = 0;  // standard deviation of the disparity
+  double missing_share = 0;      // of the pixels that see the subject, by chance
+  double max_incidence_deg = 0;  // steeper surfaces give no depth
+  double min_distance_m = 0;
+  double max_distance_m = 0;
+  double point_spacing_mm = 0;         // fused points are averaged on a grid of this
+  double visibility_tolerance_mm = 0;  // of the z-buffer test
+  StudioSubject subject;
+  std::map<std::string, PublishedReprojection> published;  // by pipeline name
+};
+
 // Where each JSON pointer of the scenario came from, for messages (scenarios/loader.h).
 class Origin;
 
@@ -280,6 +318,7 @@ struct Scenario {
   AlgorithmParameters algorithms;
   std::vector<Pipeline> pipelines;
   std::map<std::string, Published> published;  // by pipeline name
+  std::optional<Studio> studio;                // only of scenarios that have one
   std::string resolved_json;                   // the fully resolved scenario, pretty-printed
   std::shared_ptr<const Origin> origin;
 

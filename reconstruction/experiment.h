@@ -1,0 +1,76 @@
+// The reconstruction experiment: pipelines and seeds to frame sets, frame sets to meshes, meshes to
+// errors.
+//
+// For every (pipeline, seed): simulate the capture, take `frames` sets of simultaneous frames as
+// the pipeline's stamps have them (evaluation/exposure_sets.h), ray-cast each camera's depth map at
+// its frame's true mid-exposure, reconstruct with the believed calibration, measure the
+// reprojection error. Cameras, calibration errors and noise depend on the seed alone, so that
+// pipelines are paired by seed.
+//
+// Jobs run on `jobs` threads, each with one frame set in memory at a time: memory grows neither
+// with frames nor with seeds. Results do not depend on how many threads.
+//
+// Needs Embree and Open3D (reconstruction_available()).
+//
+//   const ReconstructionResults results = run_reconstruction(scenario, options, on_mesh, progress);
+#ifndef SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
+#define SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "evaluation/evaluate.h"
+#include "reconstruction/results.h"
+#include "reconstruction/triangle_mesh.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::reconstruction {
+
+// Whether this simbench was built with the libraries that reconstruction needs, and how to get one
+// that was.
+bool reconstruction_available();
+std::string how_to_get_reconstruction();
+
+struct ReconstructionOptions {
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 5;
+  unsigned jobs = 0;                     // threads; 0: as many as there are cores
+  std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
+  std::int64_t frames = 10;              // sets of each capture
+  // The curve: factors on the script's speeds, desynchronisations, sets for each seed and point.
+  // Empty: no curve.
+  std::vector<double> curve_speed_factors{};
+  std::vector<double> curve_desync_ms{};
+  std::int64_t curve_frames = 1;
+  // Factors on the script's speeds at which the published error of the worst row is looked for;
+  // empty: not looked for.
+  std::vector<double> search_speed_factors{};
+  const std::atomic<bool>* cancel = nullptr;  // once true, no more sets are begun
+};
+
+// The mesh of a pipeline's first set at the first seed, its vertices coloured by error
+// (error_colour in paint.h), and its picture. Called one at a time, from any thread, in any order.
+struct ShownMesh {
+  std::string pipeline;
+  TriangleMesh mesh;
+  std::vector<std::uint8_t> png;
+  double desync_ms = 0;
+  ErrorSummary errors;  // of this set alone
+};
+using MeshKeeper = std::function<void(const ShownMesh&)>;
+
+// Throws scenarios::InputError: no studio in the scenario, too many cameras for it, an unknown
+// pipeline, a mesh file that cannot be used, a subject that no camera sees;
+// evaluation::EvaluationCancelled's sibling: ReconstructionCancelled.
+ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
+                                         const evaluation::SourceFactory& make_source,
+                                         const ReconstructionOptions& options,
+                                         const MeshKeeper& on_mesh,
+                                         const evaluation::Progress& progress);
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_

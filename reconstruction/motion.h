@@ -1,0 +1,58 @@
+// The script a subject follows: where its root is and what its limbs do, at any instant.
+//
+//   stand          at the centre, arms hanging
+//   turn           on the spot, counter-clockwise seen from above, at turn_rate_rad_per_s
+//   walk           to and fro through the centre along x, kWalkLength m each way, facing +x
+//   walk_and_turn  along a circle about the centre, facing ahead: at walk_speed_m_per_s and
+//                  turn_rate_rad_per_s its radius is their quotient
+//   raise_arms     at the centre, both arms sideways from hanging to overhead and back, at a mean
+//                  arm_rate_rad_per_s
+//
+// Walking swings arms and legs with the stride: one cycle of two steps each kStrideLength m, so
+// limbs are faster than the body, as a real walker's are.
+//
+// A sped-up script (speed_factor) follows the same path: walking, turning and arms all are so many
+// times as fast.
+//
+// Source: the paper says "moving person" and no more; the scripts are those of the reconstruction
+// study (reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
+#ifndef SIMBENCH_RECONSTRUCTION_MOTION_H_
+#define SIMBENCH_RECONSTRUCTION_MOTION_H_
+
+#include <Eigen/Geometry>
+
+#include "scenarios/scenario.h"
+
+namespace simbench::reconstruction {
+
+inline constexpr double kWalkLength = 1.0;    // m
+inline constexpr double kStrideLength = 1.4;  // m
+
+// Joint angles of a person, in radians.
+struct Posture {
+  double hip_swing = 0;  // forwards for the left leg, backwards for the right
+  double knee_left = 0;  // bent
+  double knee_right = 0;
+  double shoulder_swing = 0;  // forwards for the right arm, backwards for the left
+  double elbow = 0;           // both, bent
+  double arms_raised = 0;     // both sideways: 0 hanging, pi overhead
+};
+
+struct MotionState {
+  Eigen::Isometry3d root = Eigen::Isometry3d::Identity();  // on the floor, x is ahead
+  Posture posture;
+};
+
+class Motion {
+ public:
+  explicit Motion(const scenarios::StudioSubject& subject, double speed_factor = 1.0);
+  MotionState at(double seconds) const;
+
+ private:
+  scenarios::StudioSubject subject_;
+  double speed_factor_;
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_MOTION_H_

@@ -1,0 +1,99 @@
+// What a reconstruction experiment found, as plain data: Table 4 over seeds, and what a millisecond
+// of desynchronisation costs.
+//
+// A reprojection error is the distance, in the world's frame, between a vertex of the reconstructed
+// mesh and the point of a depth map at the pixel where that vertex is seen. All errors of all frame
+// sets of one seed make one distribution, whose mean, standard deviation, median and 95 %
+// quantile are that seed's; over seeds there are series of those. A seed without any error (no set
+// could be reconstructed) has NaN.
+//
+// Units: cm for errors, ms for times. Source: paper section 4.4, Table 4.
+#ifndef SIMBENCH_RECONSTRUCTION_RESULTS_H_
+#define SIMBENCH_RECONSTRUCTION_RESULTS_H_
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/results.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::reconstruction {
+
+inline constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
+
+struct ErrorSummary {
+  double mean_cm = kNoError;
+  double std_cm = kNoError;
+  double median_cm = kNoError;
+  double p95_cm = kNoError;
+  std::int64_t count = 0;  // of (vertex, depth map) pairs
+};
+
+// One pipeline at one seed.
+struct SeedReprojection {
+  std::uint64_t seed = 0;
+  ErrorSummary errors;
+  double desync_ms = kNoError;      // mean over sets of the range of true mid-exposures
+  std::int64_t sets = 0;            // that were reconstructed
+  std::int64_t failed_sets = 0;     // that were not: too little of the subject was seen
+  std::int64_t missing_frames = 0;  // of cameras that had none for a set, over all sets
+  bool gathered = false;  // the pipeline's own gathering emitted at least one complete set
+};
+
+struct ReprojectionRow {
+  std::string pipeline;
+  std::string host_sync;
+  std::string device_time;
+  std::string gathering;
+  std::vector<SeedReprojection> seeds;
+  std::optional<scenarios::PublishedReprojection> published;
+  std::vector<std::string> notes{};
+
+  // Of the seeds that have errors.
+  evaluation::Series mean_cm() const;
+  evaluation::Series std_cm() const;
+  evaluation::Series median_cm() const;
+  evaluation::Series p95_cm() const;
+  evaluation::Series desync_ms() const;
+};
+
+// All hosts off by a known amount: exposures of a host's cameras coincide, hosts are spread over
+// `desync_ms` (the first and the last so far apart, the others between them, drawn by seed).
+struct CurvePoint {
+  double speed_m_per_s =
+      0;  // the script's fastest stated speed at the sped-up script (0: a script without walking)
+  double speed_factor = 1;  // of the scenario's script
+  double desync_ms = 0;
+  std::vector<double> mean_cm;  // by seed
+  std::vector<double> std_cm;
+};
+
+// Which speed of the subject makes the mean error at this desynchronisation what was published.
+struct SpeedNeeded {
+  std::string pipeline;  // whose published mean it is
+  double desync_ms = 0;  // the median of its row
+  double published_mean_cm = 0;
+  std::vector<CurvePoint> points;       // over speed, at that desynchronisation
+  std::optional<double> speed_m_per_s;  // where the median mean error passes it first; nothing: not
+                                        // up to the last point
+};
+
+struct ReconstructionResults {
+  scenarios::Scenario scenario;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 0;
+  std::int64_t frames = 0;  // sets asked for at each seed
+  std::vector<ReprojectionRow> rows;
+  std::vector<CurvePoint> curve;  // by speed, then by desynchronisation; empty: not asked for
+  std::optional<SpeedNeeded> speed_needed;  // of the row with the largest published mean
+  std::vector<std::string> notes;           // about the subject, such as a mesh with holes
+  double wall_s = 0;                        // what it took; /performance
+  double seconds_per_set = 0;               // mean, of one thread
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_RESULTS_H_

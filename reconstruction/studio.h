@@ -1,0 +1,46 @@
+// The studio: where the depth cameras stand, where their user believes they stand, what they see
+// of a distance.
+//
+// Cameras stand on a circle of `radius_m` about the vertical through the origin and look at the
+// point at `look_at_height_m` on it. Camera j has the azimuth j / heights, the height j % heights:
+// so the cameras of a host share an azimuth where there are as many heights as cameras per host.
+// In portrait the camera is rolled by 90 degrees; its image keeps its size.
+//
+// Calibration: the believed pose is the true one, moved by N(calibration_translation_sigma_mm) per
+// axis and rotated by N(calibration_rotation_sigma_deg) about each axis of the camera, drawn once
+// per (seed, camera). The user's reconstruction knows believed poses only.
+//
+// Source: paper section 4 (6 angles, 3 heights), reference/calibration.md section 6.
+//
+//   const Studio studio(scenario, seed);          // throws scenarios::InputError without a studio
+//   studio.cameras()[3].world_from_camera;
+#ifndef SIMBENCH_RECONSTRUCTION_STUDIO_H_
+#define SIMBENCH_RECONSTRUCTION_STUDIO_H_
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "reconstruction/pinhole.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::reconstruction {
+
+struct StudioCamera {
+  Pinhole intrinsics;
+  Eigen::Isometry3d world_from_camera;  // true
+  Eigen::Isometry3d believed;           // as calibrated
+};
+
+class Studio {
+ public:
+  Studio(const scenarios::Scenario& scenario, std::uint64_t seed);
+  const std::vector<StudioCamera>& cameras() const { return cameras_; }
+
+ private:
+  std::vector<StudioCamera> cameras_;
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_STUDIO_H_

@@ -1,0 +1,21 @@
+// A surface of triangles, as plain data: what is ray-cast, reconstructed, painted and written.
+//
+// Units: metres. A triangle is three indices into `vertices`; seen from outside its corners run
+// counter-clockwise. `colours` is empty, or one for each vertex, red, green, blue in [0, 1].
+#ifndef SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_
+#define SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace simbench::reconstruction {
+
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3i> triangles;
+  std::vector<Eigen::Vector3f> colours{};
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_TRIANGLE_MESH_H_
