@@ -56,7 +56,8 @@ struct ReconstructionOptions {
 struct ShownMesh {
   std::string pipeline;
   TriangleMesh mesh;
-  std::vector<std::uint8_t> png;
+  std::string ply;                // the mesh as the bytes of a file
+  std::vector<std::uint8_t> png;  // the picture, likewise
   double desync_ms = 0;
   ErrorSummary errors;  // of this set alone
 };
