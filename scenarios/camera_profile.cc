@@ -9,7 +9,8 @@ namespace simbench::scenarios {
 
 using nlohmann::json;
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ImageSize, width, height, rates_hz)
+// A focal length that is not known is left out; the schema asks for the rest.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ImageSize, width, height, focal_px, rates_hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
                                    bytes_per_pixel, sizes, source)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncMode, mode, triggered)

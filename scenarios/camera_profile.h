@@ -25,6 +25,7 @@ namespace simbench::scenarios {
 struct ImageSize {
   std::int64_t width = 0;
   std::int64_t height = 0;
+  double focal_px = 0;           // depth: of the rectified image, in pixels (0: not known)
   std::vector<double> rates_hz;  // ascending
 };
 

@@ -126,6 +126,29 @@ TEST(CameraProfiles, SizesOfThePapersTable) {
   }
 }
 
+// reference/calibration.md section 6: 107.5 px at a quarter of 848x480.
+TEST(CameraProfiles, FocalLengthOfDepth) {
+  const StreamProfile& depth = *find_camera_profile("d455")->stream("depth");
+  EXPECT_EQ(depth.find_size(848, 480)->focal_px, 4 * 107.5);
+  EXPECT_EQ(depth.find_size(848, 100)->focal_px, 430) << "a crop";
+  EXPECT_NEAR(depth.find_size(640, 480)->focal_px, 0.6 * depth.find_size(1280, 720)->focal_px, 0.01)
+      << "a crop of 768x480";
+  EXPECT_EQ(depth.find_size(256, 144)->focal_px, depth.find_size(1280, 720)->focal_px) << "a crop";
+  for (const ImageSize& size : depth.sizes) {
+    if (size.width == 256 || size.height == 100 || size.height * 4 == size.width * 3) continue;
+    EXPECT_NEAR(size.focal_px, 430 * static_cast<double>(size.width) / 848, 0.01)
+        << size.width << 'x' << size.height;
+  }
+  for (const ImageSize& size : find_camera_profile("d435")->stream("depth")->sizes) {
+    EXPECT_NEAR(size.focal_px, depth.find_size(size.width, size.height)->focal_px, 10);
+  }
+  for (const CameraProfile& camera : camera_profiles()) {
+    const StreamProfile* colour = camera.stream("colour");
+    if (colour == nullptr) continue;
+    for (const ImageSize& size : colour->sizes) EXPECT_EQ(size.focal_px, 0) << camera.model;
+  }
+}
+
 TEST(CameraProfiles, JsonHasThemAll) {
   const json all = json::parse(camera_profiles_json());
   ASSERT_EQ(all.size(), camera_profiles().size());
