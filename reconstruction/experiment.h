@@ -19,6 +19,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -63,9 +64,16 @@ struct ShownMesh {
 };
 using MeshKeeper = std::function<void(const ShownMesh&)>;
 
-// Throws scenarios::InputError: no studio in the scenario, too many cameras for it, an unknown
-// pipeline, a mesh file that cannot be used, a subject that no camera sees;
-// evaluation::EvaluationCancelled's sibling: ReconstructionCancelled.
+// Ended through ReconstructionOptions::cancel.
+class ReconstructionCancelled final : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Throws scenarios::InputError: the scenario has no studio, or too many cameras for it; a pipeline
+// is not known; a mesh file cannot be used; no camera sees the subject. ReconstructionCancelled.
+// What simulation throws passes through, but a capture that fails (RecordingFailed) is a note of
+// its row.
 ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const evaluation::SourceFactory& make_source,
                                          const ReconstructionOptions& options,

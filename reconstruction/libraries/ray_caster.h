@@ -1,0 +1,53 @@
+// Casts the rays of cameras at rigid parts, with Embree.
+//
+// The parts' search trees are built once; posing them anew costs next to nothing. Only pixels in
+// the rectangle around the parts' outline are looked at. One object is for one thread; several may
+// be used at the same time.
+//
+//   RayCaster caster(subject.parts());
+//   caster.pose(subject.poses(seconds));
+//   const SeenDepth seen = caster.see(camera.intrinsics, camera.world_from_camera);
+#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_
+#define SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "reconstruction/depth_map.h"
+#include "reconstruction/pinhole.h"
+#include "reconstruction/triangle_mesh.h"
+
+namespace simbench::reconstruction {
+
+// What one ray met.
+struct RayHit {
+  std::size_t part = 0;
+  std::size_t triangle = 0;
+  float u = 0;  // barycentric: the triangle's second and third corner
+  float v = 0;
+};
+
+class RayCaster {
+ public:
+  // The meshes need not outlive the object. Parts without triangles are fine.
+  explicit RayCaster(const std::vector<TriangleMesh>& parts);
+  ~RayCaster();
+  RayCaster(const RayCaster&) = delete;
+  RayCaster& operator=(const RayCaster&) = delete;
+
+  // One pose for each part; until the first call all stand at the origin.
+  void pose(const std::vector<Eigen::Isometry3d>& poses);
+  SeenDepth see(const Pinhole& camera, const Eigen::Isometry3d& world_from_camera) const;
+  // The depth alone; `hits`, if not null, becomes as long as the image.
+  DepthMap depth(const Pinhole& camera, const Eigen::Isometry3d& world_from_camera,
+                 std::vector<RayHit>* hits = nullptr) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_RAY_CASTER_H_

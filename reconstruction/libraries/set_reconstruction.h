@@ -1,0 +1,59 @@
+// One frame set: from exposure instants to a surface and its reprojection errors.
+//
+// Each camera of the set sees the subject at its own frame's true mid-exposure, from its true pose;
+// fusion, reconstruction and scoring know believed poses and measured depths only.
+//
+// Memory: a depth map for each camera, the points, Poisson's octree; nothing is kept between sets.
+// One object is for one thread.
+//
+//   SetReconstruction studio(scenario, *subject, seed);
+//   ErrorStatistics errors;
+//   const auto surface = studio.reconstruct(set, errors);
+//   if (surface) surface->by_vertex.mean_m(0);
+#ifndef SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_
+#define SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "evaluation/exposure_sets.h"
+#include "reconstruction/error_statistics.h"
+#include "reconstruction/libraries/ray_caster.h"
+#include "reconstruction/reprojection.h"
+#include "reconstruction/studio.h"
+#include "reconstruction/subject.h"
+#include "reconstruction/triangle_mesh.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::reconstruction {
+
+struct ScoredSurface {
+  TriangleMesh mesh;
+  VertexErrors by_vertex;
+};
+
+class SetReconstruction {
+ public:
+  // `scenario` and `subject` must outlive it.
+  SetReconstruction(const scenarios::Scenario& scenario, const Subject& subject,
+                    std::uint64_t seed);
+
+  // Adds the errors of the set. Nothing if too little of the subject was seen to make a surface.
+  std::optional<ScoredSurface> reconstruct(const evaluation::ExposureSet& set,
+                                           ErrorStatistics& errors);
+
+  // What camera j measures of a frame exposed then.
+  DepthMap measure(std::size_t camera, const evaluation::SetExposure& exposure);
+
+ private:
+  const scenarios::Studio& parameters_;
+  const Subject& subject_;
+  std::uint64_t seed_;
+  Studio studio_;
+  RayCaster caster_;
+};
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_LIBRARIES_SET_RECONSTRUCTION_H_

@@ -1,0 +1,52 @@
+// The reprojection error: how far a reconstructed surface is from what each camera measured.
+//
+// Every vertex is projected into every depth map. Where it is visible (z-buffer test) and the pixel
+// has a value, the error is the distance between the vertex and the point that the depth map has
+// at that pixel, in the world's frame: paper section 4.4. All of it uses believed camera poses, as
+// a user has no others.
+//
+// z-buffer test: the mesh itself, rendered from the camera at the depth map's resolution, with each
+// pixel's depth spread to its eight neighbours (the nearest wins). A vertex is visible if it is no
+// farther than that plus `tolerance_m`. Without the spreading, a vertex just beside the outline of
+// a nearer limb counts as visible through the gap between two pixels, and is matched with that
+// limb: the static error is several times larger then.
+//
+//   ErrorStatistics errors;
+//   VertexErrors painted(mesh.vertices.size());
+//   add_reprojection_errors(mesh, zbuffer, measured, camera, 0.05, errors, painted);
+#ifndef SIMBENCH_RECONSTRUCTION_REPROJECTION_H_
+#define SIMBENCH_RECONSTRUCTION_REPROJECTION_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "reconstruction/depth_map.h"
+#include "reconstruction/error_statistics.h"
+#include "reconstruction/studio.h"
+#include "reconstruction/triangle_mesh.h"
+
+namespace simbench::reconstruction {
+
+// The sum of each vertex's errors over the depth maps that it was matched with.
+struct VertexErrors {
+  explicit VertexErrors(std::size_t vertices) : sum_m(vertices), matches(vertices) {}
+  // NaN of a vertex that no depth map matched.
+  double mean_m(std::size_t vertex) const;
+
+  std::vector<double> sum_m;
+  std::vector<std::int32_t> matches;
+};
+
+// Each pixel's nearest depth in its 3 x 3 neighbourhood; 0 where there is none in it.
+DepthMap spread_to_neighbours(const DepthMap& zbuffer);
+
+// `zbuffer`: the mesh as rendered from camera.believed, before spreading. `measured`: what the
+// camera saw; of the same size.
+void add_reprojection_errors(const TriangleMesh& mesh, const DepthMap& zbuffer,
+                             const DepthMap& measured, const StudioCamera& camera,
+                             double tolerance_m, ErrorStatistics& errors, VertexErrors& by_vertex);
+
+}  // namespace simbench::reconstruction
+
+#endif  // SIMBENCH_RECONSTRUCTION_REPROJECTION_H_
