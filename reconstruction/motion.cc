@@ -17,8 +17,8 @@ constexpr double kDegree = kPi / 180;
 constexpr double kGaitSpeed = 1.2;  // m/s
 constexpr double kHipSwing = 25 * kDegree;
 constexpr double kLargestHipSwing = 35 * kDegree;
-constexpr double kKneeBend = 60 * kDegree;
-constexpr double kKneeLead = 0.5;
+constexpr double kKneeBend = 50 * kDegree;
+constexpr double kKneeLead = 0.25;
 constexpr double kShoulderSwing = 20 * kDegree;
 constexpr double kElbowBend = 20 * kDegree;
 

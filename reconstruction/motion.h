@@ -15,7 +15,7 @@
 //
 // Walking swings arms and legs with the stride: one cycle of two steps each kStrideLength m, so
 // limbs are faster than the body, as a real walker's are. Hips swing by 25 degrees to each side at
-// 1.2 m/s and by the square root of the speed otherwise (at most 35), knees bend up to 60 in the
+// 1.2 m/s and by the square root of the speed otherwise (at most 35), knees bend up to 50 in the
 // swing phase, arms swing against the legs. The root moves evenly: it does not bob. All is
 // continuously differentiable in time but at the ends of `walk`, where the speed changes its sign.
 //

@@ -44,12 +44,12 @@ void add_limb(Body& body, Segment segment, const Vector3d& from, double radius, 
 
 void add_trunk(Body& body) {
   const Segment trunk = Segment::kTrunk;
-  add_ellipsoid(body, trunk, {-0.004, 0, 0.545}, {0.066, 0.099, 0.075});  // pelvis
-  add_ellipsoid(body, trunk, {0.004, 0, 0.630}, {0.060, 0.086, 0.100});   // belly
-  add_ellipsoid(body, trunk, {0.002, 0, 0.735}, {0.067, 0.100, 0.108});   // chest
+  add_ellipsoid(body, trunk, {-0.004, 0, 0.550}, {0.067, 0.099, 0.085});  // pelvis
+  add_ellipsoid(body, trunk, {0.003, 0, 0.635}, {0.062, 0.092, 0.130});   // belly
+  add_ellipsoid(body, trunk, {0.002, 0, 0.735}, {0.067, 0.101, 0.120});   // chest
   add_limb(body, trunk, {0.006, 0, 0.885}, 0.033, {-0.006, 0, 0.810}, 0.041);
   for (const double side : {1.0, -1.0}) {
-    add_limb(body, trunk, {-0.004, side * 0.022, 0.832}, 0.033,
+    add_limb(body, trunk, {-0.004, side * 0.015, 0.846}, 0.030,
              {0, side * kShoulderHalfWidth, kShoulderHeight}, 0.034);
   }
   add_ellipsoid(body, trunk, {0.006, 0, 0.937}, {0.056, 0.044, 0.063});  // skull
@@ -60,7 +60,7 @@ void add_trunk(Body& body) {
 void add_arm(Body& body, Segment upper_arm, Segment forearm) {
   add_limb(body, upper_arm, {0, 0, 0}, 0.033, {0, 0, -kUpperArm}, 0.024);
   add_limb(body, forearm, {0, 0, 0}, 0.025, {0, 0, -kForearm}, 0.016);
-  add_ellipsoid(body, forearm, {0.003, 0, -kForearm - 0.048}, {0.023, 0.012, 0.058});  // hand
+  add_ellipsoid(body, forearm, {0.003, 0, -kForearm - 0.042}, {0.023, 0.014, 0.058});  // hand
 }
 
 void add_leg(Body& body, Segment thigh, Segment shank, Segment foot) {
@@ -69,6 +69,7 @@ void add_leg(Body& body, Segment thigh, Segment shank, Segment foot) {
   add_ellipsoid(body, shank, {-0.008, 0, -0.075}, {0.031, 0.030, 0.080});  // calf
   add_limb(body, foot, {-0.020, 0, 0.025 - kAnkleHeight}, 0.025, {0.092, 0, 0.018 - kAnkleHeight},
            0.018);
+  add_ellipsoid(body, foot, {0.066, 0, 0.020 - kAnkleHeight}, {0.044, 0.028, 0.020});  // ball
 }
 
 Body make_body() {

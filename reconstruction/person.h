@@ -1,10 +1,10 @@
 // An articulated person, built of smooth primitives.
 //
-// Ellipsoids (pelvis, belly, chest, head, calves, hands) and tapered capsules (neck, shoulders,
-// upper and lower arms, upper and lower legs, feet), each a rigid part that hangs at its joint.
-// Parts overlap at the joints, so that no pose opens a gap. Proportions follow the height
-// (skeleton.h); tessellated to within 1 mm of the smooth surface at a height of 1.75 m, otherwise
-// in proportion. Standing, the soles are at z = 0 and the top of the head at the height.
+// Ellipsoids (pelvis, belly, chest, head, calves, hands, balls of the feet) and tapered capsules
+// (neck, shoulders, upper and lower arms, upper and lower legs, feet), each a rigid part that hangs
+// at its joint. Parts overlap at the joints, so that no pose opens a gap. Proportions follow the
+// height (skeleton.h); tessellated to within 1 mm of the smooth surface at a height of 1.75 m,
+// otherwise in proportion. Standing, the soles are at z = 0 and the top of the head at the height.
 //
 //   const auto person = make_person(studio.subject, /*speed_factor=*/1.0);
 #ifndef SIMBENCH_RECONSTRUCTION_PERSON_H_
