@@ -8,8 +8,11 @@
 // with the focal length f in pixels and the baseline B (stereo_baseline_mm). For a D455 at 848x480
 // (f = 430, B = 95 mm, s = 0.08) it is 0.00196 z^2: 8 mm at 2 m. A pixel is missing where the
 // surface is nearer than min_distance_m or farther than max_distance_m, met at more than
-// max_incidence_deg, or by chance (missing_share). Pixels are independent of each other: real
-// stereo noise is correlated over its matching window, which this law does not say.
+// max_incidence_deg, or by chance (missing_share), or where the error would put it at or behind the
+// camera. Pixels are independent of each other: real stereo noise is correlated over its matching
+// window, which this law does not say.
+//
+//   const DepthMap depth = measured_depth(seen, studio, focal_px, {seed, camera, frame});
 //
 // Draws depend on (seed, camera, frame) only, so one frame looks the same to every pipeline.
 //

@@ -4,11 +4,17 @@
 // Cameras stand on a circle of `radius_m` about the vertical through the origin and look at the
 // point at `look_at_height_m` on it. Camera j has the azimuth j / heights, the height j % heights:
 // so the cameras of a host share an azimuth where there are as many heights as cameras per host.
-// In portrait the camera is rolled by 90 degrees; its image keeps its size.
+// Azimuths run counter-clockwise seen from above, beginning on the x axis. Pixels: the scenario's
+// depth stream, with the focal length of the camera model's profile. In portrait the camera is
+// rolled by 90 degrees so that its image's x axis points down (in landscape y does); its image
+// keeps its size.
 //
 // Calibration: the believed pose is the true one, moved by N(calibration_translation_sigma_mm) per
 // axis and rotated by N(calibration_rotation_sigma_deg) about each axis of the camera, drawn once
 // per (seed, camera). The user's reconstruction knows believed poses only.
+//
+// Throws scenarios::InputError: no studio, no depth stream, no known focal length, more cameras
+// than angles and heights have room for.
 //
 // Source: paper section 4 (6 angles, 3 heights), reference/calibration.md section 6.
 //
