@@ -1,0 +1,330 @@
+#include "reconstruction/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "evaluation/exposure_sets.h"
+#include "evaluation/pipeline_choice.h"
+#include "evaluation/statistics.h"
+#include "reconstruction/desync_pattern.h"
+#include "reconstruction/libraries/mesh_file.h"
+#include "reconstruction/libraries/picture.h"
+#include "reconstruction/libraries/set_reconstruction.h"
+#include "reconstruction/paint.h"
+#include "reconstruction/parallel_jobs.h"
+#include "reconstruction/person.h"
+#include "reconstruction/rigid_subject.h"
+#include "scenarios/loader.h"
+#include "sim/engine/random.h"
+
+namespace simbench::reconstruction {
+namespace {
+
+using evaluation::ExposureSet;
+using evaluation::ExposureSets;
+using evaluation::PipelineChoice;
+using scenarios::Scenario;
+
+// The scenario's subject, following its script at any speed.
+class SubjectMaker {
+ public:
+  explicit SubjectMaker(const scenarios::StudioSubject& subject) : subject_(subject) {
+    if (subject.kind == "mesh") loaded_ = load_subject_mesh(subject.mesh_file);
+  }
+  std::unique_ptr<Subject> make(double speed_factor) const {
+    return loaded_ ? make_rigid_subject(loaded_->mesh, subject_, speed_factor)
+                   : make_person(subject_, speed_factor);
+  }
+  std::vector<std::string> notes() const {
+    return loaded_ ? loaded_->notes : std::vector<std::string>{};
+  }
+
+ private:
+  const scenarios::StudioSubject& subject_;
+  std::optional<LoadedMesh> loaded_;
+};
+
+// Of one seed, set by set.
+class SeedTally {
+ public:
+  void add(const ExposureSet& set, bool reconstructed) {
+    ++(reconstructed ? counts_.sets : counts_.failed_sets);
+    for (const auto& exposure : set.cameras) counts_.missing_frames += exposure ? 0 : 1;
+    spread_ms_ += set.spread_ms();
+  }
+  ErrorStatistics& errors() { return errors_; }
+  SeedReprojection finish(std::uint64_t seed, bool gathered) const {
+    SeedReprojection result = counts_;
+    result.seed = seed;
+    result.errors = errors_.summary();
+    result.gathered = gathered;
+    if (const std::int64_t all = result.sets + result.failed_sets; all > 0) {
+      result.desync_ms = spread_ms_ / static_cast<double>(all);
+    }
+    return result;
+  }
+
+ private:
+  ErrorStatistics errors_;
+  SeedReprojection counts_;
+  double spread_ms_ = 0;
+};
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class Experiment {
+ public:
+  Experiment(const Scenario& scenario, const evaluation::SourceFactory& make_source,
+             const ReconstructionOptions& options, const MeshKeeper& on_mesh,
+             const evaluation::Progress& progress)
+      : scenario_(scenario),
+        make_source_(make_source),
+        options_(options),
+        on_mesh_(on_mesh),
+        progress_(progress),
+        choices_(evaluation::choose_pipelines(scenario, options.pipelines)),
+        subjects_(studio_of(scenario).subject),
+        subject_(subjects_.make(1.0)) {
+    refuse_unseen_subject();
+  }
+
+  ReconstructionResults run() {
+    const double begin = now_s();
+    results_.scenario = scenario_;
+    results_.first_seed = options_.first_seed;
+    results_.seeds = options_.seeds;
+    results_.frames = options_.frames;
+    results_.notes = subjects_.notes();
+    count_sets();
+    make_rows();
+    results_.curve = points_at(options_.curve_speed_factors, options_.curve_desync_ms);
+    if (!options_.search_speed_factors.empty()) search_speed();
+    results_.wall_s = now_s() - begin;
+    results_.seconds_per_set = done_ > 0 ? set_seconds_ / static_cast<double>(done_) : 0;
+    return std::move(results_);
+  }
+
+ private:
+  static const scenarios::Studio& studio_of(const Scenario& scenario) {
+    const Studio checked(scenario, 1);  // throws InputError without a studio
+    return *scenario.studio;
+  }
+
+  void refuse_unseen_subject() const {
+    SetReconstruction studio(scenario_, *subject_, options_.first_seed);
+    for (std::size_t camera = 0; camera < static_cast<std::size_t>(scenario_.cameras.count);
+         ++camera) {
+      const DepthMap seen = studio.measure(camera, {});
+      if (std::any_of(seen.depth_m.begin(), seen.depth_m.end(), [](float z) { return z > 0; })) {
+        return;
+      }
+    }
+    scenarios::fail_at(
+        scenario_, "/studio/subject",
+        "found a subject that no camera sees; allowed: one within the cameras' view "
+        "(radius_m, look_at_height_m) and between min_distance_m and max_distance_m");
+  }
+
+  void count_sets() {
+    const auto seeds = static_cast<std::int64_t>(options_.seeds);
+    const auto size = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
+    total_ = size(choices_) * seeds * options_.frames;
+    total_ += seeds * options_.curve_frames *
+              (size(options_.curve_speed_factors) * size(options_.curve_desync_ms) +
+               size(options_.search_speed_factors));
+  }
+
+  void run_all(std::size_t count, const std::function<void(std::size_t)>& job) {
+    if (!run_jobs(count, options_.jobs, options_.cancel, job)) {
+      throw ReconstructionCancelled("cancelled");
+    }
+  }
+
+  bool is_cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
+
+  void make_rows() {
+    const std::size_t seeds = options_.seeds;
+    std::vector<SeedReprojection> found(choices_.size() * seeds);
+    for (const PipelineChoice& choice : choices_) {
+      ReprojectionRow row{.pipeline = choice.pipeline.name,
+                          .host_sync = choice.pipeline.host_sync,
+                          .device_time = choice.pipeline.device_time,
+                          .gathering = choice.pipeline.gathering,
+                          .seeds = {},
+                          .published = {}};
+      const auto published = scenario_.studio->published.find(row.pipeline);
+      if (published != scenario_.studio->published.end()) row.published = published->second;
+      results_.rows.push_back(std::move(row));
+    }
+    // All pipelines of a seed, then the next seed: the time left can be told from the time gone.
+    run_all(found.size(), [&](std::size_t job) {
+      found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size());
+    });
+    for (std::size_t job = 0; job < found.size(); ++job) {
+      results_.rows[job % choices_.size()].seeds.push_back(found[job]);
+    }
+  }
+
+  SeedReprojection run_seed(std::size_t pipeline, std::uint64_t seed) {
+    const std::unique_ptr<RecordingSource> source = make_source_();
+    ExposureSets sets;
+    try {
+      sets = evaluation::exposure_sets(scenario_, choices_[pipeline], seed, *source,
+                                       static_cast<std::size_t>(options_.frames));
+    } catch (const RecordingFailed& failure) {
+      const std::lock_guard lock(mutex_);
+      results_.rows[pipeline].notes.push_back(fmt::format("seed {}: {}", seed, failure.what()));
+    }
+    SetReconstruction studio(scenario_, *subject_, seed);
+    SeedTally tally;
+    for (std::size_t i = 0; i < sets.sets.size() && !is_cancelled(); ++i) {
+      const bool shown = seed == options_.first_seed && i == 0;
+      add_set(studio, sets.sets[i], tally, shown ? &results_.rows[pipeline].pipeline : nullptr);
+    }
+    return tally.finish(seed, sets.gathered_sets > 0);
+  }
+
+  // `shown`: the pipeline whose mesh this is, if it is to be shown.
+  void add_set(SetReconstruction& studio, const ExposureSet& set, SeedTally& tally,
+               const std::string* shown) {
+    const double begin = now_s();
+    ErrorStatistics own;
+    const std::optional<ScoredSurface> surface = studio.reconstruct(set, own);
+    tally.add(set, surface.has_value());
+    tally.errors().merge(own);
+    const double seconds = now_s() - begin;
+    if (shown != nullptr && surface && on_mesh_) show(*shown, *surface, set, own.summary());
+    const std::lock_guard lock(mutex_);
+    set_seconds_ += seconds;
+    ++done_;
+    if (progress_) {
+      progress_(static_cast<std::uint64_t>(done_), static_cast<std::uint64_t>(total_));
+    }
+  }
+
+  void show(const std::string& pipeline, const ScoredSurface& surface, const ExposureSet& set,
+            const ErrorSummary& errors) {
+    ShownMesh shown{.pipeline = pipeline,
+                    .mesh = surface.mesh,
+                    .ply = {},
+                    .png = {},
+                    .desync_ms = set.spread_ms(),
+                    .errors = errors};
+    shown.mesh.colours = error_colours(surface.by_vertex);
+    shown.ply = ply_bytes(shown.mesh);
+    shown.png = png_bytes(picture_of(shown.mesh));
+    const std::lock_guard lock(mutex_);
+    on_mesh_(shown);
+  }
+
+  // For every speed, every desynchronisation.
+  std::vector<CurvePoint> points_at(const std::vector<double>& factors,
+                                    const std::vector<double>& desyncs_ms) {
+    std::vector<CurvePoint> points;
+    for (const double factor : factors) {
+      for (const double desync_ms : desyncs_ms) {
+        points.push_back({.speed_m_per_s = scenario_.studio->subject.walk_speed_m_per_s * factor,
+                          .speed_factor = factor,
+                          .desync_ms = desync_ms,
+                          .mean_cm = std::vector<double>(options_.seeds, kNoError),
+                          .std_cm = std::vector<double>(options_.seeds, kNoError)});
+      }
+    }
+    run_all(points.size() * options_.seeds, [&](std::size_t job) {
+      CurvePoint& point = points[job / options_.seeds];
+      const std::size_t seed = job % options_.seeds;
+      const SeedReprojection found = run_point(point, options_.first_seed + seed);
+      point.mean_cm[seed] = found.errors.mean_cm;
+      point.std_cm[seed] = found.errors.std_cm;
+    });
+    return points;
+  }
+
+  SeedReprojection run_point(const CurvePoint& point, std::uint64_t seed) {
+    const std::unique_ptr<Subject> subject = subjects_.make(point.speed_factor);
+    SetReconstruction studio(scenario_, *subject, seed);
+    SeedTally tally;
+    for (std::int64_t i = 0; i < options_.curve_frames && !is_cancelled(); ++i) {
+      const auto index = static_cast<std::uint32_t>(i);
+      constexpr double kWithin = 60;  // s
+      const double at_s = sim::RandomStream(seed, "desync instant", index).uniform(0, kWithin);
+      add_set(studio, desynchronised_set(scenario_, seed, point.desync_ms, at_s, index), tally,
+              nullptr);
+    }
+    return tally.finish(seed, false);
+  }
+
+  // The speed at which the row with the largest published mean would have it.
+  void search_speed() {
+    const ReprojectionRow* worst = nullptr;
+    for (const ReprojectionRow& row : results_.rows) {
+      if (!row.published) continue;
+      if (worst == nullptr || row.published->mean_cm > worst->published->mean_cm) worst = &row;
+    }
+    if (worst == nullptr || std::isnan(worst->desync_ms().median)) return;
+    SpeedNeeded needed{.pipeline = worst->pipeline,
+                       .desync_ms = worst->desync_ms().median,
+                       .published_mean_cm = worst->published->mean_cm,
+                       .points = {},
+                       .speed_m_per_s = {}};
+    needed.points = points_at(options_.search_speed_factors, {needed.desync_ms});
+    needed.speed_m_per_s = first_passing(needed.points, needed.published_mean_cm);
+    results_.speed_needed = std::move(needed);
+  }
+
+  // Where the median mean error first reaches `mean_cm`, linearly between the points.
+  static std::optional<double> first_passing(const std::vector<CurvePoint>& points,
+                                             double mean_cm) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double here = evaluation::median(points[i].mean_cm);
+      if (!(here >= mean_cm)) continue;
+      if (i == 0) return points[0].speed_m_per_s;
+      const double before = evaluation::median(points[i - 1].mean_cm);
+      const double share = (mean_cm - before) / (here - before);
+      return points[i - 1].speed_m_per_s +
+             share * (points[i].speed_m_per_s - points[i - 1].speed_m_per_s);
+    }
+    return std::nullopt;
+  }
+
+  const Scenario& scenario_;
+  const evaluation::SourceFactory& make_source_;
+  const ReconstructionOptions& options_;
+  const MeshKeeper& on_mesh_;
+  const evaluation::Progress& progress_;
+  std::vector<PipelineChoice> choices_;
+  SubjectMaker subjects_;
+  std::unique_ptr<Subject> subject_;
+  ReconstructionResults results_;
+  std::int64_t total_ = 0;
+  std::mutex mutex_;  // guards what follows, notes of rows, and calls of on_mesh_ and progress_
+  std::int64_t done_ = 0;
+  double set_seconds_ = 0;
+};
+
+}  // namespace
+
+bool reconstruction_available() { return true; }
+
+std::string how_to_get_reconstruction() { return "this simbench has it"; }
+
+ReconstructionResults run_reconstruction(const Scenario& scenario,
+                                         const evaluation::SourceFactory& make_source,
+                                         const ReconstructionOptions& options,
+                                         const MeshKeeper& on_mesh,
+                                         const evaluation::Progress& progress) {
+  return Experiment(scenario, make_source, options, on_mesh, progress).run();
+}
+
+}  // namespace simbench::reconstruction
