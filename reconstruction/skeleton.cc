@@ -25,7 +25,7 @@ Isometry3d at(const Vector3d& joint) { return Isometry3d(Eigen::Translation3d(jo
 // How far a foot's toes point down where the shank leans backwards from top to bottom by `lean`:
 // not at all at first, since the toes would go through the floor, wholly in the end.
 double toes_down(double lean) {
-  constexpr double kGivesWay = 0.3;  // rad
+  constexpr double kGivesWay = 0.4;  // rad
   return lean * lean * lean / (lean * lean + kGivesWay * kGivesWay);
 }
 
