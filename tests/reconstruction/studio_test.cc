@@ -1,0 +1,281 @@
+#include "reconstruction/studio.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/reconstruction/studio_scenario.h"
+
+namespace simbench::reconstruction {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::vector<StudioCamera> cameras_of(const scenarios::Scenario& scenario, std::uint64_t seed) {
+  return Studio(scenario, seed).cameras();
+}
+
+Vector2d pixel_of(const StudioCamera& camera, const Vector3d& point) {
+  return camera.intrinsics.pixel_of(camera.world_from_camera.inverse() * point);
+}
+
+TEST(Studio, CamerasStandAtSixAnglesAndThreeHeights) {
+  const Studio studio(studio_scenario(), 1);
+  ASSERT_EQ(studio.cameras().size(), 18U);
+  for (std::size_t j = 0; j < 18; ++j) {
+    SCOPED_TRACE(j);
+    const Vector3d position = studio.cameras()[j].world_from_camera.translation();
+    const double azimuth = 60.0 * static_cast<double>(j / 3) * kDegree;
+    EXPECT_NEAR(position.x(), 2 * std::cos(azimuth), 1e-12);
+    EXPECT_NEAR(position.y(), 2 * std::sin(azimuth), 1e-12);
+    EXPECT_DOUBLE_EQ(position.z(), 0.5 + 0.5 * static_cast<double>(j % 3));
+  }
+}
+
+TEST(Studio, CamerasOfAHostShareAnAzimuth) {
+  const scenarios::Scenario scenario = studio_scenario();
+  const Studio studio(scenario, 1);
+  const auto azimuth = [&](std::size_t j) {
+    const Vector3d position = studio.cameras()[j].world_from_camera.translation();
+    return std::atan2(position.y(), position.x());
+  };
+  for (std::size_t a = 0; a < 18; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const bool same_host = scenario.host_of(static_cast<std::int64_t>(a)) ==
+                             scenario.host_of(static_cast<std::int64_t>(b));
+      EXPECT_EQ(std::abs(azimuth(a) - azimuth(b)) < 1e-9, same_host) << a << " and " << b;
+    }
+  }
+}
+
+TEST(Studio, CamerasLookAtTheCentre) {
+  for (const bool portrait : {false, true}) {
+    scenarios::Scenario scenario = studio_scenario();
+    scenario.studio->portrait = portrait;
+    for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+      const Vector3d centre(0, 0, 0.9);
+      EXPECT_NEAR((pixel_of(camera, centre) - Vector2d(423.5, 239.5)).norm(), 0, 1e-9);
+      const Vector3d seen = camera.world_from_camera.inverse() * centre;
+      EXPECT_NEAR(seen.z(), std::hypot(2, camera.world_from_camera.translation().z() - 0.9), 1e-12);
+      const Eigen::Matrix3d axes = camera.world_from_camera.linear();
+      EXPECT_NEAR((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 0, 1e-12);
+      EXPECT_NEAR(axes.determinant(), 1, 1e-12);  // a mirror image would be -1
+    }
+  }
+}
+
+// What is above the centre is above it in the image, what is to the camera's right is to the right.
+TEST(Studio, LandscapeIsUpright) {
+  scenarios::Scenario scenario = studio_scenario();
+  scenario.studio->portrait = false;
+  for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+    const Vector2d above = pixel_of(camera, {0, 0, 1.0});
+    EXPECT_NEAR(above.x(), 423.5, 1e-9);
+    EXPECT_LT(above.y(), 239.5 - 10);
+    const Vector3d position = camera.world_from_camera.translation();
+    const Vector3d right = Vector3d(-position.y(), position.x(), 0) * 0.05;  // facing the centre
+    EXPECT_GT(pixel_of(camera, Vector3d(0, 0, 0.9) + right).x(), 423.5 + 10);
+  }
+}
+
+TEST(Studio, PortraitHasTheVerticalAlongItsRows) {
+  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+    const Vector2d above = pixel_of(camera, {0, 0, 1.0});
+    EXPECT_NEAR(above.y(), 239.5, 1e-9);
+    EXPECT_LT(above.x(), 423.5 - 10);
+    const Vector3d position = camera.world_from_camera.translation();
+    const Vector3d right = Vector3d(-position.y(), position.x(), 0) * 0.05;
+    EXPECT_LT(pixel_of(camera, Vector3d(0, 0, 0.9) + right).y(), 239.5 - 10);
+  }
+}
+
+// All of a standing person is in the image of every camera.
+TEST(Studio, PortraitSeesAPersonFromHeadToFoot) {
+  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+    for (const double height : {0.0, 1.75}) {
+      const Vector2d pixel = pixel_of(camera, {0, 0, height});
+      EXPECT_GT(pixel.x(), 0);
+      EXPECT_LT(pixel.x(), 847);
+    }
+  }
+}
+
+TEST(Studio, IntrinsicsAreTheProfiles) {
+  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+    EXPECT_EQ(camera.intrinsics.width, 848);
+    EXPECT_EQ(camera.intrinsics.height, 480);
+    EXPECT_EQ(camera.intrinsics.focal_px, 430);
+    EXPECT_EQ(camera.intrinsics.centre_x_px, 423.5);
+  }
+  scenarios::Scenario small = studio_scenario();
+  small.cameras.streams[0].width = 424;
+  small.cameras.streams[0].height = 240;
+  EXPECT_EQ(Studio(small, 1).cameras()[7].intrinsics.focal_px, 215);
+  EXPECT_EQ(Studio(small, 1).cameras()[7].intrinsics.height, 240);
+}
+
+TEST(Studio, OtherStreamsDoNotMatter) {
+  scenarios::Scenario scenario = studio_scenario();
+  scenarios::Stream colour = scenario.cameras.streams[0];
+  colour.kind = "colour";
+  colour.width = 1280;
+  colour.height = 720;
+  scenario.cameras.streams.insert(scenario.cameras.streams.begin(), colour);
+  EXPECT_EQ(Studio(scenario, 1).cameras()[0].intrinsics.width, 848);
+}
+
+TEST(Studio, FewerCamerasThanPlaces) {
+  scenarios::Scenario scenario = studio_scenario();
+  scenario.cameras.count = 5;
+  const Studio studio(scenario, 1);
+  ASSERT_EQ(studio.cameras().size(), 5U);
+  const Studio all(studio_scenario(), 1);
+  for (std::size_t j = 0; j < 5; ++j) {  // and they are those that they were, errors and all
+    EXPECT_TRUE(studio.cameras()[j].believed.isApprox(all.cameras()[j].believed, 0));
+  }
+}
+
+// Of every camera and seed, in the camera's frame: three shifts in m, three angles in rad.
+using Errors = std::vector<std::vector<double>>;
+Errors calibration_errors(const scenarios::Scenario& scenario, std::uint64_t seeds) {
+  Errors errors(6);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    for (const StudioCamera& camera : cameras_of(scenario, seed)) {
+      const Eigen::Isometry3d error = camera.world_from_camera.inverse() * camera.believed;
+      const Eigen::AngleAxisd rotation(error.linear());
+      for (int axis = 0; axis < 3; ++axis) {
+        errors[static_cast<std::size_t>(axis)].push_back(error.translation()[axis]);
+        errors[static_cast<std::size_t>(axis) + 3].push_back(rotation.angle() *
+                                                             rotation.axis()[axis]);
+      }
+    }
+  }
+  return errors;
+}
+
+double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum / static_cast<double>(a.size());
+}
+
+// 7200 draws of each: a standard deviation is within 0.8 % (one sigma), a correlation within 0.012.
+TEST(Studio, CalibrationErrorsHaveTheirSigmaAndAreIndependent) {
+  const Errors errors = calibration_errors(studio_scenario(), 400);
+  const auto sigma = [](std::size_t i) { return i < 3 ? 0.010 : 0.29 * kDegree; };
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    SCOPED_TRACE(i);
+    const std::vector<double> ones(errors[i].size(), 1.0);
+    EXPECT_NEAR(mean_product(errors[i], ones) / sigma(i), 0, 0.05);
+    EXPECT_NEAR(std::sqrt(mean_product(errors[i], errors[i])) / sigma(i), 1, 0.035);
+    for (std::size_t k = 0; k < i; ++k) {
+      EXPECT_NEAR(mean_product(errors[i], errors[k]) / (sigma(i) * sigma(k)), 0, 0.05) << k;
+    }
+    // From one camera to the next, and from one seed to the next.
+    for (const std::ptrdiff_t lag : {1, 18}) {
+      const std::vector<double> earlier(errors[i].begin(), errors[i].end() - lag);
+      const std::vector<double> later(errors[i].begin() + lag, errors[i].end());
+      EXPECT_NEAR(mean_product(earlier, later) / (sigma(i) * sigma(i)), 0, 0.05) << lag;
+    }
+  }
+}
+
+TEST(Studio, WithoutSigmaTheCalibrationIsRight) {
+  scenarios::Scenario scenario = studio_scenario();
+  scenario.studio->calibration_translation_sigma_mm = 0;
+  scenario.studio->calibration_rotation_sigma_deg = 0;
+  for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+    EXPECT_TRUE(camera.believed.isApprox(camera.world_from_camera, 0));
+  }
+}
+
+// Errors of one kind are the same whatever the sigma of the other: all draws are always made.
+TEST(Studio, SigmasDoNotMoveEachOthersDraws) {
+  const scenarios::Scenario both = studio_scenario();
+  scenarios::Scenario moved = both;
+  moved.studio->calibration_rotation_sigma_deg = 0;
+  scenarios::Scenario rotated = both;
+  rotated.studio->calibration_translation_sigma_mm = 0;
+  for (std::size_t j = 0; j < 18; ++j) {
+    const Eigen::Isometry3d believed = Studio(both, 3).cameras()[j].believed;
+    EXPECT_TRUE(Studio(moved, 3).cameras()[j].believed.translation().isApprox(
+        believed.translation(), 1e-15));
+    EXPECT_TRUE(
+        Studio(rotated, 3).cameras()[j].believed.linear().isApprox(believed.linear(), 1e-15));
+  }
+}
+
+TEST(Studio, TheSameSeedIsTheSameStudio) {
+  const Studio once(studio_scenario(), 5);
+  const Studio again(studio_scenario(), 5);
+  const Studio other(studio_scenario(), 6);
+  for (std::size_t j = 0; j < 18; ++j) {
+    EXPECT_TRUE(once.cameras()[j].believed.isApprox(again.cameras()[j].believed, 0));
+    EXPECT_FALSE(once.cameras()[j].believed.isApprox(other.cameras()[j].believed, 1e-6));
+    EXPECT_TRUE(
+        once.cameras()[j].world_from_camera.isApprox(other.cameras()[j].world_from_camera, 0));
+  }
+}
+
+void expect_refused(const std::function<void(scenarios::Scenario&)>& spoil,
+                    const std::vector<std::string>& parts) {
+  scenarios::Scenario scenario = studio_scenario();
+  spoil(scenario);
+  try {
+    const Studio studio(scenario, 1);
+    FAIL() << "taken";
+  } catch (const scenarios::InputError& error) {
+    for (const std::string& part : parts) EXPECT_THAT(error.what(), HasSubstr(part));
+    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+  }
+}
+
+TEST(Studio, AScenarioWithoutOneIsRefused) {
+  expect_refused([](scenarios::Scenario& s) { s.studio.reset(); },
+                 {"/studio", "18cam_6host_30fps_studio"});
+}
+
+TEST(Studio, NoDepthStreamIsRefused) {
+  expect_refused([](scenarios::Scenario& s) { s.cameras.streams[0].kind = "colour"; },
+                 {"/cameras/streams", "no depth stream"});
+}
+
+TEST(Studio, AnUnknownFocalLengthIsRefused) {
+  expect_refused([](scenarios::Scenario& s) { s.cameras.model = "azure_kinect"; },
+                 {"/cameras/streams/0", "848x480", "azure_kinect", "focal_px"});
+  expect_refused([](scenarios::Scenario& s) { s.cameras.streams[0].width = 847; },
+                 {"/cameras/streams/0", "847x480", "d455"});
+  expect_refused([](scenarios::Scenario& s) { s.cameras.model = "box_camera"; }, {"box_camera"});
+}
+
+TEST(Studio, MoreCamerasThanPlacesAreRefused) {
+  expect_refused([](scenarios::Scenario& s) { s.cameras.count = 19; },
+                 {"/cameras/count", "found 19", "at most 18", "6 angles", "3 heights"});
+  expect_refused([](scenarios::Scenario& s) { s.studio->azimuth_step_deg = 61; },
+                 {"at most 15", "5 angles"});
+  expect_refused([](scenarios::Scenario& s) { s.studio->heights_m = {1.0, 1.5}; }, {"at most 12"});
+}
+
+// 360 / (360 / 7) is less than 7 in floating point.
+TEST(Studio, AStepThatDividesTheCircleHasRoomForAll) {
+  scenarios::Scenario scenario = studio_scenario();
+  scenario.studio->heights_m = {1.0};
+  for (int angles = 1; angles <= 60; ++angles) {
+    scenario.studio->azimuth_step_deg = 360.0 / angles;
+    scenario.cameras.count = angles;
+    EXPECT_EQ(Studio(scenario, 1).cameras().size(), static_cast<std::size_t>(angles));
+  }
+}
+
+}  // namespace
+}  // namespace simbench::reconstruction
