@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "scenarios/rates.h"
+#include "scenarios/studio_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -173,6 +175,21 @@ void check_faults(const Scenario& scenario) {
   }
 }
 
+template <class Result>
+void check_published(const Scenario& scenario, const std::string& pointer,
+                     const std::map<std::string, Result>& published,
+                     const std::vector<std::string>& pipelines) {
+  for (const auto& [name, result] : published) {
+    if (std::find(pipelines.begin(), pipelines.end(), name) != pipelines.end()) continue;
+    const std::vector<std::string> similar = nearest(name, pipelines);
+    fail_at(
+        scenario, child_pointer(pointer, name),
+        similar.empty()
+            ? fmt::format("found no such pipeline, allowed {}", fmt::join(pipelines, ", "))
+            : fmt::format("found no such pipeline, did you mean {}?", fmt::join(similar, " or ")));
+  }
+}
+
 void check_pipelines(const Scenario& scenario) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scenario.pipelines.size(); ++i) {
@@ -185,14 +202,9 @@ void check_pipelines(const Scenario& scenario) {
     }
     names.push_back(name);
   }
-  for (const auto& [name, result] : scenario.published) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::vector<std::string> similar = nearest(name, names);
-    fail_at(
-        scenario, child_pointer("/published", name),
-        similar.empty()
-            ? fmt::format("found no such pipeline, allowed {}", fmt::join(names, ", "))
-            : fmt::format("found no such pipeline, did you mean {}?", fmt::join(similar, " or ")));
+  check_published(scenario, "/published", scenario.published, names);
+  if (scenario.studio) {
+    check_published(scenario, "/studio/published", scenario.studio->published, names);
   }
 }
 
@@ -209,6 +221,7 @@ void check(const Scenario& scenario) {
   check_auto_exposure(scenario);
   check_faults(scenario);
   check_pipelines(scenario);
+  check_studio(scenario);
 }
 
 }  // namespace simbench::scenarios

@@ -22,7 +22,9 @@ constexpr std::size_t kLongestListed = 32;
 
 // Units stand last in names; longer endings come before those they end in.
 std::string unit_of(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kUnits = {{
+      {"_rad_per_s", "rad/s"},
+      {"_m_per_s", "m/s"},
       {"_ppb_per_sqrt_s", "ppb/sqrt(s)"},
       {"_mbit_per_s", "Mbit/s"},
       {"_mb_per_s", "MB/s"},
@@ -43,6 +45,11 @@ std::string unit_of(std::string_view name) {
       {"_after_periods", "mode periods"},
       {"_periods", "frame periods"},
       {"_transfers", "transfer times"},
+      {"_deg", "degrees"},
+      {"_px", "pixels"},
+      {"_cm", "cm"},
+      {"_mm", "mm"},
+      {"_m", "m"},
       {"width", "pixels"},
       {"height", "pixels"},
   }};

@@ -7,6 +7,7 @@
 #define SIMBENCH_SCENARIOS_FIELDS_H_
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -86,9 +87,40 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathe
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, amd_ms, rmdv_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Scenario, name, summary, timeline, hosts, network, trigger,
-                                   cameras, usb, faults, evaluation, algorithms, pipelines,
-                                   published)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StudioSubject, kind, mesh_file, height_m, motion,
+                                   walk_speed_m_per_s, turn_rate_rad_per_s, arm_rate_rad_per_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedReprojection, mean_cm, std_cm)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Studio, radius_m, azimuth_step_deg, heights_m, look_at_height_m,
+                                   portrait, calibration_translation_sigma_mm,
+                                   calibration_rotation_sigma_deg, stereo_baseline_mm,
+                                   subpixel_error_px, missing_share, max_incidence_deg,
+                                   min_distance_m, max_distance_m, point_spacing_mm,
+                                   visibility_tolerance_mm, subject, published)
+
+}  // namespace simbench::scenarios
+
+// A studio that there is not is null, or left out.
+template <>
+struct nlohmann::adl_serializer<std::optional<simbench::scenarios::Studio>> {
+  using Studio = simbench::scenarios::Studio;
+  static void to_json(json& out, const std::optional<Studio>& studio) {
+    out = studio ? json(*studio) : json();
+  }
+  static void from_json(const json& in, std::optional<Studio>& studio) {
+    if (in.is_null()) {
+      studio.reset();
+    } else {
+      studio = in.get<Studio>();
+    }
+  }
+};
+
+namespace simbench::scenarios {
+
+// With default, for the studio's sake; the schema asks for all else.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Scenario, name, summary, timeline, hosts, network,
+                                                trigger, cameras, usb, faults, evaluation,
+                                                algorithms, pipelines, published, studio)
 
 }  // namespace simbench::scenarios
 

@@ -96,22 +96,24 @@ void merge(const std::string& pointer, const json& patch, const Places& patch_pl
 }
 
 // A published result belongs to a pipeline: it does not outlive a base's pipelines.
-void drop_outlived_results(Resolved& resolved) {
+void drop_outlived_results(const std::string& published, Resolved& resolved) {
+  const json::json_pointer at(published);
+  if (!resolved.document.contains(at)) return;
   const std::size_t pipelines_level = resolved.places->latest_level("/pipelines");
   json kept = json::object();
-  for (const auto& [name, result] : resolved.document["published"].items()) {
+  for (const auto& [name, result] : resolved.document[at].items()) {
     const json& pipelines = resolved.document["pipelines"];
     const bool has_pipeline =
         std::any_of(pipelines.begin(), pipelines.end(),
                     [&wanted = name](const json& pipeline) { return pipeline["name"] == wanted; });
-    const std::string pointer = child_pointer("/published", name);
+    const std::string pointer = child_pointer(published, name);
     if (has_pipeline || resolved.places->latest_level(pointer) >= pipelines_level) {
       kept[name] = result;
     } else {
       resolved.places->erase(pointer);
     }
   }
-  resolved.document["published"] = std::move(kept);
+  resolved.document[at] = std::move(kept);
 }
 
 }  // namespace
@@ -128,7 +130,8 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
     apply_override(setting, ++level, resolved.document, *resolved.places);
   }
   validate(resolved.document, Completeness::kResolved, *resolved.places);
-  drop_outlived_results(resolved);
+  drop_outlived_results("/published", resolved);
+  drop_outlived_results("/studio/published", resolved);
   return resolved;
 }
 

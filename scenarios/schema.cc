@@ -77,7 +77,8 @@ std::string allowed(const json& node) {
     if (has_type(node, "boolean")) kinds.emplace_back("true or false");
     if (has_type(node, "string")) {
       kinds.push_back(node.contains("maxLength")
-                          ? fmt::format("text of 1 to {} characters", node.value("maxLength", 0))
+                          ? fmt::format("text of {} to {} characters", node.value("minLength", 0),
+                                        node.value("maxLength", 0))
                           : "text");
     }
   }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/camera_profile.h"
 #include "scenarios/loader.h"
 #include "scenarios/rates.h"
+#include "scenarios/studio_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -153,6 +155,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
+  for (std::string& line : studio_warnings(scenario)) lines.push_back(std::move(line));
   return lines;
 }
 

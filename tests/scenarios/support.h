@@ -2,6 +2,7 @@
 #ifndef SIMBENCH_TESTS_SCENARIOS_SUPPORT_H_
 #define SIMBENCH_TESTS_SCENARIOS_SUPPORT_H_
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ inline std::string derived(const std::string& members) {
 inline Scenario load_derived(const std::string& members,
                              const std::vector<Override>& overrides = {}) {
   return load_scenario_text(derived(members), "my.json", overrides);
+}
+
+// The resolved studio of a built-in scenario, as JSON.
+inline std::string studio_of(const std::string& scenario) {
+  return nlohmann::json::parse(load_scenario(scenario).resolved_json).at("studio").dump();
 }
 
 // "FILE:LINE: /pointer" of a value of the built-in 18cam_6host_45fps.

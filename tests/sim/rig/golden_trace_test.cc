@@ -63,6 +63,7 @@ TEST(GoldenTrace, EveryScenarioDoesWhatItDid) {
       {"18cam_1host_pcie", "free_running", 2497, 0xdc9d33dbeba8a921},
       {"18cam_6host_15fps", "yoon2021_both", 5345, 0x6d2ab7593cb90b01},
       {"18cam_6host_15fps_lan", "yoon2021_both", 6104, 0x87582f844347bee6},
+      {"18cam_6host_30fps_studio", "yoon2021_both", 5741, 0xe0bfc6cf7537a789},
       {"18cam_6host_45fps", "yoon2021_both", 5981, 0xba141e482f63fb11},
       {"18cam_6host_45fps_lan", "yoon2021_both", 6668, 0xe48662be14fd3e8f},
       {"18cam_6host_45fps_staggered_start", "yoon2021_both", 4406, 0xdd87a2edfef43804},
