@@ -13,30 +13,48 @@ double VertexErrors::mean_m(std::size_t vertex) const {
   return sum_m[vertex] / matches[vertex];
 }
 
-DepthMap spread_to_neighbours(const DepthMap& zbuffer) {
-  DepthMap spread(zbuffer.width, zbuffer.height);
-  for (int row = 0; row < zbuffer.height; ++row) {
-    for (int column = 0; column < zbuffer.width; ++column) {
-      const float depth = zbuffer.at(column, row);
-      if (depth <= 0) continue;
-      for (int y = std::max(0, row - 1); y <= std::min(zbuffer.height - 1, row + 1); ++y) {
-        for (int x = std::max(0, column - 1); x <= std::min(zbuffer.width - 1, column + 1); ++x) {
-          float& nearest = spread.depth_m[spread.index(x, y)];
-          if (nearest <= 0 || depth < nearest) nearest = depth;
-        }
-      }
+namespace {
+
+// The nearer of two depths, of which 0 is none.
+float nearer(float a, float b) { return a > 0 && (b <= 0 || a < b) ? a : b; }
+
+// Each value becomes the nearest within `reach` places before and after it in its line.
+void spread_line(float* line, int length, std::ptrdiff_t step, int reach,
+                 std::vector<float>& before) {
+  before.resize(static_cast<std::size_t>(length));
+  for (int i = 0; i < length; ++i) before[static_cast<std::size_t>(i)] = line[i * step];
+  for (int i = 0; i < length; ++i) {
+    float nearest = 0;
+    for (int j = std::max(0, i - reach); j <= std::min(length - 1, i + reach); ++j) {
+      nearest = nearer(before[static_cast<std::size_t>(j)], nearest);
     }
+    line[i * step] = nearest;
+  }
+}
+
+}  // namespace
+
+DepthMap spread_to_neighbours(const DepthMap& zbuffer, int reach_px) {
+  DepthMap spread = zbuffer;
+  std::vector<float> before;
+  for (int row = 0; row < spread.height; ++row) {
+    spread_line(&spread.depth_m[spread.index(0, row)], spread.width, 1, reach_px, before);
+  }
+  for (int column = 0; column < spread.width; ++column) {
+    spread_line(&spread.depth_m[spread.index(column, 0)], spread.height, spread.width, reach_px,
+                before);
   }
   return spread;
 }
 
 void add_reprojection_errors(const TriangleMesh& mesh, const DepthMap& zbuffer,
                              const DepthMap& measured, const StudioCamera& camera,
-                             double tolerance_m, ErrorStatistics& errors, VertexErrors& by_vertex) {
+                             const VisibilityTest& test, ErrorStatistics& errors,
+                             VertexErrors& by_vertex) {
   SIMBENCH_ASSERT(zbuffer.width == measured.width && zbuffer.height == measured.height,
                   "images of one camera");
   SIMBENCH_ASSERT(by_vertex.matches.size() == mesh.vertices.size(), "one for each vertex");
-  const DepthMap nearest = spread_to_neighbours(zbuffer);
+  const DepthMap nearest = spread_to_neighbours(zbuffer, test.spread_px);
   const Eigen::Isometry3d camera_from_world = camera.believed.inverse();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Eigen::Vector3d vertex = camera_from_world * mesh.vertices[v].cast<double>();
@@ -47,7 +65,7 @@ void add_reprojection_errors(const TriangleMesh& mesh, const DepthMap& zbuffer,
     if (!(column >= 0 && column < measured.width && row >= 0 && row < measured.height)) continue;
     const std::size_t at = measured.index(static_cast<int>(column), static_cast<int>(row));
     if (measured.depth_m[at] <= 0 || nearest.depth_m[at] <= 0) continue;
-    if (vertex.z() > static_cast<double>(nearest.depth_m[at]) + tolerance_m) continue;
+    if (vertex.z() > static_cast<double>(nearest.depth_m[at]) + test.tolerance_m) continue;
     const Eigen::Vector3d seen =
         camera.intrinsics.point_at({column, row}, static_cast<double>(measured.depth_m[at]));
     const double error = (vertex - seen).norm();

@@ -95,7 +95,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Studio, radius_m, azimuth_step_deg, heights_m
                                    calibration_rotation_sigma_deg, stereo_baseline_mm,
                                    subpixel_error_px, missing_share, max_incidence_deg,
                                    min_distance_m, max_distance_m, point_spacing_mm,
-                                   visibility_tolerance_mm, subject, published)
+                                   visibility_tolerance_mm, visibility_spread_px, subject,
+                                   published)
 
 }  // namespace simbench::scenarios
 

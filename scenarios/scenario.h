@@ -295,8 +295,9 @@ struct Studio {
   double max_incidence_deg = 0;  // steeper surfaces give no depth
   double min_distance_m = 0;
   double max_distance_m = 0;
-  double point_spacing_mm = 0;         // fused points are averaged on a grid of this
-  double visibility_tolerance_mm = 0;  // of the z-buffer test
+  double point_spacing_mm = 0;            // fused points are averaged on a grid of this
+  double visibility_tolerance_mm = 0;     // of the z-buffer test
+  std::int64_t visibility_spread_px = 0;  // each of its pixels is spread so far around it
   StudioSubject subject;
   std::map<std::string, PublishedReprojection> published;  // by pipeline name
 };

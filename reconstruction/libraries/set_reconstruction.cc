@@ -7,12 +7,19 @@
 #include "reconstruction/libraries/surface.h"
 
 namespace simbench::reconstruction {
+namespace {
+
+constexpr double kMetresPerMm = 1e-3;
+
+}  // namespace
 
 SetReconstruction::SetReconstruction(const scenarios::Scenario& scenario, const Subject& subject,
                                      std::uint64_t seed)
     : parameters_(scenario.studio.value()),
       subject_(subject),
       seed_(seed),
+      visibility_{.tolerance_m = parameters_.visibility_tolerance_mm * kMetresPerMm,
+                  .spread_px = static_cast<int>(parameters_.visibility_spread_px)},
       studio_(scenario, seed),
       caster_(subject.parts()) {}
 
@@ -33,7 +40,6 @@ std::optional<ScoredSurface> SetReconstruction::reconstruct(const evaluation::Ex
   for (std::size_t camera = 0; camera < set.cameras.size(); ++camera) {
     if (!set.cameras[camera]) continue;
     measured[camera] = measure(camera, *set.cameras[camera]);
-    constexpr double kMetresPerMm = 1e-3;
     add_points(measured[camera], studio_.cameras()[camera],
                parameters_.point_spacing_mm * kMetresPerMm, points);
   }
@@ -44,10 +50,8 @@ std::optional<ScoredSurface> SetReconstruction::reconstruct(const evaluation::Ex
   for (std::size_t camera = 0; camera < set.cameras.size(); ++camera) {
     if (!set.cameras[camera]) continue;
     const StudioCamera& place = studio_.cameras()[camera];
-    constexpr double kMetresPerMm = 1e-3;
     add_reprojection_errors(mesh, surface.depth(place.intrinsics, place.believed), measured[camera],
-                            place, parameters_.visibility_tolerance_mm * kMetresPerMm, errors,
-                            by_vertex);
+                            place, visibility_, errors, by_vertex);
   }
   return ScoredSurface{std::move(mesh), std::move(by_vertex)};
 }

@@ -50,6 +50,7 @@ class SetReconstruction {
   const scenarios::Studio& parameters_;
   const Subject& subject_;
   std::uint64_t seed_;
+  VisibilityTest visibility_;
   Studio studio_;
   RayCaster caster_;
 };

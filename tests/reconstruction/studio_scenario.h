@@ -30,6 +30,7 @@ inline scenarios::Scenario studio_scenario() {
   studio.max_distance_m = 6;
   studio.point_spacing_mm = 5;
   studio.visibility_tolerance_mm = 50;
+  studio.visibility_spread_px = 4;
   studio.subject.kind = "person";
   studio.subject.height_m = 1.75;
   studio.subject.motion = "stand";
