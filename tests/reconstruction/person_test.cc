@@ -146,20 +146,20 @@ int pieces(const Subject& person, double seconds) {
 TEST(Person, IsOnePieceInEveryPose) {
   for (const std::string motion : {"stand", "walk_and_turn", "raise_arms"}) {
     const auto person = make_person(script(motion), 1.0);
-    for (const double t : {0.0, 0.3, 0.6, 0.9, 2.2, 3.1}) {
+    for (const double t : {0.0, 0.6, 3.1}) {
       EXPECT_EQ(pieces(*person, t), 1) << motion << " at " << t;
     }
   }
 }
 
 TEST(Person, WalksWithoutGoingThroughTheFloorOrFlying) {
-  for (const double speed : {0.3, 0.8, 1.2, 2.0, 5.0}) {
+  for (const double speed : {0.3, 1.2, 5.0}) {
     SCOPED_TRACE(speed);
     scenarios::StudioSubject subject = script("walk_and_turn");
     subject.walk_speed_m_per_s = speed;
     const auto person = make_person(subject, 1.0);
     const double stride = kStrideLength / speed;
-    for (double t = 0; t < stride; t += stride / 40) {
+    for (double t = 0; t < stride; t += stride / 16) {
       const AlignedBox3d box = bounds(*person, t);
       EXPECT_GT(box.min().z(), -0.001) << t / stride;
       EXPECT_LT(box.min().z(), speed > 1.2 ? 0.12 : 0.065) << t / stride;

