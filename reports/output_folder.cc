@@ -35,13 +35,14 @@ fs::path normal_path(const fs::path& folder) {
   return path;
 }
 
-bool is_own_file(const fs::path& name) {
-  return std::any_of(kOwnFiles.begin(), kOwnFiles.end(),
-                     [&](const char* own) { return name == own; });
+bool is_own_file(const fs::path& name, const std::vector<std::string>& more_own_files) {
+  const auto is_name = [&](const std::string& own) { return name == own; };
+  return std::any_of(kOwnFiles.begin(), kOwnFiles.end(), is_name) ||
+         std::any_of(more_own_files.begin(), more_own_files.end(), is_name);
 }
 
 // An existing folder may be replaced if it is empty or holds an earlier result and nothing else.
-void check_replaceable(const fs::path& folder) {
+void check_replaceable(const fs::path& folder, const std::vector<std::string>& more_own_files) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return;
@@ -51,7 +52,7 @@ void check_replaceable(const fs::path& folder) {
        entry.increment(error)) {
     empty = false;
     const fs::path name = entry->path().filename();
-    if (!is_own_file(name)) {
+    if (!is_own_file(name, more_own_files)) {
       fail(folder, fmt::format("holds other files ({}); name a new folder or an earlier result",
                                name.string()));
     }
@@ -64,8 +65,9 @@ void check_replaceable(const fs::path& folder) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder) : folder_(normal_path(folder)) {
-  check_replaceable(folder_);
+OutputFolder::OutputFolder(const fs::path& folder, const std::vector<std::string>& more_own_files)
+    : folder_(normal_path(folder)) {
+  check_replaceable(folder_, more_own_files);
   const fs::path parent = folder_.parent_path();
   std::error_code error;
   if (!fs::is_directory(parent, error)) {

@@ -18,6 +18,7 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace simbench::reports {
 
@@ -28,8 +29,10 @@ class OutputError : public std::runtime_error {
 
 class OutputFolder {
  public:
-  // Checks that `folder` may be written and makes the temporary one.
-  explicit OutputFolder(const std::filesystem::path& folder);
+  // Checks that `folder` may be written and makes the temporary one. `more_own_files`: what an
+  // earlier result there may hold beside the files of an archive.
+  explicit OutputFolder(const std::filesystem::path& folder,
+                        const std::vector<std::string>& more_own_files = {});
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;

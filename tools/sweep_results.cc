@@ -1,13 +1,8 @@
 #include "tools/sweep_results.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
-#include <system_error>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/sweep_response.h"
@@ -71,26 +66,18 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
   return reports::response_figure(plan, rows);
 }
 
-// Drawn elsewhere: what gnuplot leaves when it is killed does not belong into the folder. Without a
-// picture a sweep is complete all the same.
+// Without a picture a sweep is complete all the same.
 void draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
   constexpr const char* kName = "sweep.svg";
   folder.remove(kName);
   if (figure.panels.empty()) return;
-  namespace fs = std::filesystem;
-  const fs::path picture =
-      fs::temp_directory_path() / fmt::format("simbench_sweep_{}.svg", ::getpid());
-  std::error_code ignored;  // of tidying up
+  std::string svg;
   try {
-    reports::draw(figure, reports::PlotFormat::kSvg, picture);
+    svg = reports::drawn_svg(figure);
   } catch (const reports::OutputError& error) {
-    fs::remove(picture, ignored);
     print_warnings({fmt::format("{} was not drawn: {}", kName, error.what())});
     return;
   }
-  std::ifstream in(picture, std::ios::binary);
-  const std::string svg{std::istreambuf_iterator<char>(in), {}};
-  fs::remove(picture, ignored);
   folder.write(kName, svg);
 }
 

@@ -73,4 +73,19 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
   picture.publish();
 }
 
+std::string drawn_svg(const Figure& figure) {
+  const fs::path picture =
+      fs::temp_directory_path() / fmt::format("simbench_{}_{}.svg", figure.id, ::getpid());
+  std::error_code ignored;  // of tidying up
+  try {
+    draw(figure, PlotFormat::kSvg, picture);
+  } catch (const OutputError&) {
+    fs::remove(picture, ignored);
+    throw;
+  }
+  std::string svg = content(picture);
+  fs::remove(picture, ignored);
+  return svg;
+}
+
 }  // namespace simbench::reports

@@ -27,6 +27,10 @@ std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::s
 // (saying what to install), gnuplot failed (with its words), the file cannot be written.
 void draw(const Figure& figure, PlotFormat format, const std::filesystem::path& output);
 
+// The same as the text of an SVG: for a folder in which nothing of gnuplot's may be left when it is
+// killed.
+std::string drawn_svg(const Figure& figure);
+
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_REPORTS_FIGURES_GNUPLOT_H_

@@ -62,7 +62,11 @@ function showControls() {
   fillSelect(controls.seed, [['', 'first'], ...named(seeds)], state.seed);
   fillSelect(controls.jump, [['', 'go to …'], ...views.map((view) => [view.id, view.shown.title])],
              state.figure);
-  document.getElementById('archive-control').hidden = archives.length < 2;
+  const hasPulses = figures.some(({panels}) => panels.some(({x_is_pulse}) => x_is_pulse));
+  controls.archive.parentElement.hidden = archives.length < 2;
+  controls.pipeline.parentElement.hidden = pipelines.length === 0;
+  controls.seed.parentElement.hidden = seeds.length === 0;
+  controls.pulse.parentElement.hidden = !hasPulses;
 }
 
 function showState() {
