@@ -60,7 +60,7 @@ TriangleMesh revolve(const std::vector<Ring>& rings, int segments) {
       const double longitude = 2 * kPi * k / segments;
       const Eigen::Vector3d vertex(ring.radius * std::cos(longitude),
                                    ring.radius * std::sin(longitude), ring.z);
-      mesh.vertices.push_back(vertex.cast<float>());
+      mesh.vertices.emplace_back(vertex.cast<float>());
     }
   }
   mesh.vertices.emplace_back(0.0F, 0.0F, static_cast<float>(rings.back().z));
@@ -128,7 +128,7 @@ TriangleMesh make_box(const Eigen::Vector3d& sizes_m) {
   for (int corner = 0; corner < 8; ++corner) {  // bits: x, y, z
     const Eigen::Vector3d sign(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
                                corner & 4 ? 0.5 : -0.5);
-    mesh.vertices.push_back(sign.cwiseProduct(sizes_m).cast<float>());
+    mesh.vertices.emplace_back(sign.cwiseProduct(sizes_m).cast<float>());
   }
   const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};

@@ -98,7 +98,8 @@ Studio::Studio(const scenarios::Scenario& scenario, std::uint64_t seed) {
   check_room(scenario, studio);
   const std::size_t heights = studio.heights_m.size();
   for (std::size_t j = 0; j < static_cast<std::size_t>(scenario.cameras.count); ++j) {
-    const double azimuth = studio.azimuth_step_deg * static_cast<double>(j / heights) * kDegree;
+    const std::size_t angle = j / heights;
+    const double azimuth = studio.azimuth_step_deg * static_cast<double>(angle) * kDegree;
     const Vector3d position(studio.radius_m * std::cos(azimuth),
                             studio.radius_m * std::sin(azimuth), studio.heights_m[j % heights]);
     const Isometry3d pose = looking_at(position, {0, 0, studio.look_at_height_m}, studio.portrait);

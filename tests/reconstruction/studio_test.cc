@@ -35,7 +35,8 @@ TEST(Studio, CamerasStandAtSixAnglesAndThreeHeights) {
   for (std::size_t j = 0; j < 18; ++j) {
     SCOPED_TRACE(j);
     const Vector3d position = studio.cameras()[j].world_from_camera.translation();
-    const double azimuth = 60.0 * static_cast<double>(j / 3) * kDegree;
+    const std::size_t angle = j / 3;
+    const double azimuth = 60.0 * static_cast<double>(angle) * kDegree;
     EXPECT_NEAR(position.x(), 2 * std::cos(azimuth), 1e-12);
     EXPECT_NEAR(position.y(), 2 * std::sin(azimuth), 1e-12);
     EXPECT_DOUBLE_EQ(position.z(), 0.5 + 0.5 * static_cast<double>(j % 3));
