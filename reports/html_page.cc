@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "recording/version.h"
+#include "reports/gate_commands.h"
 #include "reports/html_text.h"
 #include "reports/web_files.h"
 
@@ -46,28 +47,10 @@ std::string html_command(std::string_view what, const std::string& command) {
                      html_escaped(what), html_escaped(command));
 }
 
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=:,./@%") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "'";
-}
-
-std::string shell_line(const std::vector<std::string>& command) {
-  std::string line = "simbench";
-  for (std::size_t i = 1; i < command.size(); ++i) {
-    line += fmt::format(" {}", shell_word(command[i]));
-  }
-  return line;
+std::string simbench_line(const std::vector<std::string>& command) {
+  std::vector<std::string> words = command;
+  words.front() = "simbench";
+  return shell_line(words);
 }
 
 }  // namespace simbench::reports

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/ports/assert.h"
+#include "reports/gate_commands.h"
 #include "reports/html_comparison.h"
 #include "reports/html_figures.h"
 #include "reports/html_page.h"
@@ -40,13 +41,14 @@ std::string provenance_line(const Archive& archive) {
 std::string commands_of(const ReportedArchive& reported, const ReportInput& input) {
   const Archive& archive = reported.archive;
   std::string lines;
-  if (!archive.command.empty()) lines += html_command("The results", shell_line(archive.command));
-  lines += html_command("This report", shell_line(input.command));
+  if (!archive.command.empty())
+    lines += html_command("The results", simbench_line(archive.command));
+  lines += html_command("This report", simbench_line(input.command));
   if (!reported.figures.empty()) {
     lines +=
         html_command("One figure alone, for a paper",
                      fmt::format("simbench figure {} {} -o {}.svg", reported.figures.front().id,
-                                 shell_word(archive.path), reported.figures.front().id));
+                                 shell_line({archive.path}), reported.figures.front().id));
   }
   return fmt::format("<dl>\n{}</dl>\n", lines);
 }

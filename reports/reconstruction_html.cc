@@ -152,7 +152,7 @@ std::vector<std::string> row_notes(const ReconstructionResults& results) {
 
 std::string reproduce_html(const ReconstructionPage& page) {
   std::string text =
-      fmt::format("<dl>\n{}</dl>\n", html_command("All of this", shell_line(page.command)));
+      fmt::format("<dl>\n{}</dl>\n", html_command("All of this", simbench_line(page.command)));
   if (!page.results.scenario.resolved_json.empty()) {
     text += fmt::format(
         "<details><summary>The resolved scenario</summary>\n<pre class=\"scroll\" "
