@@ -1,14 +1,17 @@
 // Which frames a user would take for simultaneous, and when each of them was really exposed.
 //
 // For what is made of several cameras' frames together (reconstruction/). Frame sets are the same
-// for every pipeline in kind: around a frame of the anchor (the master's first camera), of each
-// other camera the frame whose global stamp is nearest. There is no threshold: with half a period,
-// Algorithm 3 gives no set at all where hosts are hundreds of milliseconds apart, and there would
-// be nothing to compare. A camera without a frame within one period of the anchor's stamp (it
+// for every pipeline in kind: around a frame of the anchor (the master's first camera; if that has
+// no frame, the next one that has), of each other camera the frame whose global stamp is nearest.
+// There is no threshold on how far apart stamps of a set are: with half a period, Algorithm 3 gives
+// no set at all where hosts are hundreds of milliseconds apart, and there would be nothing to
+// compare. But the nearest frame of a camera that runs is at most half a period away: one without a
+// frame within three quarters of a period of the anchor's stamp (the frame was lost, the camera
 // dropped out, or the capture is over by then) is missing from the set.
 //
-// Anchors are spread evenly over those evaluated pulses at which the stamps of all cameras overlap;
-// if there are none, over all evaluated pulses.
+// Anchors are spread evenly over those evaluated pulses at which the stamps of all cameras overlap
+// (that have any); if there are none, over all evaluated pulses. A frame of free-running cameras
+// counts as one of the last trigger pulse before its mid-exposure; so it does in the score.
 //
 //   const ExposureSets sets = exposure_sets(scenario, choice, seed, *source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;
@@ -43,7 +46,7 @@ struct ExposureSets {
   std::vector<ExposureSet> sets;  // in order of time
   // Complete sets that the pipeline's own gathering emitted at the evaluated pulses.
   std::int64_t gathered_sets = 0;
-  SeedScore score;  // as evaluate() gives it
+  SeedScore score;  // as evaluate() gives it, with pulses
 };
 
 // One simulated capture, with any number of cameras. Throws what evaluate() throws for one job, but
