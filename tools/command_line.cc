@@ -26,6 +26,7 @@
 #include "tools/messages.h"
 #include "tools/mpi_launch.h"
 #include "tools/node_command.h"
+#include "tools/reconstruct_command.h"
 #include "tools/record_command.h"
 #include "tools/relay_command.h"
 #include "tools/replay_command.h"
@@ -84,6 +85,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
                   evaluation::TaskFarm* farm) {
   tools::add_run_command(app, action, arguments);
   tools::add_sweep_command(app, action, farm);
+  tools::add_reconstruct_command(app, action, arguments);
   tools::group_commands(app, "Run");
   tools::add_report_command(app, action, arguments);
   tools::add_trace_command(app, action);

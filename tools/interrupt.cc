@@ -8,11 +8,11 @@
 namespace simbench::tools {
 namespace {
 
-std::atomic<bool> flag{false};
+std::atomic<bool> interrupt_flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 
 void throw_if_interrupted() {
-  if (flag.load(std::memory_order_relaxed)) throw Interrupted();
+  if (interrupt_flag.load(std::memory_order_relaxed)) throw Interrupted();
 }
 
 // Hands everything on; frames are frequent enough to notice the flag by.
@@ -46,9 +46,9 @@ class InterruptibleSource : public RecordingSource {
 }  // namespace
 
 InterruptHandler::InterruptHandler() {
-  flag = false;
+  interrupt_flag = false;
   struct sigaction action = {};
-  action.sa_handler = [](int) { flag = true; };
+  action.sa_handler = [](int) { interrupt_flag = true; };
   // The second signal finds the default again. An interrupted write is resumed: the result of a run
   // that is already complete is not lost.
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
@@ -58,7 +58,9 @@ InterruptHandler::InterruptHandler() {
 
 InterruptHandler::~InterruptHandler() { sigaction(SIGINT, &previous_, nullptr); }
 
-bool InterruptHandler::raised() { return flag; }
+bool InterruptHandler::raised() { return interrupt_flag; }
+
+const std::atomic<bool>& InterruptHandler::flag() { return interrupt_flag; }
 
 std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source) {
   return std::make_unique<InterruptibleSource>(std::move(source));

@@ -8,6 +8,7 @@
 #ifndef SIMBENCH_TOOLS_INTERRUPT_H_
 #define SIMBENCH_TOOLS_INTERRUPT_H_
 
+#include <atomic>
 #include <csignal>
 #include <exception>
 #include <memory>
@@ -24,6 +25,8 @@ class InterruptHandler {
   InterruptHandler(const InterruptHandler&) = delete;
   InterruptHandler& operator=(const InterruptHandler&) = delete;
   static bool raised();
+  // What is raised: for work that looks at a flag of its caller's.
+  static const std::atomic<bool>& flag();
 
  private:
   struct sigaction previous_ = {};

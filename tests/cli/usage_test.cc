@@ -31,7 +31,7 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   EXPECT_EQ(all.err, "");
   for (const char* command :
        {"run", "list", "describe", "validate", "replay", "diagnose", "convert-ibl", "record", "fit",
-        "node", "keygen", "relay", "validate-model"}) {
+        "node", "keygen", "relay", "validate-model", "reconstruct"}) {
     EXPECT_THAT(all.out, HasSubstr(command));
     const ProgramResult result = run({command, "--help"});
     EXPECT_EQ(result.status, 0) << command;
