@@ -12,7 +12,7 @@ namespace {
 constexpr std::int64_t kFewestPairs = 30;
 
 // The streams' own correlations, each by the number of its pairs.
-std::optional<Estimate> correlation_of(const std::vector<StreamFit>& streams) {
+std::optional<FittedValue> correlation_of(const std::vector<StreamFit>& streams) {
   double sum = 0;
   std::int64_t pairs = 0;
   for (const StreamFit& stream : streams) {
@@ -23,12 +23,12 @@ std::optional<Estimate> correlation_of(const std::vector<StreamFit>& streams) {
   if (pairs < kFewestPairs) return std::nullopt;
   const double spearman = sum / static_cast<double>(pairs);
   const double per_rank = std::numbers::pi / 3 * std::cos(std::numbers::pi / 6 * spearman);
-  return Estimate{2 * std::sin(std::numbers::pi / 6 * spearman),
-                  per_rank / std::sqrt(static_cast<double>(pairs))};
+  return FittedValue{2 * std::sin(std::numbers::pi / 6 * spearman),
+                     per_rank / std::sqrt(static_cast<double>(pairs))};
 }
 
-std::vector<Estimate> skews_of(const FitInput& input, const std::vector<StreamFit>& streams) {
-  std::vector<Estimate> skews;
+std::vector<FittedValue> skews_of(const FitInput& input, const std::vector<StreamFit>& streams) {
+  std::vector<FittedValue> skews;
   for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
     const StreamFit* best = nullptr;
     for (const StreamFit& stream : streams) {

@@ -33,10 +33,10 @@ inline constexpr std::size_t kLongestTable = 1001;
 
 struct RigFit {
   std::vector<StreamFit> streams;
-  std::vector<Estimate> skew_ppm;  // by camera
-  std::vector<double> excess_ms;   // of all streams, sorted
+  std::vector<FittedValue> skew_ppm;  // by camera
+  std::vector<double> excess_ms;      // of all streams, sorted
   std::vector<double> delivery_quantiles_ms;
-  std::optional<Estimate> correlation;  // nothing: too few pairs, or no jitter at all
+  std::optional<FittedValue> correlation;  // nothing: too few pairs, or no jitter at all
   std::int64_t frames = 0;
   std::int64_t missing = 0;
   Interval drop_interval;  // 95 %

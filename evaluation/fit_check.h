@@ -38,8 +38,8 @@ inline constexpr std::array<double, 8> kFitQuantiles = {0.01, 0.05, 0.25, 0.5,
 struct FitSide {
   std::int64_t frames = 0;
   std::array<double, kFitQuantiles.size()> excess_ms{};
-  std::vector<Estimate> skew_ppm;  // by camera
-  std::optional<Estimate> correlation;
+  std::vector<FittedValue> skew_ppm;  // by camera
+  std::optional<FittedValue> correlation;
   double drop_share = 0;
   Interval drop_interval;
 };

@@ -26,13 +26,13 @@ std::string skew_line(const RigFit& fit, const FitInput& input) {
     }
     values = fmt::format("{}", fmt::join(each, ", "));
   } else {
-    const auto by = [](double Estimate::*member) {
-      return [member](const Estimate& a, const Estimate& b) { return a.*member < b.*member; };
+    const auto by = [](double FittedValue::*member) {
+      return [member](const FittedValue& a, const FittedValue& b) { return a.*member < b.*member; };
     };
     const auto [low, high] =
-        std::minmax_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&Estimate::value));
+        std::minmax_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&FittedValue::value));
     const auto worst =
-        std::max_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&Estimate::error));
+        std::max_element(fit.skew_ppm.begin(), fit.skew_ppm.end(), by(&FittedValue::error));
     values = fmt::format("{} cameras from {:.3f} to {:.3f}, +- {:.3f} at most", fit.skew_ppm.size(),
                          low->value, high->value, worst->error);
   }
@@ -113,7 +113,7 @@ void add_rise_lines(const RigFit& fit, const FitInput& input, Lines& lines) {
 
 // The root of the mean square of what there is.
 std::optional<double> root_mean_square(const NetworkFit& network,
-                                       std::optional<Estimate> HostClockFit::*member) {
+                                       std::optional<FittedValue> HostClockFit::*member) {
   double sum = 0;
   double count = 0;
   for (const HostClockFit& host : network.hosts) {

@@ -73,18 +73,18 @@ std::optional<RoundTrip> round_trip(const ExchangeEvent& event, const Settings& 
   return trip;
 }
 
-std::optional<Estimate> initial_offset_ms(const std::vector<RoundTrip>& trips) {
+std::optional<FittedValue> initial_offset_ms(const std::vector<RoundTrip>& trips) {
   const RoundTrip* quickest = nullptr;
   for (const RoundTrip& trip : trips) {
     if (!trip.before_settings) continue;
     if (quickest == nullptr || trip.trip_ns < quickest->trip_ns) quickest = &trip;
   }
   if (quickest == nullptr) return std::nullopt;
-  return Estimate{quickest->system_offset_ns * 1e-6, quickest->trip_ns / 2 * 1e-6};
+  return FittedValue{quickest->system_offset_ns * 1e-6, quickest->trip_ns / 2 * 1e-6};
 }
 
 // Nothing where the slope is uncertain by more than kLargestErrorPpm.
-std::optional<Estimate> skew_ppm(const std::vector<RoundTrip>& trips) {
+std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
   constexpr double kLargestErrorPpm = 5;
   constexpr std::size_t kFewest = 10;
   std::vector<double> durations;
@@ -108,7 +108,7 @@ std::optional<Estimate> skew_ppm(const std::vector<RoundTrip>& trips) {
   }
   const double error_ppm = std::sqrt(squares / static_cast<double>(at.size() - 2) / spread) * 1e6;
   if (!(error_ppm <= kLargestErrorPpm)) return std::nullopt;
-  return Estimate{-line.slope / (1 + line.slope) * 1e6, error_ppm};
+  return FittedValue{-line.slope / (1 + line.slope) * 1e6, error_ppm};
 }
 
 // Of one way and, as sums of two of them, of round trips: counted in cells from the least on.

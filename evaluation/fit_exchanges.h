@@ -28,15 +28,15 @@
 namespace simbench::evaluation {
 
 // A value with its standard error.
-struct Estimate {
+struct FittedValue {
   double value = 0;
   double error = 0;
 };
 
 struct HostClockFit {
-  std::uint32_t host = 0;                          // not the master
-  std::optional<Estimate> initial_offset_ms = {};  // from the master; error: half a round trip
-  std::optional<Estimate> skew_ppm = {};           // rate against the master's
+  std::uint32_t host = 0;                             // not the master
+  std::optional<FittedValue> initial_offset_ms = {};  // from the master; error: half a round trip
+  std::optional<FittedValue> skew_ppm = {};           // rate against the master's
 };
 
 struct NetworkFit {

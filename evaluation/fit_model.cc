@@ -99,7 +99,7 @@ Json places_of(const FitInput& input) {
 Json cameras_json(const RigFit& fit, const FitInput& input, const FitBase& base, Tables& tables) {
   Json cameras = places_of(input);
   std::vector<double> skews;
-  for (const Estimate& skew : fit.skew_ppm) skews.push_back(skew.value);
+  for (const FittedValue& skew : fit.skew_ppm) skews.push_back(skew.value);
   cameras["skew_of_camera_ppm"] = tables.mark(skews, 4);
   cameras["drop_probability"] = rounded(fit.drop_share(), 1e-9);
   cameras["sensor_stamp_jitter_sigma_us"] = 0;

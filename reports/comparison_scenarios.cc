@@ -15,31 +15,32 @@
 namespace simbench::reports {
 namespace {
 
-using nlohmann::json;
+// Members by name, whatever order a file has them in.
+using SortedJson = nlohmann::json;
 
 constexpr std::array<const char*, 4> kWords = {"name", "summary", "published", "schema_version"};
 
-json parsed(const std::string& text) {
-  json root = json::parse(text, nullptr, false);
+SortedJson parsed(const std::string& text) {
+  SortedJson root = SortedJson::parse(text, nullptr, false);
   if (!root.is_object()) throw scenarios::InputError("a resolved scenario is no JSON object");
   return root;
 }
 
 // By name, so that a pipeline that was added moves no other.
-json by_name(const json& pipelines) {
-  json named = json::object();
+SortedJson by_name(const SortedJson& pipelines) {
+  SortedJson named = SortedJson::object();
   if (!pipelines.is_array()) return named;
-  for (json pipeline : pipelines) {
+  for (SortedJson pipeline : pipelines) {
     if (!pipeline.is_object() || !pipeline.contains("name")) continue;
-    const json name = pipeline["name"];
+    const SortedJson name = pipeline["name"];
     pipeline.erase("name");
     if (name.is_string()) named[name.get<std::string>()] = pipeline;
   }
   return named;
 }
 
-std::map<std::string, json> leaves(const json& value, const std::string& pointer) {
-  std::map<std::string, json> all;
+std::map<std::string, SortedJson> leaves(const SortedJson& value, const std::string& pointer) {
+  std::map<std::string, SortedJson> all;
   if (!value.is_structured() || value.empty()) return {{pointer, value}};
   for (const auto& [key, member] : value.items()) {
     all.merge(leaves(member, scenarios::child_pointer(pointer, key)));
@@ -47,14 +48,15 @@ std::map<std::string, json> leaves(const json& value, const std::string& pointer
   return all;
 }
 
-std::vector<std::string> differences(const json& a, const json& b, const std::string& pointer) {
-  const std::map<std::string, json> left = leaves(a, pointer);
-  const std::map<std::string, json> right = leaves(b, pointer);
-  const auto shown = [](const std::map<std::string, json>& all, const std::string& at) {
+std::vector<std::string> differences(const SortedJson& a, const SortedJson& b,
+                                     const std::string& pointer) {
+  const std::map<std::string, SortedJson> left = leaves(a, pointer);
+  const std::map<std::string, SortedJson> right = leaves(b, pointer);
+  const auto shown = [](const std::map<std::string, SortedJson>& all, const std::string& at) {
     const auto found = all.find(at);
     return found == all.end() ? std::string("nothing") : scenarios::shown(found->second);
   };
-  std::map<std::string, json> both = left;
+  std::map<std::string, SortedJson> both = left;
   both.insert(right.begin(), right.end());
   std::vector<std::string> found;
   for (const auto& [at, value] : both) {
@@ -67,8 +69,8 @@ std::vector<std::string> differences(const json& a, const json& b, const std::st
 }
 
 // Takes the member out of the scenario.
-json taken(json& scenario, const char* key) {
-  json member = scenario.contains(key) ? scenario[key] : json::object();
+SortedJson taken(SortedJson& scenario, const char* key) {
+  SortedJson member = scenario.contains(key) ? scenario[key] : SortedJson::object();
   scenario.erase(key);
   return member;
 }
@@ -77,12 +79,12 @@ json taken(json& scenario, const char* key) {
 
 ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b) {
   ScenarioDifferences result;
-  json left = parsed(a);
-  json right = parsed(b);
+  SortedJson left = parsed(a);
+  SortedJson right = parsed(b);
   result.algorithms =
       differences(taken(left, "algorithms"), taken(right, "algorithms"), "/algorithms");
-  const json left_pipelines = by_name(taken(left, "pipelines"));
-  const json right_pipelines = by_name(taken(right, "pipelines"));
+  const SortedJson left_pipelines = by_name(taken(left, "pipelines"));
+  const SortedJson right_pipelines = by_name(taken(right, "pipelines"));
   for (const auto& [name, pipeline] : left_pipelines.items()) {
     if (!right_pipelines.contains(name)) continue;
     for (std::string& difference : differences(pipeline, right_pipelines[name],
@@ -94,7 +96,7 @@ ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b
     left.erase(word);
     right.erase(word);
   }
-  for (json* scenario : {&left, &right}) {
+  for (SortedJson* scenario : {&left, &right}) {
     // Which table is printed.
     if (scenario->contains("evaluation")) (*scenario)["evaluation"].erase("table");
   }
@@ -104,7 +106,7 @@ ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b
 
 std::string digest_of_json(const std::string& text) {
   const boost::uuids::name_generator_sha1 generator(boost::uuids::ns::oid());
-  return to_string(generator(json::parse(text).dump()));
+  return to_string(generator(SortedJson::parse(text).dump()));
 }
 
 std::string first_few(const std::vector<std::string>& differences) {

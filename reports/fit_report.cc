@@ -12,15 +12,15 @@
 namespace simbench::reports {
 namespace {
 
-using evaluation::Estimate;
 using evaluation::FitCheck;
 using evaluation::FitSide;
+using evaluation::FittedValue;
 using evaluation::kFitQuantiles;
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 constexpr std::size_t kCamerasShown = 24;
 
-std::string estimate_text(const std::optional<Estimate>& estimate) {
+std::string estimate_text(const std::optional<FittedValue>& estimate) {
   return estimate ? fmt::format("{:.3f} +- {:.3f}", estimate->value, estimate->error) : "-";
 }
 
@@ -66,7 +66,7 @@ How to read it
   Hold-out: fitted to the first half of each stream, compared with the second half.
 )";
 
-Json estimate_json(const std::optional<Estimate>& estimate) {
+Json estimate_json(const std::optional<FittedValue>& estimate) {
   if (!estimate) return nullptr;
   return {{"value", estimate->value}, {"error", estimate->error}};
 }

@@ -45,7 +45,7 @@ namespace {
 
 using tools::ExitStatus;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kProgramExamples = R"(
 Start here:
   simbench --scenario 18cam_6host_45fps     the same as: simbench run --scenario ...
   simbench list                             scenarios and algorithms
@@ -119,7 +119,7 @@ int parse_and_run(const std::vector<std::string>& arguments, evaluation::TaskFar
   app.name("simbench");
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
   app.require_subcommand(1);
-  app.footer(kExamples);
+  app.footer(kProgramExamples);
   app.formatter(std::make_shared<tools::HelpFormat>());
   tools::Action action;
   add_commands(app, action, arguments, farm);

@@ -10,7 +10,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kCompareExamples = R"(
 Two archives: pipelines of the same name, A first, B against it. One archive: two of its pipelines
 (the second against the first), or each against one of them: "how much better than NTP?".
 
@@ -107,7 +107,7 @@ void add_compare_command(CLI::App& app, Action& action) {
   command->add_flag("--different-scenarios", options->comparison.different_scenarios,
                     "Compare although the worlds differ: what they make of the same pipelines");
   add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
-  command->footer(kExamples);
+  command->footer(kCompareExamples);
   command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

@@ -8,7 +8,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kDescribeExamples = R"(
 Examples:
   simbench describe 18cam_6host_45fps
   simbench describe my_rig.json --set /trigger/rate_hz=30
@@ -60,7 +60,7 @@ void add_describe_command(CLI::App& app, Action& action) {
       ->required();
   add_set_option(*command, options->sets);
   add_format_option(*command, options->format, {"table", "json"});
-  command->footer(kExamples);
+  command->footer(kDescribeExamples);
   command->callback([options, &action] { action = [options] { return describe(*options); }; });
 }
 

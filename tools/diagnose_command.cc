@@ -14,7 +14,7 @@ namespace {
 constexpr double kLowestRateHz = 0.01;
 constexpr double kHighestRateHz = 10'000;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kDiagnoseExamples = R"(
 Takes the recordings that `simbench replay` takes: the CSV of librealsense's rs-data-collect, one
 file per camera, or one of several cameras with two more columns, `camera` and `host`. A minute is
 enough to tell cameras that run free from cameras that follow a trigger.
@@ -56,7 +56,7 @@ void add_diagnose_command(CLI::App& app, Action& action) {
       ->check(number_within(kLowestRateHz, kHighestRateHz));
   command->add_flag("--one-host", options->one_host,
                     "One computer stamped all arrivals, whatever the files say");
-  command->footer(kExamples);
+  command->footer(kDiagnoseExamples);
   command->callback([options, &action] { action = [options] { return run_diagnose(*options); }; });
 }
 

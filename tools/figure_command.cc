@@ -30,7 +30,7 @@ using reports::FigureEntry;
 using reports::FigureScope;
 using scenarios::InputError;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kFigureExamples = R"(
 Figures of finished results and of single runs, which are repeated in the simulator. SVG and PDF are
 drawn by gnuplot (Debian: gnuplot-nox); CSV has the data, a line for each point: panel,series,x,y.
 
@@ -255,7 +255,7 @@ void add_figure_command(CLI::App& app, Action& action) {
                    "The file; its ending chooses: .svg, .pdf or .csv. An earlier one is replaced")
       ->type_name("FILE");
   add_json_messages_option(*command);
-  command->footer(kExamples);
+  command->footer(kFigureExamples);
   command->callback([options, &action] {
     check(*options);
     action = [options] { return run(*options); };

@@ -19,7 +19,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kFitExamples = R"(
 Takes a recording folder (simbench record, or a real rig's), or the CSV files that `simbench replay`
 takes. Writes a scenario file with what the recording shows, over a base that gives the rest: drift
 of each camera, distribution and correlation of the delivery delay, dropped frames; with exchanges
@@ -190,7 +190,7 @@ void add_fit_command(CLI::App& app, Action& action) {
   command->add_flag("--one-host", options->one_host,
                     "One computer stamped all arrivals of the files, whatever they say");
   add_format_option(*command, options->format, {"table", "json"});
-  command->footer(kExamples);
+  command->footer(kFitExamples);
   command->callback([options, &action] { action = [options] { return run_fit(*options); }; });
 }
 

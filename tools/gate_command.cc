@@ -13,7 +13,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kGateExamples = R"(
 Exact mode wants the seeds and the scenario of the baseline; fails if a value of the table is worse
 by more than its margin, a share and a step that the baseline file states. Statistical mode takes
 any 32 seeds; fails where a mean is worse by more than the margin and, after Holm's correction over
@@ -100,7 +100,7 @@ void add_gate_command(CLI::App& app, Action& action) {
   add_format_option(*command, options->format, {"text", "json", "junit"});
   command->add_option("--junit", options->junit, "Write JUnit XML to this file as well")
       ->type_name("FILE");
-  command->footer(kExamples);
+  command->footer(kGateExamples);
   command->callback([options, &action] { action = [options] { return gate(*options); }; });
 }
 

@@ -11,7 +11,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kKeygenExamples = R"(
 Nodes and the command that conducts them speak only to holders of the same key. Who has it may set
 the rig's clocks and start its captures: keep it as you keep a password. Without a key a node speaks
 to its own machine only.
@@ -45,7 +45,7 @@ void add_keygen_command(CLI::App& app, Action& action) {
       ->type_name("FILE")
       ->required();
   add_json_messages_option(*command);
-  command->footer(kExamples);
+  command->footer(kKeygenExamples);
   command->callback([file, &action] { action = [file] { return make_key(*file); }; });
 }
 

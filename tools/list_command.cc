@@ -21,7 +21,7 @@ namespace {
 using reports::Align;
 using reports::TextTable;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kListExamples = R"(
 Examples:
   simbench list                                       everything by name
   simbench list algorithms                            with parameters and sources
@@ -168,7 +168,7 @@ void add_list_command(CLI::App& app, Action& action) {
                    "Whose pipelines to list. Default: " + options->scenario)
       ->type_name("SCENARIO");
   add_format_option(*command, options->format, {"text", "names", "json"});
-  command->footer(kExamples);
+  command->footer(kListExamples);
   command->callback([options, &action] {
     if (options->format == "json" && options->what != "cameras") {
       throw CLI::ValidationError("--format", "found 'json', allowed: with cameras only");

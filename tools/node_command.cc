@@ -28,7 +28,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kNodeExamples = R"(
 Runs until SIGINT or SIGTERM; what happens is a line each on standard error. The rig's conductor
 (simbench run --backend hardware) tells it what to do. A systemd unit comes with simbench:
 simbench-node.service.
@@ -243,7 +243,7 @@ void add_node_command(CLI::App& app, Action& action) {
                    "Default: ~/.local/state/simbench/HOST")
       ->type_name("DIR");
   add_clock_options(*command, *options);
-  command->footer(kExamples);
+  command->footer(kNodeExamples);
   command->callback([options, &action] { action = [options] { return run_node(*options); }; });
 }
 

@@ -16,7 +16,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kRecordExamples = R"(
 One capture for each pipeline, under its host_sync: manifest.json, and for each capture frames.csv
 (a line a frame: all stamps and the truth) and events.csv (pulses, clock adjustments, polls,
 exchanges, outcomes). What is recorded outlives the program at any moment: a folder whose recording
@@ -126,7 +126,7 @@ void add_record_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "The folder, which must be new or empty")
       ->type_name("DIR")
       ->required();
-  command->footer(kExamples);
+  command->footer(kRecordExamples);
   command->callback([options, &action] { action = [options] { return record(*options); }; });
 }
 

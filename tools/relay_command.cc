@@ -23,7 +23,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kRelayExamples = R"(
 A tool for tests: nodes on one machine talk through it as if the scenario's network lay between
 them, with its latency, loss, duplication and reordering. It is what `simbench validate-model` puts
 between its nodes.
@@ -109,7 +109,7 @@ void add_relay_command(CLI::App& app, Action& action) {
   command->add_option("--for", options->for_s, "End after this time. Default: run on")
       ->type_name("SECONDS")
       ->check(number_within(0, 86400));
-  command->footer(kExamples);
+  command->footer(kRelayExamples);
   command->callback([options, &action] { action = [options] { return run_relay(*options); }; });
 }
 

@@ -18,7 +18,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kReplayExamples = R"(
 Takes a folder that `simbench record` wrote, and prints the table of the run that was recorded. Of a
 recording that was cut off or is damaged, it scores what there is and says so.
 
@@ -124,7 +124,7 @@ void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> 
                    "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
                    "hosts.csv) to this folder. An earlier result there is replaced")
       ->type_name("DIR");
-  command->footer(kExamples);
+  command->footer(kReplayExamples);
   command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
 }
 

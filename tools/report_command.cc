@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostSeedsInDetail = 1000;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kReportExamples = R"(
 The file needs nothing else: it opens offline in any browser, can be mailed and printed.
 
 Examples:
@@ -127,7 +127,7 @@ void add_report_command(CLI::App& app, Action& action, std::vector<std::string> 
       ->delimiter(',')
       ->allow_extra_args(false);
   add_json_messages_option(*command);
-  command->footer(kExamples);
+  command->footer(kReportExamples);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -23,7 +23,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kRunExamples = R"(
 Examples:
   simbench run --scenario 18cam_6host_45fps
   simbench run --scenario 18cam_6host_45fps --seeds 1000 --pipelines yoon2021_both,genlock
@@ -240,7 +240,7 @@ void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arg
   command->add_flag("--budget", options->budget,
                     "Instead of the table, divide each pipeline's error among the stages that\n"
                     "cause it (128 runs for every seed)");
-  command->footer(kExamples);
+  command->footer(kRunExamples);
   command->callback([options, seeds, &action] {
     if (options->backend.backend == "hardware" && seeds->count() == 0) {
       options->evaluation.seeds = 1;

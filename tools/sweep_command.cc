@@ -27,7 +27,7 @@ namespace {
 using evaluation::SweepPlan;
 using scenarios::Study;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kSweepExamples = R"(
 Examples:
   simbench sweep --scenario 18cam_6host_45fps --sweep /usb/delivery_jitter_transfers=0:1:0.1
                  --pipelines yoon2021_both,oracle -o results/jitter
@@ -195,7 +195,7 @@ void add_sweep_command(CLI::App& app, Action& action, evaluation::TaskFarm* farm
   command->add_flag("--restart", options->restart,
                     "Remove the sweep that is in the folder, and start anew");
   add_json_messages_option(*command);
-  command->footer(kExamples);
+  command->footer(kSweepExamples);
   command->callback(
       [options, farm, &action] { action = [options, farm] { return sweep(*options, farm); }; });
 }

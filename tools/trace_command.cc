@@ -30,7 +30,7 @@ constexpr const char* kUsualPipeline = "yoon2021_both";
 // Hours of true time.
 constexpr double kFarthestMs = 1e9;
 
-constexpr const char* kExamples = R"(
+constexpr const char* kTraceExamples = R"(
 Open the file at ui.perfetto.dev ("Open trace file"; nothing is uploaded) or in chrome://tracing.
 Everything is in true time, which the simulated hosts cannot see: a process for the trigger and for
 each host, arrows from pulse to exposure to delivery to gathered set and along the messages of a
@@ -183,7 +183,7 @@ void add_trace_command(CLI::App& app, Action& action) {
       ->add_option("-o,--output", options->output,
                    "The file, which appears whole or not at all. Default: -, standard output")
       ->type_name("FILE");
-  command->footer(kExamples);
+  command->footer(kTraceExamples);
   command->callback([options, &action] { action = [options] { return run_trace(*options); }; });
 }
 

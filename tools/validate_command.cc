@@ -10,7 +10,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kValidateExamples = R"(
 Examples:
   simbench validate my_rig.json
   simbench validate rigs/*.json      checks every one; exit status 2 if any is wrong)";
@@ -43,7 +43,7 @@ void add_validate_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("validate", "Check scenario files without running them");
   auto files = std::make_shared<std::vector<std::string>>();
   command->add_option("files", *files, "Scenario files")->type_name("FILE...")->required();
-  command->footer(kExamples);
+  command->footer(kValidateExamples);
   command->callback([files, &action] { action = [files] { return validate_all(*files); }; });
 }
 

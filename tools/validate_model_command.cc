@@ -30,7 +30,7 @@
 namespace simbench::tools {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kValidateModelExamples = R"(
 The bench's own error: the scenario's hosts run as processes on this machine, with real sockets,
 clocks and timers, a relay between them that is the scenario's network, and cameras that are played.
 All processes share one monotonic clock, so the true errors of their clocks are known. Then the same
@@ -230,7 +230,7 @@ void add_validate_model_command(CLI::App& app, Action& action) {
       ->type_name("N")
       ->check(whole_number(1, 1'000'000));
   add_format_option(*command, options->format, {"table", "markdown", "json"});
-  command->footer(kExamples);
+  command->footer(kValidateModelExamples);
   command->callback(
       [options, &action] { action = [options] { return validate_model(*options); }; });
 }

@@ -112,7 +112,7 @@ TEST(FitModel, RoundTripsMakeATableAndTakeTheHostsCosts) {
   for (int i = 0; i < 100; ++i) fit.network.round_trips_ms.push_back(0.4 + 0.001 * i);
   fit.network.latency_quantiles_ms = one_way_table(fit.network.round_trips_ms);
   fit.network.hosts = {
-      {.host = 1, .initial_offset_ms = Estimate{-30, 0.2}, .skew_ppm = Estimate{14, 0.1}}};
+      {.host = 1, .initial_offset_ms = FittedValue{-30, 0.2}, .skew_ppm = FittedValue{14, 0.1}}};
   const FitInput input = rig({0, 1});
   const FitModel model = fit_model(fit, input, default_base(input), "model.json");
   EXPECT_EQ(model.scenario.network.latency_quantiles_ms.size(), 101U);

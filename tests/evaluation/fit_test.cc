@@ -89,7 +89,7 @@ TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
     ASSERT_TRUE(study.hold_out) << "seed " << seed;
     EXPECT_LT(study.hold_out->ks, 1.5 * study.hold_out->ks_limit) << "seed " << seed;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Estimate& found = study.whole.simulated.skew_ppm[i];
+      const FittedValue& found = study.whole.simulated.skew_ppm[i];
       EXPECT_NEAR(found.value, study.whole.recorded.skew_ppm[i].value, 5 * found.error + 0.02)
           << "camera " << i << ", seed " << seed;
     }

@@ -57,7 +57,7 @@ TEST(CaptureCameras, ARollingShutterLastsLongerThanItsExposure) {
     EXPECT_EQ(record.exposure_us, 4000u);
     EXPECT_NEAR(record.sensor.us, pulse_us + 5000, 1);  // middle of the middle row
     EXPECT_NEAR(record.frame.us, pulse_us + 4000, 1);   // the first row is read out
-    EXPECT_NEAR(ms_of(record.arrival), pulse_us * 1e-3 + 10 + 8 + 2, 2e-6);
+    EXPECT_NEAR(host_ms_of(record.arrival), pulse_us * 1e-3 + 10 + 8 + 2, 2e-6);
   }
   s.cameras.streams[0].shutter = "global";
   EXPECT_EQ(capture(s).frames[0].truth.exposure_end, TrueTime(from_ms(4)));
@@ -90,7 +90,7 @@ TEST(CaptureCameras, LatencyOfACameraIsItsOwnAndConstant) {
   double first_ms[2] = {};
   for (const auto& [record, truth] : result.frames) {
     const double extra_ms =
-        ms_of(record.arrival) - static_cast<double>(truth.pulse) * 1e3 / 45 - 14;
+        host_ms_of(record.arrival) - static_cast<double>(truth.pulse) * 1e3 / 45 - 14;
     if (truth.pulse == 0) first_ms[record.camera] = extra_ms;
     EXPECT_NEAR(extra_ms, first_ms[record.camera], 3e-6);
     EXPECT_GE(extra_ms, -2e-6);

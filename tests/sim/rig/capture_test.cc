@@ -21,10 +21,10 @@ TEST(Capture, AddsUpTheWayOfAFrame) {
   for (const auto& [record, truth] : result.frames) {
     const double pulse_ms = static_cast<double>(truth.pulse) * 1e3 / 45;
     // Exposure 4 ms, latency 8 ms, transfer 2 ms.
-    EXPECT_NEAR(ms_of(record.arrival), pulse_ms + 14, 2e-6);
+    EXPECT_NEAR(host_ms_of(record.arrival), pulse_ms + 14, 2e-6);
     EXPECT_EQ(record.backend, record.arrival);
     EXPECT_NEAR(to_ms(truth.mid_exposure().time_since_epoch()), pulse_ms + 2, 2e-6);
-    EXPECT_NEAR(ms_of(truth.reference), pulse_ms + 2, 2e-6);
+    EXPECT_NEAR(host_ms_of(truth.reference), pulse_ms + 2, 2e-6);
     EXPECT_EQ(truth.own_host, truth.reference);
     EXPECT_EQ(record.exposure_us, 4000u);
     EXPECT_NEAR(record.sensor.us, pulse_ms * 1e3 + 2000, 1);
@@ -119,13 +119,14 @@ TEST(Capture, FramesShareAFairBus) {
   s.hosts.count = 1;
   s.usb.sharing = "fair";
   for (const auto& [record, truth] : capture(s).frames) {
-    EXPECT_NEAR(ms_of(record.arrival), static_cast<double>(truth.pulse) * 1e3 / 45 + 12 + 6, 3e-6);
+    EXPECT_NEAR(host_ms_of(record.arrival), static_cast<double>(truth.pulse) * 1e3 / 45 + 12 + 6,
+                3e-6);
   }
   s.usb.sharing = "fifo";
   const CapturedFrames fifo = capture(s);
-  EXPECT_NEAR(ms_of(fifo.of(0)[0].record.arrival), 14, 2e-6);
-  EXPECT_NEAR(ms_of(fifo.of(1)[0].record.arrival), 16, 2e-6);
-  EXPECT_NEAR(ms_of(fifo.of(2)[0].record.arrival), 18, 2e-6);
+  EXPECT_NEAR(host_ms_of(fifo.of(0)[0].record.arrival), 14, 2e-6);
+  EXPECT_NEAR(host_ms_of(fifo.of(1)[0].record.arrival), 16, 2e-6);
+  EXPECT_NEAR(host_ms_of(fifo.of(2)[0].record.arrival), 18, 2e-6);
 }
 
 TEST(Capture, AnOverloadedBusLosesWhatItCannotCarry) {
@@ -180,7 +181,7 @@ TEST(Capture, AStepOfAHostsClockMovesItsArrivals) {
   for (const auto& [record, truth] : capture(s).frames) {
     const double arrival_ms = static_cast<double>(truth.pulse) * 1e3 / 45 + 14;
     const double step_ms = record.camera == 1 && arrival_ms >= 1500 ? 7 : 0;
-    EXPECT_NEAR(ms_of(record.arrival), arrival_ms + step_ms, 2e-6);
+    EXPECT_NEAR(host_ms_of(record.arrival), arrival_ms + step_ms, 2e-6);
     EXPECT_NEAR(to_ms(record.arrival_steady.time_since_epoch()), arrival_ms, 2e-6);
   }
 }
@@ -194,8 +195,8 @@ TEST(Capture, TheFirstFrameMayComeLate) {
                .duration_ms = 5,
                .step_ms = 0}};
   const auto frames = capture(s).of(0);
-  EXPECT_NEAR(ms_of(frames[0].record.arrival), 19, 2e-6);
-  EXPECT_NEAR(ms_of(frames[1].record.arrival), 1e3 / 45 + 14, 2e-6);
+  EXPECT_NEAR(host_ms_of(frames[0].record.arrival), 19, 2e-6);
+  EXPECT_NEAR(host_ms_of(frames[1].record.arrival), 1e3 / 45 + 14, 2e-6);
 }
 
 TEST(Capture, ArrivalsAreQuantisedDownwards) {
@@ -204,7 +205,7 @@ TEST(Capture, ArrivalsAreQuantisedDownwards) {
   for (const auto& [record, truth] : capture(s).frames) {
     const double exact_ms = static_cast<double>(truth.pulse) * 1e3 / 45 + 14;
     EXPECT_EQ(record.arrival.time_since_epoch().count() % 1'000'000, 0);
-    EXPECT_NEAR(ms_of(record.arrival), std::floor(exact_ms + 1e-6), 1e-9);
+    EXPECT_NEAR(host_ms_of(record.arrival), std::floor(exact_ms + 1e-6), 1e-9);
   }
 }
 

@@ -64,7 +64,7 @@ inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t
   return frames;
 }
 
-inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
+inline double host_ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
 
 }  // namespace simbench::sim
 

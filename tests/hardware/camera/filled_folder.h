@@ -1,6 +1,6 @@
-// A folder of a test's own, removed with it.
-#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_TEMPORARY_FOLDER_H_
-#define SIMBENCH_TESTS_HARDWARE_CAMERA_TEMPORARY_FOLDER_H_
+// A folder of a test's own, with the files that it writes there, removed with it.
+#ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_FILLED_FOLDER_H_
+#define SIMBENCH_TESTS_HARDWARE_CAMERA_FILLED_FOLDER_H_
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,19 +10,19 @@
 
 namespace simbench::hardware {
 
-class TemporaryFolder {
+class FilledFolder {
  public:
-  TemporaryFolder() {
+  FilledFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "simbench_XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
   }
-  ~TemporaryFolder() {
+  ~FilledFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  FilledFolder(const FilledFolder&) = delete;
+  FilledFolder& operator=(const FilledFolder&) = delete;
 
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
@@ -40,4 +40,4 @@ class TemporaryFolder {
 
 }  // namespace simbench::hardware
 
-#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_TEMPORARY_FOLDER_H_
+#endif  // SIMBENCH_TESTS_HARDWARE_CAMERA_FILLED_FOLDER_H_
