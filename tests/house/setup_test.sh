@@ -27,6 +27,8 @@ provide() {
     libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libvalijson-dev) prove "$1/include/valijson/validator.hpp" ;;
+    libembree-dev) prove "$1/include/embree3/rtcore.h" ;;
+    libopen3d-dev) prove "$1/include/open3d/Open3D.h" ;;
     ca-certificates) prove "$1/share/ca-certificates/mozilla/some.crt" ;;
     libboost1.81-dev)
       prove "$1/include/boost/asio/awaitable.hpp"
@@ -92,6 +94,23 @@ setup
 expect_status 0
 [[ ! -s $work/asked && ! -s $work/said ]] || fail "the second call was not silent"
 
+machine "a bare machine that is to reconstruct"
+setup build --with-reconstruction
+expect_status 0
+expect_asked 'install .*libembree-dev libopen3d-dev'
+: > "$work/asked"
+setup --with-reconstruction
+expect_status 0
+[[ ! -s $work/asked && ! -s $work/said ]] || fail "the second call was not silent"
+rm "$work/usr/include/open3d/Open3D.h"
+setup
+expect_status 0
+expect_not_asked 'open3d'
+setup build --with-reconstruction
+expect_status 0
+expect_asked 'install .*libopen3d-dev'
+expect_not_asked 'install .*libembree-dev'
+
 machine "an old Boost of the user's"
 mkdir -p "$work/usr/include/boost/asio"
 : > "$work/usr/include/boost/asio/awaitable.hpp"
@@ -137,8 +156,12 @@ expect_status 1
 grep -q 'not the file that is expected' "$work/said" || fail "the message does not say so"
 [[ ! -e $work/project/build/deps/usr/share/javascript/uplot ]] || fail "it was kept"
 
-machine "a level that does not exist"
+machine "a level or an option that does not exist"
 setup everything
 expect_status 2
+setup build --with-everything
+expect_status 2
+grep -q "unknown option '--with-everything'" "$work/said" || fail "the message does not say what"
+expect_not_asked 'install'
 
-echo "setup_test: 8 machines passed"
+echo "setup_test: 9 machines passed"
