@@ -42,23 +42,34 @@ std::string table_4(const ReconstructionResults& results) {
                                          {"standard deviation, cm"},
                                          {"published standard deviation, cm"},
                                          {"median, cm"},
-                                         {"95 %, cm"},
-                                         {"desynchronisation, ms"},
-                                         {"seeds without a gathered set"},
-                                         {"sets"},
-                                         {"failed"},
-                                         {"missing frames"}});
+                                         {"95 %, cm"}});
   for (const ReprojectionRow& row : results.rows) {
     table.add({row.pipeline, cm_text(row.mean_cm()),
                published_text(row.published, &PublishedReprojection::mean_cm, row.mean_cm()),
                cm_text(row.std_cm()),
                published_text(row.published, &PublishedReprojection::std_cm, row.std_cm()),
-               cm_text(row.median_cm().median), cm_text(row.p95_cm().median),
-               ms_text(row.desync_ms()), share_text(no_gathered_set_share(row)),
+               cm_text(row.median_cm().median), cm_text(row.p95_cm().median)});
+  }
+  return table.html();
+}
+
+std::string sets_table(const ReconstructionResults& results) {
+  HtmlTable table("How it came about", {{"pipeline", Align::kLeft},
+                                        {"desynchronisation, ms"},
+                                        {"seeds without a gathered set"},
+                                        {"sets"},
+                                        {"failed"},
+                                        {"missing frames"}});
+  for (const ReprojectionRow& row : results.rows) {
+    table.add({row.pipeline, ms_text(row.desync_ms()), share_text(no_gathered_set_share(row)),
                total(row, &SeedReprojection::sets), total(row, &SeedReprojection::failed_sets),
                total(row, &SeedReprojection::missing_frames)});
   }
-  std::string text = table.html();
+  return table.html();
+}
+
+std::string error_section(const ReconstructionResults& results) {
+  std::string text = table_4(results) + sets_table(results);
   std::string legend = fmt::format("{} {}", kErrorLegend, kDesyncLegend);
   if (const auto ratio = published_ratio(results.rows)) {
     text += html_paragraph("summary", ratio_sentence(*ratio));
@@ -66,7 +77,7 @@ std::string table_4(const ReconstructionResults& results) {
   }
   if (results.speed_needed)
     text += html_paragraph("summary", speed_sentence(*results.speed_needed));
-  return text + html_paragraph("legend", legend);
+  return section("Reprojection error", text + html_paragraph("legend", legend));
 }
 
 std::string css_colour(double error_m) {
@@ -181,9 +192,8 @@ std::string reconstruction_html(const ReconstructionPage& page) {
       "<article class=\"archive\" data-archive=\"0\" data-name=\"{0}\">\n<h2>{0}</h2>\n{1}{2}{3}{4}"
       "{5}{6}{7}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{8}{9}</article>\n",
       html_escaped(name), html_paragraph("summary", results.scenario.summary),
-      html_paragraph("provenance", provenance_line(results)),
-      section("Reprojection error", table_4(results)), html_notes(row_notes(results)),
-      pictures_html(page), limits_html(results),
+      html_paragraph("provenance", provenance_line(results)), error_section(results),
+      html_notes(row_notes(results)), pictures_html(page), limits_html(results),
       section("What was simulated", html_notes(honest_notes(results))), stages_html(results),
       reproduce_html(page));
   return html_page({.title = fmt::format("simbench reconstruct {}", name),

@@ -68,6 +68,11 @@ std::string floor_note(const std::vector<ReprojectionRow>& rows, const StudioSub
       ms_text(ms), best->pipeline, cm_text(moved_cm));
 }
 
+std::string speed_phrase(const reconstruction::CurvePoint& point) {
+  if (point.speed_m_per_s > 0) return speed_text(point.speed_m_per_s, point.speed_factor);
+  return fmt::format("{:g} times the stated one", point.speed_factor);
+}
+
 }  // namespace
 
 std::string cm_text(double cm) { return std::isnan(cm) ? "-" : fmt::format("{:.2f}", cm); }
@@ -129,7 +134,13 @@ std::string speed_sentence(const reconstruction::SpeedNeeded& needed) {
       fmt::format("the published {} cm of {}, at its {} ms", cm_text(needed.published_mean_cm),
                   needed.pipeline, ms_text(needed.desync_ms));
   if (needed.points.empty()) return "";
+  const reconstruction::CurvePoint& first = needed.points.front();
   const reconstruction::CurvePoint& last = needed.points.back();
+  const double at_first = evaluation::median(first.mean_cm);
+  if (at_first >= needed.published_mean_cm) {
+    return fmt::format("At {} the error is {} cm already, which is more than {}.",
+                       speed_phrase(first), cm_text(at_first), what);
+  }
   if (needed.speed_m_per_s && *needed.speed_m_per_s > 0) {
     return fmt::format("For {}, the subject would have to move at {:.2f} m/s.", what,
                        *needed.speed_m_per_s);
@@ -139,10 +150,7 @@ std::string speed_sentence(const reconstruction::SpeedNeeded& needed) {
                        *factor);
   }
   return fmt::format("No speed of the subject up to {} gives {}: it is {} cm there.",
-                     last.speed_m_per_s > 0
-                         ? speed_text(last.speed_m_per_s, last.speed_factor)
-                         : fmt::format("{:g} times the stated one", last.speed_factor),
-                     what, cm_text(evaluation::median(last.mean_cm)));
+                     speed_phrase(last), what, cm_text(evaluation::median(last.mean_cm)));
 }
 
 std::vector<std::string> honest_notes(const ReconstructionResults& results) {

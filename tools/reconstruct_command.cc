@@ -44,7 +44,7 @@ Exit status: 0 ok, 1 internal error, 2 bad usage or input, or built without the 
 130 interrupted.)";
 
 // Up to this factor on the script's speeds the published error is looked for.
-const std::vector<double> kSearchedFactors = {1, 1.5, 2, 3, 4};
+const std::vector<double> kSearchedFactors = {0.5, 1, 1.5, 2, 3, 4};
 constexpr double kMostSpeedFactor = 20;
 constexpr double kMostDesyncMs = 10'000;
 

@@ -99,6 +99,8 @@ TEST(SpeedNeeded, IsAFactorWhereTheScriptDoesNotWalk) {
   needed.published_mean_cm = 8.25;  // half way from 7 to 9.5
   EXPECT_THAT(speed_sentence(needed), HasSubstr("1.50 times as fast"));
   needed.published_mean_cm = 1;
+  EXPECT_THAT(speed_sentence(needed), HasSubstr("At 1 times the stated one the error is 7.00 cm "
+                                                "already"));
   EXPECT_EQ(speed_factor_for(needed.points, 1), 1);
 }
 
