@@ -9,7 +9,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "evaluation/exposure_sets.h"
@@ -18,11 +17,12 @@
 #include "reconstruction/desync_pattern.h"
 #include "reconstruction/libraries/mesh_file.h"
 #include "reconstruction/libraries/picture.h"
+#include "reconstruction/libraries/quiet_errors.h"
 #include "reconstruction/libraries/set_reconstruction.h"
+#include "reconstruction/libraries/subject_maker.h"
 #include "reconstruction/paint.h"
 #include "reconstruction/parallel_jobs.h"
-#include "reconstruction/person.h"
-#include "reconstruction/rigid_subject.h"
+#include "reconstruction/seed_tally.h"
 #include "scenarios/loader.h"
 #include "sim/engine/random.h"
 
@@ -33,51 +33,6 @@ using evaluation::ExposureSet;
 using evaluation::ExposureSets;
 using evaluation::PipelineChoice;
 using scenarios::Scenario;
-
-// The scenario's subject, following its script at any speed.
-class SubjectMaker {
- public:
-  explicit SubjectMaker(const scenarios::StudioSubject& subject) : subject_(subject) {
-    if (subject.kind == "mesh") loaded_ = load_subject_mesh(subject.mesh_file);
-  }
-  std::unique_ptr<Subject> make(double speed_factor) const {
-    return loaded_ ? make_rigid_subject(loaded_->mesh, subject_, speed_factor)
-                   : make_person(subject_, speed_factor);
-  }
-  std::vector<std::string> notes() const {
-    return loaded_ ? loaded_->notes : std::vector<std::string>{};
-  }
-
- private:
-  const scenarios::StudioSubject& subject_;
-  std::optional<LoadedMesh> loaded_;
-};
-
-// Of one seed, set by set.
-class SeedTally {
- public:
-  void add(const ExposureSet& set, bool reconstructed) {
-    ++(reconstructed ? counts_.sets : counts_.failed_sets);
-    for (const auto& exposure : set.cameras) counts_.missing_frames += exposure ? 0 : 1;
-    spread_ms_ += set.spread_ms();
-  }
-  ErrorStatistics& errors() { return errors_; }
-  SeedReprojection finish(std::uint64_t seed, bool gathered) const {
-    SeedReprojection result = counts_;
-    result.seed = seed;
-    result.errors = errors_.summary();
-    result.gathered = gathered;
-    if (const std::int64_t all = result.sets + result.failed_sets; all > 0) {
-      result.desync_ms = spread_ms_ / static_cast<double>(all);
-    }
-    return result;
-  }
-
- private:
-  ErrorStatistics errors_;
-  SeedReprojection counts_;
-  double spread_ms_ = 0;
-};
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -201,8 +156,7 @@ class Experiment {
     const double begin = now_s();
     ErrorStatistics own;
     const std::optional<ScoredSurface> surface = studio.reconstruct(set, own);
-    tally.add(set, surface.has_value());
-    tally.errors().merge(own);
+    tally.add(set, surface.has_value(), own);
     const double seconds = now_s() - begin;
     if (shown != nullptr && surface && on_mesh_) show(*shown, *surface, set, own.summary());
     const std::lock_guard lock(mutex_);
@@ -324,6 +278,7 @@ ReconstructionResults run_reconstruction(const Scenario& scenario,
                                          const ReconstructionOptions& options,
                                          const MeshKeeper& on_mesh,
                                          const evaluation::Progress& progress) {
+  const QuietErrors quiet;
   return Experiment(scenario, make_source, options, on_mesh, progress).run();
 }
 

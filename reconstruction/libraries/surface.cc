@@ -6,6 +6,8 @@
 
 #include <memory>
 
+#include "reconstruction/libraries/quiet_errors.h"
+
 namespace simbench::reconstruction {
 
 void add_points(const DepthMap& measured, const StudioCamera& camera, double spacing_m,
@@ -35,6 +37,7 @@ TriangleMesh poisson_surface(const OrientedPoints& points) {
   cloud.points_ = points.points;
   cloud.normals_ = points.normals;
   constexpr float kScale = 1.1F;
+  const QuietErrors::Scope quiet;
   const auto [mesh, densities] = open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(
       cloud, kPoissonDepth, /*width=*/0, kScale, /*linear_fit=*/false, /*n_threads=*/1);
   for (const Eigen::Vector3d& vertex : mesh->vertices_) {
