@@ -106,7 +106,12 @@ class Experiment {
     }
   }
 
-  bool is_cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
+  // Between the sets of a job: one that ended early would count as done.
+  void stop_if_cancelled() const {
+    if (options_.cancel != nullptr && options_.cancel->load()) {
+      throw ReconstructionCancelled("cancelled");
+    }
+  }
 
   void make_rows() {
     const std::size_t seeds = options_.seeds;
@@ -143,7 +148,8 @@ class Experiment {
     }
     SetReconstruction studio(scenario_, *subject_, seed);
     SeedTally tally;
-    for (std::size_t i = 0; i < sets.sets.size() && !is_cancelled(); ++i) {
+    for (std::size_t i = 0; i < sets.sets.size(); ++i) {
+      stop_if_cancelled();
       const bool shown = seed == options_.first_seed && i == 0;
       add_set(studio, sets.sets[i], tally, shown ? &results_.rows[pipeline].pipeline : nullptr);
     }
@@ -209,7 +215,8 @@ class Experiment {
     const std::unique_ptr<Subject> subject = subjects_.make(point.speed_factor);
     SetReconstruction studio(scenario_, *subject, seed);
     SeedTally tally;
-    for (std::int64_t i = 0; i < options_.curve_frames && !is_cancelled(); ++i) {
+    for (std::int64_t i = 0; i < options_.curve_frames; ++i) {
+      stop_if_cancelled();
       const auto index = static_cast<std::uint32_t>(i);
       constexpr double kWithin = 60;  // s
       const double at_s = sim::RandomStream(seed, "desync instant", index).uniform(0, kWithin);
