@@ -122,7 +122,7 @@ How to read it
 
 void append_ms(fmt::memory_buffer& text, Nanoseconds time) {
   text.push_back(',');
-  const std::string ms = ms_text(time);
+  const std::string ms = simbench::ms_text(time);
   text.append(ms.data(), ms.data() + ms.size());
 }
 
