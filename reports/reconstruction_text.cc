@@ -46,9 +46,10 @@ std::string assumptions_note(const Studio& studio) {
   return fmt::format(
       "Assumptions: calibration errors of {:g} mm and {:g} degrees per axis, depth noise of {:g} "
       "px "
-      "of disparity.",
+      "of disparity; a vertex counts as seen up to {:g} mm behind the mesh's own z-buffer, spread "
+      "by {} pixels.",
       studio.calibration_translation_sigma_mm, studio.calibration_rotation_sigma_deg,
-      studio.subpixel_error_px);
+      studio.subpixel_error_px, studio.visibility_tolerance_mm, studio.visibility_spread_px);
 }
 
 // The row with the smallest published mean hardly sees time at all.
