@@ -10,7 +10,8 @@
 // Jobs run on `jobs` threads, each with one frame set in memory at a time: memory grows neither
 // with frames nor with seeds. Results do not depend on how many threads.
 //
-// Needs Embree and Open3D (reconstruction_available()).
+// Needs Embree and Open3D: run_reconstruction() is in simbench::reconstruction_libraries, which is
+// there where they are (cmake/reconstruction.cmake).
 //
 //   const ReconstructionResults results = run_reconstruction(scenario, options, on_mesh, progress);
 #ifndef SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
@@ -29,11 +30,6 @@
 #include "scenarios/scenario.h"
 
 namespace simbench::reconstruction {
-
-// Whether this simbench was built with the libraries that reconstruction needs, and how to get one
-// that was.
-bool reconstruction_available();
-std::string how_to_get_reconstruction();
 
 struct ReconstructionOptions {
   std::uint64_t first_seed = 1;
@@ -79,6 +75,9 @@ ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const ReconstructionOptions& options,
                                          const MeshKeeper& on_mesh,
                                          const evaluation::Progress& progress);
+
+// What a program that has it hands to the command line (tools/command_line.h).
+using RunReconstruction = decltype(&run_reconstruction);
 
 }  // namespace simbench::reconstruction
 

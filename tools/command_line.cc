@@ -82,10 +82,10 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
 // The one place where commands are added; the help lists them in this order and under these
 // headings, completion and man pages follow.
 void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::string>& arguments,
-                  evaluation::TaskFarm* farm) {
+                  const CommandLineExtras& extras) {
   tools::add_run_command(app, action, arguments);
-  tools::add_sweep_command(app, action, farm);
-  tools::add_reconstruct_command(app, action, arguments);
+  tools::add_sweep_command(app, action, extras.farm);
+  tools::add_reconstruct_command(app, action, arguments, extras.run_reconstruction);
   tools::group_commands(app, "Run");
   tools::add_report_command(app, action, arguments);
   tools::add_trace_command(app, action);
@@ -114,7 +114,7 @@ void add_commands(CLI::App& app, tools::Action& action, const std::vector<std::s
   tools::group_commands(app, "The command line itself");
 }
 
-int parse_and_run(const std::vector<std::string>& arguments, evaluation::TaskFarm* farm) {
+int parse_and_run(const std::vector<std::string>& arguments, const CommandLineExtras& extras) {
   CLI::App app("How well will these cameras, on these hosts, be synchronised?");
   app.name("simbench");
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
@@ -122,7 +122,7 @@ int parse_and_run(const std::vector<std::string>& arguments, evaluation::TaskFar
   app.footer(kProgramExamples);
   app.formatter(std::make_shared<tools::HelpFormat>());
   tools::Action action;
-  add_commands(app, action, arguments, farm);
+  add_commands(app, action, arguments, extras);
 
   const std::vector<std::string> all = with_default_command(arguments);
   if (const auto problem = tools::unknown_command(app, all)) {
@@ -146,13 +146,13 @@ int bad_input(const std::exception& error) {
 
 }  // namespace
 
-int run_command_line(int argc, char** argv, evaluation::TaskFarm* farm) {
+int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   const std::vector<std::string> arguments(argv, argv + argc);
   tools::choose_message_format(arguments);
   reports::set_page_width(tools::width_of_output());
   try {
-    if (farm == nullptr) tools::become_mpi_program(arguments);
-    return parse_and_run(arguments, farm);
+    if (extras.farm == nullptr) tools::become_mpi_program(arguments);
+    return parse_and_run(arguments, extras);
   } catch (const scenarios::InputError& error) {
     return bad_input(error);
   } catch (const reports::OutputError& error) {

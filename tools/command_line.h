@@ -12,15 +12,24 @@
 #ifndef SIMBENCH_TOOLS_COMMAND_LINE_H_
 #define SIMBENCH_TOOLS_COMMAND_LINE_H_
 
+#include "reconstruction/experiment.h"
+
 namespace simbench {
 
 namespace evaluation {
 class TaskFarm;
 }
 
-// `farm` works on the runs of `simbench sweep`; null: the cores of this machine, and under mpirun
-// simbench-mpi in place of this program.
-int run_command_line(int argc, char** argv, evaluation::TaskFarm* farm = nullptr);
+// What a program may bring along that not every one can have.
+struct CommandLineExtras {
+  // Works on the runs of `simbench sweep`; null: the cores of this machine, and under mpirun
+  // simbench-mpi in place of this program.
+  evaluation::TaskFarm* farm = nullptr;
+  // For `simbench reconstruct`; null: simbench-reconstruct in place of this program.
+  reconstruction::RunReconstruction run_reconstruction = nullptr;
+};
+
+int run_command_line(int argc, char** argv, const CommandLineExtras& extras = {});
 
 }  // namespace simbench
 

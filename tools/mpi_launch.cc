@@ -1,16 +1,13 @@
 #include "tools/mpi_launch.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <initializer_list>
-#include <system_error>
 
 #include "scenarios/loader.h"
+#include "tools/sibling_program.h"
 
 namespace simbench::tools {
 namespace {
@@ -48,23 +45,13 @@ std::optional<long> mpi_rank() {
 void become_mpi_program(const std::vector<std::string>& arguments) {
   const std::optional<long> rank = mpi_rank();
   if (arguments.size() < 2 || arguments[1] != "sweep" || !rank) return;
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = self.parent_path() / "simbench-mpi";
-  std::vector<std::string> own = arguments;
-  own.front() = program;
-  std::vector<char*> argv;
-  argv.reserve(own.size() + 1);
-  for (std::string& argument : own) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  ::execv(program.c_str(), argv.data());
-  const int reason = errno;
+  const int reason = become_sibling("simbench-mpi", arguments);
   // Rank 0 speaks for all; a status of failure here might end it before it has spoken.
   if (*rank > 0) std::exit(0);
   throw scenarios::InputError(fmt::format(
       "launched by MPI on more than one rank, but {} cannot be started: {}; build simbench where "
       "OpenMPI and Boost.MPI 1.81 are installed (tools/setup check), or start it without mpirun",
-      program, std::strerror(reason)));
+      sibling_program("simbench-mpi").string(), std::strerror(reason)));
 }
 
 }  // namespace simbench::tools

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "sim/rig/simulation.h"
 #include "tools/exit_status.h"
 #include "tools/interrupt.h"
+#include "tools/sibling_program.h"
 #include "tools/watched.h"
 
 namespace simbench::tools {
@@ -60,7 +62,19 @@ struct ReconstructOptions {
   std::string format;
   std::string output;
   std::vector<std::string> command;
+  reconstruction::RunReconstruction run = nullptr;
 };
+
+// Does not return.
+[[noreturn]] void become_reconstruct_program(std::vector<std::string> arguments) {
+  const int reason = become_sibling("simbench-reconstruct", std::move(arguments));
+  throw scenarios::InputError(fmt::format(
+      "reconstruction needs Embree and Open3D, and this simbench was built without them (no "
+      "simbench-reconstruct beside it: {}). tools/run --with-reconstruction installs them and "
+      "builds "
+      "with them (Debian: libembree-dev libopen3d-dev; CMake: -DSIMBENCH_WITH_RECONSTRUCTION=ON)",
+      std::strerror(reason)));
+}
 
 // The options about the subject are short for --set, which has the last word.
 std::vector<scenarios::Override> all_overrides(const ReconstructOptions& options) {
@@ -91,24 +105,21 @@ std::string text_of(const ReconstructionResults& results, const std::string& for
 }
 
 std::optional<ReconstructionResults> reconstruct(
-    const scenarios::Scenario& scenario, const reconstruction::ReconstructionOptions& options,
-    reports::ReconstructionFolder* folder) {
+    reconstruction::RunReconstruction run, const scenarios::Scenario& scenario,
+    const reconstruction::ReconstructionOptions& options, reports::ReconstructionFolder* folder) {
   const auto make_source = [&] { return interruptible(sim::make_simulation(scenario)); };
   const auto on_mesh = [folder](const reconstruction::ShownMesh& mesh) {
     if (folder != nullptr) folder->keep(mesh);
   };
   return watched<ReconstructionResults>(
       [&](const evaluation::Progress& progress) {
-        return reconstruction::run_reconstruction(scenario, make_source, options, on_mesh,
-                                                  progress);
+        return run(scenario, make_source, options, on_mesh, progress);
       },
       "frame sets");
 }
 
 int run_reconstruct(const ReconstructOptions& options) {
-  if (!reconstruction::reconstruction_available()) {
-    throw scenarios::InputError(reconstruction::how_to_get_reconstruction());
-  }
+  if (options.run == nullptr) become_reconstruct_program(options.command);
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
@@ -128,7 +139,7 @@ int run_reconstruct(const ReconstructOptions& options) {
     asked.search_speed_factors = kSearchedFactors;
   }
   const std::optional<ReconstructionResults> results =
-      reconstruct(scenario, asked, folder ? &*folder : nullptr);
+      reconstruct(options.run, scenario, asked, folder ? &*folder : nullptr);
   if (!results) return kInterrupted;
   provenance.finished = std::chrono::system_clock::now();
   if (folder) {
@@ -178,11 +189,13 @@ void add_curve_options(CLI::App& command, ReconstructOptions& options) {
 
 }  // namespace
 
-void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
+void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments,
+                             reconstruction::RunReconstruction run) {
   CLI::App* command = app.add_subcommand(
       "reconstruct", "Reconstruct a moving subject, and print what desynchronisation costs");
   auto options = std::make_shared<ReconstructOptions>();
   options->command = std::move(arguments);
+  options->run = run;
   reconstruction::ReconstructionOptions& experiment = options->reconstruction;
   command
       ->add_option("--scenario", options->scenario,

@@ -2,12 +2,16 @@
 #ifndef SIMBENCH_TOOLS_RECONSTRUCT_COMMAND_H_
 #define SIMBENCH_TOOLS_RECONSTRUCT_COMMAND_H_
 
+#include "reconstruction/experiment.h"
 #include "tools/options.h"
 
 namespace simbench::tools {
 
-// `arguments` is the command as given, for the folder's manifest and page.
-void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments);
+// `arguments` is the command as given, for the folder's manifest and page, and for
+// simbench-reconstruct, which this process becomes where `run` is null (like simbench-mpi:
+// tools/mpi_launch.h).
+void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments,
+                             reconstruction::RunReconstruction run);
 
 }  // namespace simbench::tools
 

@@ -276,10 +276,6 @@ class Experiment {
 
 }  // namespace
 
-bool reconstruction_available() { return true; }
-
-std::string how_to_get_reconstruction() { return "this simbench has it"; }
-
 ReconstructionResults run_reconstruction(const Scenario& scenario,
                                          const evaluation::SourceFactory& make_source,
                                          const ReconstructionOptions& options,

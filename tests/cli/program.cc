@@ -54,6 +54,10 @@ void redirect(const fs::path& path, int descriptor) {
 
 }  // namespace
 
+bool has_reconstruction() {
+  return fs::exists(fs::path(SIMBENCH_PROGRAM).parent_path() / "simbench-reconstruct");
+}
+
 ProgramTest::ProgramTest() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::string name = std::string("simbench_") + test->test_suite_name() + "_" + test->name() +

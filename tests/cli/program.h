@@ -30,6 +30,9 @@ struct ProgramOptions {
   std::string out_file = {};
 };
 
+// Whether simbench-reconstruct lies beside the program: only where Embree and Open3D are.
+bool has_reconstruction();
+
 // A test with a folder of its own, which is also the program's working directory.
 class ProgramTest : public testing::Test {
  public:

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reconstruction/experiment.h"
 #include "tests/cli/program.h"
 
 namespace simbench {
@@ -21,7 +20,7 @@ using testing::UnorderedElementsAre;
 class ReconstructSlow : public ProgramTest {
  protected:
   void SetUp() override {
-    if (!reconstruction::reconstruction_available()) GTEST_SKIP() << "built without the libraries";
+    if (!has_reconstruction()) GTEST_SKIP() << "built without the libraries";
   }
   static std::vector<std::string> command(const std::string& frames) {
     return {"reconstruct", "--scenario", "18cam_6host_30fps_studio",

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "reconstruction/experiment.h"
 #include "tests/cli/program.h"
 
 namespace simbench {
@@ -31,7 +30,7 @@ class Reconstruct : public ProgramTest {
 };
 
 TEST_F(Reconstruct, WithoutTheLibrariesItSaysHowToGetThem) {
-  if (reconstruction::reconstruction_available()) GTEST_SKIP() << "built with the libraries";
+  if (has_reconstruction()) GTEST_SKIP() << "built with the libraries";
   refuses({"--scenario", kStudio, "-o", "out"}, "tools/run --with-reconstruction");
   // Before anything else: the scenario is not even looked for.
   refuses({"--scenario", "no_such", "-o", "out"}, "libembree-dev libopen3d-dev");
@@ -47,7 +46,7 @@ TEST_F(Reconstruct, OptionsAreChecked) {
 }
 
 TEST_F(Reconstruct, WhatCannotBeReconstructedIsRefused) {
-  if (!reconstruction::reconstruction_available()) GTEST_SKIP() << "built without the libraries";
+  if (!has_reconstruction()) GTEST_SKIP() << "built without the libraries";
   refuses({"--scenario", kStudio, "--pipelines", "no_such", "-o", "out"}, "no_such");
   refuses({"--scenario", "3cam_1host_30fps", "-o", "out"}, "studio");
   refuses({"--scenario", kStudio, "--mesh", "no_such.ply", "-o", "out"}, "no_such.ply");
@@ -56,7 +55,7 @@ TEST_F(Reconstruct, WhatCannotBeReconstructedIsRefused) {
 }
 
 TEST_F(Reconstruct, AFolderThatCannotBeWrittenIsRefusedBeforeTheWork) {
-  if (!reconstruction::reconstruction_available()) GTEST_SKIP() << "built without the libraries";
+  if (!has_reconstruction()) GTEST_SKIP() << "built without the libraries";
   std::filesystem::create_directory(folder() / "mine");
   file("mine/letter.txt", "dear");
   const ProgramResult result = run({"reconstruct", "--scenario", kStudio, "-o", "mine"});

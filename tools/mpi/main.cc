@@ -264,7 +264,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   simbench::MpiFarm farm(world);
-  const int status = simbench::run_command_line(argc, argv, &farm);
+  const int status = simbench::run_command_line(argc, argv, {.farm = &farm});
   farm.dismiss();
   return status;
 }
