@@ -143,7 +143,8 @@ std::string legend(const ReconstructionResults& results) {
 }  // namespace
 
 std::string reconstruction_table(const ReconstructionResults& results) {
-  std::string text = title_line(results) + heading("Reprojection error") + table_4(results) +
+  std::string text = title_line(results) + wrapped(results.scenario.summary, 0) +
+                     heading("Reprojection error") + table_4(results) +
                      heading("How it came about") + sets_table(results) + conclusions(results) +
                      curve_part(results) + row_notes(results) + legend(results);
   text += "\nWhat was simulated\n";
