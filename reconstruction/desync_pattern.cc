@@ -33,8 +33,8 @@ evaluation::ExposureSet desynchronised_set(const scenarios::Scenario& scenario, 
     const auto host = static_cast<std::size_t>(scenario.host_of(camera));
     constexpr double kSecondsPerMs = 1e-3;
     const double after = (places[host] - 0.5) * desync_ms * kSecondsPerMs;
-    set.cameras.push_back(
-        evaluation::SetExposure{.mid_exposure_s = at_s + after, .counter = index});
+    const evaluation::SetExposure exposure{.mid_exposure_s = at_s + after, .counter = index};
+    set.cameras.emplace_back(exposure);
   }
   return set;
 }

@@ -109,7 +109,7 @@ void RayCaster::Scene::cast(const Pinhole& camera, const Eigen::Isometry3d& worl
   const PixelBox box = box_of(bounds, camera, world_from_camera.inverse());
   const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
   const Eigen::Matrix3d turn = world_from_camera.linear();
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int row = box.top; row < box.bottom; ++row) {
@@ -162,7 +162,7 @@ void RayCaster::pose(const std::vector<Eigen::Isometry3d>& poses) {
     rtcSetGeometryTransform(scene_->instances[part], 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
                             matrix.data());
     rtcCommitGeometry(scene_->instances[part]);
-    scene_->part_from_world.push_back(poses[part].linear().transpose().cast<float>());
+    scene_->part_from_world.emplace_back(poses[part].linear().transpose().cast<float>());
     Eigen::AlignedBox3d bounds = scene_->own_bounds[part];
     scene_->bounds.push_back(bounds.isEmpty() ? bounds : bounds.transformed(poses[part]));
   }
