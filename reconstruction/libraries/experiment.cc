@@ -116,6 +116,7 @@ class Experiment {
   void make_rows() {
     const std::size_t seeds = options_.seeds;
     std::vector<SeedReprojection> found(choices_.size() * seeds);
+    std::vector<std::string> failures(found.size());
     for (const PipelineChoice& choice : choices_) {
       ReprojectionRow row{.pipeline = choice.pipeline.name,
                           .host_sync = choice.pipeline.host_sync,
@@ -129,22 +130,24 @@ class Experiment {
     }
     // All pipelines of a seed, then the next seed: the time left can be told from the time gone.
     run_all(found.size(), [&](std::size_t job) {
-      found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size());
+      found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size(),
+                            failures[job]);
     });
     for (std::size_t job = 0; job < found.size(); ++job) {
-      results_.rows[job % choices_.size()].seeds.push_back(found[job]);
+      ReprojectionRow& row = results_.rows[job % choices_.size()];
+      row.seeds.push_back(found[job]);
+      if (!failures[job].empty()) row.notes.push_back(failures[job]);
     }
   }
 
-  SeedReprojection run_seed(std::size_t pipeline, std::uint64_t seed) {
+  SeedReprojection run_seed(std::size_t pipeline, std::uint64_t seed, std::string& failure) {
     const std::unique_ptr<RecordingSource> source = make_source_();
     ExposureSets sets;
     try {
       sets = evaluation::exposure_sets(scenario_, choices_[pipeline], seed, *source,
                                        static_cast<std::size_t>(options_.frames));
-    } catch (const RecordingFailed& failure) {
-      const std::lock_guard lock(mutex_);
-      results_.rows[pipeline].notes.push_back(fmt::format("seed {}: {}", seed, failure.what()));
+    } catch (const RecordingFailed& error) {
+      failure = fmt::format("seed {}: {}", seed, error.what());
     }
     SetReconstruction studio(scenario_, *subject_, seed);
     SeedTally tally;
@@ -269,7 +272,7 @@ class Experiment {
   std::unique_ptr<Subject> subject_;
   ReconstructionResults results_;
   std::int64_t total_ = 0;
-  std::mutex mutex_;  // guards what follows, notes of rows, and calls of on_mesh_ and progress_
+  std::mutex mutex_;  // guards what follows, and calls of on_mesh_ and progress_
   std::int64_t done_ = 0;
   double set_seconds_ = 0;
 };
