@@ -6,6 +6,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <chrono>
+#include <fstream>
+#include <string>
 #include <utility>
 
 namespace simbench::hardware {
@@ -161,9 +163,20 @@ void TestRig::take_away(std::size_t which) {
   host.context.reset();
 }
 
-void TestRig::restart(std::size_t host) {
+std::size_t TestRig::restart(std::size_t host) {
   take_away(host);
+  const std::size_t frames = frames_in_journals(host);
   start(host);
+  return frames;
+}
+
+std::size_t TestRig::frames_in_journals(std::size_t host) const {
+  std::size_t frames = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / rig_.hosts[host].name)) {
+    std::ifstream journal(entry.path());
+    for (std::string line; std::getline(journal, line);) frames += line.starts_with("frame,");
+  }
+  return frames;
 }
 
 void TestRig::break_cameras(std::size_t host) { hosts_[host]->driver.broken = true; }

@@ -36,8 +36,8 @@ class TestRig {
   const Rig& rig() const { return rig_; }
   // Its node stops and is not there any more.
   void take_away(std::size_t host);
-  // A node on the same port, over the same journals.
-  void restart(std::size_t host);
+  // A node on the same port, over the same journals. Returns how many frames those had.
+  std::size_t restart(std::size_t host);
   // From now on this host's cameras refuse to be opened.
   void break_cameras(std::size_t host);
   // What its cameras have delivered so far.
@@ -46,6 +46,7 @@ class TestRig {
  private:
   struct Host;
   void start(std::size_t host);
+  std::size_t frames_in_journals(std::size_t host) const;
 
   std::filesystem::path folder_;
   Rig rig_;
