@@ -119,7 +119,7 @@ TEST(RigSource, ANodeThatIsRestartedDuringTheCaptureLosesNothingItHadRecorded) {
   });
   EXPECT_EQ(outcome.failure, "");
   EXPECT_GT(recorded, 0U);
-  EXPECT_GE(outcome.frames(1), recorded);
+  EXPECT_GE(outcome.frames(1), recorded) << testing::PrintToString(outcome.cost.notes);
   EXPECT_GE(outcome.frames(0), 63U);
   EXPECT_THAT(outcome.cost.notes, Contains(HasSubstr("host1")));
 }
