@@ -63,9 +63,8 @@ struct ReprojectionRow {
 // All hosts off by a known amount: exposures of a host's cameras coincide, hosts are spread over
 // `desync_ms` (the first and the last so far apart, the others between them, drawn by seed).
 struct CurvePoint {
-  double speed_m_per_s =
-      0;  // the script's fastest stated speed at the sped-up script (0: a script without walking)
-  double speed_factor = 1;  // of the scenario's script
+  double speed_m_per_s = 0;  // walking speed at the sped-up script (of one without walking: 0)
+  double speed_factor = 1;   // of the scenario's script
   double desync_ms = 0;
   std::vector<double> mean_cm;  // by seed
   std::vector<double> std_cm;
@@ -76,9 +75,9 @@ struct SpeedNeeded {
   std::string pipeline;  // whose published mean it is
   double desync_ms = 0;  // the median of its row
   double published_mean_cm = 0;
-  std::vector<CurvePoint> points;       // over speed, at that desynchronisation
-  std::optional<double> speed_m_per_s;  // where the median mean error passes it first; nothing: not
-                                        // up to the last point
+  std::vector<CurvePoint> points;  // over speed, at that desynchronisation
+  // Where the median mean error passes it first; nothing: not up to the last point.
+  std::optional<double> speed_m_per_s;
 };
 
 struct ReconstructionResults {
