@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "hardware/node/journal.h"
 #include "recording/version.h"
 #include "tests/hardware/node/node_harness.h"
 
@@ -195,6 +196,24 @@ class NodeFailures : public NodeHarness {
     co_await conductor.ask("start");
     test.cameras_->frame("serial2", arrived_now());
   }
+
+  static Task<void> read_while_ending(NodeFailures& test) {
+    TestConductor conductor = test.conductor();
+    co_await begun(test, conductor);
+    co_await conductor.ask("prepare");
+    co_await conductor.ask("start");
+    test.cameras_->frame("serial2", arrived_now());
+    co_await test.pause(2 * kJournalBatch);
+    test.node_->stop();
+    const Answer refused = co_await conductor.ask("start");
+    EXPECT_THAT(refused.error, HasSubstr("the node is ending"));
+    json place = in_session(kSession);
+    place["offset"] = 0U;
+    const Answer read = co_await conductor.ask("read", place);
+    EXPECT_EQ(read.error, "");
+    EXPECT_THAT(read.details.value("text", ""), HasSubstr("frame,"));
+    EXPECT_FALSE(read.details.value("closed", true));
+  }
 };
 
 TEST_F(NodeFailures, ASecondConductorIsToldWhoTheFirstIs) {
@@ -248,6 +267,13 @@ TEST_F(NodeFailures, TermsThatCannotBeAreRefused) {
 TEST_F(NodeFailures, NonsenseEndsItsOwnConnectionOnly) {
   make_node("3cam_1host_30fps");
   run(nonsense(*this));
+}
+
+// Whoever fetches a journal goes on with the node that comes next, and is not to give up before.
+TEST_F(NodeFailures, ANodeThatIsEndingStillHandsOutWhatItRecorded) {
+  make_node("3cam_1host_30fps");
+  cameras_->stop_takes = std::chrono::milliseconds(200);
+  run(read_while_ending(*this));
 }
 
 TEST_F(NodeFailures, AStopEndsTheSessionAndTheContextRunsOutOfWork) {

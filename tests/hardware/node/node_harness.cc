@@ -9,6 +9,7 @@
 #include <exception>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "recording/event_text.h"
@@ -74,6 +75,7 @@ class MadeUpCameras::MadeUpCamera final : public Camera {
     driver_.running_[info_.serial] = {std::move(on_frame), std::move(on_event)};
   }
   void stop() override {
+    std::this_thread::sleep_for(driver_.stop_takes);
     const std::lock_guard lock(driver_.mutex_);
     driver_.running_.erase(info_.serial);
   }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -42,6 +43,8 @@ class MadeUpCameras final : public CameraDriver {
 
   // open() throws this for the camera of that name.
   std::map<std::string, std::string> refusals;
+  // What stopping a camera takes, as real ones do.
+  std::chrono::milliseconds stop_takes{0};
 
  private:
   class MadeUpCamera;
