@@ -134,7 +134,7 @@ Json parsed(const std::string& text, const std::string& path) {
   };
   try {
     return Json::parse(text, check_depth);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // no JSON, or a number that no double holds
     const std::string_view what = error.what();
     const std::size_t prefix = what.find("] ");
     throw RecordingFolderError(fmt::format(

@@ -53,7 +53,7 @@ JsonFile read_json_file(const std::string& path, const std::string& advice) {
   JsonFile file{path, {std::istreambuf_iterator<char>(in), {}}, {}};
   try {
     file.value = json::parse(file.text);
-  } catch (const json::parse_error&) {
+  } catch (const json::exception&) {  // no JSON, or a number that no double holds
     fail_syntax(path, file.text);
   }
   return file;

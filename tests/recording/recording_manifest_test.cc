@@ -116,6 +116,10 @@ TEST(RecordingManifestTest, NumbersBeyondWhatARigCanHaveAreRefused) {
   }
 }
 
+TEST(RecordingManifestTest, ANumberThatNoDoubleHoldsIsRefused) {
+  EXPECT_EQ(error_of("{\"format\": 1e999}"), "m.json: number overflow parsing '1e999'");
+}
+
 TEST(RecordingManifestTest, EachCaptureIsThereOnce) {
   RecordingManifest twice = manifest();
   twice.captures.push_back(twice.captures[0]);

@@ -123,6 +123,12 @@ TEST_F(ArchiveReader, SaysWhereAnEditedValueIsWrong) {
                                HasSubstr("found \"many\", allowed: a whole number from 0")));
 }
 
+TEST_F(ArchiveReader, RefusesANumberThatNoDoubleHolds) {
+  edit("results.json", "\"evaluated_pulses\": 960", "\"evaluated_pulses\": 1e999");
+  EXPECT_THAT(problem(),
+              AllOf(HasSubstr("results.json:"), HasSubstr("the number 1e999 is too large")));
+}
+
 TEST_F(ArchiveReader, SaysWhatIsMissing) {
   edit("results.json", "\"seed_recall\"", "\"seed_recoil\"");
   EXPECT_THAT(problem(),
