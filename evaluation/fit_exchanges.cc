@@ -1,5 +1,6 @@
 #include "evaluation/fit_exchanges.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -112,39 +113,29 @@ std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
 }
 
 // Of one way and, as sums of two of them, of round trips: counted in cells from the least on.
-constexpr std::size_t kCells = 500;
+constexpr Eigen::Index kCells = 500;
 
 // The middles of two cells i and j add up to the edge between the round trips' cells i + j and
 // i + j + 1: their share counts as at i + j.
-std::vector<double> shares_of_cells(const std::vector<double>& round_trips, double shortest,
-                                    double cell) {
-  std::vector<double> shares(2 * kCells - 1, 0.0);
+Eigen::VectorXd shares_of_cells(const std::vector<double>& round_trips, double shortest,
+                                double cell) {
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(2 * kCells - 1);
   for (const double trip : round_trips) {
     const double place = std::round((trip - shortest) / cell - 1);
-    shares[static_cast<std::size_t>(std::clamp(place, 0.0, 2.0 * kCells - 2))] +=
-        1 / static_cast<double>(round_trips.size());
+    shares[static_cast<Eigen::Index>(std::clamp(place, 0.0, 2.0 * kCells - 2))] += 1;
   }
-  return shares;
+  return shares / static_cast<double>(round_trips.size());
 }
 
 // Expectation and maximisation: each round trip is divided among the pairs of ways that make it, as
 // likely as `way` makes them.
-std::vector<double> expected_shares(const std::vector<double>& way,
-                                    const std::vector<double>& trips) {
-  std::vector<double> sums(trips.size(), 0.0);
-  for (std::size_t i = 0; i < kCells; ++i) {
-    for (std::size_t j = 0; j < kCells; ++j) sums[i + j] += way[i] * way[j];
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = sums[k] > 0 ? trips[k] / sums[k] : 0;
-  std::vector<double> result(kCells, 0.0);
-  double total = 0;
-  for (std::size_t i = 0; i < kCells; ++i) {
-    for (std::size_t j = 0; j < kCells; ++j) result[i] += way[j] * sums[i + j];
-    result[i] *= way[i];
-    total += result[i];
-  }
-  for (double& share : result) share /= total;
-  return result;
+Eigen::VectorXd expected_shares(const Eigen::VectorXd& way, const Eigen::VectorXd& trips) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(trips.size());
+  for (Eigen::Index i = 0; i < kCells; ++i) sums.segment(i, kCells) += way[i] * way;
+  sums = (sums.array() > 0).select(trips.array() / sums.array(), 0.0);
+  Eigen::VectorXd result(kCells);
+  for (Eigen::Index i = 0; i < kCells; ++i) result[i] = way[i] * way.dot(sums.segment(i, kCells));
+  return result / result.sum();
 }
 
 }  // namespace
@@ -154,15 +145,15 @@ std::vector<double> one_way_table(const std::vector<double>& round_trips) {
   constexpr std::size_t kProbabilities = 100;
   const auto [shortest, longest] = std::minmax_element(round_trips.begin(), round_trips.end());
   const double least = *shortest / 2;
-  const double cell = (*longest - *shortest) / kCells;
+  const double cell = (*longest - *shortest) / static_cast<double>(kCells);
   if (cell <= 0) return {least, least};
-  const std::vector<double> trips = shares_of_cells(round_trips, *shortest, cell);
-  std::vector<double> way(kCells, 1.0 / kCells);
+  const Eigen::VectorXd trips = shares_of_cells(round_trips, *shortest, cell);
+  Eigen::VectorXd way = Eigen::VectorXd::Constant(kCells, 1.0 / static_cast<double>(kCells));
   for (int round = 0; round < kRounds; ++round) way = expected_shares(way, trips);
 
   std::vector<double> table = {least};
   double below = 0;
-  std::size_t i = 0;
+  Eigen::Index i = 0;
   for (std::size_t step = 1; step < kProbabilities; ++step) {
     const double wanted = static_cast<double>(step) / kProbabilities;
     while (i + 1 < kCells && below + way[i] < wanted) below += way[i++];

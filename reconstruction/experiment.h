@@ -42,8 +42,9 @@ struct ReconstructionOptions {
   std::vector<double> curve_speed_factors{};
   std::vector<double> curve_desync_ms{};
   std::int64_t curve_frames = 1;
-  // Factors on the script's speeds at which the published error of the worst row is looked for;
-  // empty: not looked for.
+  // Factors on the script's speeds at which the published error of the worst row is looked for, by
+  // its own exposures of a subject so much faster: from 1 on upwards or downwards until it is
+  // passed. Each takes all sets of a row. Empty: not looked for.
   std::vector<double> search_speed_factors{};
   const std::atomic<bool>* cancel = nullptr;  // once true, no more sets are begun
 };

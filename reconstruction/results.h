@@ -70,12 +70,12 @@ struct CurvePoint {
   std::vector<double> std_cm;
 };
 
-// Which speed of the subject makes the mean error at this desynchronisation what was published.
+// Which speed of the subject gives a row, with the exposures that it has, its published mean error.
 struct SpeedNeeded {
   std::string pipeline;  // whose published mean it is
   double desync_ms = 0;  // the median of its row
   double published_mean_cm = 0;
-  std::vector<CurvePoint> points;  // over speed, at that desynchronisation
+  std::vector<CurvePoint> points;  // the row over speed; that of factor 1 is the row itself
   // Where the median mean error passes it first; nothing: not up to the last point.
   std::optional<double> speed_m_per_s;
 };

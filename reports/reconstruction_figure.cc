@@ -51,8 +51,8 @@ FigurePanel speed_panel(const reconstruction::SpeedNeeded& needed) {
   const bool walks = std::any_of(needed.points.begin(), needed.points.end(),
                                  [](const CurvePoint& point) { return point.speed_m_per_s > 0; });
   FigurePanel panel{
-      .title = fmt::format("Reprojection error over the subject's speed, at the {} ms of {}",
-                           ms_text(needed.desync_ms), needed.pipeline),
+      .title = fmt::format("Reprojection error of {} ({} ms) over the subject's speed",
+                           needed.pipeline, ms_text(needed.desync_ms)),
       .x_label = walks ? "walking speed, m/s" : "factor on the stated speed",
       .y_label = kErrorAxis,
       .lines = {{.label = fmt::format("published: {}", cm_text(needed.published_mean_cm)),

@@ -45,8 +45,8 @@ painted with its errors, and its picture (.png); curve.csv and curve.svg (drawn 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, or built without the libraries,
 130 interrupted.)";
 
-// Up to this factor on the script's speeds the published error is looked for.
-const std::vector<double> kSearchedFactors = {0.5, 1, 1.5, 2, 3, 4};
+// Where the published error is looked for, as factors on the script's speeds.
+const std::vector<double> kSearchedFactors = {0.25, 0.5, 1.5, 2, 3};
 constexpr double kMostSpeedFactor = 20;
 constexpr double kMostDesyncMs = 10'000;
 

@@ -61,10 +61,11 @@ class Experiment {
     results_.seeds = options_.seeds;
     results_.frames = options_.frames;
     results_.notes = subjects_.notes();
+    name_rows();
     count_sets();
     make_rows();
-    results_.curve = points_at(options_.curve_speed_factors, options_.curve_desync_ms);
-    if (!options_.search_speed_factors.empty()) search_speed();
+    results_.curve = curve();
+    if (searches()) search_speed();
     results_.wall_s = now_s() - begin;
     results_.seconds_per_set = done_ > 0 ? set_seconds_ / static_cast<double>(done_) : 0;
     return std::move(results_);
@@ -94,10 +95,14 @@ class Experiment {
   void count_sets() {
     const auto seeds = static_cast<std::int64_t>(options_.seeds);
     const auto size = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
-    total_ = size(choices_) * seeds * options_.frames;
-    total_ += seeds * options_.curve_frames *
-              (size(options_.curve_speed_factors) * size(options_.curve_desync_ms) +
-               size(options_.search_speed_factors));
+    total_ = size(choices_) * row_sets();
+    total_ += seeds * options_.curve_frames * size(options_.curve_speed_factors) *
+              size(options_.curve_desync_ms);
+    if (searches()) total_ += row_sets() * size(searched(true));
+  }
+
+  std::int64_t row_sets() const {
+    return static_cast<std::int64_t>(options_.seeds) * options_.frames;
   }
 
   void run_all(std::size_t count, const std::function<void(std::size_t)>& job) {
@@ -113,10 +118,7 @@ class Experiment {
     }
   }
 
-  void make_rows() {
-    const std::size_t seeds = options_.seeds;
-    std::vector<SeedReprojection> found(choices_.size() * seeds);
-    std::vector<std::string> failures(found.size());
+  void name_rows() {
     for (const PipelineChoice& choice : choices_) {
       ReprojectionRow row{.pipeline = choice.pipeline.name,
                           .host_sync = choice.pipeline.host_sync,
@@ -128,9 +130,14 @@ class Experiment {
       if (published != scenario_.studio->published.end()) row.published = published->second;
       results_.rows.push_back(std::move(row));
     }
+  }
+
+  void make_rows() {
+    std::vector<SeedReprojection> found(choices_.size() * options_.seeds);
+    std::vector<std::string> failures(found.size());
     // All pipelines of a seed, then the next seed: the time left can be told from the time gone.
     run_all(found.size(), [&](std::size_t job) {
-      found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size(),
+      found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size(), 1,
                             failures[job]);
     });
     for (std::size_t job = 0; job < found.size(); ++job) {
@@ -140,7 +147,8 @@ class Experiment {
     }
   }
 
-  SeedReprojection run_seed(std::size_t pipeline, std::uint64_t seed, std::string& failure) {
+  SeedReprojection run_seed(std::size_t pipeline, std::uint64_t seed, double speed_factor,
+                            std::string& failure) {
     const std::unique_ptr<RecordingSource> source = make_source_();
     ExposureSets sets;
     try {
@@ -149,11 +157,13 @@ class Experiment {
     } catch (const RecordingFailed& error) {
       failure = fmt::format("seed {}: {}", seed, error.what());
     }
-    SetReconstruction studio(scenario_, *subject_, seed);
+    const std::unique_ptr<Subject> faster =
+        speed_factor == 1 ? nullptr : subjects_.make(speed_factor);
+    SetReconstruction studio(scenario_, faster ? *faster : *subject_, seed);
     SeedTally tally;
     for (std::size_t i = 0; i < sets.sets.size(); ++i) {
       stop_if_cancelled();
-      const bool shown = seed == options_.first_seed && i == 0;
+      const bool shown = !faster && seed == options_.first_seed && i == 0;
       add_set(studio, sets.sets[i], tally, shown ? &results_.rows[pipeline].pipeline : nullptr);
     }
     return tally.finish(seed, sets.gathered_sets > 0);
@@ -191,17 +201,20 @@ class Experiment {
     on_mesh_(shown);
   }
 
+  CurvePoint empty_point(double speed_factor, double desync_ms) const {
+    return {.speed_m_per_s = scenario_.studio->subject.walk_speed_m_per_s * speed_factor,
+            .speed_factor = speed_factor,
+            .desync_ms = desync_ms,
+            .mean_cm = std::vector<double>(options_.seeds, kNoError),
+            .std_cm = std::vector<double>(options_.seeds, kNoError)};
+  }
+
   // For every speed, every desynchronisation.
-  std::vector<CurvePoint> points_at(const std::vector<double>& factors,
-                                    const std::vector<double>& desyncs_ms) {
+  std::vector<CurvePoint> curve() {
     std::vector<CurvePoint> points;
-    for (const double factor : factors) {
-      for (const double desync_ms : desyncs_ms) {
-        points.push_back({.speed_m_per_s = scenario_.studio->subject.walk_speed_m_per_s * factor,
-                          .speed_factor = factor,
-                          .desync_ms = desync_ms,
-                          .mean_cm = std::vector<double>(options_.seeds, kNoError),
-                          .std_cm = std::vector<double>(options_.seeds, kNoError)});
+    for (const double factor : options_.curve_speed_factors) {
+      for (const double desync_ms : options_.curve_desync_ms) {
+        points.push_back(empty_point(factor, desync_ms));
       }
     }
     run_all(points.size() * options_.seeds, [&](std::size_t job) {
@@ -229,22 +242,77 @@ class Experiment {
     return tally.finish(seed, false);
   }
 
-  // The speed at which the row with the largest published mean would have it.
-  void search_speed() {
-    const ReprojectionRow* worst = nullptr;
-    for (const ReprojectionRow& row : results_.rows) {
-      if (!row.published) continue;
-      if (worst == nullptr || row.published->mean_cm > worst->published->mean_cm) worst = &row;
+  std::optional<std::size_t> worst_published() const {
+    std::optional<std::size_t> worst;
+    for (std::size_t i = 0; i < results_.rows.size(); ++i) {
+      const auto& published = results_.rows[i].published;
+      if (!published) continue;
+      if (!worst || published->mean_cm > results_.rows[*worst].published->mean_cm) worst = i;
     }
-    if (worst == nullptr || std::isnan(worst->desync_ms().median)) return;
-    SpeedNeeded needed{.pipeline = worst->pipeline,
-                       .desync_ms = worst->desync_ms().median,
-                       .published_mean_cm = worst->published->mean_cm,
+    return worst;
+  }
+
+  bool searches() const {
+    return !options_.search_speed_factors.empty() && worst_published().has_value();
+  }
+
+  // Of the factors that are searched those above 1, or those below, outward from 1.
+  std::vector<double> searched(bool faster) const {
+    std::vector<double> factors;
+    for (const double factor : options_.search_speed_factors) {
+      if (faster ? factor > 1 : factor < 1) factors.push_back(factor);
+    }
+    std::sort(factors.begin(), factors.end(),
+              [&](double a, double b) { return faster ? a < b : a > b; });
+    return factors;
+  }
+
+  // The speed at which the row with the largest published mean would have it: its own exposures,
+  // of a subject that is ever faster (or slower) until the published error is passed.
+  void search_speed() {
+    const std::size_t worst = *worst_published();
+    const ReprojectionRow& row = results_.rows[worst];
+    SpeedNeeded needed{.pipeline = row.pipeline,
+                       .desync_ms = row.desync_ms().median,
+                       .published_mean_cm = row.published->mean_cm,
                        .points = {},
                        .speed_m_per_s = {}};
-    needed.points = points_at(options_.search_speed_factors, {needed.desync_ms});
+    needed.points.push_back(point_of(row.seeds, 1, needed.desync_ms));
+    const double stated_cm = evaluation::median(needed.points[0].mean_cm);
+    const bool faster = stated_cm < needed.published_mean_cm;
+    std::vector<double> factors = searched(faster);
+    if (std::isnan(stated_cm)) factors.clear();
+    total_ = done_ + row_sets() * static_cast<std::int64_t>(factors.size());
+    for (const double factor : factors) {
+      needed.points.push_back(point_of(run_at_speed(worst, factor), factor, needed.desync_ms));
+      const double here_cm = evaluation::median(needed.points.back().mean_cm);
+      if ((here_cm < needed.published_mean_cm) != faster) break;
+    }
+    if (progress_) {
+      progress_(static_cast<std::uint64_t>(done_), static_cast<std::uint64_t>(done_));
+    }
+    if (!faster) std::reverse(needed.points.begin(), needed.points.end());
     needed.speed_m_per_s = first_passing(needed.points, needed.published_mean_cm);
-    results_.speed_needed = std::move(needed);
+    if (!std::isnan(stated_cm)) results_.speed_needed = std::move(needed);
+  }
+
+  std::vector<SeedReprojection> run_at_speed(std::size_t pipeline, double factor) {
+    std::vector<SeedReprojection> found(options_.seeds);
+    run_all(found.size(), [&](std::size_t seed) {
+      std::string failure;  // noted in the row
+      found[seed] = run_seed(pipeline, options_.first_seed + seed, factor, failure);
+    });
+    return found;
+  }
+
+  CurvePoint point_of(const std::vector<SeedReprojection>& seeds, double factor,
+                      double desync_ms) const {
+    CurvePoint point = empty_point(factor, desync_ms);
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      point.mean_cm[i] = seeds[i].errors.mean_cm;
+      point.std_cm[i] = seeds[i].errors.std_cm;
+    }
+    return point;
   }
 
   // Where the median mean error first reaches `mean_cm`, linearly between the points.

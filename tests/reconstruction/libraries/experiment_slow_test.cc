@@ -82,7 +82,7 @@ TEST(Experiment, CurveAndSearchHaveAPointForEachSpeed) {
   options.frames = 1;
   options.curve_speed_factors = {0.5, 1};
   options.curve_desync_ms = {0, 300};
-  options.search_speed_factors = {0.01, 4};
+  options.search_speed_factors = {1.5, 0.01, 4};
   const ReconstructionResults results = run(scenario, options);
   ASSERT_EQ(results.curve.size(), 4U);
   EXPECT_EQ(results.curve[1].speed_factor, 0.5);
@@ -93,7 +93,16 @@ TEST(Experiment, CurveAndSearchHaveAPointForEachSpeed) {
   EXPECT_LT(results.curve[2].mean_cm[0], results.curve[3].mean_cm[0]);
   ASSERT_TRUE(results.speed_needed.has_value());
   EXPECT_EQ(results.speed_needed->pipeline, "ntp_last_set");
-  EXPECT_EQ(results.speed_needed->points.size(), 2U);
+  // Outward from the row itself, on one side of it, until the published error is passed.
+  const SpeedNeeded& needed = *results.speed_needed;
+  const double row_cm = results.rows[0].seeds[0].errors.mean_cm;
+  const bool faster = row_cm < needed.published_mean_cm;
+  ASSERT_GE(needed.points.size(), 2U);
+  const CurvePoint& itself = faster ? needed.points.front() : needed.points.back();
+  EXPECT_EQ(itself.speed_factor, 1);
+  EXPECT_EQ(itself.mean_cm[0], row_cm);
+  EXPECT_EQ(needed.points[1].speed_factor, faster ? 1.5 : 1);
+  EXPECT_NE(needed.points[0].mean_cm[0], needed.points[1].mean_cm[0]);
 }
 
 TEST(Experiment, AVanishedCameraIsCountedAndDoneWithout) {
