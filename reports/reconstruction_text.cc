@@ -74,6 +74,16 @@ std::string speed_phrase(const reconstruction::CurvePoint& point) {
   return fmt::format("{:g} times the stated one", point.speed_factor);
 }
 
+// Medians and bands: what the speed that is found between two of them is worth.
+std::string points_text(const std::vector<reconstruction::CurvePoint>& points) {
+  std::string text;
+  for (const reconstruction::CurvePoint& point : points) {
+    text += fmt::format("{}{}: {} cm", text.empty() ? "" : ", ", speed_phrase(point),
+                        cm_text(evaluation::make_series(point.mean_cm)));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string cm_text(double cm) { return std::isnan(cm) ? "-" : fmt::format("{:.2f}", cm); }
@@ -143,12 +153,12 @@ std::string speed_sentence(const reconstruction::SpeedNeeded& needed) {
                        speed_phrase(first), cm_text(at_first), what);
   }
   if (needed.speed_m_per_s && *needed.speed_m_per_s > 0) {
-    return fmt::format("For {}, the subject would have to move at {:.2f} m/s.", what,
-                       *needed.speed_m_per_s);
+    return fmt::format("For {}, the subject would have to move at {:.2f} m/s ({}).", what,
+                       *needed.speed_m_per_s, points_text(needed.points));
   }
   if (const auto factor = speed_factor_for(needed.points, needed.published_mean_cm)) {
-    return fmt::format("For {}, the subject would have to be {:.2f} times as fast as stated.", what,
-                       *factor);
+    return fmt::format("For {}, the subject would have to be {:.2f} times as fast as stated ({}).",
+                       what, *factor, points_text(needed.points));
   }
   return fmt::format("No speed of the subject up to {} gives {}: it is {} cm there.",
                      speed_phrase(last), what, cm_text(evaluation::median(last.mean_cm)));

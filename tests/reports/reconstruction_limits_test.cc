@@ -93,7 +93,7 @@ TEST(SpeedNeeded, IsAFactorWhereTheScriptDoesNotWalk) {
   EXPECT_THAT(speed_sentence(needed), HasSubstr("No speed of the subject up to 2.40 m/s gives"));
   EXPECT_THAT(speed_sentence(needed), HasSubstr("it is 9.50 cm there"));
   needed.speed_m_per_s = 2.25;
-  EXPECT_THAT(speed_sentence(needed), HasSubstr("at 2.25 m/s"));
+  EXPECT_THAT(speed_sentence(needed), HasSubstr("at 2.25 m/s (1.20 m/s: 7.00 ["));
   for (auto& point : needed.points) point.speed_m_per_s = 0;
   needed.speed_m_per_s = 0;
   needed.published_mean_cm = 8.25;  // half way from 7 to 9.5
