@@ -1,4 +1,4 @@
-# simbench_folder_library(NAME [RUNS_ONCE] [PRECOMPILE header...] [LINK target...])
+# simbench_folder_library(NAME [RUNS_ONCE] [PARSES] [PRECOMPILE header...] [LINK target...])
 #
 # Makes the static library simbench_NAME from every .cc file below the calling folder, links it
 # publicly to the given targets, lets includes be written from the root of the project, and installs
@@ -10,7 +10,7 @@
 # - PRECOMPILE: the headers that most files of the folder read, compiled once under the sanitizers.
 #   Other builds do without, so that a file that includes too little does not compile there.
 function(simbench_folder_library name)
-  cmake_parse_arguments(arg "RUNS_ONCE" "" "PRECOMPILE;LINK" ${ARGN})
+  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/main\\.cc$")
   add_library(simbench_${name} STATIC ${sources})
@@ -28,6 +28,9 @@ function(simbench_folder_library name)
   endif()
   if(SIMBENCH_SANITIZE AND arg_RUNS_ONCE)
     target_compile_options(simbench_${name} PRIVATE -O0)
+  endif()
+  if(SIMBENCH_BUILD_FUZZ AND arg_PARSES)
+    target_compile_options(simbench_${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
   install(TARGETS simbench_${name} EXPORT simbench)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench

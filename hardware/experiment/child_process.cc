@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -116,6 +117,7 @@ ChildProcess::ChildProcess(const Settings& settings)
                   .member = settings.sandbox_member,
                   .left_hub = left_hub.write,
                   .connected = connected.read};
+  std::fflush(nullptr);  // else the child has a copy of what is buffered, and may write it again
   process_ = fork();
   if (process_ == 0) become(plan);
   const int fork_error = errno;
