@@ -73,9 +73,9 @@ Figure reconstruction_figure(const ReconstructionResults& results) {
   figure.id = "reconstruction";
   figure.title = fmt::format("{}: what desynchronisation costs", results.scenario.name);
   figure.caption = fmt::format(
-      "All hosts off by a known amount: exposures of a host's cameras coincide, the hosts are "
-      "spread "
-      "over the desynchronisation. Medians over {} {}.",
+      "Over desynchronisation: all hosts off by a known amount, exposures of a host's cameras "
+      "coincide, the hosts are spread over it. Over speed: the exposures that the pipeline has. "
+      "Medians over {} {}.",
       results.seeds, results.seeds == 1 ? "seed" : "seeds");
   if (!results.curve.empty()) figure.panels.push_back(desync_panel(results));
   if (results.speed_needed && !results.speed_needed->points.empty()) {

@@ -157,13 +157,13 @@ class Experiment {
     } catch (const RecordingFailed& error) {
       failure = fmt::format("seed {}: {}", seed, error.what());
     }
-    const std::unique_ptr<Subject> faster =
+    const std::unique_ptr<Subject> other =
         speed_factor == 1 ? nullptr : subjects_.make(speed_factor);
-    SetReconstruction studio(scenario_, faster ? *faster : *subject_, seed);
+    SetReconstruction studio(scenario_, other ? *other : *subject_, seed);
     SeedTally tally;
     for (std::size_t i = 0; i < sets.sets.size(); ++i) {
       stop_if_cancelled();
-      const bool shown = !faster && seed == options_.first_seed && i == 0;
+      const bool shown = !other && seed == options_.first_seed && i == 0;
       add_set(studio, sets.sets[i], tally, shown ? &results_.rows[pipeline].pipeline : nullptr);
     }
     return tally.finish(seed, sets.gathered_sets > 0);
