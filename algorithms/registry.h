@@ -3,7 +3,7 @@
 // A registered algorithm is a name, a line about it, its parameters and a factory. Pipelines name
 // one algorithm per stage; `simbench list algorithms` prints them all. An algorithm of your own,
 // from your own repository, needs find_package(simbench), one registration and a call of
-// run_command_line (tools/command_line.h):
+// run_command_line (cli/command_line.h):
 //
 //   simbench::register_device_time({
 //       .info = {.name = "mine", .family = "mine", .summary = "...", .source = "...", ...},

@@ -7,7 +7,7 @@
 //
 // A stamp's error is taken against exposure + D, as no one-way method can know D; a two-way method
 // is D early by that measure.
-// Source: reference/device_time.md section 3.
+// Source: docs/reference/device_time.md section 3.
 #ifndef SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
 #define SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
 

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <string>
 
-#include "evaluation/evaluate.h"
+#include "cli/freed_memory.h"
+#include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
-#include "tools/freed_memory.h"
 
 namespace simbench {
 namespace {
@@ -41,7 +41,7 @@ BENCHMARK_CAPTURE(full_run, genlock, std::string("genlock"))->Unit(benchmark::kM
 }  // namespace simbench
 
 int main(int argc, char** argv) {
-  simbench::tools::keep_freed_memory();
+  simbench::cli::keep_freed_memory();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -16,7 +16,7 @@
 //
 // Draws depend on (seed, camera, frame) only, so one frame looks the same to every pipeline.
 //
-// Source: reference/calibration.md section 6; the law: triangulation (z = f B / disparity).
+// Source: docs/reference/calibration.md section 6; the law: triangulation (z = f B / disparity).
 #ifndef SIMBENCH_RECONSTRUCTION_DEPTH_NOISE_H_
 #define SIMBENCH_RECONSTRUCTION_DEPTH_NOISE_H_
 

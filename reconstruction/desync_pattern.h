@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "evaluation/exposure_sets.h"
+#include "evaluation/scoring/exposure_sets.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reconstruction {

@@ -2,9 +2,9 @@
 // errors.
 //
 // For every (pipeline, seed): simulate the capture, take `frames` sets of simultaneous frames as
-// the pipeline's stamps have them (evaluation/exposure_sets.h), ray-cast each camera's depth map at
-// its frame's true mid-exposure, reconstruct with the believed calibration, measure the
-// reprojection error. Cameras, calibration errors and noise depend on the seed alone, so that
+// the pipeline's stamps have them (evaluation/scoring/exposure_sets.h), ray-cast each camera's
+// depth map at its frame's true mid-exposure, reconstruct with the believed calibration, measure
+// the reprojection error. Cameras, calibration errors and noise depend on the seed alone, so that
 // pipelines are paired by seed.
 //
 // Jobs run on `jobs` threads, each with one frame set in memory at a time: memory grows neither
@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/evaluate.h"
+#include "evaluation/run/evaluate.h"
 #include "reconstruction/results.h"
 #include "reconstruction/triangle_mesh.h"
 #include "scenarios/scenario.h"
@@ -77,7 +77,7 @@ ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const MeshKeeper& on_mesh,
                                          const evaluation::Progress& progress);
 
-// What a program that has it hands to the command line (tools/command_line.h).
+// What a program that has it hands to the command line (cli/command_line.h).
 using RunReconstruction = decltype(&run_reconstruction);
 
 }  // namespace simbench::reconstruction

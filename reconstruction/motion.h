@@ -26,7 +26,7 @@
 //   const MotionState state = motion.at(/*seconds=*/0.25);
 //
 // Source: the paper says "moving person" and no more; the scripts are those of the reconstruction
-// study (reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
+// study (docs/reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
 #ifndef SIMBENCH_RECONSTRUCTION_MOTION_H_
 #define SIMBENCH_RECONSTRUCTION_MOTION_H_
 

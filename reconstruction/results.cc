@@ -1,6 +1,6 @@
 #include "reconstruction/results.h"
 
-#include "evaluation/statistics.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::reconstruction {
 namespace {

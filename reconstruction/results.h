@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/results.h"
+#include "evaluation/scoring/results.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reconstruction {

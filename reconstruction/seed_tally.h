@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "evaluation/exposure_sets.h"
+#include "evaluation/scoring/exposure_sets.h"
 #include "reconstruction/error_statistics.h"
 #include "reconstruction/results.h"
 

@@ -9,7 +9,7 @@
 // KeptRecording (kept_recording.h) keeps it all and can play itself back into another sink.
 //
 // Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
-// Source: DESIGN section 2; the four stamps: reference/d455.md section 1.
+// Source: docs/design.md section 2; the four stamps: docs/reference/d455.md section 1.
 //
 //   KeptRecording kept;
 //   source.record(request, kept);       // any RecordingSource

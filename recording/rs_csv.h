@@ -15,7 +15,7 @@
 // from one.
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
-// Complexity: linear in the text. Source: reference/d455.md section 8.
+// Complexity: linear in the text. Source: docs/reference/d455.md section 8.
 //
 //   CsvRecordingReader reader;
 //   reader.read_file("front.csv");

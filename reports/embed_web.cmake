@@ -1,5 +1,5 @@
 # Writes OUTPUT: the page of the report (FOLDER) and uPlot (UPLOT) as the C++ source behind
-# reports/web_files.h. Run by the build whenever one of the files has changed.
+# reports/page/web_files.h. Run by the build whenever one of the files has changed.
 #
 # The script is one module: what others use comes first.
 set(script "")
@@ -14,7 +14,7 @@ file(READ ${UPLOT}/dist/uPlot.min.css uplot_style)
 file(READ ${UPLOT}/LICENSE uplot_licence)
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "reports/web_files.h"
+#include "reports/page/web_files.h"
 
 namespace simbench::reports::web {
 

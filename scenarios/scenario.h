@@ -12,7 +12,8 @@
 // per message, per frame or per pulse. "Run load" M = exp(N(load_log_sigma)) is drawn once per
 // (seed, pipeline, scenario).
 //
-// Sources: reference/calibration.md (sections 1 and 2), reference/d455.md, DESIGN section 7.
+// Sources: docs/reference/calibration.md (sections 1 and 2), docs/reference/d455.md, docs/design.md
+// section 7.
 #ifndef SIMBENCH_SCENARIOS_SCENARIO_H_
 #define SIMBENCH_SCENARIOS_SCENARIO_H_
 

@@ -10,7 +10,7 @@
 // not later than the newest one replaces those from its instant on. A rate that is no number counts
 // as 0. Readings saturate at 64 bits and are within 1 ns of the host's.
 //
-// Complexity: add amortised O(1), to_system O(log segments). Source: DESIGN section 2.
+// Complexity: add amortised O(1), to_system O(log segments). Source: docs/design.md section 2.
 //
 //   ClockMap map;
 //   map.add(adjustment);                        // in order

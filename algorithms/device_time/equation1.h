@@ -14,7 +14,7 @@
 // mean(dy - dx). The first frame of a camera has no interval: its arrival is its stamp.
 //
 // Arrivals are those on the system clock. O(1) and no allocation per frame.
-// Source: reference/paper.md section 3.
+// Source: docs/reference/paper.md section 3.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_EQUATION1_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_EQUATION1_H_
 

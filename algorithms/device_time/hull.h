@@ -20,7 +20,7 @@
 //
 // Complexity a frame: switching O(log vertices), window O(vertices), of which
 // there are some 10. Memory: vertices only (at most LowerHull::kMaxVertices a hull), the window's
-// frames. Source: reference/device_time.md sections 1 and 2; Harrison, Newman: TICSync, 2011.
+// frames. Source: docs/reference/device_time.md sections 1 and 2; Harrison, Newman: TICSync, 2011.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_HULL_H_
 

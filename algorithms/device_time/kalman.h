@@ -13,7 +13,7 @@
 //
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
 // frame not later than the newest is stamped from the state and not learned. O(1).
-// Source: reference/device_time.md section 1.
+// Source: docs/reference/device_time.md section 1.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_KALMAN_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_KALMAN_H_
 

@@ -19,7 +19,7 @@
 // theirs loses some microseconds within hours.
 //
 // Needs polls (Need::kPolls). Given the warm-up. Complexity: a poll O(16), a frame O(1).
-// Source: librealsense src/global_timestamp_reader.{h,cpp}; reference/d455.md section 5.
+// Source: librealsense src/global_timestamp_reader.{h,cpp}; docs/reference/d455.md section 5.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_LIBREALSENSE_GLOBAL_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_LIBREALSENSE_GLOBAL_H_
 

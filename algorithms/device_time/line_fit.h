@@ -8,7 +8,7 @@
 // Reach: exact while |x| and |y| stay below 2^61 / capacity; larger values count as that. With x in
 // microseconds and a capacity of 30 that is 2400 years, with 3.2 million (10 h at 90 Hz) 8 days.
 //
-// Complexity: add, remove, line: O(1). Source: reference/paper.md section 3.
+// Complexity: add, remove, line: O(1). Source: docs/reference/paper.md section 3.
 //
 //   LineSums sums(1000);
 //   sums.add({.x = 0, .y = 5});

@@ -11,8 +11,8 @@
 // span are thinned out, which lifts the hull by no more than a chord of that length does.
 //
 // Complexity: add amortised O(1), support_line O(log vertices).
-// Source: Zhang, Liu, Xia 2002; reference/device_time.md section 1. The midpoint is taken anew for
-// each line, also of two points (the reference implementation keeps a stale one there).
+// Source: Zhang, Liu, Xia 2002; docs/reference/device_time.md section 1. The midpoint is taken anew
+// for each line, also of two points (the reference implementation keeps a stale one there).
 //
 //   LowerHull hull;
 //   hull.add({.x = 0, .y = 3}); hull.add({.x = 2, .y = 9}); hull.add({.x = 4, .y = 5});

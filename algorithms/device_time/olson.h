@@ -9,7 +9,7 @@
 // arrival; a frame not later than the newest is stamped and not learned..
 //
 // Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010;
-// reference/device_time.md section 1.
+// docs/reference/device_time.md section 1.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_OLSON_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_OLSON_H_
 

@@ -1,7 +1,7 @@
 // device_time without any: the arrival on the system clock is the global stamp (R4).
 //
 // The baseline that every estimator must beat: it keeps the full jitter and latency of delivery.
-// Source: reference/paper.md section 3 (R4).
+// Source: docs/reference/paper.md section 3 (R4).
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_RAW_ARRIVAL_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_RAW_ARRIVAL_H_
 

@@ -12,7 +12,8 @@
 namespace simbench {
 namespace {
 
-constexpr const char* kEquation1Source = "Yoon et al. 2021, eq. (1); reference/paper.md section 3";
+constexpr const char* kEquation1Source =
+    "Yoon et al. 2021, eq. (1); docs/reference/paper.md section 3";
 
 AlgorithmInfo info(const char* name, const char* family, const char* summary, const char* source) {
   return {.name = name, .family = family, .summary = summary, .source = source, .parameters = {}};
@@ -46,7 +47,7 @@ std::vector<DeviceTimeEntry> papers_estimators() {
        .make = [](const Parameters&) { return make_raw_arrival(); }},
       {.info = info("sensor_normalised", "sensor_normalised",
                     "sensor stamp minus the camera's first: GenLock captures only",
-                    "Yoon et al. 2021, GenLock; reference/paper.md section 5"),
+                    "Yoon et al. 2021, GenLock; docs/reference/paper.md section 5"),
        .make = [](const Parameters&) { return make_sensor_normalised(); }},
       {.info = info("oracle", "oracle",
                     "the camera's own host's clock at the true mid-exposure: simulation only",

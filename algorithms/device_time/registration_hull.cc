@@ -9,9 +9,9 @@ namespace {
 
 constexpr const char* kMaxSkew = "max_skew_ppm";
 constexpr const char* kWindow = "window_s";
-constexpr const char* kSource = "reference/device_time.md section 1";
+constexpr const char* kSource = "docs/reference/device_time.md section 1";
 constexpr const char* kTicSync =
-    "Harrison, Newman: TICSync, 2011; reference/device_time.md section 1";
+    "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
 
 ParameterSpec max_skew() {
   return number_parameter(kMaxSkew, kDefaultMaxSkewPpm, 1, 100'000,
@@ -38,7 +38,7 @@ DeviceTimeEntry two_way_poll() {
       .info = {.name = "two_way_poll",
                .family = "two_way_poll",
                .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
-               .source = "reference/host_sync.md section 1 (MOOS, TICSync)",
+               .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
                .parameters = {max_skew(), number_parameter(kWindow, TwoWayPollSettings{}.window_s,
                                                            1, 3600, "polls of this long are used",
                                                            "ours: short against wander")},

@@ -15,7 +15,7 @@
 // Arrivals are those on the system clock. O(1) and no allocation per frame. Sums are exact
 // (line_fit.h) or of deviations from the mean, so hours cost no precision.
 //
-// Source: reference/paper.md section 3 (R3); reference/device_time.md section 2.
+// Source: docs/reference/paper.md section 3 (R3); docs/reference/device_time.md section 2.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_REGRESSION_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_REGRESSION_H_
 

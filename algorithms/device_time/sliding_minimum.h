@@ -9,7 +9,7 @@
 // offsets keep increasing for longer than that within W, the newest takes the place of the one
 // before, which can only matter W later, by what lies between two frames.
 //
-// Source: reference/device_time.md section 1.
+// Source: docs/reference/device_time.md section 1.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_SLIDING_MINIMUM_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_SLIDING_MINIMUM_H_
 

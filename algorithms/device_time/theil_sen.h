@@ -8,7 +8,8 @@
 //
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
 // frame not later than the newest is stamped and not learned..
-// Source: Sen 1968; reference/device_time.md section 1 (refit every 15 of 300 frames there too).
+// Source: Sen 1968; docs/reference/device_time.md section 1 (refit every 15 of 300 frames there
+// too).
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_THEIL_SEN_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_THEIL_SEN_H_
 

@@ -19,7 +19,8 @@
 //
 // Needs polls (Need::kPolls). Given the warm-up. Complexity: a poll O(vertices), a frame O(1).
 // Memory: the polls of the window, at most kMaxPolls.
-// Source: reference/host_sync.md section 1 (two-way convex hull); Harrison, Newman: TICSync, 2011.
+// Source: docs/reference/host_sync.md section 1 (two-way convex hull); Harrison, Newman: TICSync,
+// 2011.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_TWO_WAY_POLL_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_TWO_WAY_POLL_H_
 

@@ -7,7 +7,8 @@
 // register 35 min); one that is exactly half apart counts as earlier. The first reading is taken as
 // it is, so results may become negative if it was delivered ahead of earlier frames near zero.
 //
-// Source: reference/device_time.md section 1 (Unwrapping), reference/d455.md section 1 (Wrap).
+// Source: docs/reference/device_time.md section 1 (Unwrapping), docs/reference/d455.md section 1
+// (Wrap).
 //
 //   DeviceStampUnwrapper unwrapper;   // one per camera
 //   DeviceTime sensor = unwrapper.unwrap(frame.sensor);

@@ -20,7 +20,7 @@
 //
 // Complexity: O(log n) per frame that steps aside, O(n) per set; steps that decided nothing are not
 // taken again until a frame comes that may change that. Memory: n * (queue + 1) frames.
-// Source: ros_comm message_filters sync_policies/approximate_time.h; reference/gathering.md.
+// Source: ros_comm message_filters sync_policies/approximate_time.h; docs/reference/gathering.md.
 //
 //   auto gatherer = make_approximate_time_gatherer(setup, {.lower_bound = setup.period / 2});
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_APPROXIMATE_TIME_H_

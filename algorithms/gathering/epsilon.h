@@ -10,7 +10,7 @@
 // oldest frame.
 //
 // Complexity: O(log n) per frame given up, O(n) per set. Memory: n * queue_limit frames.
-// Source: ros2/message_filters sync_policies/approximate_epsilon_time; reference/gathering.md.
+// Source: ros2/message_filters sync_policies/approximate_epsilon_time; docs/reference/gathering.md.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_EPSILON_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_EPSILON_H_
 

@@ -11,7 +11,7 @@
 // fronts lie side by side in order of source, and a heap over them is made only when one must be
 // dropped. Memory: one slab of n * queue_limit frames, allocated when made; nothing per frame.
 //
-// Source: reference/paper.md section 5.
+// Source: docs/reference/paper.md section 5.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_FRONT_MATCHER_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_FRONT_MATCHER_H_
 

@@ -6,7 +6,7 @@
 // at. Needs a capture whose cameras all start with one pulse.
 //
 // GatheringSetup::period is the nominal frame period. Complexity and memory:
-// gathering/front_matcher.h. Source: reference/paper.md sections 5 and 8.
+// gathering/front_matcher.h. Source: docs/reference/paper.md sections 5 and 8.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_GENLOCK_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_GENLOCK_H_
 

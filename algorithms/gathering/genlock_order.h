@@ -14,7 +14,7 @@
 // plus gap * period * e is below half a period: with jitter below a quarter of a period less that,
 // and gaps of lost frames up to 1 / (2 e). A camera that loses its first frame is off by that.
 //
-// Source: reference/paper.md section 8, DESIGN section 8.
+// Source: docs/reference/paper.md section 8, docs/design.md section 8.
 //
 //   GenlockOrder order(from_ms(1000.0 / 45), GenlockOrder::Variant::kReanchored);
 //   std::int64_t index = order.next(frame.sensor);   // one object per camera

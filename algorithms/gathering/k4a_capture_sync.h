@@ -14,7 +14,7 @@
 // are cut at 0; stamps here have no such end.
 //
 // Complexity: O(1) amortised per frame, O(n) per frame of the reference. Memory: n * queue_limit.
-// Source: Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c; reference/gathering.md.
+// Source: Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c; docs/reference/gathering.md.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_K4A_CAPTURE_SYNC_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_K4A_CAPTURE_SYNC_H_
 

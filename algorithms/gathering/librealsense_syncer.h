@@ -19,7 +19,8 @@
 // order of addresses in memory, which only matters from three sources on and here is by time.
 //
 // Complexity: O(1) per frame that waits, O(n) per set, partial or not. Memory: n * queue_limit.
-// Source: librealsense src/sync.cpp (timestamp_composite_matcher); reference/d455.md section 6.
+// Source: librealsense src/sync.cpp (timestamp_composite_matcher); docs/reference/d455.md
+// section 6.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_LIBREALSENSE_SYNCER_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_LIBREALSENSE_SYNCER_H_
 

@@ -15,7 +15,7 @@
 // Stamps that fall back by queue_limit periods or more begin anew: nothing is too old then.
 //
 // Complexity: O(1) per frame, O(n) per slot. Memory: n * queue_limit frames.
-// Source: practice of genlock rigs; reference/gathering.md.
+// Source: practice of genlock rigs; docs/reference/gathering.md.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_PHASE_BINNING_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_PHASE_BINNING_H_
 

@@ -23,7 +23,7 @@ GatheringEntry genlock(const char* name, GenlockOrder::Variant variant, const ch
   return {.info = {.name = name,
                    .family = "genlock",
                    .summary = summary,
-                   .source = "Yoon et al. 2021, GenLock; reference/paper.md section 8",
+                   .source = "Yoon et al. 2021, GenLock; docs/reference/paper.md section 8",
                    .parameters = {}},
           .make = [variant](const Parameters&, const GatheringSetup& setup) {
             return make_genlock_gatherer(setup, variant);
@@ -98,7 +98,7 @@ GatheringEntry k4a() {
 }
 
 GatheringEntry phase_binning() {
-  const char* const source = "practice of genlock rigs; reference/gathering.md";
+  const char* const source = "practice of genlock rigs; docs/reference/gathering.md";
   return {
       .info = {.name = "phase_binning",
                .family = "phase_binning",
@@ -129,9 +129,10 @@ GatheringEntry without_parameters(const char* name, const char* summary, const c
 
 std::vector<GatheringEntry> builtin_gathering_algorithms() {
   return {
-      without_parameters(
-          "yoon2021", "fronts within T_int are a set, else the earliest front is given up",
-          "Yoon et al. 2021, Algorithm 3; reference/paper.md section 5", make_yoon2021_gatherer),
+      without_parameters("yoon2021",
+                         "fronts within T_int are a set, else the earliest front is given up",
+                         "Yoon et al. 2021, Algorithm 3; docs/reference/paper.md section 5",
+                         make_yoon2021_gatherer),
       genlock("genlock", GenlockOrder::Variant::kReanchored,
               "frames of one trigger pulse, counted from frame to frame"),
       genlock("genlock_printed", GenlockOrder::Variant::kFirstStamp,
@@ -141,9 +142,10 @@ std::vector<GatheringEntry> builtin_gathering_algorithms() {
       without_parameters(
           "epsilon", "fronts within T_int are a set, else all near the earliest are given up",
           "ros2/message_filters sync_policies/approximate_epsilon_time", make_epsilon_gatherer),
-      without_parameters(
-          "librealsense", "half a period around the earliest front; emits partial sets",
-          "librealsense src/sync.cpp; reference/d455.md section 6", make_librealsense_gatherer),
+      without_parameters("librealsense",
+                         "half a period around the earliest front; emits partial sets",
+                         "librealsense src/sync.cpp; docs/reference/d455.md section 6",
+                         make_librealsense_gatherer),
       k4a(),
       phase_binning(),
       without_parameters("oracle", "frames of one true pulse",

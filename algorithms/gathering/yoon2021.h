@@ -9,7 +9,7 @@
 // offset of T_int or more between two sources gives no set at all, and one of about a period gives
 // wrong sets silently: T_int of half a period or less, and stamps better than that.
 //
-// Complexity and memory: gathering/front_matcher.h. Source: reference/paper.md section 5.
+// Complexity and memory: gathering/front_matcher.h. Source: docs/reference/paper.md section 5.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_YOON2021_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_YOON2021_H_
 

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "algorithms/host_sync/limits.h"
-#include "algorithms/host_sync/registration_ntp.h"
-#include "algorithms/host_sync/registration_ptp.h"
-#include "algorithms/host_sync/registration_pulse.h"
-#include "algorithms/host_sync/registration_two_way.h"
-#include "algorithms/host_sync/yoon2021.h"
+#include "algorithms/host_sync/ntp/registration_ntp.h"
+#include "algorithms/host_sync/ptp/registration_ptp.h"
+#include "algorithms/host_sync/pulses/registration_pulse.h"
+#include "algorithms/host_sync/two_way/registration_two_way.h"
+#include "algorithms/host_sync/yoon2021/yoon2021.h"
 #include "algorithms/parameter_specs.h"
 
 namespace simbench {

@@ -3,7 +3,7 @@
 // It read `before`, and from that instant on reads `after` and runs at `rate_ppb` against the
 // host's steady clock. The log begins with an adjustment that changes nothing, so the log alone
 // maps steady time to system time at any instant (algorithms/device_time/clock_map.h).
-// Source: DESIGN section 2.
+// Source: docs/design.md section 2.
 #ifndef SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
 #define SIMBENCH_ALGORITHMS_PORTS_CLOCK_ADJUSTMENT_H_
 

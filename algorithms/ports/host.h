@@ -13,7 +13,7 @@
 //  - Coroutines take parameters by value (or references that outlive the run), never capture in a
 //    lambda, never co_await inside catch, and await once per statement.
 //
-// Source: DESIGN section 4.
+// Source: docs/design.md section 4.
 //
 //   Task<void> greet(Host& host) {
 //     MessageChannel& channel = host.open_channel(0, Transport::kStream);

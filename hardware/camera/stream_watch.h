@@ -13,7 +13,7 @@
 //    that the camera restarted.
 //  - missing_metadata() is told once, with how to get it: kMissingMetadata.
 //
-// Source: reference/d455.md sections 1 and 4.
+// Source: docs/reference/d455.md sections 1 and 4.
 //
 //   StreamWatch watch(settings);
 //   watch.start(monotonic_now());

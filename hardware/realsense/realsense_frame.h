@@ -10,7 +10,7 @@
 //    documentation says, put on the monotonic clock through the wall clock's reading at arrival.
 //    0 (the RSUSB backend leaves it) and what is not within two seconds before the arrival is none.
 //
-// Errors: rs2::error, for the caller to catch. Source: reference/d455.md section 1.
+// Errors: rs2::error, for the caller to catch. Source: docs/reference/d455.md section 1.
 #ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_
 #define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_
 

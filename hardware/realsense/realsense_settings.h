@@ -10,8 +10,8 @@
 //  - Global time is switched off: the stamps wanted are the camera's own.
 //
 // Errors: CameraError: what was asked for, what the device has, and where it is known which
-// firmware has more. Source: reference/d455.md sections 2 and 3; units of colour exposure are what
-// users report.
+// firmware has more. Source: docs/reference/d455.md sections 2 and 3; units of colour exposure are
+// what users report.
 //
 //   auto sensors = choose_sensors(device, serial, settings);
 //   apply_settings(device, sensors, info, settings);

@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/exposure_sets.h"
+#include "evaluation/scoring/exposure_sets.h"
 #include "reconstruction/error_statistics.h"
 #include "reconstruction/libraries/ray_caster.h"
 #include "reconstruction/reprojection.h"

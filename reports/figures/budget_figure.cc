@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "evaluation/ideal_world.h"
+#include "evaluation/budget/ideal_world.h"
 #include "reports/figures/figure_parts.h"
-#include "reports/number_text.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {

@@ -2,7 +2,7 @@
 #ifndef SIMBENCH_REPORTS_FIGURES_BUDGET_FIGURE_H_
 #define SIMBENCH_REPORTS_FIGURES_BUDGET_FIGURE_H_
 
-#include "evaluation/budget.h"
+#include "evaluation/budget/budget.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "reports/csv.h"
+#include "reports/results/csv.h"
 
 namespace simbench::reports {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "evaluation/run_detail.h"
+#include "evaluation/run/run_detail.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

@@ -13,8 +13,8 @@
 #include <iterator>
 #include <system_error>
 
-#include "reports/output_file.h"
-#include "reports/output_folder.h"
+#include "reports/text/output_file.h"
+#include "reports/text/output_folder.h"
 
 extern char** environ;
 

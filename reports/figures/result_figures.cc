@@ -10,10 +10,10 @@
 #include <string_view>
 #include <utility>
 
-#include "evaluation/statistics.h"
+#include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/figures/thin.h"
-#include "reports/number_text.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {

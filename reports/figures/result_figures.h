@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reports/archive_reader.h"
+#include "reports/archive/archive_reader.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

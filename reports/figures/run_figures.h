@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "evaluation/run_detail.h"
+#include "evaluation/run/run_detail.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "evaluation/run_detail.h"
+#include "evaluation/run/run_detail.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

@@ -5,7 +5,7 @@
 // configured one. All streams of a camera share its exposure, and its steps are drawn from a random
 // stream of its own: values are a function of time, whatever is asked and in which order.
 //
-// Source: DESIGN section 7; the process is an assumption (scenarios/schema.json).
+// Source: docs/design.md section 7; the process is an assumption (scenarios/schema.json).
 // Complexity: O(log steps so far).
 //
 //   AutoExposure exposure(scenario.cameras.auto_exposure, from_ms(8.0), seed, 3, camera_start);

@@ -3,7 +3,7 @@
 // The register starts anywhere and wraps every 2^32 us (71 min 35 s). A stamp is the reading with
 // the device's own timing noise, rounded down to a whole microsecond.
 //
-// Source: reference/d455.md section 1; reference/calibration.md section 2 ("Cameras").
+// Source: docs/reference/d455.md section 1; docs/reference/calibration.md section 2 ("Cameras").
 #ifndef SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
 #define SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
 

@@ -1,6 +1,6 @@
 // When a camera exposes: one image stream's answer to trigger pulses and to their absence.
 //
-// Behaviour by sync mode (reference/d455.md section 2, DESIGN section 7):
+// Behaviour by sync mode (docs/reference/d455.md section 2, docs/design.md section 7):
 //  - genlock (depth only): waits without limit; a pulse starts an exposure. Pulses are then ignored
 //    for two mode periods less a guard (the camera's own periods, an assumption about the guard),
 //    and while the exposure lasts. So a trigger at the full mode rate yields every second pulse,

@@ -5,7 +5,7 @@
 // passes readings and settings in units of its resolution (1 ms for SYSTEMTIME). A setting is not
 // rounded to a tick: only readings are taken from the ticking counter.
 //
-// Source: reference/calibration.md section 2 ("Host clock").
+// Source: docs/reference/calibration.md section 2 ("Host clock").
 //
 //   const ClockInterface interface(from_ms(15.625), from_ms(4), from_ms(1));
 //   HostTime seen = interface.read(clock.read(now));

@@ -24,7 +24,8 @@
 // of 1e-9 survives. Complexity: O(1) without noise; otherwise a look-up, after each step of the
 // grid between true zero and the query has once been sampled (8 bytes and some 20 ns each, some
 // 120 ns with flicker).
-// Source: DESIGN sections 5 to 7; Riley, "Handbook of Frequency Stability Analysis", NIST SP 1065.
+// Source: docs/design.md sections 5 to 7; Riley, "Handbook of Frequency Stability Analysis", NIST
+// SP 1065.
 //
 //   const OscillatorModel oscillator(scenario.hosts.clock.oscillator, seed, "host3/oscillator");
 //   double ahead_ns = oscillator.deviation_ns(engine.now());

@@ -15,7 +15,8 @@
 // instant, adjustments of its own have no effect, and it reports the master's adjustments.
 //
 // Complexity: reading the present O(1), some nanoseconds; the past O(log n) of n adjustments.
-// Source: DESIGN sections 4, 5 and 7; reference/calibration.md section 2 ("Host clock").
+// Source: docs/design.md sections 4, 5 and 7; docs/reference/calibration.md section 2 ("Host
+// clock").
 //
 //   SystemClock clock(3, oscillator, from_ms(250));
 //   clock.set(now, HostTime(from_ms(1000)));

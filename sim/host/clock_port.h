@@ -7,7 +7,7 @@
 // Readings and settings pass the clock's granularity (sim/clock/clock_interface.h). The steady
 // clock is read at no cost and exactly.
 //
-// Source: reference/calibration.md section 2 (steps 3 and 5); DESIGN section 4.
+// Source: docs/reference/calibration.md section 2 (steps 3 and 5); docs/design.md section 4.
 #ifndef SIMBENCH_SIM_HOST_CLOCK_PORT_H_
 #define SIMBENCH_SIM_HOST_CLOCK_PORT_H_
 

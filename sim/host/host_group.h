@@ -13,7 +13,7 @@
 // of a seed, and all scenarios that differ in something else, have the same oscillators and
 // offsets.
 //
-// Source: reference/calibration.md section 2 ("Host clock", "None row").
+// Source: docs/reference/calibration.md section 2 ("Host clock", "None row").
 //
 //   HostGroup hosts(scenario, seed, "both@18cam_6host_45fps", InitialClocks::kUnsynchronised,
 //                   context, sink);

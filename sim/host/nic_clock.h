@@ -12,7 +12,7 @@
 // Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
 // what was queued there, and when it reaches the receiver, before anything wakes up.
 //
-// Source: DESIGN section 7; scenario /hosts/nic; Linux PTP_SYS_OFFSET_EXTENDED.
+// Source: docs/design.md section 7; scenario /hosts/nic; Linux PTP_SYS_OFFSET_EXTENDED.
 //
 //   NicClock nic(host);
 //   const CrossStamp stamp = co_await nic.cross_stamp();

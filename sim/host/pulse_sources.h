@@ -11,7 +11,7 @@
 // The trigger's pulses are the main trigger's, during a capture; numbers are slots, and empty slots
 // have none. The cable to the host is part of the interrupt's fixed latency.
 //
-// Source: DESIGN section 7; scenario /hosts/pulse_lines.
+// Source: docs/design.md section 7; scenario /hosts/pulse_lines.
 //
 //   PpsReceiver receiver(scenario.hosts.pulse_lines, seed, 3);
 //   const auto next = receiver.first_from(engine.now());

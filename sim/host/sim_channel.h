@@ -20,7 +20,7 @@
 // Hardware stamps, where the host's card takes them, are of sim/host/nic_clock.h. A burst of load
 // (sim/host/host_load.h) makes the wake-up longer.
 //
-// Source: reference/calibration.md section 2 (steps 1, 2 and 4); DESIGN section 4.
+// Source: docs/reference/calibration.md section 2 (steps 1, 2 and 4); docs/design.md section 4.
 #ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
 #define SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
 

@@ -11,7 +11,7 @@
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //
-// Source: DESIGN section 4; reference/calibration.md section 2.
+// Source: docs/design.md section 4; docs/reference/calibration.md section 2.
 //
 //   SystemClock clock(3, oscillator, offset);
 //   SimHost host({context, scenario.hosts, scenario.network, network, load, sink, seed}, 3, clock);

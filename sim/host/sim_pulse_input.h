@@ -10,7 +10,7 @@
 // worked out when somebody asks, as far as the last 1024 pulses reach. Cost: an event per pulse
 // that is waited for; none otherwise.
 //
-// Source: DESIGN section 7; algorithms/ports/host.h (PulseInput).
+// Source: docs/design.md section 7; algorithms/ports/host.h (PulseInput).
 #ifndef SIMBENCH_SIM_HOST_SIM_PULSE_INPUT_H_
 #define SIMBENCH_SIM_HOST_SIM_PULSE_INPUT_H_
 

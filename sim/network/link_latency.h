@@ -10,7 +10,7 @@
 // The asymmetry is the fixed latency from the host of lower number to that of higher number minus
 // the fixed latency back, one draw per link. A latency is never negative.
 //
-// Source: reference/calibration.md section 2 ("lat()"); reference/host_sync.md section 3.
+// Source: docs/reference/calibration.md section 2 ("lat()"); docs/reference/host_sync.md section 3.
 #ifndef SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
 #define SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
 

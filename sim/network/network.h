@@ -28,7 +28,7 @@
 //
 // Links are made when first used: memory grows with the links in use, not with hosts squared.
 // Cost: one event per message, two with a bandwidth; no allocation of its own in steady state.
-// Source: DESIGN section 7; reference/calibration.md sections 2 and 5 (H9).
+// Source: docs/design.md section 7; docs/reference/calibration.md sections 2 and 5 (H9).
 //
 //   Network network(engine, scenario.network, seed, host_count, load, outages);
 //   PathId path = network.open(0, 3, Transport::kStream, endpoint_of_host_0);

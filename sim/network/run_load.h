@@ -8,7 +8,8 @@
 // set calls. All are drawn per (run seed, load key); nothing else in the world depends on the load
 // key, so pipelines stay paired by seed in everything else. Draws are keyed, not stored.
 //
-// Source: reference/calibration.md sections 1 and 2 (rmult, callrun, Lrun, Srun); DESIGN section 6.
+// Source: docs/reference/calibration.md sections 1 and 2 (rmult, callrun, Lrun, Srun);
+// docs/design.md section 6.
 //
 //   const RunLoad load(seed, "both@18cam_6host_45fps", scenario.hosts, scenario.network);
 //   double occupancy_ms = load.session(0, 3).send_cost_ms;

@@ -10,9 +10,9 @@
 //
 // The hosts' clocks are only read, by true time; which protocol disciplines them is not known here.
 //
-// Source: DESIGN section 7, reference/calibration.md section 2, reference/d455.md.
-// Cost: three events per frame and one per pulse; no allocation per event once frames in flight
-// have found their slots.
+// Source: docs/design.md section 7, docs/reference/calibration.md section 2,
+// docs/reference/d455.md. Cost: three events per frame and one per pulse; no allocation per event
+// once frames in flight have found their slots.
 //
 //   Capture capture(scenario, seed, engine, clocks, sink);
 //   sink.on_start(capture.layout());

@@ -13,7 +13,7 @@
 // All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns;
 // with an interval of 0 there is nothing at all, not even a handler.
 //
-// Source: scenario /cameras/clock_poll; reference/d455.md section 5.
+// Source: scenario /cameras/clock_poll; docs/reference/d455.md section 5.
 //
 //   ClockPolls polls(scenario, seed, engine, hosts, capture, sink);
 //   polls.start();  // after the capture has been started

@@ -18,8 +18,8 @@
 // The host's part is an AR(1) process on a grid of frame periods in true time,
 // h[i] = rho * h[i-1] + (1 - rho) * Exp(mean), so it does not depend on which frames ask for it.
 //
-// Source: reference/calibration.md section 2 ("Cameras"), parameters jcam, jhost, jrho, spk, spkm.
-// Copula: Nelsen, "An Introduction to Copulas", 2006, sections 2.3 and 5.1.
+// Source: docs/reference/calibration.md section 2 ("Cameras"), parameters jcam, jhost, jrho, spk,
+// spkm. Copula: Nelsen, "An Introduction to Copulas", 2006, sections 2.3 and 5.1.
 #ifndef SIMBENCH_SIM_USB_HOST_STACK_H_
 #define SIMBENCH_SIM_USB_HOST_STACK_H_
 

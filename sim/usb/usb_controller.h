@@ -13,8 +13,8 @@
 // next_completion() to collect what is done. For dedicated and fifo the completion is known at
 // submission; fair sharing revises it as frames come and go.
 //
-// Complexity: O(log n) per frame, n frames pending on the controller. Source: reference/d455.md
-// section 3, DESIGN section 7.
+// Complexity: O(log n) per frame, n frames pending on the controller. Source:
+// docs/reference/d455.md section 3, docs/design.md section 7.
 #ifndef SIMBENCH_SIM_USB_USB_CONTROLLER_H_
 #define SIMBENCH_SIM_USB_USB_CONTROLLER_H_
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/cli/program.h"
-#include "tests/reports/trace_format.h"
+#include "tests/reports/timeline/trace_format.h"
 
 namespace simbench {
 

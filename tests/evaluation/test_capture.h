@@ -15,7 +15,7 @@
 #include <functional>
 #include <vector>
 
-#include "evaluation/pipeline_scorer.h"
+#include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "evaluation/replay.h"
+#include "evaluation/replay/replay.h"
 #include "recording/rs_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

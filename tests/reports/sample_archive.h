@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics.h"
-#include "reports/archive_reader.h"
+#include "evaluation/statistics/statistics.h"
+#include "reports/archive/archive_reader.h"
 
 namespace simbench::reports {
 

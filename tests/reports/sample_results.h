@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "evaluation/results.h"
+#include "evaluation/scoring/results.h"
 
 namespace simbench::reports {
 

@@ -126,7 +126,7 @@ TEST(CameraProfiles, SizesOfThePapersTable) {
   }
 }
 
-// reference/calibration.md section 6: 107.5 px at a quarter of 848x480.
+// docs/reference/calibration.md section 6: 107.5 px at a quarter of 848x480.
 TEST(CameraProfiles, FocalLengthOfDepth) {
   const StreamProfile& depth = *find_camera_profile("d455")->stream("depth");
   EXPECT_EQ(depth.find_size(848, 480)->focal_px, 4 * 107.5);

@@ -57,7 +57,7 @@ TEST(Studio, OfThePaper) {
   EXPECT_TRUE(scenario.published.empty()) << "Tables 2 and 3 are at 15 and 45 fps";
 }
 
-// reference/calibration.md section 6: noise of 0.00196 z^2 m.
+// docs/reference/calibration.md section 6: noise of 0.00196 z^2 m.
 TEST(Studio, DepthNoiseOfTheStudy) {
   const Scenario scenario = load_scenario(kStudio);
   const Stream& depth = scenario.cameras.streams.front();

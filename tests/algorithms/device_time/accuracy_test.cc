@@ -1,5 +1,5 @@
-// The estimators in the worlds of reference/device_time.md section 3, against its expectations.
-// bench/device_time_accuracy prints the whole table.
+// The estimators in the worlds of docs/reference/device_time.md section 3, against its
+// expectations. bench/device_time_accuracy prints the whole table.
 #include <gtest/gtest.h>
 
 #include <algorithm>

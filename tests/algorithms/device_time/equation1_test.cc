@@ -109,7 +109,7 @@ TEST(Equation1, WindowIsThirtyIntervals) {
 }
 
 TEST(Equation1, PrintedIsNonsense) {
-  // Orders of magnitude beyond any frame interval, as in reference/paper.md section 3.
+  // Orders of magnitude beyond any frame interval, as in docs/reference/paper.md section 3.
   constexpr std::uint32_t kSeed = 9;
   const std::vector<DeviceSample> samples = jittering(500, kSeed);
   const std::vector<GlobalTime> estimates = by(Reading::kPrinted, samples);

@@ -1,5 +1,5 @@
 // librealsense's global time against the figures of its own class bodies in a harness
-// (reference/d455.md section 5), and by hand.
+// (docs/reference/d455.md section 5), and by hand.
 #include "algorithms/device_time/librealsense_global.h"
 
 #include <gtest/gtest.h>

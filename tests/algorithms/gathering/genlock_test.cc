@@ -102,7 +102,7 @@ TEST(GenlockGatherer, PrintedVariantFailsWithinMinutes) {
   }
 }
 
-// A camera that loses its first frame is off by one ever after (reference/paper.md section 8).
+// A camera that loses its first frame is off by one ever after (docs/reference/paper.md section 8).
 TEST(GenlockGathererDefect, LostFirstFrameShiftsACamera) {
   const auto gatherer = gatherer_for(2, Variant::kReanchored);
   CollectedSets out;

@@ -1,4 +1,4 @@
-// All policies in one world: four cameras at 45 FPS, as in reference/gathering.md section 4.
+// All policies in one world: four cameras at 45 FPS, as in docs/reference/gathering.md section 4.
 //
 // Expected precision and recall are that page's, within what one other seed can differ by; beside
 // them what must hold exactly: no policy finds more right sets than the oracle.

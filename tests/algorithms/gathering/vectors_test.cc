@@ -72,7 +72,8 @@ TEST(GatheringVectors, RosApproximateTimeAllFourteen) {
   }
 }
 
-// Another policy, so not all sets agree; reference/gathering.md section 2 lists in which they do.
+// Another policy, so not all sets agree; docs/reference/gathering.md section 2 lists in which they
+// do.
 TEST(GatheringVectors, AlgorithmThreeAgreesWithRosInFiveOfFourteen) {
   const std::optional<Json> vectors = vectors_of("ros_approximate_time.json");
   if (!vectors) GTEST_SKIP() << "not run: the file is absent";

@@ -172,7 +172,7 @@ TEST(Yoon2021Random, CleanInputHasRecallOne) {
 }
 
 // Without synchronisation: six hosts with independent phases find sets only if all lie within half
-// a period, 6/2^5 of the time (reference/paper.md section 11, C9).
+// a period, 6/2^5 of the time (docs/reference/paper.md section 11, C9).
 TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
   constexpr std::uint32_t kSeed = 17;
   constexpr int kRuns = 2000;

@@ -146,7 +146,7 @@ TEST(Yoon2021Gatherer, OneSourceIsASetPerFrame) {
   EXPECT_THAT(out.tags(), ElementsAre(ElementsAre(0), ElementsAre(1)));
 }
 
-// Defects of Algorithm 3, as reference/paper.md section 5 derives them.
+// Defects of Algorithm 3, as docs/reference/paper.md section 5 derives them.
 
 TEST(Yoon2021GathererDefect, ConstantOffsetBeyondTheIntervalGivesNoSet) {
   EXPECT_EQ(with_offset(10.9, 100).pure(), 100);

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "algorithms/registry.h"
-#include "tools/command_line.h"
+#include "cli/command_line.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "reports/figures/figure_csv.h"
-#include "reports/output_folder.h"
+#include "reports/text/output_folder.h"
 
 namespace simbench::reports {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/run_detail.h"
+#include "evaluation/run/run_detail.h"
 
 namespace simbench::reports {
 

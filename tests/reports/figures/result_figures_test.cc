@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics.h"
+#include "evaluation/statistics/statistics.h"
 #include "reports/figures/budget_figure.h"
 
 namespace simbench::reports {

@@ -1,4 +1,4 @@
-#include "algorithms/host_sync/chrony_service.h"
+#include "algorithms/host_sync/chrony/chrony_service.h"
 
 #include <gtest/gtest.h>
 

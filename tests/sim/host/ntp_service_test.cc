@@ -1,4 +1,4 @@
-#include "algorithms/host_sync/ntp_service.h"
+#include "algorithms/host_sync/ntp/ntp_service.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // One pass of the paper's session between a master and a slave, instant by instant as in
-// reference/calibration.md section 2, in a world whose random parts are switched off.
+// docs/reference/calibration.md section 2, in a world whose random parts are switched off.
 #include <gtest/gtest.h>
 
 #include <algorithm>

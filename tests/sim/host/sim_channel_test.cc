@@ -96,7 +96,7 @@ TEST(SimChannelTest, ASendOccupiesTheSenderAndThenTheMessageLeaves) {
   EXPECT_EQ(received[2].number, 2);
 }
 
-// reference/calibration.md section 2, step 2: toc = max(arrival, fin) + wake.
+// docs/reference/calibration.md section 2, step 2: toc = max(arrival, fin) + wake.
 TEST(SimChannelTest, EachReceiveCostsAWakeUpAfterTheMessageIsThere) {
   scenarios::Scenario scenario = ideal_hosts();
   scenario.hosts.receive_wake_up_ms = 3;

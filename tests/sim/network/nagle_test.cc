@@ -1,5 +1,5 @@
 // Streams under Nagle's algorithm and delayed acknowledgements: mechanism H9 of
-// reference/calibration.md section 5.
+// docs/reference/calibration.md section 5.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,0 +1,69 @@
+// NTP as deployed: a server on the master, and on each slave a client that disciplines its clock.
+//
+// Modes:
+//  - unicast: every 2^poll s (and up to 1/16 more, at random) one exchange; while the server has
+//    not been reached, and after a step, a burst of eight at 2 s instead (iburst).
+//  - broadcast_volley: the server sends a broadcast every interval. The client answers the first
+//    with a burst of exchanges, takes twice the difference between the burst's offset and that of
+//    the next broadcast for the delay, and from then on only listens: offset = (t3 - t4) + delay/2.
+//    A change of the client's clock between the two measurements stays in the delay for good; a
+//    step or slew by the burst itself does not: a new one follows.
+//  - broadcast_fixed: the same without a burst, with an assumed one-way delay.
+//
+// Samples pass the clock filter (ntp_clock_filter.h) and drive the discipline (ntp_discipline.h).
+// The phase correction, once a second in the reference implementation, is a slew that is renewed at
+// every poll with the exact exponential: 4 events instead of thousands.
+//
+// A poll without reply shifts a zero into the reach register; three in a row put a missing sample
+// into the filter. A server whose distance exceeds 1.5 s is not used. One server, so no selection,
+// clustering or combining.
+//
+// A service: warm_up() is how long it has run when the capture starts. It ends on a slave only by
+// panic. Outcome: synchronised at the first update of the clock; not, after eight polls (or
+// broadcast intervals) without a reply or by panic.
+//
+// Source: RFC 5905; host_sync.md sections 1 and 2.
+//
+//   NtpSettings settings;
+//   settings.mode = NtpMode::kBroadcastVolley;
+//   NtpService ntp(settings);
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algorithms/host_sync/ntp/ntp_association.h"
+#include "algorithms/host_sync/ntp/ntp_discipline.h"
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench {
+
+enum class NtpMode : std::uint8_t { kUnicast, kBroadcastVolley, kBroadcastFixed };
+
+struct NtpSettings {
+  NtpMode mode = NtpMode::kUnicast;
+  NtpDisciplineSettings discipline;
+  NtpStamps stamps = NtpStamps::kApplication;
+  bool initial_burst = true;
+  Nanoseconds broadcast_interval = from_ms(64e3);
+  double broadcast_delay_s = 0.004;  // one way, of broadcast_fixed
+  Nanoseconds service_time = from_ms(16 * 3600e3);
+};
+
+class NtpService : public HostSync {
+ public:
+  // In the broadcast modes the discipline's poll bounds are those of the interval.
+  explicit NtpService(const NtpSettings& settings);
+  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
+  Task<void> run_slave(Host& host, PeerId master) override;
+
+ private:
+  NtpSettings settings_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_SERVICE_H_

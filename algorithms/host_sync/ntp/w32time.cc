@@ -1,0 +1,115 @@
+#include "algorithms/host_sync/ntp/w32time.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "algorithms/host_sync/join.h"
+#include "algorithms/host_sync/ntp/ntp_association.h"
+#include "algorithms/host_sync/ntp/ntp_packet.h"
+#include "algorithms/host_sync/ntp/w32time_spikes.h"
+
+namespace simbench {
+namespace {
+
+constexpr double kUnitNs = 100;             // unit of the adjustment
+constexpr double kClockRateUnits = 156250;  // one tick, 15.625 ms
+constexpr double kPollFactor = 16;
+constexpr std::uint8_t kVersion = 3;
+constexpr double kLocalClockDispersion = 10;  // s, the documented default
+
+Nanoseconds magnitude(Nanoseconds interval) {
+  return interval < Nanoseconds{0} ? -interval : interval;
+}
+
+Task<void> correct(Host& host, Nanoseconds offset, W32TimeSettings settings) {
+  const W32TimeCorrection correction = w32time_correction(offset, settings);
+  if (!correction.set) {
+    co_await host.clock().slew(offset, correction.rate_ppb);
+    co_return;
+  }
+  const HostTime now = co_await host.clock().now();
+  co_await host.clock().set(now + offset);
+}
+
+// Asks until there is an answer, and corrects the clock by it. What is referred to must outlive the
+// call.
+Task<SyncOutcome> poll(Host& host, PeerId server, NtpAssociation& association,
+                       W32TimeSettings settings, W32TimeSpikes& spikes) {
+  SyncOutcome outcome;
+  outcome.slave = host.id();
+  for (int request = 0; request < W32Time::kRequestLimit; ++request) {
+    ++outcome.passes;
+    const std::optional<NtpMeasurement> reply =
+        co_await association.exchange(W32Time::kReplyTimeout);
+    if (!reply) continue;
+    const Nanoseconds offset = clock_offset(reply->t1, reply->t2, reply->t3, reply->t4);
+    if (settings.max_phase_correction && magnitude(offset) > *settings.max_phase_correction) {
+      outcome.message = "slave " + std::to_string(host.id()) + ": the clock is off by " +
+                        std::to_string(to_seconds(offset)) +
+                        " s, more than W32Time corrects (MaxPosPhaseCorrection " +
+                        std::to_string(to_seconds(*settings.max_phase_correction)) +
+                        " s); set it by hand";
+      co_return outcome;
+    }
+    if (spikes.accept(offset, host.steady_clock().now())) {
+      co_await correct(host, offset, settings);
+    }
+    outcome.synchronised = true;
+    co_return outcome;
+  }
+  outcome.message = "slave " + std::to_string(host.id()) + ": no valid reply from time server " +
+                    std::to_string(server) + " to " + std::to_string(W32Time::kRequestLimit) +
+                    " requests; is it running and reachable?";
+  co_return outcome;
+}
+
+}  // namespace
+
+W32TimeSettings w32time_domain_settings() {
+  W32TimeSettings settings;
+  settings.poll_interval = from_ms(1024e3);
+  settings.phase_correct_rate = 1;
+  settings.max_allowed_phase_offset = from_ms(300e3);
+  settings.max_phase_correction.reset();
+  settings.service_time = from_ms(4 * 3600e3);
+  settings.start_spread = from_ms(1024e3);
+  return settings;
+}
+
+W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& settings) {
+  const Nanoseconds size = magnitude(offset);
+  const double units = static_cast<double>(size.count()) / kUnitNs;
+  W32TimeCorrection correction;
+  correction.units_per_tick =
+      units / (kPollFactor * settings.phase_correct_rate * to_seconds(settings.poll_interval));
+  correction.rate_ppb = correction.units_per_tick / kClockRateUnits * 1e9;
+  correction.set =
+      size >= settings.max_allowed_phase_offset || correction.units_per_tick > kClockRateUnits / 2;
+  return correction;
+}
+
+Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
+  std::vector<Task<void>> servers;
+  servers.reserve(slaves.size());
+  for (const PeerId slave : slaves) {
+    servers.push_back(serve_ntp(host, slave, kLocalClockDispersion));
+  }
+  co_await join_all(std::move(servers));
+}
+
+Task<void> W32Time::run_slave(Host& host, PeerId master) {
+  const double part = host.random_uniform();
+  co_await host.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
+  NtpAssociation association(host, master, NtpStamps::kApplication, kVersion);
+  W32TimeSpikes spikes;
+  bool reported = false;
+  while (true) {
+    const SyncOutcome outcome = co_await poll(host, master, association, settings_, spikes);
+    if (!reported) host.report_outcome(outcome);
+    reported = true;
+    co_await host.sleep_for(settings_.poll_interval);
+  }
+}
+
+}  // namespace simbench

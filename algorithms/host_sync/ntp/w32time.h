@@ -1,0 +1,81 @@
+// Windows Time (W32Time): SNTP, one poll every few hours on a stand-alone machine, at least one
+// every 17 minutes on a member of a domain.
+//
+// W32Time is closed. This follows its public documentation (registry entries and the stated rule
+// for setting or slewing), not its code. What is not published is not here: jitter filtering,
+// frequency correction (FrequencyCorrectRate, UpdateInterval), and how the poll moves between
+// MinPollInterval and MaxPollInterval; the interval is fixed instead.
+//
+// The master serves (mode 4): it echoes the client's transmit stamp as origin and adds its receive
+// and transmit stamps; it announces itself as a local reference, stratum 1. Each slave is a client
+// (mode 3, NTPv3): first after a random part of start_spread, then every poll_interval, it makes
+// one exchange over datagrams, of which the offset is ((t2 - t1) + (t3 - t4)) / 2. Replies that
+// are not from a synchronised server or do not echo the request's stamp are ignored. A request
+// without a valid reply within kReplyTimeout is repeated, kRequestLimit times in all; then the
+// client waits for the next poll.
+//
+// The rule (Microsoft, "Windows Time service tools and settings"): with
+//
+//   adjustment = |offset| / (16 * PhaseCorrectRate * poll interval in seconds)
+//
+// in units of 100 ns per clock tick (ClockRate 156250 units, 15.625 ms), slew by that adjustment
+// if |offset| < MaxAllowedPhaseOffset and adjustment <= ClockRate / 2; else set. So a slew always
+// takes 16 * PhaseCorrectRate * poll ticks. Example: 0.54 s at a poll of 1024 s and
+// PhaseCorrectRate 7 gives 47 units a tick, 301 ppm, for 1792 s.
+//
+// Spikes are ignored (w32time_spikes.h), and offsets above max_phase_correction refused.
+//
+// A service: it never ends by itself. warm_up() is how long it has run when the capture starts.
+// A slave reports how its first poll ended, and every exchange (t1 to t4).
+//
+// Source: host_sync.md section 2 (W32Time); RFC 4330; RFC 5905.
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
+
+#include <optional>
+#include <vector>
+
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench {
+
+struct W32TimeSettings {
+  Nanoseconds poll_interval = from_ms(32768e3);
+  double phase_correct_rate = 7;
+  Nanoseconds max_allowed_phase_offset = from_ms(1000);
+  Nanoseconds service_time = from_ms(20 * 3600e3);
+  Nanoseconds start_spread = from_ms(32768e3);
+  // MaxPosPhaseCorrection and MaxNegPhaseCorrection; nothing: any offset is corrected.
+  std::optional<Nanoseconds> max_phase_correction = from_ms(54000e3);
+};
+
+// The defaults of a member of a domain: MinPollInterval 10, PhaseCorrectRate 1,
+// MaxAllowedPhaseOffset 300 s, corrections without limit.
+W32TimeSettings w32time_domain_settings();
+
+// What is done about an offset.
+struct W32TimeCorrection {
+  bool set = false;           // step the clock; else slew it
+  double units_per_tick = 0;  // the adjustment, in 100 ns per tick, that the rule asks about
+  double rate_ppb = 0;        // the same as a rate
+};
+
+W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& settings);
+
+class W32Time : public HostSync {
+ public:
+  static constexpr Nanoseconds kReplyTimeout{1'000'000'000};
+  static constexpr int kRequestLimit = 4;
+
+  explicit W32Time(W32TimeSettings settings) : settings_(settings) {}
+  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
+  Task<void> run_slave(Host& host, PeerId master) override;
+
+ private:
+  W32TimeSettings settings_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_

@@ -1,0 +1,63 @@
+// PTP (IEEE 1588-2008) in the manner of linuxptp: two-step, one master, its slaves.
+//
+// The master sends each slave a Sync every sync_interval and tells its departure in a Follow_Up.
+// The slave measures the delay, end to end (Delay_Req, Delay_Resp; at random times, on average
+// every delay_interval) or by peer delay (Pdelay_*, every delay_interval), filters it
+// (ptp_offset.h), and a servo (ptp_servo.h) steers the clock that made the stamps:
+//
+//   software stamps  the system clock. Departure: the host's transmit stamp if it has one, else the
+//                    clock right after the send call; arrival: the host's receive stamp.
+//   hardware stamps  the network card's clock. A second stage, linuxptp's phc2sys, then steers the
+//                    system clock: every second the narrowest of kCrossStamps cross stamps feeds a
+//                    PI servo. On the master it runs the other way round and the card's clock
+//                    follows the system clock; no Sync is sent before that is locked.
+//
+// What transparent clocks on the way add to the correction fields is taken out. Messages go as
+// datagrams from host to host, where real PTP would multicast. Lost, duplicated, reordered and
+// foreign messages cost their measurement only.
+//
+// A service. Exchanges are reported for software stamps (t1, t2: Delay_Req or Pdelay_Req; t3, t4:
+// Sync or Pdelay_Resp); the card's stamps are no host times. A slave reports its outcome when its
+// system clock is first steered, or once `patience` has passed without; it goes on.
+// Source: IEEE 1588-2008 clauses 11 and 13; host_sync.md section 1 (linuxptp).
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench {
+
+enum class ServoKind : std::uint8_t { kPi, kLinearRegression };
+
+struct PtpSettings {
+  bool is_peer_delay = false;
+  bool has_hardware_stamps = false;
+  Nanoseconds service_time = from_ms(300e3);  // before the capture
+  Nanoseconds sync_interval = from_ms(1000);
+  Nanoseconds delay_interval = from_ms(1000);
+  std::size_t median_length = 10;
+  ServoKind servo = ServoKind::kPi;
+  double first_step_threshold_us = 20;
+  double step_threshold_us = 0;
+  double max_frequency_ppm = 500;
+  Nanoseconds patience = from_ms(30e3);
+};
+
+class Ptp : public HostSync {
+ public:
+  explicit Ptp(PtpSettings settings) : settings_(settings) {}
+  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
+  Task<void> run_slave(Host& host, PeerId master) override;
+
+ private:
+  PtpSettings settings_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_

@@ -1,0 +1,66 @@
+// The messages of the Precision Time Protocol, version 2, as bytes.
+//
+// Header of 34 bytes, big-endian, then the body (44 bytes in all for Sync, Follow_Up and Delay_Req,
+// 54 for the others):
+//
+//   offset  size  field
+//   0       1     transport specific (0) in the high nibble, message type in the low one
+//   1       1     version, 2
+//   2       2     length in bytes
+//   4       1     domain, 0
+//   6       2     flags; 0x0200 two-step
+//   8       8     correction, signed, in 2^-16 ns; transparent clocks add to it on the way
+//   20      10    port identity of the sender: 8 bytes clock, 2 bytes port (1)
+//   30      2     sequence number
+//   32      1     control: 0 Sync, 1 Delay_Req, 2 Follow_Up, 3 Delay_Resp, 5 others
+//   33      1     log2 of the interval; 0x7f: none
+//   34      10    time: 48-bit seconds, 32-bit nanoseconds
+//   44      10    Delay_Resp, Pdelay_Resp, Pdelay_Resp_Follow_Up: the asking port
+//
+// Seconds are taken as signed, so that a clock before its zero can be sent.
+//
+// Source: IEEE 1588-2008 clause 13.
+//
+//   Bytes bytes = encode(PtpMessage{.type = PtpType::kSync, .sequence = 7});
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "algorithms/ports/host.h"
+
+namespace simbench {
+
+enum class PtpType : std::uint8_t {
+  kSync = 0x0,
+  kDelayRequest = 0x1,
+  kPeerDelayRequest = 0x2,
+  kPeerDelayResponse = 0x3,
+  kFollowUp = 0x8,
+  kDelayResponse = 0x9,
+  kPeerDelayFollowUp = 0xa,
+};
+
+struct PtpMessage {
+  PtpType type = PtpType::kSync;
+  PeerId sender = 0;
+  std::uint16_t sequence = 0;
+  std::int64_t correction = 0;  // 2^-16 ns
+  std::int64_t time_ns = 0;     // within +-4e18
+  PeerId asked_by = 0;          // in responses; else 0
+  friend bool operator==(const PtpMessage&, const PtpMessage&) = default;
+};
+
+// The correction in nanoseconds, rounded down.
+Nanoseconds correction_of(const PtpMessage& message);
+
+Bytes encode(const PtpMessage& message);
+
+// Nothing, if it is not a PTPv2 message of one of these types. Flags, domain, control and interval
+// are not looked at.
+std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_

@@ -1,0 +1,128 @@
+// The clock servos of linuxptp, by its published constants: proportional-integral and adaptive
+// linear regression. They only compute.
+//
+// A servo is fed the measured offset (own clock minus reference, ns) with the own clock's reading,
+// and answers with a frequency correction: the clock is to run slower by that many ppb than its
+// oscillator. State kJump asks in addition for a step by minus the offset; kUnlocked for nothing.
+//
+// PI. kp = min(kp_scale T^-0.3, 0.7 / T), ki = min(ki_scale T^0.4, 0.3 / T) with the interval T in
+// seconds; scales 0.7 and 0.3 for hardware stamps, 0.1 and 0.001 for software stamps. The first
+// sample is kept, the first one at least min(0.016 / ki, 1000) s later gives the frequency, and
+// from then on ppb = kp o w + drift + ki o w, drift += ki o w, unless that exceeds the largest
+// frequency.
+//
+// Linear regression. Of the last 4, 8, ... 64 samples it fits the reference over the own
+// oscillator (corrections taken out), and takes the largest window whose mean prediction error is
+// below 1.05 times that of the last one taken; the error is averaged over 10 updates, then smoothed
+// by 0.02. Frequency = slope plus what is left at the line, divided by the interval and by 1 up to
+// window 16, 2 for 32 and 3 for 64.
+//
+// Steps: on the first update if the offset exceeds first_step_threshold, later only if it exceeds a
+// positive step_threshold; the regression then starts afresh.
+// Complexity: O(1); regression O(64). Offsets must be finite.
+// Source: host_sync.md section 1 (linuxptp); outputs agree with vectors/linuxptp_golden.json.
+//
+//   PiServo servo(PiServo::kHardwareStamps, {});
+//   ServoAnswer answer = servo.sample(offset_ns, t2_ns, 1.0);
+//   if (answer.state != ServoState::kUnlocked) clock.adjust_frequency(-answer.ppb);
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+namespace simbench {
+
+enum class ServoState : std::uint8_t { kUnlocked, kJump, kLocked };
+
+struct ServoAnswer {
+  double ppb = 0;
+  ServoState state = ServoState::kUnlocked;
+};
+
+struct ServoSettings {
+  double interval_s = 1;
+  double max_frequency_ppb = 9e8;
+  double first_step_threshold_ns = 20'000;  // 0: never
+  double step_threshold_ns = 0;             // 0: never
+};
+
+class Servo {
+ public:
+  virtual ~Servo() = default;
+  // `local_ns`: the own clock at the offset. A clock that jumps back is answered with kUnlocked.
+  virtual ServoAnswer sample(double offset_ns, std::int64_t local_ns, double weight) = 0;
+};
+
+class PiServo : public Servo {
+ public:
+  struct Scales {
+    double kp = 0;
+    double ki = 0;
+  };
+  static constexpr Scales kHardwareStamps{0.7, 0.3};
+  static constexpr Scales kSoftwareStamps{0.1, 0.001};
+
+  PiServo(Scales scales, ServoSettings settings);
+  ServoAnswer sample(double offset_ns, std::int64_t local_ns, double weight) override;
+
+ private:
+  enum class Phase : std::uint8_t { kEmpty, kOneSample, kRunning };
+  ServoAnswer first_frequency(double offset_ns, std::int64_t local_ns);
+
+  ServoSettings settings_;
+  double kp_;
+  double ki_;
+  Phase phase_ = Phase::kEmpty;
+  bool is_first_update_ = true;
+  double first_offset_ns_ = 0;
+  std::int64_t first_local_ns_ = 0;
+  double drift_ppb_ = 0;
+};
+
+class LinearRegressionServo : public Servo {
+ public:
+  explicit LinearRegressionServo(ServoSettings settings) : settings_(settings) {}
+  ServoAnswer sample(double offset_ns, std::int64_t local_ns, double weight) override;
+
+ private:
+  static constexpr int kSmallest = 2;  // log2 of the windows
+  static constexpr int kLargest = 6;
+  // `oscillator_ns` counts the uncorrected oscillator, in whole nanoseconds.
+  struct Point {
+    std::int64_t oscillator_ns = 0;
+    std::int64_t reference_ns = 0;
+    double weight = 1;
+  };
+  struct Fit {
+    double slope = 0;
+    double intercept_ns = 0;  // at the newest sample: reference minus own clock
+    double error_ns = 0;
+    int errors = 0;
+  };
+
+  void restart();
+  void move(std::int64_t oscillator_ns, std::int64_t local_ns);
+  void advance_to(std::int64_t local_ns);
+  void fit_all();
+  void choose_window();
+  Fit& fit(int window) { return fits_[static_cast<std::size_t>(window - kSmallest)]; }
+
+  ServoSettings settings_;
+  std::deque<Point> points_;  // newest first
+  std::array<Fit, kLargest - kSmallest + 1> fits_{};
+  Point now_;  // of the last sample: oscillator and own clock
+  bool has_local_ = false;
+  std::int64_t last_local_ns_ = 0;
+  double oscillator_part_ns_ = 0;  // beyond the whole nanoseconds
+  double frequency_ppb_ = 0;
+  int window_ = 0;
+  bool is_first_update_ = true;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_

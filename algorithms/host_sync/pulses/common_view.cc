@@ -1,0 +1,125 @@
+#include "algorithms/host_sync/pulses/common_view.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "algorithms/host_sync/join.h"
+#include "algorithms/host_sync/pulses/common_view_message.h"
+#include "algorithms/host_sync/two_way/two_way_slave.h"
+
+namespace simbench {
+namespace {
+
+constexpr Nanoseconds kIdle{3'600'000'000'000};
+constexpr Nanoseconds kAnswerTimeout{500'000'000};
+constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
+
+// The master's side towards one slave.
+Task<void> serve(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
+                 std::shared_ptr<PulseObserver> observer, bool is_naive) {
+  TwoWayServer server(host, slave, clock, is_naive);
+  MessageChannel& channel = host.open_channel(slave, Transport::kDatagram);
+  while (true) {
+    std::optional<ReceivedMessage> received =
+        co_await channel.receive(host.steady_clock().now() + kIdle);
+    if (!received) continue;
+    const std::optional<CommonViewMessage> request = decode_common_view_message(received->bytes);
+    if (!request) {
+      co_await server.answer(std::move(*received));
+      continue;
+    }
+    if (request->is_answer) continue;
+    co_await observer->collect();
+    CommonViewMessage answer{.is_answer = true, .index = request->index};
+    const std::optional<Sighting> pulse = observer->middle();
+    if (pulse) {
+      answer.pulse = CommonViewMessage::Pulse{.at = clock->at(pulse->at),
+                                              .sigma_ns = std::llround(pulse->sigma_ns)};
+    }
+    Bytes bytes = encode(answer);
+    co_await channel.send(std::move(bytes));
+  }
+}
+
+class CommonViewSlave : public TwoWaySlave {
+ public:
+  CommonViewSlave(Host& host, PeerId master, CommonViewSettings settings, PulseObserver observer)
+      : TwoWaySlave(host, master, settings.two_way, std::make_unique<TwoWayHull>(settings.hull)),
+        settings_(settings),
+        observer_(std::move(observer)) {}
+
+ private:
+  Task<ClockLine> refine(ClockLine line) override {
+    co_await observer_.collect();
+    const std::optional<CommonViewMessage::Pulse> pulse = co_await ask();
+    if (pulse) take(line, *pulse);
+    line.value -= Nanoseconds(std::llround(correction_ns_));
+    co_return line;
+  }
+
+  // When the master saw a pulse.
+  Task<std::optional<CommonViewMessage::Pulse>> ask() {
+    Bytes bytes = encode(CommonViewMessage{.index = ++index_});
+    co_await channel().send(std::move(bytes));
+    const SteadyTime deadline = host().steady_clock().now() + kAnswerTimeout;
+    while (true) {
+      std::optional<ReceivedMessage> received = co_await channel().receive(deadline);
+      if (!received) co_return std::nullopt;
+      const std::optional<CommonViewMessage> answer = decode_common_view_message(received->bytes);
+      if (answer && answer->is_answer && answer->index == index_) co_return answer->pulse;
+    }
+  }
+
+  void take(const ClockLine& line, const CommonViewMessage::Pulse& pulse) {
+    const std::optional<Sighting> seen = observer_.nearest(line.when(pulse.at));
+    if (!seen) return;
+    const auto offset_ns = static_cast<double>((line.read(seen->at) - pulse.at).count());
+    const auto master_sigma_ns = static_cast<double>(pulse.sigma_ns);
+    correction_ns_ = common_view_correction_ns(
+        {.offset_ns = offset_ns, .sigma_ns = std::hypot(seen->sigma_ns, master_sigma_ns)},
+        settings_.asymmetry_sigma_us);
+  }
+
+  CommonViewSettings settings_;
+  PulseObserver observer_;
+  std::uint32_t index_ = 0;
+  double correction_ns_ = 0;
+};
+
+}  // namespace
+
+double common_view_correction_ns(CommonViewCorrection measured, double asymmetry_sigma_us) {
+  if (std::abs(measured.offset_ns) > kClear * measured.sigma_ns) return measured.offset_ns;
+  const double half_ns = asymmetry_sigma_us * 1e3 / 2;
+  const double expected = half_ns * half_ns;
+  return measured.offset_ns * expected / (expected + measured.sigma_ns * measured.sigma_ns);
+}
+
+Task<void> CommonView::run_master(Host& host, std::vector<PeerId> slaves) {
+  auto clock = std::make_shared<SteeredClock>(host, settings_.two_way.steering);
+  auto observer = std::make_shared<PulseObserver>(host, settings_.pulses);
+  std::vector<Task<void>> servers;
+  servers.reserve(slaves.size());
+  for (const PeerId slave : slaves) {
+    servers.push_back(serve(host, slave, clock, observer, settings_.two_way.is_naive));
+  }
+  co_await join_all(std::move(servers));
+}
+
+Task<void> CommonView::run_slave(Host& host, PeerId master) {
+  PulseObserver observer(host, settings_.pulses);
+  if (!observer.is_possible()) {
+    host.report_outcome({.slave = host.id(),
+                         .synchronised = false,
+                         .passes = 0,
+                         .message = "slave " + std::to_string(host.id()) + ": the host has no " +
+                                    port_name(settings_.pulses.source)});
+    co_return;
+  }
+  CommonViewSlave slave(host, master, settings_, std::move(observer));
+  co_await slave.run();
+}
+
+}  // namespace simbench

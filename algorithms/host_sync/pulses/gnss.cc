@@ -1,0 +1,110 @@
+#include "algorithms/host_sync/pulses/gnss.h"
+
+#include <cmath>
+#include <string>
+
+namespace simbench {
+namespace {
+
+// No oscillator is that far off: the stamps are wrong.
+constexpr double kMostSlope = 1e-3;
+
+double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
+
+// Reports how a slave fares, once; the master's own clock is nobody's outcome.
+class Outcome {
+ public:
+  Outcome(Host& host, bool is_slave) : host_(host), is_open_(is_slave) {}
+
+  void synchronised() { report(""); }
+  void failed(const std::string& why) {
+    report("slave " + std::to_string(host_.id()) + ": " + why);
+  }
+
+ private:
+  void report(const std::string& why) {
+    if (!is_open_) return;
+    is_open_ = false;
+    host_.report_outcome(
+        {.slave = host_.id(), .synchronised = why.empty(), .passes = 1, .message = why});
+  }
+
+  Host& host_;
+  bool is_open_;
+};
+
+Task<void> follow(Host& host, GnssSettings settings, bool is_slave) {
+  Outcome outcome(host, is_slave);
+  PulseInput* const input = host.pulse_input(PulseLine::kPps);
+  if (input == nullptr) {
+    outcome.failed("the host has no PPS line (Host::pulse_input)");
+    co_return;
+  }
+  SteeredClock clock(host, settings.steering);
+  GnssEstimator estimator(settings.window);
+  while (true) {
+    const std::optional<PulseStamp> pulse =
+        co_await input->next(host.steady_clock().now() + Gnss::kPatience);
+    if (!pulse || !pulse->gnss) {
+      outcome.failed(pulse ? "the receiver tells no time with its pulses (PulseStamp::gnss)"
+                           : "no pulse on the PPS line");
+      continue;
+    }
+    clock.observe(pulse->system, pulse->steady);
+    estimator.add(*pulse->gnss, pulse->steady);
+    const std::optional<ClockLine> line = estimator.line();
+    if (!line) continue;
+    co_await clock.steer(*line);
+    outcome.synchronised();
+  }
+}
+
+}  // namespace
+
+GnssEstimator::GnssEstimator(Nanoseconds window) : lateness_(as_ns(window)) {}
+
+void GnssEstimator::add(Nanoseconds gnss, SteadyTime seen) {
+  if (has_zero_) {
+    const std::optional<ClockLine> known = line();
+    const bool has_jumped = known && std::abs(as_ns(known->read(seen) - HostTime(gnss))) > kJumpNs;
+    if (has_jumped) has_zero_ = false;
+  }
+  if (!has_zero_) {
+    has_zero_ = true;
+    zero_gnss_ = gnss;
+    zero_seen_ = seen;
+    pulses_ = 0;
+    lateness_.clear();
+  }
+  const Nanoseconds since = gnss - zero_gnss_;
+  lateness_.add(as_ns(since), as_ns((seen - zero_seen_) - since));
+  ++pulses_;
+}
+
+std::optional<ClockLine> GnssEstimator::line() const {
+  if (pulses_ < kFewestPulses || lateness_.span() <= 0) return std::nullopt;
+  // The edge over the middle of the window.
+  const std::vector<Envelope::Point>& hull = lateness_.vertices();
+  const double middle = (hull.front().x + hull.back().x) / 2;
+  std::size_t right = 1;
+  while (hull[right].x < middle) ++right;
+  const Envelope::Point a = hull[right - 1];
+  const Envelope::Point b = hull[right];
+  const double slope = (b.y - a.y) / (b.x - a.x);
+  if (std::abs(slope) > kMostSlope) return std::nullopt;
+  // Steady time runs 1 + slope while GNSS time runs 1.
+  const auto seen_ns = static_cast<std::int64_t>(std::llround(a.x + a.y));
+  return ClockLine{.at = zero_seen_ + Nanoseconds(seen_ns),
+                   .value = HostTime(zero_gnss_ + Nanoseconds(std::llround(a.x))),
+                   .rate_ppb = (1 / (1 + slope) - 1) * 1e9};
+}
+
+Task<void> Gnss::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
+  co_await follow(host, settings_, false);
+}
+
+Task<void> Gnss::run_slave(Host& host, PeerId /*master*/) {
+  co_await follow(host, settings_, true);
+}
+
+}  // namespace simbench

@@ -1,0 +1,66 @@
+// GNSS-disciplined hosts: each has a receiver whose PPS interrupts it and whose message tells the
+// time of the pulse. All hosts, the master too, follow GNSS time; no message passes between them.
+//
+// The lower envelope of (GNSS time, steady clock minus GNSS time) of the last pulses, whose
+// touching line at the middle of the window gives offset and rate (interrupts are late, never
+// early), is followed by clock_steering.h. What the interrupt is late by at the least is in every
+// host's clock alike, and so in no difference between them.
+//
+// A service. A slave without the line, or whose receiver tells no time within kPatience, reports
+// that as its outcome.
+// Source: theory; PulseStamp::gnss in algorithms/ports/host.h.
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
+
+#include <optional>
+#include <vector>
+
+#include "algorithms/host_sync/clock_steering.h"
+#include "algorithms/host_sync/two_way/envelope.h"
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench {
+
+struct GnssSettings {
+  Nanoseconds service_time = from_ms(60e3);  // before the capture
+  Nanoseconds window = from_ms(60e3);
+  SteeringSettings steering;
+};
+
+// GNSS time over a steady clock, from pulses that are seen late. Only computes.
+class GnssEstimator {
+ public:
+  static constexpr std::size_t kFewestPulses = 4;
+
+  explicit GnssEstimator(Nanoseconds window);
+  // A pulse at `gnss`, seen at `seen`. One that is more than kJumpNs off starts afresh.
+  void add(Nanoseconds gnss, SteadyTime seen);
+  // Nothing before kFewestPulses, nor for pulses that no clock would see so (rate beyond 0.1 %).
+  std::optional<ClockLine> line() const;
+
+ private:
+  static constexpr double kJumpNs = 1e6;
+
+  Envelope lateness_;
+  bool has_zero_ = false;
+  Nanoseconds zero_gnss_{0};
+  SteadyTime zero_seen_{};
+  std::size_t pulses_ = 0;
+};
+
+class Gnss : public HostSync {
+ public:
+  static constexpr Nanoseconds kPatience{10'000'000'000};
+
+  explicit Gnss(GnssSettings settings) : settings_(settings) {}
+  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
+  Task<void> run_slave(Host& host, PeerId master) override;
+
+ private:
+  GnssSettings settings_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_

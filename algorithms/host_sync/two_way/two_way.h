@@ -1,0 +1,69 @@
+// Two-way synchronisation: the slaves ask, the master answers, the shortest delays decide.
+//
+// A service. Each slave sends requests over datagrams, first `exchanges` of them burst_interval
+// apart, then one every `interval` (each interval varied by +-10 %, so that no periodic load can
+// stay in step), for ever: before, during and after the capture. An estimator (two_way_hull.h,
+// two_way_minimum.h) turns the exchanges into a line of the master's clock over the slave's steady
+// clock, and every steer_interval the slave's system clock is steered along it (clock_steering.h).
+//
+// Where the departure is stamped decides how much of the sender's occupancy is in the path:
+//   transmit-stamped  t1 and t3 are when the message left: the host's transmit stamp if it has one,
+//                     else the clock right after the send call. t3 follows with a later reply.
+//   naive             t1 and t3 are read before the send call, as most code does it.
+//
+// A lost message costs its exchange; duplicates, late replies and bytes that are no message of ours
+// are ignored. A slave reports its outcome when its clock was first steered, or once kPatience
+// requests have gone unanswered; it goes on asking.
+//
+// The names: two_way_min_rtt, two_way_independent_minima, two_way_hull, each also as *_naive where
+// registered; libsoftwaresync is naive best-of-300 with early stop and without rate, one round
+// every round_pause.
+//
+// Cost: two messages an exchange. Source: host_sync.md section 1; RFC 9769 (interleaved mode).
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "algorithms/host_sync/clock_steering.h"
+#include "algorithms/host_sync/two_way/two_way_estimator.h"
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench {
+
+struct TwoWaySettings {
+  Nanoseconds service_time = from_ms(60e3);  // before the capture
+  bool is_naive = false;
+  std::size_t exchanges = 16;  // of the first burst, and of a round where there are rounds
+  Nanoseconds burst_interval = from_ms(20);
+  Nanoseconds interval = from_ms(250);
+  Nanoseconds steer_interval = from_ms(1000);
+  // After each new line, for estimators that make one per round; zero: goes on.
+  Nanoseconds round_pause{0};
+  SteeringSettings steering;
+};
+
+class TwoWay : public HostSync {
+ public:
+  static constexpr Nanoseconds kReplyTimeout{500'000'000};
+  static constexpr std::uint32_t kPatience = 16;
+
+  using MakeEstimator = std::function<std::unique_ptr<TwoWayEstimator>()>;
+
+  TwoWay(TwoWaySettings settings, MakeEstimator make_estimator)
+      : settings_(settings), make_estimator_(std::move(make_estimator)) {}
+  std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }
+  Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
+  Task<void> run_slave(Host& host, PeerId master) override;
+
+ private:
+  TwoWaySettings settings_;
+  MakeEstimator make_estimator_;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_

@@ -1,0 +1,243 @@
+#include "app/figure_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/interrupt.h"
+#include "evaluation/budget/budget.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "evaluation/run/run_detail.h"
+#include "reports/figures/budget_figure.h"
+#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/result_figures.h"
+#include "reports/figures/run_figures.h"
+#include "reports/figures/seed_figures.h"
+#include "scenarios/loader.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::app {
+namespace {
+
+using evaluation::PipelineChoice;
+using evaluation::Row;
+using evaluation::RunDetail;
+using reports::Archive;
+using reports::Figure;
+using reports::FigureEntry;
+using reports::FigureScope;
+using scenarios::InputError;
+using scenarios::Scenario;
+
+// Beyond this share two values of AMD are of different runs; the archive has every digit.
+constexpr double kSameAmd = 1e-9;
+
+// The ids of what is wanted.
+std::vector<std::string> wanted_ids(const FigureOptions& options) {
+  std::vector<std::string> ids;
+  std::vector<std::string> known;
+  for (const FigureEntry& entry : reports::figure_catalogue()) known.push_back(entry.id);
+  if (options.figures.empty()) return known;
+  for (const std::string& name : options.figures) {
+    const FigureEntry* entry = reports::find_figure(name);
+    if (entry == nullptr) {
+      throw InputError(
+          fmt::format("figure: found '{}', allowed: {}", name, fmt::join(known, ", ")));
+    }
+    ids.push_back(entry->id);
+  }
+  return ids;
+}
+
+// The row's AMD at this seed; nothing if there is none to compare with.
+std::optional<double> amd_of(const evaluation::Results& results, const std::string& pipeline,
+                             std::uint64_t seed) {
+  const auto row = std::find_if(results.rows.begin(), results.rows.end(),
+                                [&](const Row& r) { return r.pipeline == pipeline; });
+  if (row == results.rows.end() || seed < results.first_seed) return std::nullopt;
+  const std::uint64_t index = seed - results.first_seed;
+  if (index >= row->amd_ms.values.size()) return std::nullopt;
+  return row->amd_ms.values[index];
+}
+
+bool same_amd(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) == std::isnan(b);
+  return std::abs(a - b) <= kSameAmd * std::max(std::abs(a), std::abs(b));
+}
+
+class FigureMaker {
+ public:
+  FigureMaker(const Archive& archive, const FigureOptions& options,
+              const evaluation::Progress& progress)
+      : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
+
+  // What stands in the archive.
+  void add_result_figures() {
+    if (archive_.results.rows.empty()) return;
+    if (wants("distributions")) add(reports::distributions(archive_));
+    if (wants("host_order")) add(reports::host_order(archive_));
+    if (!wants("frame_errors")) return;
+    for (const std::uint64_t seed : options_.seeds) add({reports::frame_errors(archive_, seed)});
+  }
+
+  // What has to be run again.
+  void add_run_figures(const Scenario& scenario) {
+    const std::vector<PipelineChoice> choices =
+        evaluation::choose_pipelines(scenario, options_.pipelines);
+    if (wants_scope(FigureScope::kRun) || wants("synchronisation") || wants("digital_clocks")) {
+      for (const std::uint64_t seed : options_.seeds) add_seed(scenario, choices, seed);
+    }
+    if (!wants("budget") || options_.budget_seeds == 0) return;
+    for (const PipelineChoice& choice : choices) {
+      const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
+                                                   .seeds = options_.budget_seeds};
+      const auto world = [](const Scenario& of) { return interruptible(sim::make_simulation(of)); };
+      add({reports::budget_figure(
+          evaluation::error_budget(scenario, choice.pipeline, world, seeds, progress_))});
+    }
+  }
+
+  void note(std::string text) { made_.notes.push_back(std::move(text)); }
+
+  ArchiveFigures finish() {
+    std::stable_sort(made_.figures.begin(), made_.figures.end(),
+                     [](const Figure& a, const Figure& b) { return place(a) < place(b); });
+    return std::move(made_);
+  }
+
+ private:
+  static std::ptrdiff_t place(const Figure& figure) {
+    return reports::find_figure(figure.id) - reports::figure_catalogue().data();
+  }
+
+  bool wants(const std::string& id) const {
+    return std::find(wanted_.begin(), wanted_.end(), id) != wanted_.end();
+  }
+  bool wants_scope(FigureScope scope) const {
+    return std::any_of(wanted_.begin(), wanted_.end(), [scope](const std::string& id) {
+      return reports::find_figure(id)->scope == scope;
+    });
+  }
+
+  void add(std::vector<Figure> figures) {
+    for (Figure& figure : figures) {
+      if (wants(figure.id)) made_.figures.push_back(std::move(figure));
+    }
+  }
+
+  void add_seed(const Scenario& scenario, const std::vector<PipelineChoice>& choices,
+                std::uint64_t seed) {
+    std::vector<RunDetail> runs;
+    for (const PipelineChoice& choice : choices) {
+      const std::unique_ptr<RecordingSource> source = interruptible(sim::make_simulation(scenario));
+      RunDetail run = evaluation::run_detail(scenario, choice, seed, *source);
+      if (progress_) progress_(++runs_, options_.seeds.size() * choices.size());
+      if (is_the_archives(run)) runs.push_back(std::move(run));
+    }
+    for (const RunDetail& run : runs) add(reports::run_figures(run));
+    if (!runs.empty()) add(reports::seed_figures(runs));
+  }
+
+  bool is_the_archives(const RunDetail& run) {
+    const std::optional<double> amd = amd_of(archive_.results, run.pipeline, run.seed);
+    if (!amd || same_amd(*amd, run.score.amd_ms)) return true;
+    note(fmt::format(
+        "{}, seed {}: the archive's AMD is {} ms, but this version of simbench finds {} ms (the "
+        "archive is of version {}, commit {}); figures of this run are left out",
+        run.pipeline, run.seed, *amd, run.score.amd_ms, archive_.version, archive_.commit));
+    return false;
+  }
+
+  const Archive& archive_;
+  const FigureOptions& options_;
+  const evaluation::Progress& progress_;
+  std::vector<std::string> wanted_;
+  std::uint64_t runs_ = 0;
+  ArchiveFigures made_;
+};
+
+void check_seeds(const Archive& archive, const FigureOptions& options) {
+  const std::uint64_t first = archive.results.first_seed;
+  for (const std::uint64_t seed : options.seeds) {
+    if (seed >= first && seed - first < archive.results.seed_count) continue;
+    throw InputError(fmt::format("{}: found no seed {}, allowed: {} to {}", archive.path, seed,
+                                 first, first + archive.results.seed_count - 1));
+  }
+}
+
+// The archive's scenario with the archive's pipelines alone, in the archive's order.
+Scenario scenario_of(const Archive& archive) {
+  Scenario scenario =
+      scenarios::load_scenario_text(archive.scenario_json, archive.path + "/manifest.json");
+  std::vector<scenarios::Pipeline> pipelines;
+  for (const Row& row : archive.results.rows) {
+    for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
+      if (pipeline.name == row.pipeline) pipelines.push_back(pipeline);
+    }
+  }
+  scenario.pipelines = std::move(pipelines);
+  return scenario;
+}
+
+bool has_seed_details(const Archive& archive) {
+  return std::any_of(archive.results.rows.begin(), archive.results.rows.end(),
+                     [](const Row& row) { return !row.seeds.empty(); });
+}
+
+}  // namespace
+
+ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
+                               const evaluation::Progress& progress) {
+  FigureOptions chosen = options;
+  if (chosen.seeds.empty()) chosen.seeds = {archive.results.first_seed};
+  check_seeds(archive, chosen);
+  const bool has_manifest = !archive.scenario_json.empty();
+  if (has_manifest && !has_seed_details(archive)) reports::read_seed_details(archive);
+  FigureMaker maker(archive, chosen, progress);
+  maker.add_result_figures();
+  if (has_manifest) {
+    maker.add_run_figures(scenario_of(archive));
+  } else {
+    maker.note(
+        fmt::format("{} has no manifest: what needs a repeated run is left out; `simbench "
+                    "run --output DIR` writes archives that have one",
+                    archive.path));
+  }
+  return maker.finish();
+}
+
+ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& options,
+                                std::uint64_t over_seeds, const evaluation::Progress& progress) {
+  FigureOptions chosen = options;
+  if (chosen.seeds.empty()) chosen.seeds = {1};
+  const std::vector<std::string> ids = wanted_ids(chosen);
+  const auto wants = [&ids](const char* id) {
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  };
+  Archive archive;
+  archive.path = scenario.name;
+  archive.results.scenario = scenario.name;
+  const bool over = wants("distributions") || wants("host_order");
+  if (over || wants("frame_errors")) {
+    const auto [first, last] = std::minmax_element(chosen.seeds.begin(), chosen.seeds.end());
+    const std::uint64_t shown = *last - *first + 1;
+    archive.results = evaluation::evaluate(
+        scenario, [&] { return interruptible(sim::make_simulation(scenario)); },
+        {.first_seed = *first,
+         .seeds = over ? std::max(over_seeds, shown) : shown,
+         .pipelines = chosen.pipelines,
+         .keep_pulses = true},
+        progress);
+  }
+  FigureMaker maker(archive, chosen, progress);
+  maker.add_result_figures();
+  maker.add_run_figures(scenario);
+  return maker.finish();
+}
+
+}  // namespace simbench::app

@@ -1,0 +1,40 @@
+// Camera recordings of the International Brain Laboratory's rigs (Point Grey USB3 cameras), read
+// for `simbench replay`.
+//
+// Two kinds of file:
+//   *.timestamps.ssv   text: ISO local time with seven fractional digits and UTC offset (arrival at
+//                      the host), a blank, the camera clock as an unsigned 32-bit number
+//   *.frameData.bin    little-endian 64-bit floats in rows of four: host ticks of 100 ns, camera
+//                      clock, frame counter, GPIO bits
+//
+// The camera clock is an IEEE 1394 cycle clock: seconds in the upper 7 bits, cycles of 1/8000 s in
+// the next 13, offsets of 1/3072 cycle in the lower 12. It starts again every 128 s; the stamps
+// given here go on (half-range rule).
+//
+// Source: the README of the recordings; github.com/int-brain-lab/ibllib.
+#ifndef SIMBENCH_APP_IBL_RECORDING_H_
+#define SIMBENCH_APP_IBL_RECORDING_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/rs_csv.h"
+
+namespace simbench::app {
+
+// Which of the two a file is follows from its name. Sensor stamps count from the zero of the camera
+// clock before the first frame, arrivals from the first frame. Frames without a counter are
+// numbered from 0. Throws CsvError, "FILE:LINE: ..." or "FILE: row N: ...".
+std::vector<StampedFrame> read_ibl_recording(const std::string& path);
+
+// The same from the content of a file.
+std::vector<StampedFrame> parse_ibl_timestamps(std::string_view text, const std::string& path);
+std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std::string& path);
+
+// The CSV that recording/rs_csv.h reads.
+std::string rs_csv_text(const std::vector<StampedFrame>& frames);
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_IBL_RECORDING_H_

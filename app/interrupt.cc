@@ -1,0 +1,69 @@
+#include "app/interrupt.h"
+
+#include <atomic>
+#include <utility>
+
+#include "recording/forwarding_sink.h"
+
+namespace simbench::app {
+namespace {
+
+std::atomic<bool> interrupt_flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
+
+void throw_if_interrupted() {
+  if (interrupt_flag.load(std::memory_order_relaxed)) throw Interrupted();
+}
+
+// Hands everything on; frames are frequent enough to notice the flag by.
+class InterruptibleSink final : public ForwardingSink {
+ public:
+  using ForwardingSink::ForwardingSink;
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
+    throw_if_interrupted();
+    sink().on_frame(frame, truth);
+  }
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
+    throw_if_interrupted();
+    sink().on_exchange(host, exchange);
+  }
+};
+
+class InterruptibleSource : public RecordingSource {
+ public:
+  explicit InterruptibleSource(std::unique_ptr<RecordingSource> source)
+      : source_(std::move(source)) {}
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    throw_if_interrupted();
+    InterruptibleSink watched(sink);
+    return source_->record(request, watched);
+  }
+
+ private:
+  std::unique_ptr<RecordingSource> source_;
+};
+
+}  // namespace
+
+InterruptHandler::InterruptHandler() {
+  interrupt_flag = false;
+  struct sigaction action = {};
+  action.sa_handler = [](int) { interrupt_flag = true; };
+  // The second signal finds the default again. An interrupted write is resumed: the result of a run
+  // that is already complete is not lost.
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &previous_);
+}
+
+InterruptHandler::~InterruptHandler() { sigaction(SIGINT, &previous_, nullptr); }
+
+bool InterruptHandler::raised() { return interrupt_flag; }
+
+const std::atomic<bool>& InterruptHandler::flag() { return interrupt_flag; }
+
+std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source) {
+  return std::make_unique<InterruptibleSource>(std::move(source));
+}
+
+}  // namespace simbench::app

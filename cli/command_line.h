@@ -1,0 +1,36 @@
+// The `simbench` command as a function, so that a program with algorithms of its own is the same
+// command: register them (algorithms/registry.h), then hand over the arguments of main().
+//
+//   int main(int argc, char** argv) {
+//     simbench::register_device_time({...});
+//     return simbench::run_command_line(argc, argv);
+//   }
+//
+// Standard output carries the result and nothing else; messages go to standard error. Never throws;
+// returns the exit status (cli/exit_status.h). One call per process: it handles SIGINT while it
+// runs.
+#ifndef SIMBENCH_CLI_COMMAND_LINE_H_
+#define SIMBENCH_CLI_COMMAND_LINE_H_
+
+#include "reconstruction/experiment.h"
+
+namespace simbench {
+
+namespace evaluation {
+class TaskFarm;
+}
+
+// What a program may bring along that not every one can have.
+struct CommandLineExtras {
+  // Works on the runs of `simbench sweep`; null: the cores of this machine, and under mpirun
+  // simbench-mpi in place of this program.
+  evaluation::TaskFarm* farm = nullptr;
+  // For `simbench reconstruct`; null: simbench-reconstruct in place of this program.
+  reconstruction::RunReconstruction run_reconstruction = nullptr;
+};
+
+int run_command_line(int argc, char** argv, const CommandLineExtras& extras = {});
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_CLI_COMMAND_LINE_H_

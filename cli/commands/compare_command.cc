@@ -1,0 +1,114 @@
+#include "cli/commands/compare_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/exit_status.h"
+#include "reports/comparison/comparison.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kCompareExamples = R"(
+Two archives: pipelines of the same name, A first, B against it. One archive: two of its pipelines
+(the second against the first), or each against one of them: "how much better than NTP?".
+
+Examples:
+  simbench compare results/monday results/tuesday
+  simbench compare results/monday --with-baseline ntp_last_set
+  simbench compare results/monday --pipelines yoon2021_network,yoon2021_both --format json
+
+Exit status: 0 ok (whatever the verdicts are; `simbench gate` judges), 1 internal error, 2 bad usage
+or input.)";
+
+struct CompareOptions {
+  std::vector<std::string> archives;
+  std::string baseline;
+  std::string format;
+  double smallest_effect_percent = 5;
+  reports::ComparisonOptions comparison;
+};
+
+reports::Comparison compared(const CompareOptions& options) {
+  const std::vector<std::string>& pipelines = options.comparison.pipelines;
+  const bool with_baseline = !options.baseline.empty();
+  if (options.archives.size() == 2) {
+    if (with_baseline) {
+      throw scenarios::InputError(
+          "--with-baseline: compares the pipelines of one archive; name one, found two");
+    }
+    return reports::compare_archives(reports::read_archive(options.archives[0]),
+                                     reports::read_archive(options.archives[1]),
+                                     options.comparison);
+  }
+  if (with_baseline == !pipelines.empty()) {
+    throw scenarios::InputError(
+        "of one archive either --pipelines X,Y or --with-baseline PIPELINE says what to compare; "
+        "or name a second archive");
+  }
+  const reports::Archive archive = reports::read_archive(options.archives[0]);
+  if (with_baseline) {
+    return reports::compare_with_baseline(archive, options.baseline, options.comparison);
+  }
+  if (pipelines.size() != 2) {
+    throw scenarios::InputError(
+        fmt::format("--pipelines: found {} names, allowed for one archive: two", pipelines.size()));
+  }
+  return reports::compare_pipelines(archive, pipelines[0], pipelines[1], options.comparison);
+}
+
+int compare(CompareOptions options) {
+  options.comparison.smallest_effect = options.smallest_effect_percent / 100;
+  const reports::Comparison comparison = compared(options);
+  if (options.format == "json") {
+    print_result(reports::comparison_json(comparison));
+  } else if (options.format == "csv") {
+    print_result(reports::comparison_csv(comparison));
+  } else if (options.format == "markdown") {
+    print_result(reports::comparison_markdown(comparison));
+  } else {
+    print_result(reports::comparison_table(comparison));
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "compare", "Compare two result archives, or pipelines of one, seed by seed");
+  auto options = std::make_shared<CompareOptions>();
+  command
+      ->add_option("archives", options->archives,
+                   "One or two archives that `simbench run --output` wrote, or results.json files")
+      ->type_name("DIR...")
+      ->required()
+      ->expected(1, 2);
+  command
+      ->add_option("--pipelines", options->comparison.pipelines,
+                   "Of one archive: the two to compare. Of two: only these")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--with-baseline", options->baseline,
+                   "Compare each other pipeline of the archive with this one")
+      ->type_name("PIPELINE");
+  command
+      ->add_option("--smallest-effect", options->smallest_effect_percent,
+                   "The smallest difference that matters, in percent of A's mean: decides between\n"
+                   "'no difference seen' and 'too few seeds'. Default: 5")
+      ->type_name("PERCENT")
+      ->check(number_within(0, 1000));
+  command->add_flag(
+      "--by-index", options->comparison.by_index,
+      "Pair the n-th seed of A with the n-th of B: for archives without common seeds");
+  command->add_flag("--different-scenarios", options->comparison.different_scenarios,
+                    "Compare although the worlds differ: what they make of the same pipelines");
+  add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
+  command->footer(kCompareExamples);
+  command->callback([options, &action] { action = [options] { return compare(*options); }; });
+}
+
+}  // namespace simbench::cli

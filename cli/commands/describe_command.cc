@@ -1,0 +1,67 @@
+#include "cli/commands/describe_command.h"
+
+#include <memory>
+
+#include "cli/exit_status.h"
+#include "reports/text/text_table.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kDescribeExamples = R"(
+Examples:
+  simbench describe 18cam_6host_45fps
+  simbench describe my_rig.json --set /trigger/rate_hz=30
+  simbench describe 18cam_6host_45fps --format json > my_rig.json    a start for your own)";
+
+struct DescribeOptions {
+  std::string scenario;
+  std::vector<std::string> sets;
+  std::string format;
+};
+
+// A long text or list would make the table too wide; --format json has it whole.
+std::string shortened(const std::string& value) {
+  constexpr std::size_t kLongest = 40;
+  return value.size() <= kLongest ? value : value.substr(0, kLongest - 3) + "...";
+}
+
+std::string parameters_text(const scenarios::Scenario& scenario) {
+  using reports::Align;
+  reports::TextTable table({{"parameter", Align::kLeft},
+                            {"value"},
+                            {"unit", Align::kLeft},
+                            {"meaning", Align::kLeft},
+                            {"source", Align::kLeft}});
+  for (const scenarios::ParameterLine& line : scenarios::describe(scenario)) {
+    table.add({line.pointer, shortened(line.value), line.unit, line.meaning, line.source});
+  }
+  return reports::wrapped(scenario.name + ": " + scenario.summary) + "\n" + table.plain();
+}
+
+int describe(const DescribeOptions& options) {
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  print_warnings(scenarios::warnings(scenario));
+  print_result(options.format == "json" ? scenario.resolved_json + "\n"
+                                        : parameters_text(scenario));
+  return kOk;
+}
+
+}  // namespace
+
+void add_describe_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "describe", "Print every parameter of a scenario with value, unit, meaning and source");
+  auto options = std::make_shared<DescribeOptions>();
+  command
+      ->add_option("scenario", options->scenario, "Name of a scenario or path of a scenario file")
+      ->type_name("SCENARIO")
+      ->required();
+  add_set_option(*command, options->sets);
+  add_format_option(*command, options->format, {"table", "json"});
+  command->footer(kDescribeExamples);
+  command->callback([options, &action] { action = [options] { return describe(*options); }; });
+}
+
+}  // namespace simbench::cli

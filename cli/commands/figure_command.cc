@@ -1,0 +1,265 @@
+#include "cli/commands/figure_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/figure_source.h"
+#include "cli/exit_status.h"
+#include "cli/messages.h"
+#include "cli/watched.h"
+#include "evaluation/run/evaluate.h"
+#include "reports/archive/archive_reader.h"
+#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure_csv.h"
+#include "reports/figures/gnuplot.h"
+#include "reports/text/output_file.h"
+#include "reports/text/text_table.h"
+#include "scenarios/loader.h"
+
+namespace simbench::cli {
+namespace {
+
+using reports::Figure;
+using reports::FigureEntry;
+using reports::FigureScope;
+using scenarios::InputError;
+
+constexpr const char* kFigureExamples = R"(
+Figures of finished results and of single runs, which are repeated in the simulator. SVG and PDF are
+drawn by gnuplot (Debian: gnuplot-nox); CSV has the data, a line for each point: panel,series,x,y.
+
+Examples:
+  simbench figure --list
+  simbench figure fig8 --scenario 18cam_6host_45fps -o fig8.pdf
+  simbench figure host_clocks --scenario 18cam_6host_45fps --seed 7 --pipelines ntp_w32time -o h.svg
+  simbench figure distributions results/monday -o distributions.csv
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+constexpr const char* kUsualPipeline = "yoon2021_both";
+constexpr std::uint64_t kUsualSeeds = 32;
+
+struct FigureCommand {
+  std::string name;
+  std::string archive;
+  std::string scenario;
+  std::vector<std::string> sets;
+  std::vector<std::string> pipelines;
+  std::optional<std::uint64_t> seed;
+  std::uint64_t seeds = kUsualSeeds;
+  std::string output;
+  bool list = false;
+};
+
+std::string catalogue_text() {
+  using reports::Align;
+  reports::TextTable table({{"figure", Align::kLeft},
+                            {"of the paper", Align::kLeft},
+                            {"drawn for", Align::kLeft},
+                            {"what it shows", Align::kLeft}});
+  for (const FigureEntry& entry : reports::figure_catalogue()) {
+    const char* scope = "";
+    switch (entry.scope) {
+      case FigureScope::kResults:
+        scope = "all seeds";
+        break;
+      case FigureScope::kPipeline:
+        scope = "a pipeline";
+        break;
+      case FigureScope::kSeed:
+        scope = "a seed";
+        break;
+      case FigureScope::kRun:
+        scope = "a pipeline and seed";
+        break;
+    }
+    table.add({entry.id, entry.paper, scope, entry.title});
+  }
+  return table.plain() + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
+}
+
+const FigureEntry& entry_named(const std::string& name) {
+  const FigureEntry* entry = reports::find_figure(name);
+  if (entry != nullptr) return *entry;
+  std::vector<std::string> known;
+  for (const FigureEntry& each : reports::figure_catalogue()) known.push_back(each.id);
+  throw InputError(fmt::format("figure: found '{}', allowed: {}, or the paper's numbers as fig8",
+                               name, fmt::join(known, ", ")));
+}
+
+enum class FileKind : std::uint8_t { kSvg, kPdf, kCsv };
+
+FileKind kind_of(const std::string& output) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (extension == ".svg") return FileKind::kSvg;
+  if (extension == ".pdf") return FileKind::kPdf;
+  if (extension == ".csv") return FileKind::kCsv;
+  throw InputError(
+      fmt::format("--output: found '{}', allowed: a name that ends in .svg, .pdf or "
+                  ".csv",
+                  output));
+}
+
+bool is_of_one_pipeline(const FigureEntry& entry) {
+  return entry.scope == FigureScope::kRun || entry.scope == FigureScope::kPipeline;
+}
+
+// The pipelines to run for it: of those there are, all but where the figure is of one.
+std::vector<std::string> chosen_pipelines(const FigureCommand& command, const FigureEntry& entry,
+                                          const std::vector<std::string>& known) {
+  if (!is_of_one_pipeline(entry)) return command.pipelines;
+  if (command.pipelines.size() > 1) {
+    throw InputError(
+        fmt::format("--pipelines: found {} names, allowed: one, because {} is of one "
+                    "pipeline",
+                    command.pipelines.size(), entry.id));
+  }
+  if (!command.pipelines.empty() || known.empty()) return command.pipelines;
+  const bool usual = std::find(known.begin(), known.end(), kUsualPipeline) != known.end();
+  return {usual ? kUsualPipeline : known.front()};
+}
+
+app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& entry,
+                              const std::vector<std::string>& known) {
+  app::FigureOptions options;
+  if (command.seed) options.seeds = {*command.seed};
+  options.pipelines = chosen_pipelines(command, entry, known);
+  options.budget_seeds = command.seeds;
+  options.figures = {entry.id};
+  return options;
+}
+
+std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command,
+                                                    const FigureEntry& entry) {
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(command.scenario, overrides_of(command.sets));
+  evaluation::check_pipelines(scenario);
+  print_warnings(scenarios::warnings(scenario));
+  std::vector<std::string> known;
+  for (const scenarios::Pipeline& pipeline : scenario.pipelines) known.push_back(pipeline.name);
+  const app::FigureOptions options = options_of(command, entry, known);
+  return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
+    return scenario_figures(scenario, options, command.seeds, progress);
+  });
+}
+
+std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
+                                                   const FigureEntry& entry) {
+  reports::Archive archive = reports::read_archive(command.archive);
+  std::vector<std::string> known;
+  for (const evaluation::Row& row : archive.results.rows) known.push_back(row.pipeline);
+  const app::FigureOptions options = options_of(command, entry, known);
+  return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
+    return archive_figures(archive, options, progress);
+  });
+}
+
+// Of the figures that were made the one that was meant: of the named pipeline, if there is one.
+const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& made) {
+  const std::string pipeline = command.pipelines.size() == 1 ? command.pipelines.front() : "";
+  for (const Figure& figure : made.figures) {
+    if (!pipeline.empty() && figure.pipeline == pipeline) return figure;
+  }
+  if (!made.figures.empty()) return made.figures.front();
+  throw InputError(fmt::format("{}: cannot be drawn: {}", command.name,
+                               made.notes.empty() ? "there is no run" : made.notes.front()));
+}
+
+int run(const FigureCommand& command) {
+  if (command.list) {
+    print_result(catalogue_text());
+    return kOk;
+  }
+  const FigureEntry& entry = entry_named(command.name);
+  const FileKind kind = kind_of(command.output);
+  const reports::OutputFile file(command.output);
+  const std::optional<app::ArchiveFigures> made =
+      command.archive.empty() ? make_of_scenario(command, entry) : make_of_archive(command, entry);
+  if (!made) return kInterrupted;
+  print_warnings(made->notes);
+  const Figure& figure = meant(command, *made);
+  if (!figure.absent.empty()) {
+    throw InputError(fmt::format("{}: cannot be drawn: {}", command.name, figure.absent));
+  }
+  if (kind == FileKind::kCsv) {
+    file.write(reports::figure_csv(figure));
+    file.publish();
+  } else {
+    reports::draw(figure,
+                  kind == FileKind::kSvg ? reports::PlotFormat::kSvg : reports::PlotFormat::kPdf,
+                  command.output);
+  }
+  print_note(fmt::format("{} written. {}", command.output, figure.caption));
+  return kOk;
+}
+
+// What CLI11 cannot say: which options go together.
+void check(const FigureCommand& command) {
+  if (command.list) return;
+  if (command.name.empty()) {
+    throw CLI::ValidationError("NAME", "is missing; `simbench figure --list` names the figures");
+  }
+  if (command.archive.empty() == command.scenario.empty()) {
+    throw CLI::ValidationError("DIR, --scenario", "one of them is needed, and not both");
+  }
+  if (!command.archive.empty() && !command.sets.empty()) {
+    throw CLI::ValidationError("--set", "goes with --scenario; an archive has its own");
+  }
+  if (command.output.empty()) {
+    throw CLI::ValidationError("--output", "is missing: FILE.svg, FILE.pdf or FILE.csv");
+  }
+}
+
+}  // namespace
+
+void add_figure_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("figure", "One figure as SVG, PDF or CSV");
+  auto options = std::make_shared<FigureCommand>();
+  command
+      ->add_option("name", options->name,
+                   "Which (see --list): its name, or the paper's number as fig8")
+      ->type_name("NAME");
+  command->add_option("archive", options->archive, "Folder that `simbench run --output` wrote")
+      ->type_name("DIR");
+  command->add_flag("--list", options->list, "List the figures");
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Instead of DIR: name of a scenario or path of a scenario file")
+      ->type_name("SCENARIO");
+  add_set_option(*command, options->sets);
+  command
+      ->add_option("--seed", options->seed,
+                   "Of figures of one seed. Default: the archive's first, 1 of a scenario")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command
+      ->add_option("--seeds", options->seeds,
+                   "Of figures over seeds, how many of a scenario's, and of budgets. Default: 32")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000));
+  command
+      ->add_option("--pipelines", options->pipelines,
+                   "Only these. Default: all; yoon2021_both, else the first, where a figure is\n"
+                   "of one pipeline")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("-o,--output", options->output,
+                   "The file; its ending chooses: .svg, .pdf or .csv. An earlier one is replaced")
+      ->type_name("FILE");
+  add_json_messages_option(*command);
+  command->footer(kFigureExamples);
+  command->callback([options, &action] {
+    check(*options);
+    action = [options] { return run(*options); };
+  });
+}
+
+}  // namespace simbench::cli

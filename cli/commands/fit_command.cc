@@ -1,0 +1,197 @@
+#include "cli/commands/fit_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cli/exit_status.h"
+#include "cli/recordings.h"
+#include "evaluation/fit/fit_check.h"
+#include "recording/recording_folder.h"
+#include "reports/rigs/fit_report.h"
+#include "reports/text/output_file.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kFitExamples = R"(
+Takes a recording folder (simbench record, or a real rig's), or the CSV files that `simbench replay`
+takes. Writes a scenario file with what the recording shows, over a base that gives the rest: drift
+of each camera, distribution and correlation of the delivery delay, dropped frames; with exchanges
+between hosts also the network's latency and the hosts' rates. Prints the evidence of each value,
+what stamps cannot show, and how the simulated model compares with the recording, also with a half
+that it was not fitted to.
+
+Examples:
+  simbench fit monday -o model.json
+  simbench --scenario model.json
+  simbench fit monday --pipeline two_way_hull --seed 3 -o model.json
+  simbench fit left.csv right.csv --one-host --base my_rig.json -o model.json --format json
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
+
+struct FitOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string base;
+  std::string pipeline;
+  std::optional<std::uint64_t> seed;
+  bool one_host = false;
+  std::string format;
+};
+
+// What is fitted, over what.
+struct FitTask {
+  evaluation::FitInput input;
+  evaluation::FitBase base;
+  std::string capture;
+};
+
+// The recording's own scenario: by name if it is a built-in one as it is.
+evaluation::FitBase own_base(const std::string& folder, const std::string& scenario_json) {
+  evaluation::FitBase base{.scenario = scenarios::load_scenario_text(
+                               scenario_json, folder + "/manifest.json: scenario")};
+  const std::string& name = base.scenario.name;
+  for (const scenarios::BuiltinScenario& builtin : scenarios::builtin_scenarios()) {
+    if (builtin.name != name) continue;
+    if (scenarios::load_scenario(name).resolved_json != base.scenario.resolved_json) continue;
+    base.stated = name;
+  }
+  return base;
+}
+
+evaluation::FitBase stated_base(const std::string& name) {
+  return {.scenario = scenarios::load_scenario(name), .stated = name};
+}
+
+std::string captures_text(const std::vector<RecordedCapture>& captures) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(captures.size(), kShown); ++i) {
+    text += fmt::format("{}{} seed {}", i > 0 ? ", " : "", captures[i].pipeline, captures[i].seed);
+  }
+  return captures.size() > kShown ? text + ", ..." : text;
+}
+
+std::size_t chosen_capture(const RecordingFolder& folder, const FitOptions& options) {
+  const std::vector<RecordedCapture>& captures = folder.captures();
+  const auto found =
+      std::find_if(captures.begin(), captures.end(), [&](const RecordedCapture& capture) {
+        return (options.pipeline.empty() || capture.pipeline == options.pipeline) &&
+               (!options.seed || capture.seed == *options.seed);
+      });
+  if (found != captures.end()) return static_cast<std::size_t>(found - captures.begin());
+  throw evaluation::FitError(captures.empty()
+                                 ? fmt::format("{}: found no capture", options.inputs.front())
+                                 : fmt::format("{}: found no such capture, allowed {}",
+                                               options.inputs.front(), captures_text(captures)));
+}
+
+FitTask task_of_folder(const FitOptions& options) {
+  const std::string& path = options.inputs.front();
+  if (options.one_host) {
+    throw evaluation::FitError("--one-host: found with a recording folder, which knows its hosts");
+  }
+  const RecordingFolder folder(path);
+  const std::size_t capture = chosen_capture(folder, options);
+  FitTask task;
+  task.base = options.base.empty() ? own_base(path, folder.description().scenario_json)
+                                   : stated_base(options.base);
+  evaluation::FitInputSink sink({.hosts = folder.description().hosts,
+                                 .cameras = folder.description().cameras,
+                                 .warm_up_ms = task.base.scenario.timeline.warm_up_ms});
+  folder.play(capture, sink);
+  task.input = sink.take();
+  const RecordedCapture& chosen = folder.captures()[capture];
+  task.capture = fmt::format("{} seed {}{}", chosen.pipeline, chosen.seed,
+                             chosen.complete ? "" : ", which has no end");
+  return task;
+}
+
+FitTask task_of_files(const FitOptions& options) {
+  if (!options.pipeline.empty() || options.seed) {
+    throw evaluation::FitError("--pipeline and --seed choose a capture of a recording folder");
+  }
+  FitTask task;
+  task.input = evaluation::fit_input(read_recordings(options.inputs), options.one_host);
+  task.base =
+      options.base.empty() ? evaluation::default_base(task.input) : stated_base(options.base);
+  return task;
+}
+
+FitTask task_of(const FitOptions& options) {
+  const auto is_folder = [](const std::string& path) {
+    return std::filesystem::is_directory(path);
+  };
+  const auto folder = std::find_if(options.inputs.begin(), options.inputs.end(), is_folder);
+  if (folder == options.inputs.end()) return task_of_files(options);
+  if (options.inputs.size() == 1) return task_of_folder(options);
+  throw evaluation::FitError(
+      fmt::format("{}: found among {} inputs, allowed one recording folder or CSV files", *folder,
+                  options.inputs.size()));
+}
+
+int run_fit(const FitOptions& options) {
+  const reports::OutputFile output(options.output);
+  reports::FitReport report;
+  try {
+    FitTask task = task_of(options);
+    report.inputs = options.inputs;
+    report.capture = task.capture;
+    report.base = task.base.scenario.name;
+    report.model = options.output;
+    for (const evaluation::FitCamera& camera : task.input.cameras) {
+      report.cameras.push_back(camera.name);
+    }
+    report.study =
+        evaluation::study_fit(task.input, task.base, options.output, sim::make_simulation);
+  } catch (const evaluation::FitError& error) {
+    throw scenarios::InputError(error.what());
+  } catch (const RecordingFolderError& error) {
+    throw scenarios::InputError(error.what());
+  }
+  output.write(report.study.model.text);
+  output.publish();
+  print_result(options.format == "json" ? reports::fit_json(report) : reports::fit_table(report));
+  return kOk;
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "fit", "Make a scenario of a recording: the simulator with a rig's own numbers");
+  auto options = std::make_shared<FitOptions>();
+  command->add_option("inputs", options->inputs, "A recording folder, or CSV files")
+      ->type_name("INPUT...")
+      ->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "The scenario file to write. An earlier one is replaced as a whole")
+      ->type_name("FILE.json")
+      ->required();
+  command
+      ->add_option("--base", options->base,
+                   "Scenario, by name or file, that gives what is not fitted.\n"
+                   "Default: the recording's own; for CSV files a built-in one with their counts "
+                   "and rate")
+      ->type_name("SCENARIO");
+  command
+      ->add_option("--pipeline", options->pipeline,
+                   "Of a folder with several captures. Default: the first")
+      ->type_name("NAME");
+  command->add_option("--seed", options->seed, "Likewise: the seed, or the repetition of a rig")
+      ->type_name("K");
+  command->add_flag("--one-host", options->one_host,
+                    "One computer stamped all arrivals of the files, whatever they say");
+  add_format_option(*command, options->format, {"table", "json"});
+  command->footer(kFitExamples);
+  command->callback([options, &action] { action = [options] { return run_fit(*options); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,107 @@
+#include "cli/commands/gate_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/exit_status.h"
+#include "reports/comparison/gate.h"
+#include "reports/comparison/junit.h"
+#include "reports/text/output_file.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kGateExamples = R"(
+Exact mode wants the seeds and the scenario of the baseline; fails if a value of the table is worse
+by more than its margin, a share and a step that the baseline file states. Statistical mode takes
+any 32 seeds; fails where a mean is worse by more than the margin and, after Holm's correction over
+all metrics, its interval excludes zero.
+
+Examples:
+  simbench run --scenario 18cam_6host_45fps --output results
+  simbench gate results --baseline reports/baselines/18cam_6host_45fps.json
+  simbench gate results --baseline mine.json --mode statistical --junit gate.xml
+  simbench gate results --save-baseline mine.json     margins of an earlier file are kept
+
+Exit status: 0 passed, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing.)";
+
+struct GateOptions {
+  std::string result;
+  std::string baseline;
+  std::string save_baseline;
+  std::string mode;
+  std::string format;
+  std::string junit;
+};
+
+int save_baseline(const GateOptions& options) {
+  reports::Baseline baseline = reports::make_baseline(reports::read_archive(options.result));
+  if (std::filesystem::exists(options.save_baseline)) {
+    baseline.margins = reports::read_baseline(options.save_baseline).margins;
+  }
+  reports::write_baseline(baseline, options.save_baseline);
+  print_note(fmt::format("baseline written to {}", options.save_baseline));
+  return kOk;
+}
+
+std::string formatted(const reports::GateReport& report, const std::string& format) {
+  if (format == "json") return reports::gate_json(report);
+  if (format == "junit") return reports::gate_junit(report);
+  return reports::gate_text(report);
+}
+
+int gate(const GateOptions& options) {
+  if (options.baseline.empty() == options.save_baseline.empty()) {
+    throw scenarios::InputError(
+        "either --baseline FILE, to hold the result to it, or --save-baseline FILE, to write one");
+  }
+  if (!options.save_baseline.empty()) return save_baseline(options);
+  if (!std::filesystem::exists(options.baseline)) {
+    print_error(
+        fmt::format("--baseline {}: no such file", options.baseline),
+        fmt::format("simbench gate {} --save-baseline {}", options.result, options.baseline));
+    return kBaselineMissing;
+  }
+  const reports::GateMode mode =
+      options.mode == "statistical" ? reports::GateMode::kStatistical : reports::GateMode::kExact;
+  const reports::Baseline baseline = reports::read_baseline(options.baseline);
+  const reports::GateReport report =
+      reports::gate(reports::read_archive(options.result), baseline, mode);
+  if (!options.junit.empty()) {
+    reports::write_file(options.junit, reports::gate_junit(report));
+  }
+  print_result(formatted(report, options.format));
+  return report.passed() ? kOk : kGateFailed;
+}
+
+}  // namespace
+
+void add_gate_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("gate", "Hold a result to a baseline: exit status 3 if it became worse");
+  auto options = std::make_shared<GateOptions>();
+  command
+      ->add_option("result", options->result,
+                   "An archive that `simbench run --output` wrote, or a results.json")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--baseline", options->baseline, "The baseline to hold it to")
+      ->type_name("FILE");
+  command
+      ->add_option("--save-baseline", options->save_baseline,
+                   "Write the result as a baseline, keeping the margins of an earlier one there")
+      ->type_name("FILE");
+  options->mode = "exact";
+  command->add_option("--mode", options->mode, "One of: exact, statistical. Default: exact")
+      ->type_name("MODE")
+      ->check(one_of({"exact", "statistical"}));
+  add_format_option(*command, options->format, {"text", "json", "junit"});
+  command->add_option("--junit", options->junit, "Write JUnit XML to this file as well")
+      ->type_name("FILE");
+  command->footer(kGateExamples);
+  command->callback([options, &action] { action = [options] { return gate(*options); }; });
+}
+
+}  // namespace simbench::cli

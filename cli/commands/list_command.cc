@@ -1,0 +1,184 @@
+#include "cli/commands/list_command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "algorithms/registry.h"
+#include "cli/commands/camera_list.h"
+#include "cli/exit_status.h"
+#include "cli/sweep_results.h"
+#include "reports/text/text_table.h"
+#include "scenarios/camera_profile.h"
+
+namespace simbench::cli {
+namespace {
+
+using reports::Align;
+using reports::TextTable;
+
+constexpr const char* kListExamples = R"(
+Examples:
+  simbench list                                       everything by name
+  simbench list algorithms                            with parameters and sources
+  simbench list cameras                               what each camera model can do
+  simbench list scenarios --format names              for scripts: one name a line
+  simbench list pipelines --scenario 18cam_6host_45fps)";
+
+// Variants have no entries of their own (algorithms/device_time/variants.h).
+constexpr const char* kVariants = R"(
+Any device_time but the oracle may be named with suffixes, as in hull_300_steady_calibrated:
+  _steady              fitted on the host's steady clock, mapped by the log of clock adjustments
+  _exposure_corrected  arrivals less half of the exposure
+  _calibrated          the same, less the delay (and asymmetry of polls) of the camera model,
+                       /cameras/streams/N/calibrated_delay_ms, /cameras/clock_poll
+)";
+
+struct ListOptions {
+  std::string what;
+  std::string scenario;
+  std::string format;
+};
+
+std::string value_text(const ParameterValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  return std::get<std::string>(value);
+}
+
+std::string range_text(const ParameterSpec& spec) {
+  if (std::holds_alternative<bool>(spec.fallback)) return "true, false";
+  if (!std::holds_alternative<double>(spec.fallback)) {
+    std::string choices;
+    for (const std::string& choice : spec.choices) {
+      choices.append(choices.empty() ? "" : ", ").append(choice);
+    }
+    return choices;
+  }
+  return fmt::format("{} to {}", spec.low, spec.high);
+}
+
+std::string scenarios_text() {
+  std::string text = "scenarios\n";
+  for (const auto& scenario : scenarios::builtin_scenarios()) {
+    text += fmt::format("  {}\n{}", scenario.name, reports::wrapped(scenario.summary, 6));
+  }
+  return text;
+}
+
+// The same for scripts: one name a line.
+std::string bare_names(const ListOptions& options) {
+  std::vector<std::string> names;
+  const auto add_algorithms = [&names](const auto& entries) {
+    for (const auto& entry : entries) names.push_back(entry.info.name);
+  };
+  if (options.what.empty() || options.what == "scenarios") {
+    for (const auto& scenario : scenarios::builtin_scenarios()) names.push_back(scenario.name);
+  }
+  if (options.what.empty() || options.what == "algorithms") {
+    add_algorithms(host_sync_algorithms());
+    add_algorithms(device_time_algorithms());
+    add_algorithms(gathering_algorithms());
+  }
+  if (options.what == "pipelines") {
+    for (const auto& pipeline : scenarios::load_scenario(options.scenario).pipelines) {
+      names.push_back(pipeline.name);
+    }
+  }
+  if (options.what == "cameras") {
+    for (const auto& camera : scenarios::camera_profiles()) names.push_back(camera.model);
+  }
+  return fmt::format("{}\n", fmt::join(names, "\n"));
+}
+
+template <class Entries>
+std::string names_text(const char* stage, const Entries& entries) {
+  TextTable table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
+  for (const auto& entry : entries) table.add({entry.info.name, entry.info.summary});
+  return table.plain();
+}
+
+std::string algorithm_text(const AlgorithmInfo& info) {
+  std::string text = fmt::format("\n{}: {}\n  source: {}\n", info.name, info.summary, info.source);
+  if (info.parameters.empty()) return text;
+  text += fmt::format("  parameters, in a scenario below /algorithms/{}:\n", info.family);
+  for (const ParameterSpec& spec : info.parameters) {
+    text += fmt::format("    {} = {} ({}): {} [{}]\n", spec.name, value_text(spec.fallback),
+                        range_text(spec), spec.meaning, spec.source);
+  }
+  return text;
+}
+
+template <class Entries>
+std::string details_text(const char* stage, const Entries& entries) {
+  std::string text = fmt::format("== {}\n", stage);
+  for (const auto& entry : entries) text += algorithm_text(entry.info);
+  return text;
+}
+
+std::string pipelines_text(const std::string& scenario) {
+  TextTable table({{"pipeline", Align::kLeft},
+                   {"host_sync", Align::kLeft},
+                   {"device_time", Align::kLeft},
+                   {"gathering", Align::kLeft}});
+  for (const auto& pipeline : scenarios::load_scenario(scenario).pipelines) {
+    table.add({pipeline.name, pipeline.host_sync, pipeline.device_time, pipeline.gathering});
+  }
+  return table.plain();
+}
+
+std::string listing(const ListOptions& options) {
+  if (options.format == "names") return bare_names(options);
+  if (options.what == "scenarios") return scenarios_text();
+  if (options.what == "cameras") {
+    return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
+  }
+  if (options.what == "pipelines") return pipelines_text(options.scenario);
+  if (options.what == "studies") return study_list();
+  if (options.what == "algorithms") {
+    return details_text("host_sync", host_sync_algorithms()) + "\n" +
+           details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
+           details_text("gathering", gathering_algorithms());
+  }
+  return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
+         names_text("device_time", device_time_algorithms()) + kVariants + "\n" +
+         names_text("gathering", gathering_algorithms());
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("list", "List scenarios, and the algorithms of each stage");
+  auto options = std::make_shared<ListOptions>();
+  command
+      ->add_option(
+          "what", options->what,
+          "scenarios, pipelines, algorithms (with parameters and sources), cameras or studies.\n"
+          "Default: scenarios and algorithms by name")
+      ->type_name("WHAT")
+      ->check(one_of({"scenarios", "pipelines", "algorithms", "cameras", "studies"}));
+  options->scenario = "18cam_6host_45fps";
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Whose pipelines to list. Default: " + options->scenario)
+      ->type_name("SCENARIO");
+  add_format_option(*command, options->format, {"text", "names", "json"});
+  command->footer(kListExamples);
+  command->callback([options, &action] {
+    if (options->format == "json" && options->what != "cameras") {
+      throw CLI::ValidationError("--format", "found 'json', allowed: with cameras only");
+    }
+    action = [options] {
+      print_result(options->format == "text" ? reports::fitted(listing(*options))
+                                             : listing(*options));
+      return static_cast<int>(kOk);
+    };
+  });
+}
+
+}  // namespace simbench::cli

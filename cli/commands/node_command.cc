@@ -1,0 +1,250 @@
+#include "cli/commands/node_command.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+#include "cli/exit_status.h"
+#include "cli/rig_backend.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "hardware/camera/drivers.h"
+#include "hardware/clock/os_clock.h"
+#include "hardware/clock/software_clock.h"
+#include "hardware/net/secure_stream.h"
+#include "hardware/node/journal.h"
+#include "hardware/node/node.h"
+#include "hardware/rig/rig.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kNodeExamples = R"(
+Runs until SIGINT or SIGTERM; what happens is a line each on standard error. The rig's conductor
+(simbench run --backend hardware) tells it what to do. A systemd unit comes with simbench:
+simbench-node.service.
+
+The clock that is synchronised is the node's own, in software; the system's clock is not touched
+unless --set-system-clock is given.
+
+Examples:
+  simbench node --rig rig.json --name host3 --key-file rig.key
+  simbench node --rig rig.json --name host3                   on one machine only, without a key
+  simbench node --rig rig.json --name host3 --key-file rig.key --set-system-clock --dry-run
+
+Exit status: 0 stopped by a signal, 1 internal error, 2 bad usage or input.)";
+
+struct NodeOptions {
+  std::string rig;
+  std::string name;
+  std::string key_file;
+  std::string journal;
+  bool set_system_clock = false;
+  double max_step_ms = 1000;
+  bool dry_run = false;
+  double clock_offset_ms = 0;
+  double clock_skew_ppm = 0;
+};
+
+void log_line(const std::string& line) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+  const auto second = static_cast<std::time_t>(ms / 1000);
+  std::tm local = {};
+  localtime_r(&second, &local);
+  std::cerr << fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} {}\n", local, ms % 1000, line) << std::flush;
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+// A folder for each node: several of one rig may run on one machine.
+std::string default_journal_folder(std::string name) {
+  for (char& c : name) {
+    if (c == '/' || c == '.') c = '_';
+  }
+  const std::string service = environment("STATE_DIRECTORY");  // of systemd
+  if (!service.empty()) return fmt::format("{}/{}", service, name);
+  const std::string state = environment("XDG_STATE_HOME");
+  if (!state.empty()) return fmt::format("{}/simbench/{}", state, name);
+  const std::string home = environment("HOME");
+  if (!home.empty()) return fmt::format("{}/.local/state/simbench/{}", home, name);
+  throw scenarios::InputError("--journal: found neither it nor HOME, allowed: a folder");
+}
+
+// What an algorithm asks for and no real host has.
+const char* lacking(Need need) {
+  switch (need) {
+    case Need::kHardwareStamps:
+      return "hardware stamps of the network card";
+    case Need::kPps:
+    case Need::kGnss:
+      return "a GNSS receiver's pulses";
+    case Need::kTriggerLine:
+      return "the trigger line wired into the host";
+    case Need::kTruth:
+      return "the truth";
+    case Need::kPolls:
+    case Need::kFrames:
+      break;
+  }
+  return nullptr;
+}
+
+std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
+                                         const std::string& pipeline) {
+  const evaluation::PipelineChoice choice =
+      evaluation::choose_pipelines(scenario, {pipeline}).front();
+  for (const Need need : choice.host_sync.info.needs) {
+    if (const char* what = lacking(need)) {
+      throw scenarios::InputError(
+          fmt::format("pipeline '{}': its host_sync '{}' needs {}, which nodes do not have",
+                      pipeline, choice.host_sync.info.name, what));
+    }
+  }
+  return choice.host_sync.make(choice.host_sync_parameters);
+}
+
+std::unique_ptr<hardware::NodeClock> make_clock(boost::asio::io_context& context, PeerId me,
+                                                const NodeOptions& options) {
+  if (options.set_system_clock) {
+    return hardware::make_os_clock(context, hardware::kernel_clock_calls(),
+                                   {.host = me,
+                                    .max_step = from_ms(options.max_step_ms),
+                                    .dry_run = options.dry_run,
+                                    .log = log_line});
+  }
+  hardware::SoftwareClock::Settings settings;
+  settings.host = me;
+  settings.offset = from_ms(options.clock_offset_ms);
+  if (options.clock_skew_ppm != 0) {
+    const MonotonicTime zero = hardware::monotonic_now();
+    settings.oscillator = {.monotonic_zero = zero,
+                           .steady_zero = SteadyTime(zero.time_since_epoch()),
+                           .skew_ppm = options.clock_skew_ppm};
+  }
+  return std::make_unique<hardware::SoftwareClock>(context, std::move(settings));
+}
+
+void serve(const NodeOptions& options) {
+  const hardware::Rig rig = hardware::load_rig(options.rig);
+  const PeerId me = hardware::host_named(rig, options.name);
+  hardware::NodeSettings settings;
+  settings.rig = rig;
+  settings.me = me;
+  settings.key = key_of(options.key_file);
+  settings.journal_folder =
+      options.journal.empty() ? default_journal_folder(options.name) : options.journal;
+
+  if (options.set_system_clock) settings.clock_kind = options.dry_run ? "dry run" : "system";
+
+  boost::asio::io_context context(1);
+  const std::unique_ptr<hardware::CameraDriver> cameras = hardware::make_camera_driver(rig, me);
+  const std::unique_ptr<hardware::NodeClock> clock = make_clock(context, me, options);
+  hardware::Node node(context, settings, *clock, *cameras, make_host_sync, log_line);
+  boost::asio::signal_set signals(context, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code& error, int signal) {
+    if (error) return;
+    log_line(fmt::format("{}: stopping", signal == SIGINT ? "SIGINT" : "SIGTERM"));
+    signals.clear();  // the next one ends the program at once
+    node.stop();
+  });
+  node.start();
+  print_result(fmt::format("node {}: listening on {}:{}\n", options.name, rig.hosts[me].address,
+                           node.port()));
+  log_line(fmt::format("{}: {} cameras, journals in {}", options.name, rig.hosts[me].cameras.size(),
+                       settings.journal_folder));
+  context.run();
+}
+
+int run_node(const NodeOptions& options) {
+  // Timers of this process go off when they are due, not up to 50 us later to save power.
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  // A reader of the log that is gone, and a limit of file size, end no capture.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    serve(options);
+    return kOk;
+  } catch (const hardware::KeyError& error) {
+    print_error(error.what());
+  } catch (const hardware::ClockError& error) {
+    print_error(error.what());
+  } catch (const hardware::CameraError& error) {
+    print_error(error.what());
+  } catch (const hardware::JournalError& error) {
+    print_error(error.what());
+  } catch (const hardware::StreamError& error) {
+    print_error(error.what());
+  }
+  return kBadInput;
+}
+
+// A test's clock and the system's exclude each other; what is about setting needs
+// --set-system-clock.
+void add_clock_options(CLI::App& command, NodeOptions& options) {
+  CLI::Option* set =
+      command.add_flag("--set-system-clock", options.set_system_clock,
+                       "Synchronise the operating system's clock instead of one in software;\n"
+                       "needs the right to set it (CAP_SYS_TIME)");
+  command
+      .add_option("--max-step-ms", options.max_step_ms,
+                  "Refuse to step the system's clock by more. Default: 1000")
+      ->check(number_within(0, 1e9))
+      ->type_name("MS")
+      ->needs(set);
+  command.add_flag("--dry-run", options.dry_run, "Say what would be set, and set nothing")
+      ->needs(set);
+  command
+      .add_option("--clock-offset-ms", options.clock_offset_ms,
+                  "For tests: the node's clock starts ahead of the system's by this. Default: 0")
+      ->check(number_within(-1e7, 1e7))
+      ->type_name("MS")
+      ->excludes(set);
+  command
+      .add_option("--clock-skew-ppm", options.clock_skew_ppm,
+                  "For tests: the node's oscillator runs fast by this. Default: 0")
+      ->check(number_within(-1000, 1000))
+      ->type_name("PPM")
+      ->excludes(set);
+}
+
+}  // namespace
+
+void add_node_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("node", "Serve one host of a real rig: its clock, network and cameras");
+  auto options = std::make_shared<NodeOptions>();
+  command->add_option("--rig", options->rig, "The rig file, the same on every host")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--name", options->name, "Which of the rig's hosts this is")
+      ->type_name("HOST")
+      ->required();
+  command
+      ->add_option("--key-file", options->key_file,
+                   "The rig's key (see simbench keygen). Without one the node speaks\n"
+                   "to its own machine only")
+      ->type_name("FILE");
+  command
+      ->add_option("--journal", options->journal,
+                   "Where what is recorded is kept, the newest 100 sessions.\n"
+                   "Default: ~/.local/state/simbench/HOST")
+      ->type_name("DIR");
+  add_clock_options(*command, *options);
+  command->footer(kNodeExamples);
+  command->callback([options, &action] { action = [options] { return run_node(*options); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,239 @@
+#include "cli/commands/reconstruct_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "app/interrupt.h"
+#include "cli/exit_status.h"
+#include "cli/sibling_program.h"
+#include "cli/watched.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "reconstruction/experiment.h"
+#include "reports/reconstruction/reconstruction_folder.h"
+#include "reports/reconstruction/reconstruction_report.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+using reconstruction::ReconstructionResults;
+
+constexpr const char* kExamples = R"(
+Depth cameras around a moving subject are simulated, each exposing when its synchronisation makes
+it; their depth maps are fused to a mesh, and the mesh is compared with the depth maps. Needs a
+simbench with Embree and Open3D (tools/run --with-reconstruction) and a scenario with a studio.
+
+Examples:
+  simbench reconstruct --scenario 18cam_6host_30fps_studio
+  simbench reconstruct --scenario 18cam_6host_30fps_studio -o results/table4
+  simbench reconstruct --scenario 18cam_6host_30fps_studio --pipelines ntp_last_set,yoon2021_both
+                       --frames 10 --seeds 3 --no-curve
+  simbench reconstruct --scenario 18cam_6host_30fps_studio --motion turn --speed-factors 1,2,3
+  simbench reconstruct --scenario 18cam_6host_30fps_studio --mesh statue.ply --format json
+
+In the folder: table.txt, results.json, scenario.json, report.html; for each pipeline a mesh (.ply)
+painted with its errors, and its picture (.png); curve.csv and curve.svg (drawn by gnuplot).
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, or built without the libraries,
+130 interrupted.)";
+
+// Where the published error is looked for, as factors on the script's speeds.
+const std::vector<double> kSearchedFactors = {0.25, 0.5, 1.5, 2, 3};
+constexpr double kMostSpeedFactor = 20;
+constexpr double kMostDesyncMs = 10'000;
+
+struct ReconstructOptions {
+  std::string scenario;
+  reconstruction::ReconstructionOptions reconstruction;
+  std::vector<std::string> sets;
+  std::string mesh;
+  std::string motion;
+  std::vector<double> speed_factors = {0.5, 1, 1.5};
+  std::vector<double> desync_ms = {0, 5, 10, 20, 33, 50, 100, 200, 500};
+  bool no_curve = false;
+  std::string format;
+  std::string output;
+  std::vector<std::string> command;
+  reconstruction::RunReconstruction run = nullptr;
+};
+
+// Does not return.
+[[noreturn]] void become_reconstruct_program(std::vector<std::string> arguments) {
+  const int reason = become_sibling("simbench-reconstruct", std::move(arguments));
+  throw scenarios::InputError(fmt::format(
+      "reconstruction needs Embree and Open3D, and this simbench was built without them (no "
+      "simbench-reconstruct beside it: {}). tools/run --with-reconstruction installs them and "
+      "builds "
+      "with them (Debian: libembree-dev libopen3d-dev; CMake: -DSIMBENCH_WITH_RECONSTRUCTION=ON)",
+      std::strerror(reason)));
+}
+
+// The options about the subject are short for --set, which has the last word.
+std::vector<scenarios::Override> all_overrides(const ReconstructOptions& options) {
+  std::vector<scenarios::Override> overrides;
+  const auto set_text = [&](const char* pointer, const std::string& text) {
+    overrides.push_back({.pointer = pointer, .value = nlohmann::json(text).dump()});
+  };
+  if (!options.mesh.empty()) {
+    set_text("/studio/subject/kind", "mesh");
+    set_text("/studio/subject/mesh_file", options.mesh);
+  }
+  if (!options.motion.empty()) set_text("/studio/subject/motion", options.motion);
+  const std::vector<scenarios::Override> stated = overrides_of(options.sets);
+  overrides.insert(overrides.end(), stated.begin(), stated.end());
+  return overrides;
+}
+
+std::vector<double> in_order(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+std::string text_of(const ReconstructionResults& results, const std::string& format) {
+  if (format == "json") return reports::reconstruction_json(results);
+  if (format == "csv") return reports::reconstruction_csv(results);
+  return reports::reconstruction_table(results);
+}
+
+std::optional<ReconstructionResults> reconstruct(
+    reconstruction::RunReconstruction run, const scenarios::Scenario& scenario,
+    const reconstruction::ReconstructionOptions& options, reports::ReconstructionFolder* folder) {
+  const auto make_source = [&] { return app::interruptible(sim::make_simulation(scenario)); };
+  const auto on_mesh = [folder](const reconstruction::ShownMesh& mesh) {
+    if (folder != nullptr) folder->keep(mesh);
+  };
+  return watched<ReconstructionResults>(
+      [&](const evaluation::Progress& progress) {
+        return run(scenario, make_source, options, on_mesh, progress);
+      },
+      "frame sets");
+}
+
+int run_reconstruct(const ReconstructOptions& options) {
+  if (options.run == nullptr) become_reconstruct_program(options.command);
+  reports::Provenance provenance;
+  provenance.command = options.command;
+  provenance.started = std::chrono::system_clock::now();
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, all_overrides(options));
+  evaluation::check_pipelines(scenario);
+  evaluation::choose_pipelines(scenario, options.reconstruction.pipelines);
+  print_warnings(scenarios::warnings(scenario));
+  std::optional<reports::ReconstructionFolder> folder;
+  if (!options.output.empty()) folder.emplace(options.output, scenario);
+
+  reconstruction::ReconstructionOptions asked = options.reconstruction;
+  asked.cancel = &app::InterruptHandler::flag();
+  if (!options.no_curve) {
+    asked.curve_speed_factors = in_order(options.speed_factors);
+    asked.curve_desync_ms = in_order(options.desync_ms);
+    asked.search_speed_factors = kSearchedFactors;
+  }
+  const std::optional<ReconstructionResults> results =
+      reconstruct(options.run, scenario, asked, folder ? &*folder : nullptr);
+  if (!results) return kInterrupted;
+  provenance.finished = std::chrono::system_clock::now();
+  if (folder) {
+    const std::string not_drawn = folder->write(*results, provenance);
+    if (!not_drawn.empty()) print_warnings({not_drawn});
+    print_note("results written to " + options.output);
+  }
+  print_result(text_of(*results, options.format));
+  return kOk;
+}
+
+void add_subject_options(CLI::App& command, ReconstructOptions& options) {
+  command
+      .add_option("--mesh", options.mesh,
+                  "A mesh as the subject, in metres: PLY, OBJ, OFF or STL. Short for\n"
+                  "--set /studio/subject/kind=mesh --set /studio/subject/mesh_file=FILE")
+      ->type_name("FILE");
+  command
+      .add_option("--motion", options.motion,
+                  "How the subject moves: stand, turn, walk, walk_and_turn, raise_arms. Short\n"
+                  "for --set /studio/subject/motion=NAME. Default: the scenario's")
+      ->type_name("NAME")
+      ->check(one_of({"stand", "turn", "walk", "walk_and_turn", "raise_arms"}));
+}
+
+void add_curve_options(CLI::App& command, ReconstructOptions& options) {
+  command
+      .add_option("--speed-factors", options.speed_factors,
+                  "Of the curve: factors on the speeds that the scenario states; the table has\n"
+                  "the speeds that result. Default: 0.5,1,1.5")
+      ->type_name("F,F")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_within(0, kMostSpeedFactor));
+  command
+      .add_option("--desync-ms", options.desync_ms,
+                  "Of the curve: how far apart the hosts are, in ms. Default:\n"
+                  "0,5,10,20,33,50,100,200,500")
+      ->type_name("MS,MS")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_within(0, kMostDesyncMs));
+  command.add_flag("--no-curve", options.no_curve,
+                   "The pipelines alone: no curve, and no search for the speed at which the\n"
+                   "published error comes about");
+}
+
+}  // namespace
+
+void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments,
+                             reconstruction::RunReconstruction run) {
+  CLI::App* command = app.add_subcommand(
+      "reconstruct", "Reconstruct a moving subject, and print what desynchronisation costs");
+  auto options = std::make_shared<ReconstructOptions>();
+  options->command = std::move(arguments);
+  options->run = run;
+  reconstruction::ReconstructionOptions& experiment = options->reconstruction;
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Name of a scenario with a studio (see `simbench list`) or path of its file")
+      ->type_name("SCENARIO")
+      ->required();
+  command
+      ->add_option("--pipelines", experiment.pipelines,
+                   "Only these pipelines of the scenario, in this order")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--frames", experiment.frames,
+                   "Frame sets to reconstruct of each pipeline and seed. Default: 10")
+      ->type_name("N")
+      ->check(whole_number(1, 100'000));
+  command->add_option("--seeds", experiment.seeds, "How many seeds. Default: 5")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--first-seed", experiment.first_seed, "The first seed. Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command->add_option("--jobs", experiment.jobs, "Threads. Default: one for every core")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  add_set_option(*command, options->sets);
+  add_subject_options(*command, *options);
+  add_curve_options(*command, *options);
+  add_format_option(*command, options->format, {"table", "json", "csv"});
+  command
+      ->add_option("-o,--output", options->output,
+                   "Write everything to this folder, with meshes and pictures. An earlier result\n"
+                   "there is replaced")
+      ->type_name("DIR");
+  command->footer(kExamples);
+  command->callback(
+      [options, &action] { action = [options] { return run_reconstruct(*options); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,131 @@
+#include "cli/commands/replay_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/exit_status.h"
+#include "cli/recordings.h"
+#include "cli/replay_folder.h"
+#include "evaluation/replay/replay.h"
+#include "reports/archive/archive.h"
+#include "reports/rigs/replay_report.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kReplayExamples = R"(
+Takes a folder that `simbench record` wrote, and prints the table of the run that was recorded. Of a
+recording that was cut off or is damaged, it scores what there is and says so.
+
+Or takes the CSV of librealsense's rs-data-collect:
+  Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
+one file per camera, or one file of several cameras with two more columns, `camera` and `host`.
+Arrivals of several cameras must count from one instant. device_time and gathering are run on them;
+host_sync cannot be replayed.
+
+Examples:
+  simbench replay monday                            a recording folder
+  simbench replay monday --pipelines genlock --format markdown
+  simbench replay front.csv
+  simbench replay front.csv back.csv --format json > replay.json
+  simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted (of a folder).)";
+
+struct ReplayOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> pipelines;
+  std::string format;
+  std::string output;
+  std::vector<std::string> command;
+};
+
+std::string formatted(const evaluation::Replay& replay, const ReplayOptions& options) {
+  if (options.format == "json") return reports::replay_json(replay, options.files);
+  if (options.format == "csv") return reports::replay_csv(replay);
+  return reports::replay_table(replay);
+}
+
+// What only goes with a recording folder.
+void check_options_for_files(const ReplayOptions& options) {
+  if (options.format == "markdown") {
+    throw scenarios::InputError(
+        "--format: found 'markdown', allowed with CSV files: table, json, csv");
+  }
+  if (!options.pipelines.empty()) {
+    throw scenarios::InputError("--pipelines: only a recording folder has pipelines");
+  }
+}
+
+int run_files(const ReplayOptions& options) {
+  check_options_for_files(options);
+  reports::Provenance provenance;
+  provenance.command = options.command;
+  provenance.started = std::chrono::system_clock::now();
+  std::vector<CameraStream> streams = read_recordings(options.files);
+  std::unique_ptr<reports::OutputFolder> output;
+  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+  const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
+  print_warnings(replay.warnings);
+  print_note("host_sync cannot be replayed; device_time and gathering are");
+  provenance.finished = std::chrono::system_clock::now();
+  if (output) {
+    const nlohmann::ordered_json files = {{"files", options.files}};
+    output->file("manifest.json") << reports::manifest_json(provenance, files.dump());
+    output->file("results.json") << reports::replay_json(replay, options.files);
+    reports::write_replay_frames(replay, output->file("frames.csv"));
+    output->publish();
+    print_note("results written to " + options.output);
+  }
+  print_result(formatted(replay, options));
+  return kOk;
+}
+
+int run_replay(const ReplayOptions& options) {
+  const auto folder =
+      std::find_if(options.files.begin(), options.files.end(),
+                   [](const std::string& name) { return std::filesystem::is_directory(name); });
+  if (folder == options.files.end()) return run_files(options);
+  if (options.files.size() > 1) {
+    throw scenarios::InputError(
+        fmt::format("{}: is a folder, allowed: one recording folder, or files only", *folder));
+  }
+  return replay_folder({.folder = *folder,
+                        .pipelines = options.pipelines,
+                        .format = options.format,
+                        .output = options.output,
+                        .command = options.command});
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
+  CLI::App* command = app.add_subcommand(
+      "replay", "Score a recording folder, or device_time and gathering on CSV of real cameras");
+  auto options = std::make_shared<ReplayOptions>();
+  options->command = std::move(arguments);
+  command->add_option("recordings", options->files, "A recording folder, or CSV files")
+      ->type_name("FILE.csv...|DIR")
+      ->required();
+  command
+      ->add_option("--pipelines", options->pipelines,
+                   "Of a folder: only these of the recorded pipelines, in this order")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_format_option(*command, options->format, {"table", "markdown", "json", "csv"});
+  command
+      ->add_option("--output", options->output,
+                   "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
+                   "hosts.csv) to this folder. An earlier result there is replaced")
+      ->type_name("DIR");
+  command->footer(kReplayExamples);
+  command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
+}
+
+}  // namespace simbench::cli

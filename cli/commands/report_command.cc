@@ -1,0 +1,135 @@
+#include "cli/commands/report_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/report_figures.h"
+#include "cli/exit_status.h"
+#include "cli/messages.h"
+#include "cli/watched.h"
+#include "reports/archive/archive_reader.h"
+#include "reports/page/html_report.h"
+#include "reports/text/output_file.h"
+#include "scenarios/loader.h"
+
+namespace simbench::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostSeedsInDetail = 1000;
+
+constexpr const char* kReportExamples = R"(
+The file needs nothing else: it opens offline in any browser, can be mailed and printed.
+
+Examples:
+  simbench run --scenario 18cam_6host_45fps --output results/monday
+  simbench report results/monday -o monday.html
+  simbench report results/monday results/tuesday -o both.html --budget-seeds 0
+  simbench report results/monday -o two.html --pipelines yoon2021_both,genlock --seeds-in-detail 10
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct ReportOptions {
+  std::vector<std::string> archives;
+  std::string output;
+  app::ReportDetail detail;
+  std::vector<std::string> command;
+};
+
+void check_named_once(const std::vector<std::string>& paths) {
+  std::vector<fs::path> known;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const fs::path full = fs::weakly_canonical(path, error);
+    if (std::find(known.begin(), known.end(), full) != known.end()) {
+      throw scenarios::InputError(fmt::format("{}: is named twice; name every archive once", path));
+    }
+    known.push_back(full);
+  }
+}
+
+void check_pipelines(const app::ReportDetail& detail,
+                     const std::vector<reports::Archive>& archives) {
+  for (const std::string& pipeline : detail.pipelines) {
+    for (const reports::Archive& archive : archives) {
+      std::vector<std::string> names;
+      for (const evaluation::Row& row : archive.results.rows) names.push_back(row.pipeline);
+      if (std::find(names.begin(), names.end(), pipeline) != names.end()) continue;
+      throw scenarios::InputError(fmt::format("--pipelines: found '{}', allowed for {}: {}",
+                                              pipeline, archive.path, fmt::join(names, ", ")));
+    }
+  }
+}
+
+int run(const ReportOptions& options) {
+  check_named_once(options.archives);
+  std::vector<reports::Archive> archives;
+  for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
+  check_pipelines(options.detail, archives);
+  const reports::OutputFile file(options.output);
+
+  reports::ReportInput input{.archives = {}, .command = options.command};
+  for (reports::Archive& archive : archives) {
+    const app::ReportDetail detail = bounded(options.detail, archive, archives.size());
+    auto reported = watched<reports::ReportedArchive>([&](const evaluation::Progress& progress) {
+      return app::with_figures(std::move(archive), detail, progress);
+    });
+    if (!reported) return kInterrupted;
+    print_warnings(reported->notes);
+    const std::string bounds = app::detail_note(reported->archive, detail);
+    if (!bounds.empty()) reported->notes.insert(reported->notes.begin(), bounds);
+    input.archives.push_back(std::move(*reported));
+  }
+  const std::string html = reports::html_report(input);
+  file.write(html);
+  file.publish();
+  print_note(fmt::format("report written to {} ({:.1f} MB)", options.output,
+                         static_cast<double>(html.size()) / 1e6));
+  return kOk;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
+  CLI::App* command =
+      app.add_subcommand("report", "Result archives as one HTML file: tables and figures");
+  auto options = std::make_shared<ReportOptions>();
+  options->command = std::move(arguments);
+  command
+      ->add_option("archives", options->archives,
+                   "Folders that `simbench run --output` wrote, or a results.json alone")
+      ->type_name("DIR...")
+      ->required();
+  command->add_option("-o,--output", options->output, "The file; an earlier one is replaced")
+      ->type_name("FILE.html")
+      ->required();
+  command
+      ->add_option("--seeds-in-detail", options->detail.seeds,
+                   "How many seeds to show with stamps, clocks and single pulses.\n"
+                   "Default: 4, fewer where there are more than 8 pipelines")
+      ->type_name("N")
+      ->check(whole_number(1, kMostSeedsInDetail));
+  command
+      ->add_option("--budget-seeds", options->detail.budget_seeds,
+                   "Seeds of the error budgets (128 runs for each and every pipeline); 0: none.\n"
+                   "Default: 4, fewer where there are more than 8 pipelines")
+      ->type_name("N")
+      ->check(whole_number(0, kMostSeedsInDetail));
+  command
+      ->add_option("--pipelines", options->detail.pipelines,
+                   "Show only these pipelines in detail; the tables have all")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_json_messages_option(*command);
+  command->footer(kReportExamples);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,252 @@
+#include "cli/commands/run_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "app/interrupt.h"
+#include "app/results_text.h"
+#include "cli/exit_status.h"
+#include "cli/rig_backend.h"
+#include "cli/watched.h"
+#include "evaluation/budget/budget.h"
+#include "evaluation/run/evaluate.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "reports/archive/archive.h"
+#include "reports/results/budget_report.h"
+#include "reports/rigs/prediction_report.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kRunExamples = R"(
+Examples:
+  simbench run --scenario 18cam_6host_45fps
+  simbench run --scenario 18cam_6host_45fps --seeds 1000 --pipelines yoon2021_both,genlock
+  simbench run --scenario my_rig.json --set /network/latency_fixed_ms=0.2 --format markdown
+  simbench run --scenario 3cam_1host_30fps --format json > results.json
+  simbench run --scenario 18cam_6host_45fps_lan --pipelines yoon2021_both --budget
+  simbench run --scenario 3cam_1host_30fps --output results/monday
+  simbench run --scenario 18cam_6host_45fps --backend hardware --rig rig.json --key-file rig.key
+
+On a real rig each pipeline is captured --seeds times (once, if not said), and the simulator's
+prediction for the same scenario is printed beside what was measured.
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct RunOptions {
+  std::string scenario;
+  evaluation::EvaluationOptions evaluation;
+  BackendOptions backend;
+  std::vector<std::string> sets;
+  std::string format;
+  std::string output;
+  bool budget = false;
+  std::vector<std::string> command;
+};
+
+evaluation::WorldFactory make_world() {
+  return [](const scenarios::Scenario& scenario) {
+    return app::interruptible(sim::make_simulation(scenario));
+  };
+}
+
+std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
+                                            const evaluation::SourceFactory& make_source,
+                                            const evaluation::EvaluationOptions& options) {
+  return watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+    return evaluation::evaluate(scenario, make_source, options, progress);
+  });
+}
+
+std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
+                                            const evaluation::EvaluationOptions& options) {
+  return evaluate(
+      scenario, [&] { return make_world()(scenario); }, options);
+}
+
+// The rig is one: captures are made one after the other.
+std::optional<evaluation::Results> measure(const scenarios::Scenario& scenario,
+                                           const RunOptions& options) {
+  evaluation::EvaluationOptions evaluation = options.evaluation;
+  evaluation.jobs = 1;
+  evaluation.keep_pulses = !options.output.empty();
+  return evaluate(
+      scenario,
+      [&]() -> std::unique_ptr<RecordingSource> {
+        return app::interruptible(make_rig_source(options.backend, scenario));
+      },
+      evaluation);
+}
+
+// An error budget of every pipeline in place of the table.
+int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) {
+  reports::BudgetReport report = {.scenario = scenario.name,
+                                  .first_seed = options.evaluation.first_seed,
+                                  .seeds = options.evaluation.seeds,
+                                  .budgets = {}};
+  for (const evaluation::PipelineChoice& choice :
+       evaluation::choose_pipelines(scenario, options.evaluation.pipelines)) {
+    std::optional<evaluation::Budget> budget =
+        watched<evaluation::Budget>([&](const evaluation::Progress& progress) {
+          return evaluation::error_budget(scenario, choice.pipeline, make_world(),
+                                          options.evaluation, progress);
+        });
+    if (!budget) return kInterrupted;
+    report.budgets.push_back(std::move(*budget));
+  }
+  if (options.format == "json") {
+    print_result(reports::budget_json(report));
+  } else if (options.format == "markdown") {
+    print_result(reports::budget_markdown(report));
+  } else {
+    print_result(reports::budget_table(report));
+  }
+  return kOk;
+}
+
+// What --budget cannot be combined with.
+void check_budget_options(const RunOptions& options) {
+  if (!options.budget) return;
+  if (options.format == "csv") {
+    throw scenarios::InputError(
+        "--format: found 'csv', allowed with --budget: table, markdown, json");
+  }
+  if (!options.output.empty()) {
+    throw scenarios::InputError("--output: a result archive holds no budget; use --format json");
+  }
+  if (options.backend.backend == "hardware") {
+    throw scenarios::InputError("--budget: only in the simulator, which can idealise each stage");
+  }
+}
+
+std::string text_with_prediction(const evaluation::Results& measured,
+                                 const evaluation::Results& simulated,
+                                 const scenarios::Scenario& scenario, const std::string& format) {
+  if (format == "json") return reports::json_with_prediction(measured, simulated);
+  std::string results = app::results_text(measured, scenario, format);
+  if (format == "csv") return results;
+  return results + "\n" +
+         (format == "markdown" ? reports::prediction_markdown(measured, simulated)
+                               : reports::prediction_table(measured, simulated));
+}
+
+// A table of dashes is no result.
+void check_anything_was_captured(const evaluation::Results& measured) {
+  for (const evaluation::Row& row : measured.rows) {
+    for (const evaluation::SeedScore& seed : row.seeds) {
+      if (seed.recorded) return;
+    }
+  }
+  std::string why = "nothing could be captured";
+  for (const evaluation::Row& row : measured.rows) {
+    for (const std::string& note : row.notes) why += fmt::format("\n  {}, {}", row.pipeline, note);
+  }
+  throw scenarios::InputError(why);
+}
+
+// The same pipelines on the rig, with the simulator's prediction beside them.
+int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
+               reports::Provenance provenance) {
+  std::unique_ptr<reports::OutputFolder> output;
+  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+  const std::optional<evaluation::Results> measured = measure(scenario, options);
+  if (!measured) return kInterrupted;
+  check_anything_was_captured(*measured);
+  print_warnings(measured->warnings);
+  provenance.finished = std::chrono::system_clock::now();
+  if (output) {
+    reports::write_archive(*output, *measured, scenario, provenance);
+    print_note("results written to " + options.output);
+  }
+  const std::optional<evaluation::Results> predicted =
+      simulate(scenario, {.pipelines = options.evaluation.pipelines});
+  if (!predicted) return kInterrupted;
+  print_result(text_with_prediction(*measured, *predicted, scenario, options.format));
+  return kOk;
+}
+
+int run(const RunOptions& options) {
+  check_budget_options(options);
+  reports::Provenance provenance;
+  provenance.command = options.command;
+  provenance.started = std::chrono::system_clock::now();
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  evaluation::check_pipelines(scenario);
+  print_warnings(scenarios::warnings(scenario));
+  if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(provenance));
+  if (options.budget) return run_budgets(options, scenario);
+  std::unique_ptr<reports::OutputFolder> output;
+  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+
+  evaluation::EvaluationOptions evaluation = options.evaluation;
+  evaluation.keep_pulses = output != nullptr;
+  const std::optional<evaluation::Results> results = simulate(scenario, evaluation);
+  if (!results) return kInterrupted;
+  print_warnings(results->warnings);
+  provenance.finished = std::chrono::system_clock::now();
+  if (output) {
+    reports::write_archive(*output, *results, scenario, provenance);
+    print_note("results written to " + options.output);
+  }
+  print_result(app::results_text(*results, scenario, options.format));
+  return kOk;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
+  CLI::App* command = app.add_subcommand(
+      "run", "Run every pipeline of a scenario over many seeds and print the table");
+  auto options = std::make_shared<RunOptions>();
+  options->command = std::move(arguments);
+  evaluation::EvaluationOptions& evaluation = options->evaluation;
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Name of a scenario (see `simbench list`) or path of a scenario file")
+      ->type_name("SCENARIO")
+      ->required();
+  CLI::Option* seeds =
+      command
+          ->add_option("--seeds", evaluation.seeds,
+                       "How many seeds: runs of each pipeline. Default: 32; on a real rig 1")
+          ->type_name("N")
+          ->check(whole_number(1, 1'000'000));
+  command->add_option("--first-seed", evaluation.first_seed, "The first seed. Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command->add_option("--jobs", evaluation.jobs, "Threads. Default: one for every core")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  command
+      ->add_option("--pipelines", evaluation.pipelines,
+                   "Only these pipelines of the scenario, in this order")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_set_option(*command, options->sets);
+  add_backend_options(*command, options->backend);
+  add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
+  command
+      ->add_option("--output", options->output,
+                   "Write a result archive to this folder: manifest.json, results.json,\n"
+                   "frames.csv, hosts.csv. An earlier archive there is replaced")
+      ->type_name("DIR");
+  command->add_flag("--budget", options->budget,
+                    "Instead of the table, divide each pipeline's error among the stages that\n"
+                    "cause it (128 runs for every seed)");
+  command->footer(kRunExamples);
+  command->callback([options, seeds, &action] {
+    if (options->backend.backend == "hardware" && seeds->count() == 0) {
+      options->evaluation.seeds = 1;
+    }
+    action = [options] { return run(*options); };
+  });
+}
+
+}  // namespace simbench::cli

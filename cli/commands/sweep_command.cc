@@ -1,0 +1,203 @@
+#include "cli/commands/sweep_command.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/interrupt.h"
+#include "cli/exit_status.h"
+#include "cli/messages.h"
+#include "cli/sweep_results.h"
+#include "cli/watched.h"
+#include "evaluation/sweep/sweep_plan.h"
+#include "evaluation/sweep/sweep_worker.h"
+#include "reports/sweep/sweep_folder.h"
+#include "reports/sweep/sweep_report.h"
+#include "scenarios/study.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+using evaluation::SweepPlan;
+using scenarios::Study;
+
+constexpr const char* kSweepExamples = R"(
+Examples:
+  simbench sweep --scenario 18cam_6host_45fps --sweep /usb/delivery_jitter_transfers=0:1:0.1
+                 --pipelines yoon2021_both,oracle -o results/jitter
+  simbench sweep --scenario 3cam_1host_30fps --sweep /trigger/rate_hz=15,30
+                 --sweep /cameras/sync_mode=slave,full_slave --seeds 16 -o results/modes
+  simbench sweep --scenario 18cam_6host_45fps
+                 --sweep /hosts/count=2:6:2+/cameras/count=6:18:6 -o results/hosts
+  simbench sweep --study scalability -o results/scalability
+  mpirun -n 64 simbench sweep --study seeds_needed --seeds 100000 -o results/seeds
+
+A sweep that was interrupted, killed or ran out of disk space goes on when the same command is
+given again: no run that was finished is lost or repeated, and the results are the same.
+
+In the folder: sweep.csv has a line for each point, pipeline and seed, hosts.csv one for each host
+of these, sweep.txt the table, sweep.svg the plot (drawn by gnuplot), runs.log the finished runs.
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct SweepOptions {
+  std::string study;
+  evaluation::SweepRequest request;
+  std::vector<std::string> sets;
+  std::optional<std::uint64_t> seeds;
+  unsigned jobs = 0;
+  std::string output;
+  bool restart = false;
+};
+
+// The study's parts that the command line does not replace.
+void add_study(const Study& study, SweepOptions& options) {
+  evaluation::SweepRequest& request = options.request;
+  if (!request.axes.empty()) {
+    throw scenarios::InputError("--sweep: a study has its own axes; leave out --study or --sweep");
+  }
+  if (request.scenario.empty()) request.scenario = study.scenario;
+  if (request.pipelines.empty()) request.pipelines = study.pipelines;
+  if (!options.seeds) options.seeds = study.seeds;
+  request.axes = study.sweep;
+  options.sets.insert(options.sets.begin(), study.set.begin(), study.set.end());
+}
+
+const Study* study_of(SweepOptions& options) {
+  if (options.study.empty()) {
+    if (!options.request.scenario.empty() && !options.request.axes.empty()) return nullptr;
+    throw scenarios::InputError(
+        "sweep: found neither --study nor both --scenario and --sweep; `simbench sweep --study "
+        "list` lists the studies");
+  }
+  const Study* study = scenarios::find_study(options.study);
+  if (study == nullptr) {
+    std::vector<std::string> known;
+    for (const Study& each : scenarios::studies()) known.push_back(each.name);
+    throw scenarios::InputError(fmt::format("--study: found '{}', allowed: list, {}", options.study,
+                                            fmt::join(known, ", ")));
+  }
+  add_study(*study, options);
+  return study;
+}
+
+// Runs what is missing in the log; nothing if it was interrupted.
+bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
+                 evaluation::TaskFarm& farm) {
+  std::vector<std::size_t> missing;
+  for (std::size_t run = 0; run < plan.runs(); ++run) {
+    if (log.text(run).empty()) missing.push_back(run);
+  }
+  if (log.damaged() > 0) {
+    print_warnings(
+        {fmt::format("{} damaged records in runs.log; their runs are done again", log.damaged())});
+  }
+  if (log.finished() > 0) {
+    print_note(fmt::format("{} of {} runs are there already", log.finished(), plan.runs()));
+  }
+  if (missing.empty()) return true;
+  const auto done = watched<bool>([&](const evaluation::Progress& progress) {
+    evaluation::Tasks tasks = evaluation::sweep_tasks(plan, missing);
+    tasks.threads = jobs;
+    std::size_t finished = 0;
+    farm.run(tasks, [&](std::size_t task, const std::string& answer) {
+      log.append(missing[task], answer);
+      progress(++finished, missing.size());
+    });
+    return std::optional(true);
+  });
+  return done.has_value();
+}
+
+int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
+  if (options.study == "list") {
+    print_result(study_list());
+    return kOk;
+  }
+  const Study* study = study_of(options);
+  if (options.output.empty()) {
+    throw scenarios::InputError("sweep: found no --output; name a folder for its results");
+  }
+  options.request.overrides = overrides_of(options.sets);
+  if (options.seeds) options.request.seeds = *options.seeds;
+  const SweepPlan plan = evaluation::make_plan(options.request);
+  print_warnings(evaluation::check_points(plan, options.request, options.jobs));
+
+  reports::SweepFolder folder(options.output, reports::sweep_manifest(plan, options.study),
+                              plan.runs(), options.restart);
+  evaluation::ThreadFarm threads(simulated_sweep_workers());
+  if (!finish_runs(plan, folder.log(), options.jobs, farm != nullptr ? *farm : threads)) {
+    print_note(fmt::format("{} of {} runs are kept in {}; the same command goes on from there",
+                           folder.log().finished(), plan.runs(), options.output));
+    return kInterrupted;
+  }
+  const std::vector<std::string> tables =
+      study != nullptr ? study->tables : std::vector<std::string>{"response"};
+  print_result(write_sweep_results(plan, tables, folder));
+  return kOk;
+}
+
+}  // namespace
+
+evaluation::TaskWorkerFactory simulated_sweep_workers() {
+  return evaluation::sweep_workers([](const scenarios::Scenario& scenario) {
+    return app::interruptible(sim::make_simulation(scenario));
+  });
+}
+
+void add_sweep_command(CLI::App& app, Action& action, evaluation::TaskFarm* farm) {
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Run a scenario with parameters varied, and print how each pipeline responds");
+  auto options = std::make_shared<SweepOptions>();
+  command
+      ->add_option("--scenario", options->request.scenario,
+                   "Name of a scenario (see `simbench list`) or path of a scenario file")
+      ->type_name("SCENARIO");
+  command
+      ->add_option("--sweep", options->request.axes,
+                   "What to vary, repeatable: every combination is a point. Values are\n"
+                   "start:stop:step (stop included) or value,value,...; parameters that vary\n"
+                   "together are joined: /hosts/count=2:6:2+/cameras/count=6:18:6")
+      ->type_name("/POINTER=VALUES")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--study", options->study,
+                   "A ready-made sweep in place of --scenario and --sweep; `list` lists them")
+      ->type_name("STUDY");
+  command->add_option("--seeds", options->seeds, "How many seeds at each point. Default: 32")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--first-seed", options->request.first_seed, "The first seed. Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command
+      ->add_option("--pipelines", options->request.pipelines,
+                   "Only these pipelines of the scenario, in this order")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_set_option(*command, options->sets);
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Threads. Default: one for every core; under MPI one for every rank")
+      ->type_name("N")
+      ->check(whole_number(1, 4096));
+  command
+      ->add_option("-o,--output", options->output,
+                   "The folder of the sweep. One that was not finished is gone on with")
+      ->type_name("DIR");
+  command->add_flag("--restart", options->restart,
+                    "Remove the sweep that is in the folder, and start anew");
+  add_json_messages_option(*command);
+  command->footer(kSweepExamples);
+  command->callback(
+      [options, farm, &action] { action = [options, farm] { return sweep(*options, farm); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,190 @@
+#include "cli/commands/trace_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "app/interrupt.h"
+#include "cli/exit_status.h"
+#include "cli/watched.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "reports/text/output_file.h"
+#include "reports/text/output_folder.h"
+#include "reports/timeline/trace_chrome.h"
+#include "reports/timeline/trace_csv.h"
+#include "reports/timeline/trace_recorder.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+// The one that is looked at most, where a scenario has it.
+constexpr const char* kUsualPipeline = "yoon2021_both";
+// Hours of true time.
+constexpr double kFarthestMs = 1e9;
+
+constexpr const char* kTraceExamples = R"(
+Open the file at ui.perfetto.dev ("Open trace file"; nothing is uploaded) or in chrome://tracing.
+Everything is in true time, which the simulated hosts cannot see: a process for the trigger and for
+each host, arrows from pulse to exposure to delivery to gathered set and along the messages of a
+conversation, each host's clock error as a counter.
+
+Examples:
+  simbench trace --scenario 18cam_6host_45fps --seed 3 -o trace.json
+  simbench trace --scenario 6cam_2host_30fps --from-ms 0 --to-ms 2000 -o sync.json
+  simbench trace --scenario 18cam_6host_45fps --pipeline ntp_w32time --format csv -o ntp.csv
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct TraceCommandOptions {
+  std::string scenario;
+  std::string pipeline;
+  std::uint64_t seed = 1;
+  std::vector<std::string> sets;
+  std::string format = "chrome";
+  std::string output = "-";
+  std::optional<double> from_ms;
+  std::optional<double> to_ms;
+  std::uint64_t max_events = reports::TraceOptions{}.max_events;
+};
+
+reports::TraceOptions trace_options(const TraceCommandOptions& options) {
+  reports::TraceOptions trace;
+  if (options.from_ms) trace.from = TrueTime(from_ms(*options.from_ms));
+  if (options.to_ms) trace.to = TrueTime(from_ms(*options.to_ms));
+  if (trace.from >= trace.to) {
+    throw scenarios::InputError(fmt::format("--to-ms: found {}, allowed: more than --from-ms, {}",
+                                            *options.to_ms, *options.from_ms));
+  }
+  trace.max_events = options.max_events;
+  return trace;
+}
+
+evaluation::PipelineChoice choose(const scenarios::Scenario& scenario, std::string name) {
+  if (name.empty()) {
+    const bool has_usual =
+        std::any_of(scenario.pipelines.begin(), scenario.pipelines.end(),
+                    [](const scenarios::Pipeline& p) { return p.name == kUsualPipeline; });
+    name = has_usual ? kUsualPipeline : scenario.pipelines.front().name;
+  }
+  return evaluation::choose_pipelines(scenario, {name}).front();
+}
+
+void write(const reports::Trace& trace, const std::string& format, std::ostream& out) {
+  if (format == "csv") {
+    reports::write_trace_csv(trace, out);
+  } else {
+    reports::write_chrome_trace(trace, out);
+  }
+  out.flush();
+}
+
+// A place for the result, which is refused before the work if it cannot be written.
+class Output {
+ public:
+  explicit Output(const std::string& name) : name_(name) {
+    if (name == "-") return;
+    file_.emplace(name);
+    errno = 0;
+    stream_.open(file_->path(), std::ios::binary);
+    if (!stream_) fail();
+  }
+
+  void write(const reports::Trace& trace, const std::string& format) {
+    std::ostream& out = file_ ? stream_ : std::cout;
+    errno = 0;
+    cli::write(trace, format, out);
+    if (!out) fail();
+    if (!file_) return;
+    stream_.close();
+    if (!stream_) fail();
+    file_->publish();
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw reports::OutputError(
+        fmt::format("--output {}: {}", name_, errno != 0 ? std::strerror(errno) : "write error"));
+  }
+
+  std::string name_;
+  std::optional<reports::OutputFile> file_;
+  std::ofstream stream_;
+};
+
+int run_trace(const TraceCommandOptions& options) {
+  const reports::TraceOptions wanted = trace_options(options);
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  const evaluation::PipelineChoice choice = choose(scenario, options.pipeline);
+  print_warnings(scenarios::warnings(scenario));
+  Output output(options.output);
+  const auto trace = watched<reports::Trace>([&](const evaluation::Progress&) {
+    const auto source = app::interruptible(sim::make_simulation(scenario));
+    return reports::record_trace(scenario, choice, options.seed, *source, wanted);
+  });
+  if (!trace) return kInterrupted;
+  output.write(*trace, options.format);
+  for (const std::string& note : reports::left_out_notes(*trace)) print_note(note);
+  if (options.format == "csv") {
+    for (const std::string& note : reports::trace_csv_notes(*trace)) print_note(note);
+  }
+  return kOk;
+}
+
+void add_window_options(CLI::App& command, TraceCommandOptions& options) {
+  command
+      .add_option("--from-ms", options.from_ms,
+                  "Only what begins then or later, in true time: 0 is the start of host\n"
+                  "synchronisation. Default: from the start of the world")
+      ->type_name("MS")
+      ->check(number_within(-kFarthestMs, kFarthestMs));
+  command.add_option("--to-ms", options.to_ms, "Only what begins before that. Default: to the end")
+      ->type_name("MS")
+      ->check(number_within(-kFarthestMs, kFarthestMs));
+  command
+      .add_option("--max-events", options.max_events,
+                  "The most events in the file, names aside; what begins after the instant at\n"
+                  "which there are so many is left out, which is noted. Default: 200000")
+      ->type_name("N")
+      ->check(whole_number(1, 10'000'000));
+}
+
+}  // namespace
+
+void add_trace_command(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("trace", "One run as a timeline, for the Perfetto UI or PlotJuggler");
+  auto options = std::make_shared<TraceCommandOptions>();
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Name of a scenario (see `simbench list`) or path of a scenario file")
+      ->type_name("SCENARIO")
+      ->required();
+  command->add_option("--seed", options->seed, "Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command
+      ->add_option("--pipeline", options->pipeline,
+                   "One of the scenario's. Default: yoon2021_both, or its first if it has none")
+      ->type_name("NAME");
+  add_set_option(*command, options->sets);
+  add_format_option(*command, options->format, {"chrome", "csv"});
+  add_json_messages_option(*command);
+  add_window_options(*command, *options);
+  command
+      ->add_option("-o,--output", options->output,
+                   "The file, which appears whole or not at all. Default: -, standard output")
+      ->type_name("FILE");
+  command->footer(kTraceExamples);
+  command->callback([options, &action] { action = [options] { return run_trace(*options); }; });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,241 @@
+#include "cli/commands/validate_model_command.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/experiment_source.h"
+#include "app/interrupt.h"
+#include "cli/exit_status.h"
+#include "cli/watched.h"
+#include "evaluation/run/evaluate.h"
+#include "evaluation/statistics/statistics.h"
+#include "hardware/experiment/network_sandbox.h"
+#include "reports/rigs/measured_study.h"
+#include "reports/rigs/model_gap_report.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kValidateModelExamples = R"(
+The bench's own error: the scenario's hosts run as processes on this machine, with real sockets,
+clocks and timers, a relay between them that is the scenario's network, and cameras that are played.
+All processes share one monotonic clock, so the true errors of their clocks are known. Then the same
+scenario is simulated, and both distributions are printed side by side.
+
+It validates transport, protocols and what hosts cost, not cameras: see the matrix of evidence.
+Nodes get network namespaces of their own where that is permitted, else ports of loopback. A
+repetition of the paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their
+service runs before the capture. The machine should do nothing else meanwhile.
+
+Examples:
+  simbench validate-model --scenario 6node_relay
+  simbench validate-model --scenario 6node_relay --repeats 20 --save study.json
+  simbench validate-model --scenario 6node_relay --measured study.json --format json
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct ValidateModelOptions {
+  std::string scenario;
+  std::vector<std::string> sets;
+  std::vector<std::string> pipelines;
+  std::uint64_t first_seed = 1;
+  std::uint64_t repeats = 5;
+  std::uint64_t seeds = 200;
+  std::string measured;
+  std::string save;
+  std::string format;
+};
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(':');
+    if (line.starts_with("model name") && colon != std::string::npos) {
+      return line.substr(std::min(colon + 2, line.size()));
+    }
+  }
+  return "unknown processor";
+}
+
+std::string machine(const std::string& network) {
+  utsname system{};
+  uname(&system);
+  return fmt::format("{}, {} cores, {} {}, {}", processor(), std::thread::hardware_concurrency(),
+                     system.sysname, system.release, network);
+}
+
+std::string today() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc = {};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:%Y-%m-%d}", utc);
+}
+
+// Where the nodes will be: in namespaces, if this process can have one.
+std::string choose_network(app::ExperimentOptions& options) {
+  const std::optional<std::string> refusal = hardware::NetworkSandbox::enter();
+  options.namespaces = !refusal;
+  if (!refusal) return "namespaces";
+  print_note(*refusal + "; the nodes share the loopback interface");
+  return "loopback";
+}
+
+// How late the relay was beyond the scenario's latencies, over all repetitions.
+class RelayLateness {
+ public:
+  void add(const std::string& statistics) {
+    const auto relay = nlohmann::json::parse(statistics, nullptr, false);
+    if (!relay.is_object() || !relay["late_p50_us"].is_number()) return;
+    p50_us_.push_back(relay["late_p50_us"].get<double>());
+    p95_us_.push_back(relay["late_p95_us"].get<double>());
+  }
+  void print() const {
+    if (p50_us_.empty()) return;
+    print_note(fmt::format(
+        "beyond the scenario's latencies, messages left the relay {:.0f} us late (95 %: {:.0f} us)",
+        evaluation::median(p50_us_), evaluation::median(p95_us_)));
+  }
+
+ private:
+  std::vector<double> p50_us_;
+  std::vector<double> p95_us_;
+};
+
+// Nothing: interrupted.
+std::optional<reports::MeasuredStudy> measure(const ValidateModelOptions& options,
+                                              const scenarios::Scenario& scenario) {
+  app::ExperimentOptions experiment;
+  const std::string network = choose_network(experiment);
+  experiment.cancelled = [] { return app::InterruptHandler::raised(); };
+  RelayLateness lateness;
+  experiment.relay_statistics = [&lateness](const std::string& each) { lateness.add(each); };
+  const auto results = watched<evaluation::Results>(
+      [&](const evaluation::Progress& progress) {
+        return evaluation::evaluate(
+            scenario,
+            [&] {
+              return app::interruptible(
+                  std::make_unique<app::ExperimentSource>(scenario, experiment));
+            },
+            {.first_seed = options.first_seed,
+             .seeds = options.repeats,
+             .jobs = 1,
+             .pipelines = options.pipelines},
+            progress);
+      },
+      "repetitions");
+  if (!results) return std::nullopt;
+  print_warnings(results->warnings);
+  lateness.print();
+  return reports::measured_study(*results, today(), machine(network));
+}
+
+// The study's pipelines that the user wants and the scenario has.
+std::vector<std::string> pipelines_of(const reports::MeasuredStudy& study,
+                                      const ValidateModelOptions& options) {
+  std::vector<std::string> names;
+  for (const reports::MeasuredPipeline& row : study.rows) {
+    const bool wanted =
+        options.pipelines.empty() || std::find(options.pipelines.begin(), options.pipelines.end(),
+                                               row.pipeline) != options.pipelines.end();
+    if (wanted) names.push_back(row.pipeline);
+  }
+  if (names.empty()) {
+    throw scenarios::InputError(options.measured +
+                                ": none of the wanted pipelines is in the study");
+  }
+  return names;
+}
+
+std::string formatted(const reports::ModelGapReport& report, const std::string& format) {
+  if (format == "json") return reports::model_gap_json(report);
+  if (format == "markdown") return reports::model_gap_markdown(report);
+  return reports::model_gap_table(report);
+}
+
+int validate_model(const ValidateModelOptions& options) {
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  evaluation::check_pipelines(scenario);
+  print_warnings(scenarios::warnings(scenario));
+  const std::optional<reports::MeasuredStudy> study =
+      options.measured.empty()
+          ? measure(options, scenario)
+          : std::optional(reports::read_measured_study(options.measured, scenario.name));
+  if (!study) return kInterrupted;
+  if (!options.save.empty()) {
+    reports::write_measured_study(options.save, *study);
+    print_note("measured study written to " + options.save);
+  }
+  const auto simulated = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+    return evaluation::evaluate(
+        scenario, [&] { return app::interruptible(sim::make_simulation(scenario)); },
+        {.seeds = options.seeds, .pipelines = pipelines_of(*study, options)}, progress);
+  });
+  if (!simulated) return kInterrupted;
+  print_result(formatted(reports::model_gap_report(*study, *simulated), options.format));
+  return kOk;
+}
+
+void add_measurement_options(CLI::App& command, ValidateModelOptions& options) {
+  command
+      .add_option("--repeats", options.repeats, "Repetitions of each pipeline measured. Default: 5")
+      ->type_name("N")
+      ->check(whole_number(1, 1000));
+  command
+      .add_option("--first-seed", options.first_seed,
+                  "Seed of the first repetition's clocks, cameras and relay. Default: 1")
+      ->type_name("K")
+      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
+  command
+      .add_option("--measured", options.measured,
+                  "Instead of measuring now: a study that --save wrote")
+      ->type_name("FILE");
+  command
+      .add_option("--save", options.save,
+                  "Write what was measured to this file, with date and machine")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_validate_model_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "validate-model",
+      "Measure a scenario with real processes and compare the simulation with it");
+  auto options = std::make_shared<ValidateModelOptions>();
+  command
+      ->add_option("--scenario", options->scenario,
+                   "Name of a scenario (see `simbench list`) or path of a scenario file")
+      ->type_name("SCENARIO")
+      ->required();
+  add_set_option(*command, options->sets);
+  command->add_option("--pipelines", options->pipelines, "Only these pipelines of the scenario")
+      ->type_name("NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_measurement_options(*command, *options);
+  command->add_option("--seeds", options->seeds, "Seeds of each pipeline simulated. Default: 200")
+      ->type_name("N")
+      ->check(whole_number(1, 1'000'000));
+  add_format_option(*command, options->format, {"table", "markdown", "json"});
+  command->footer(kValidateModelExamples);
+  command->callback(
+      [options, &action] { action = [options] { return validate_model(*options); }; });
+}
+
+}  // namespace simbench::cli

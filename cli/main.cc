@@ -1,0 +1,7 @@
+#include "cli/command_line.h"
+#include "cli/freed_memory.h"
+
+int main(int argc, char** argv) {
+  simbench::cli::keep_freed_memory();
+  return simbench::run_command_line(argc, argv);
+}

@@ -1,0 +1,270 @@
+// simbench-mpi: the same command line as simbench, whose sweeps are worked on by all ranks of an
+// MPI job. `mpirun -n 64 simbench sweep ...` becomes this program (cli/mpi_launch.h).
+//
+// Rank 0 is the command: it reads the arguments, writes the folder and prints; it gives each rank a
+// run, and the next one for every answer, so that a rank which is faster does more; and it works
+// itself. The other ranks know nothing but their tasks: scenario files need only be where rank 0
+// is. A rank that fails sends the reason as its answer; if a rank dies, the launcher ends the job,
+// and what rank 0 has written stays for the next start.
+//
+// Only the main thread of a rank talks to MPI, as MPI_THREAD_FUNNELED asks; it looks for messages
+// often instead of waiting for them, since waiting takes a whole core.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/mpi/communicator.hpp>
+#include <boost/mpi/environment.hpp>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/commands/sweep_command.h"
+#include "cli/freed_memory.h"
+#include "evaluation/sweep/task_farm.h"
+
+namespace simbench {
+namespace {
+
+namespace mpi = boost::mpi;
+using evaluation::TaskQueue;
+
+constexpr std::chrono::microseconds kShortestPause{100};
+constexpr std::chrono::microseconds kLongestPause{1600};
+// Tasks that wait at a rank for each of its threads, while there are plenty: sending one takes as
+// long as a look or two, and short runs are not much longer.
+constexpr std::size_t kAhead = 3;
+constexpr std::size_t kPlenty = 8;  // tasks left for each thread
+
+enum Tag : int { kSetup, kTask, kStop, kAnswer, kFailure };
+
+// What ranks tell each other: a number and a text, in one message of plain bytes. (Boost.MPI sends
+// an object of several members as two messages, and to wait for the second takes a whole core.)
+struct Message {
+  std::size_t number = 0;  // of the task; of a setup: threads
+  std::string text;        // of a setup, a task, an answer; of a failure: why
+};
+
+// Sends without waiting: a rank that sleeps takes its message later.
+class Outbox {
+ public:
+  explicit Outbox(mpi::communicator world) : world_(std::move(world)) {}
+  ~Outbox() {
+    for (Sent& sent : sent_) sent.request.wait();
+  }
+  Outbox(const Outbox&) = delete;
+  Outbox& operator=(const Outbox&) = delete;
+
+  void send(int rank, Tag tag, const Message& message) {
+    while (!sent_.empty() && sent_.front().request.test()) sent_.pop_front();
+    Sent& sent = sent_.emplace_back();
+    sent.bytes = fmt::format("{} {}", message.number, message.text);
+    sent.request = world_.isend(rank, tag, sent.bytes.data(), static_cast<int>(sent.bytes.size()));
+  }
+
+ private:
+  struct Sent {
+    std::string bytes;
+    mpi::request request;
+  };
+  mpi::communicator world_;
+  std::deque<Sent> sent_;
+};
+
+// A message that is there.
+Message receive(const mpi::communicator& world, const mpi::status& waiting) {
+  std::string bytes(static_cast<std::size_t>(*waiting.count<char>()), '\0');
+  world.recv(waiting.source(), waiting.tag(), bytes.data(), static_cast<int>(bytes.size()));
+  Message message;
+  const char* const end = bytes.data() + bytes.size();
+  const char* const blank = std::from_chars(bytes.data(), end, message.number).ptr;
+  message.text.assign(blank + 1, end);
+  return message;
+}
+
+// Between two looks for messages: short while they come, longer while they do not.
+class Pause {
+ public:
+  void take() {
+    std::this_thread::sleep_for(length_);
+    length_ = std::min(2 * length_, kLongestPause);
+  }
+  void end() { length_ = kShortestPause; }
+
+ private:
+  std::chrono::microseconds length_ = kShortestPause;
+};
+
+// Rank 0's side.
+class MpiFarm final : public evaluation::TaskFarm {
+ public:
+  explicit MpiFarm(mpi::communicator world) : world_(std::move(world)), outbox_(world_) {}
+
+  void run(const evaluation::Tasks& tasks, const evaluation::AnswerKeeper& keep) override {
+    TaskQueue queue(tasks, keep);
+    const unsigned threads = std::max(1U, tasks.threads);
+    for (int rank = 1; rank < world_.size(); ++rank) {
+      outbox_.send(rank, kSetup, {threads, tasks.setup});
+    }
+    {
+      std::vector<std::jthread> own;
+      for (unsigned i = 0; i < threads; ++i) {
+        own.emplace_back([&] { queue.work_off(cli::simulated_sweep_workers()); });
+      }
+      give_out(queue, threads);
+    }
+    queue.rethrow_failure();
+  }
+
+  // The others may go. Also where nothing was run.
+  void dismiss() {
+    for (int rank = 1; rank < world_.size(); ++rank) outbox_.send(rank, kStop, {});
+  }
+
+ private:
+  void give_out(TaskQueue& queue, unsigned threads) {
+    std::vector<std::size_t> given(static_cast<std::size_t>(world_.size()), 0);
+    std::size_t away = 0;
+    const auto fill = [&](int rank) {
+      const std::size_t others = given.size() * threads;
+      std::size_t& mine = given[static_cast<std::size_t>(rank)];
+      while (mine < threads * (queue.left() > kPlenty * others ? 1 + kAhead : 1)) {
+        std::optional<TaskQueue::Task> task = queue.next();
+        if (!task) return;
+        outbox_.send(rank, kTask, {task->index, std::move(task->text)});
+        ++mine;
+        ++away;
+      }
+    };
+    for (int rank = 1; rank < world_.size(); ++rank) fill(rank);
+    Pause pause;
+    while (away > 0) {
+      const auto waiting = world_.iprobe(mpi::any_source, mpi::any_tag);
+      if (!waiting) {
+        pause.take();
+        continue;
+      }
+      pause.end();
+      const Message answer = receive(world_, *waiting);
+      --given[static_cast<std::size_t>(waiting->source())];
+      --away;
+      if (waiting->tag() == kFailure) {
+        queue.failed(std::make_exception_ptr(std::runtime_error(answer.text)));
+      } else {
+        queue.answered(answer.number, answer.text);
+      }
+      fill(waiting->source());
+    }
+  }
+
+  mpi::communicator world_;
+  Outbox outbox_;
+};
+
+struct Answer {
+  Tag tag = kAnswer;
+  Message message;
+};
+
+// Between a rank's main thread and its workers. An empty task ends a worker.
+class Exchange {
+ public:
+  void add(std::optional<Message> task) {
+    const std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+    added_.notify_one();
+  }
+
+  std::optional<Message> next() {
+    std::unique_lock lock(mutex_);
+    added_.wait(lock, [this] { return !tasks_.empty(); });
+    std::optional<Message> task = std::move(tasks_.front());
+    tasks_.pop_front();
+    return task;
+  }
+
+  void answer(Answer answer) {
+    const std::lock_guard lock(mutex_);
+    answers_.push_back(std::move(answer));
+  }
+
+  std::deque<Answer> take_answers() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(answers_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable added_;
+  std::deque<std::optional<Message>> tasks_;
+  std::deque<Answer> answers_;
+};
+
+void work(const std::string& setup, Exchange& exchange) {
+  evaluation::TaskWorker worker;
+  while (const std::optional<Message> task = exchange.next()) {
+    try {
+      if (!worker) worker = cli::simulated_sweep_workers()(setup);
+      exchange.answer({kAnswer, {task->number, worker(task->text)}});
+    } catch (const std::exception& error) {
+      exchange.answer({kFailure, {task->number, error.what()}});
+    }
+  }
+}
+
+// The side of every other rank: until it is dismissed.
+void serve(const mpi::communicator& world) {
+  Exchange exchange;
+  Outbox outbox(world);
+  std::vector<std::jthread> workers;
+  Pause pause;
+  while (true) {
+    for (const Answer& answer : exchange.take_answers()) {
+      outbox.send(0, answer.tag, answer.message);
+      pause.end();
+    }
+    const auto waiting = world.iprobe(0, mpi::any_tag);
+    if (!waiting) {
+      pause.take();
+      continue;
+    }
+    pause.end();
+    Message message = receive(world, *waiting);
+    if (waiting->tag() == kStop) break;
+    if (waiting->tag() == kTask) {
+      exchange.add(std::move(message));
+      continue;
+    }
+    for (std::size_t i = 0; i < message.number; ++i) {
+      workers.emplace_back([&exchange, text = message.text] { work(text, exchange); });
+    }
+  }
+  for (std::size_t i = 0; i < workers.size(); ++i) exchange.add(std::nullopt);
+}
+
+}  // namespace
+}  // namespace simbench
+
+int main(int argc, char** argv) {
+  simbench::cli::keep_freed_memory();
+  const boost::mpi::environment environment(argc, argv, boost::mpi::threading::funneled);
+  const boost::mpi::communicator world;
+  if (world.rank() > 0) {
+    simbench::serve(world);
+    return 0;
+  }
+  simbench::MpiFarm farm(world);
+  const int status = simbench::run_command_line(argc, argv, {.farm = &farm});
+  farm.dismiss();
+  return status;
+}

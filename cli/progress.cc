@@ -1,0 +1,152 @@
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "cli/messages.h"
+#include "cli/terminal.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr std::chrono::duration<double> kRedrawInterval{0.1};
+constexpr std::chrono::duration<double> kEventInterval{0.125};
+constexpr int kWidestBar = 40;
+constexpr int kNarrowestBar = 8;
+constexpr const char* kEraseLine = "\r\x1b[K";
+constexpr const char* kGreen = "\x1b[32m";
+constexpr const char* kPlain = "\x1b[0m";
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+// Milliseconds are enough; NaN is written as null.
+double rounded_s(double seconds) { return std::round(seconds * 1000) / 1000; }
+
+}  // namespace
+
+ProgressStyle progress_style() {
+  ProgressStyle style;
+  style.json = messages_are_json();
+  style.terminal = isatty(STDERR_FILENO) != 0 && takes_escapes();
+  style.colour = style.terminal && wants_colour();
+  winsize size = {};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) style.width = size.ws_col;
+  return style;
+}
+
+Progress::Progress(std::ostream& out, ProgressStyle style, std::string unit, Clock clock)
+    : out_(out), style_(style), unit_(std::move(unit)), clock_(std::move(clock)), start_(clock_()) {
+  if (style_.json) out_ << event_line({{"event", "start"}, {"unit", unit_}}) << std::flush;
+}
+
+std::chrono::duration<double> Progress::steady_seconds() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+void Progress::update(std::uint64_t done, std::uint64_t total) {
+  if (finished_ || total == 0) return;
+  done_ = done;
+  total_ = total;
+  if (style_.json) {
+    print_event(done, total);
+  } else if (style_.terminal) {
+    draw(done, total);
+  } else {
+    print_line(done, total);
+  }
+}
+
+void Progress::finish() {
+  if (style_.json && !finished_) print_last_event("end");
+  erase();
+}
+
+void Progress::interrupt() {
+  if (style_.json && !finished_) print_last_event("interrupt");
+  erase();
+}
+
+void Progress::erase() {
+  if (drawn_ && !finished_ && !style_.json) out_ << kEraseLine << std::flush;
+  finished_ = true;
+}
+
+void Progress::print_event(std::uint64_t done, std::uint64_t total) {
+  const std::chrono::duration<double> now = clock_();
+  if (drawn_ && now - last_drawn_ < kEventInterval) return;
+  out_ << event_line({{"event", "progress"},
+                      {"done", done},
+                      {"total", total},
+                      {"unit", unit_},
+                      {"elapsed_s", rounded_s(elapsed_s())},
+                      {"eta_s", rounded_s(left_s(done, total))}})
+       << std::flush;
+  last_drawn_ = now;
+  drawn_ = true;
+}
+
+void Progress::print_last_event(const char* event) {
+  out_ << event_line({{"event", event},
+                      {"done", done_},
+                      {"total", total_},
+                      {"unit", unit_},
+                      {"elapsed_s", rounded_s(elapsed_s())}})
+       << std::flush;
+}
+
+double Progress::left_s(std::uint64_t done, std::uint64_t total) const {
+  if (done == 0) return std::numeric_limits<double>::quiet_NaN();
+  return elapsed_s() * static_cast<double>(total - done) / static_cast<double>(done);
+}
+
+std::string Progress::time_left(std::uint64_t done, std::uint64_t total) const {
+  if (done == 0) return "";
+  return fmt::format(", {} left", duration_text(left_s(done, total)));
+}
+
+void Progress::draw(std::uint64_t done, std::uint64_t total) {
+  const std::chrono::duration<double> now = clock_();
+  if (drawn_ && now - last_drawn_ < kRedrawInterval && done < total) return;
+  const std::string text =
+      fmt::format("{:3} % of {} {}{}", done * 100 / total, total, unit_, time_left(done, total));
+  // A line that fills the last column would wrap on some terminals.
+  const int room = style_.width - 1;
+  const int bar = std::min(kWidestBar, room - static_cast<int>(text.size()) - 3);
+  std::string line;
+  if (bar >= kNarrowestBar) {
+    const auto full = static_cast<int>(static_cast<std::uint64_t>(bar) * done / total);
+    line = fmt::format("[{}{}{}{}] ", style_.colour ? kGreen : "", std::string(full, '#'),
+                       style_.colour ? kPlain : "", std::string(bar - full, '.'));
+  }
+  line += text.substr(0, static_cast<std::size_t>(std::max(room, 0)));
+  out_ << kEraseLine << line << std::flush;
+  last_drawn_ = now;
+  drawn_ = true;
+}
+
+void Progress::print_line(std::uint64_t done, std::uint64_t total) {
+  if (done * 4 < next_quarter_ * total) return;
+  const std::uint64_t quarter = done * 4 / total;
+  if (quarter == 4) {
+    out_ << fmt::format("{} {} in {}\n", total, unit_, duration_text(elapsed_s()));
+  } else {
+    out_ << fmt::format("{} of {} {} ({} %){}\n", done, total, unit_, done * 100 / total,
+                        time_left(done, total));
+  }
+  out_ << std::flush;
+  next_quarter_ = quarter + 1;
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,65 @@
+#include "cli/rig_backend.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <iostream>
+
+#include "app/interrupt.h"
+#include "cli/options.h"
+
+namespace simbench::cli {
+namespace {
+
+// Enter is yes; the end of input, or no terminal, is no.
+bool ask_at_terminal(const std::string& text) {
+  if (isatty(STDIN_FILENO) == 0) return false;
+  std::cerr << text << ", then press Enter: " << std::flush;
+  std::string line;
+  return static_cast<bool>(std::getline(std::cin, line));
+}
+
+}  // namespace
+
+void add_backend_options(CLI::App& command, BackendOptions& options) {
+  command
+      .add_option("--backend", options.backend,
+                  "Where: in the simulator (sim), or on a real rig whose hosts run\n"
+                  "`simbench node` (hardware). Default: sim")
+      ->check(one_of({"sim", "hardware"}));
+  command.add_option("--rig", options.rig, "The rig file (with --backend hardware)")
+      ->type_name("FILE");
+  command
+      .add_option("--key-file", options.key_file,
+                  "The key that the rig's nodes have (see simbench keygen);\n"
+                  "without one only nodes of this machine are spoken to")
+      ->type_name("FILE");
+}
+
+bool is_hardware(const BackendOptions& options) {
+  const bool hardware = options.backend == "hardware";
+  if (hardware && options.rig.empty()) {
+    throw scenarios::InputError("--backend hardware: needs --rig FILE");
+  }
+  if (!hardware && (!options.rig.empty() || !options.key_file.empty())) {
+    throw scenarios::InputError("--rig and --key-file: only with --backend hardware");
+  }
+  return hardware;
+}
+
+hardware::SecretKey key_of(const std::string& key_file) {
+  return key_file.empty() ? hardware::SecretKey() : hardware::SecretKey::from_file(key_file);
+}
+
+std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& options,
+                                                     const scenarios::Scenario& scenario) {
+  hardware::RigSourceSettings settings;
+  settings.progress = [](const std::string& line) { print_note(line); };
+  settings.prompt = ask_at_terminal;
+  settings.cancelled = [] { return app::InterruptHandler::raised(); };
+  settings.collect_session = options.collect_session;
+  return std::make_unique<hardware::RigSource>(
+      hardware::load_rig(options.rig), key_of(options.key_file), scenario, std::move(settings));
+}
+
+}  // namespace simbench::cli

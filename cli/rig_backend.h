@@ -1,0 +1,46 @@
+// The options of commands that can run on a real rig instead of in the simulator, and the rig as a
+// RecordingSource (hardware/conductor/rig_source.h) that talks to the user of the command line.
+//
+//   BackendOptions backend;
+//   add_backend_options(*command, backend);
+//   ...
+//   if (is_hardware(backend)) source = make_rig_source(backend, scenario);
+#ifndef SIMBENCH_CLI_RIG_BACKEND_H_
+#define SIMBENCH_CLI_RIG_BACKEND_H_
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "hardware/conductor/rig_source.h"
+#include "hardware/net/secret_key.h"
+#include "hardware/rig/rig.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::cli {
+
+struct BackendOptions {
+  std::string backend = "sim";
+  std::string rig;
+  std::string key_file;
+  std::string collect_session;  // empty: a new capture
+};
+
+// --backend, --rig, --key-file.
+void add_backend_options(CLI::App& command, BackendOptions& options);
+
+// Throws scenarios::InputError: hardware without a rig, a rig without hardware.
+bool is_hardware(const BackendOptions& options);
+
+// The key of --key-file, or the one of those who have none.
+hardware::SecretKey key_of(const std::string& key_file);
+
+// Steps are told as notes; the user is asked at the terminal where a trigger is switched by hand;
+// Ctrl-C stops the cameras. Throws scenarios::InputError and hardware::KeyError.
+std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& options,
+                                                     const scenarios::Scenario& scenario);
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_RIG_BACKEND_H_

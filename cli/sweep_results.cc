@@ -1,0 +1,106 @@
+#include "cli/sweep_results.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "algorithms/ports/assert.h"
+#include "cli/messages.h"
+#include "evaluation/sweep/sweep_response.h"
+#include "evaluation/sweep/sweep_score.h"
+#include "reports/figures/gnuplot.h"
+#include "reports/sweep/sweep_figure.h"
+#include "reports/sweep/sweep_report.h"
+#include "reports/text/output_folder.h"
+#include "reports/text/text_table.h"
+#include "scenarios/study.h"
+
+namespace simbench::cli {
+namespace {
+
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+using evaluation::SweepScore;
+
+std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan& plan) {
+  std::vector<SweepScore> scores;
+  scores.reserve(plan.runs());
+  for (std::size_t run = 0; run < plan.runs(); ++run) {
+    std::optional<SweepScore> score = evaluation::score_of(log.text(run));
+    SIMBENCH_ASSERT(score.has_value(), "the log's checksums hold, so its texts are scores");
+    scores.push_back(std::move(*score));
+  }
+  return scores;
+}
+
+std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                    const std::vector<std::string>& tables) {
+  std::string text;
+  for (const std::string& table : tables) {
+    if (!text.empty()) text += '\n';
+    if (table == "host_order") {
+      text += reports::host_order_table(plan, rows);
+    } else if (table == "seeds_needed") {
+      text += reports::seeds_needed_table(plan, rows);
+    } else {
+      text += reports::response_table(plan, rows);
+    }
+  }
+  return text;
+}
+
+// For a file the page is as wide as need be, whatever the terminal.
+std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          const std::vector<std::string>& tables) {
+  const std::optional<std::size_t> width = reports::page_width();
+  reports::set_page_width(std::nullopt);
+  std::string text = text_of(plan, rows, tables);
+  reports::set_page_width(width);
+  return text;
+}
+
+reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          const std::string& table) {
+  if (table == "host_order") return reports::host_order_figure(plan, rows);
+  if (table == "seeds_needed") return reports::seeds_needed_figure(plan, rows);
+  return reports::response_figure(plan, rows);
+}
+
+// Without a picture a sweep is complete all the same.
+void draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
+  constexpr const char* kName = "sweep.svg";
+  folder.remove(kName);
+  if (figure.panels.empty()) return;
+  std::string svg;
+  try {
+    svg = reports::drawn_svg(figure);
+  } catch (const reports::OutputError& error) {
+    print_warnings({fmt::format("{} was not drawn: {}", kName, error.what())});
+    return;
+  }
+  folder.write(kName, svg);
+}
+
+}  // namespace
+
+std::string write_sweep_results(const SweepPlan& plan, const std::vector<std::string>& tables,
+                                reports::SweepFolder& folder) {
+  const std::vector<SweepScore> scores = scores_in(folder.log(), plan);
+  const std::vector<ResponseRow> rows = evaluation::response(plan, scores);
+  folder.write("sweep.csv", reports::sweep_csv(plan, scores));
+  folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
+  folder.write("sweep.txt", text_for_file(plan, rows, tables));
+  draw_figure(figure_of(plan, rows, tables.front()), folder);
+  folder.log().put_in_order();
+  return text_of(plan, rows, tables);
+}
+
+std::string study_list() {
+  std::string text = "studies\n";
+  for (const scenarios::Study& study : scenarios::studies()) {
+    text += fmt::format("  {}\n{}", study.name, reports::wrapped(study.summary, 6));
+  }
+  return text;
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,272 @@
+#include "evaluation/diagnosis/diagnose_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include "evaluation/replay/replay_camera.h"
+#include "evaluation/statistics/statistics.h"
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr Nanoseconds kWarmUp = std::chrono::seconds(5);
+constexpr Nanoseconds kLongRecording = std::chrono::seconds(20);
+constexpr double kOnGrid = 0.1;             // of a period
+constexpr std::ptrdiff_t kJumpWindow = 15;  // frames on either side
+constexpr std::ptrdiff_t kLeastJumpWindow = 5;
+constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods a slip may be
+constexpr double kMostPeriods = 1000;
+constexpr std::size_t kLongestSpan = 30;  // frames
+constexpr double kLeastFutureMs = 5;
+constexpr std::size_t kLeastBatchFrames = 5;
+constexpr std::size_t kFewBatches = 8;
+constexpr std::size_t kBatches = 16;
+constexpr std::size_t kManyFrames = 160;
+
+std::int64_t count_wraps(std::span<const StampedFrame> frames) {
+  constexpr Nanoseconds kRegister = Microseconds(std::int64_t{1} << 32);
+  std::int64_t wraps = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const bool in_register = frames[i].sensor < kRegister && frames[i - 1].sensor < kRegister;
+    if (in_register && frames[i - 1].sensor - frames[i].sensor > kRegister / 2) ++wraps;
+  }
+  return wraps;
+}
+
+std::span<const StampedFrame> without_warm_up(std::span<const StampedFrame> frames) {
+  if (frames.back().arrival - frames.front().arrival < kLongRecording) return frames;
+  const Nanoseconds begin = frames.front().arrival + kWarmUp;
+  const auto first = std::find_if(frames.begin(), frames.end(),
+                                  [begin](const StampedFrame& f) { return f.arrival >= begin; });
+  return frames.subspan(static_cast<std::size_t>(first - frames.begin()));
+}
+
+double interval_ms(std::span<const StampedFrame> frames, std::size_t i) {
+  return difference_ms(frames[i].sensor.count(), frames[i - 1].sensor.count());
+}
+
+void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
+  const std::int64_t first = frames.front().arrival.count();
+  facts.first_arrival_s = to_seconds(frames.front().arrival);
+  facts.last_arrival_s = to_seconds(frames.back().arrival);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double gap_ms = difference_ms(frames[i].arrival.count(), frames[i - 1].arrival.count());
+    if (gap_ms < 0) ++facts.backward_arrivals;
+    if (i == 1 || gap_ms * 1e-3 > facts.longest_gap_s) {
+      facts.longest_gap_s = gap_ms * 1e-3;
+      facts.gap_at_s = difference_ms(frames[i - 1].arrival.count(), first) * 1e-3;
+    }
+  }
+}
+
+// Two frames in a row, `periods` apart: frames that the counter has and we do not, and periods that
+// the counter does not have.
+void note_counter(std::uint64_t before, std::uint64_t now, double periods, StreamFacts& facts) {
+  if (now <= before || now - before > (std::uint64_t{1} << 32)) {
+    ++facts.counter_restarts;
+    return;
+  }
+  const auto counted = static_cast<std::int64_t>(now - before);
+  facts.lost_frames += counted - 1;
+  if (periods > kMostPeriods) return;  // a clock was set, or a pause
+  facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
+}
+
+// The period by the camera's clock; nothing if the stamps do not advance. The median interval, then
+// the median over longer spans: of intervals that alternate, the first is one of the two kinds.
+std::optional<double> period_of(std::span<const StampedFrame> frames) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (interval_ms(frames, i) > 0) intervals.push_back(interval_ms(frames, i));
+  }
+  if (intervals.empty()) return std::nullopt;
+  const double interval = median(intervals);
+  const std::size_t span = std::min<std::size_t>(kLongestSpan, frames.size() / 4);
+  if (span < 2) return interval;
+  std::vector<double> periods(1);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    periods.push_back(periods.back() + std::round(interval_ms(frames, i) / interval));
+  }
+  std::vector<double> means;
+  for (std::size_t i = span; i < frames.size(); ++i) {
+    const double count = periods[i] - periods[i - span];
+    const double length = difference_ms(frames[i].sensor.count(), frames[i - span].sensor.count());
+    if (count > 0 && length > 0) means.push_back(length / count);
+  }
+  return means.empty() ? interval : median(std::move(means));
+}
+
+// Intervals in whole periods: what they lack, and how far they are from whole.
+void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
+  facts.periods.assign(1, 0);
+  std::vector<double> deviations;
+  std::int64_t on_grid = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double interval = interval_ms(frames, i);
+    const double whole = std::round(interval / facts.period_ms);
+    const double deviation = interval - whole * facts.period_ms;
+    facts.periods.push_back(facts.periods.back() + std::llround(whole));
+    deviations.push_back(deviation);
+    if (interval < 0) ++facts.backward_stamps;
+    if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
+    note_counter(frames[i - 1].counter, frames[i].counter, whole, facts);
+  }
+  facts.interval_jitter_ms = standard_deviation(deviations);
+  facts.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
+}
+
+double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  return median(std::vector<double>(values.begin() + begin, values.begin() + end));
+}
+
+// Finds lasting steps of `offsets` (arrival - sensor stamp) and takes them out of the arrivals.
+void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
+                StreamFacts& facts) {
+  const auto size = static_cast<std::ptrdiff_t>(offsets.size());
+  double taken_out = 0;
+  std::ptrdiff_t settled = 0;  // no jump before this frame
+  for (std::ptrdiff_t i = 0; i < size; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const std::ptrdiff_t before = std::min(kJumpWindow, i - settled);
+    const std::ptrdiff_t after = std::min(kJumpWindow, size - i);
+    const bool candidate = before >= kLeastJumpWindow && after >= kLeastJumpWindow &&
+                           std::abs(offsets[at] - offsets[at - 1]) > facts.period_ms / 2;
+    if (candidate) {
+      const double step = median_of(offsets, i, i + after) - median_of(offsets, i - before, i);
+      if (std::abs(step) > facts.period_ms / 2) {
+        const double periods = step / facts.period_ms;
+        const bool whole = std::abs(periods - std::round(periods)) < kWholePeriod;
+        const bool few = std::abs(periods) < kMostPeriods;
+        facts.jumps.push_back(
+            {.frame = at,
+             .at_s =
+                 difference_ms(frames[at].arrival.count(), frames.front().arrival.count()) * 1e-3,
+             .step_ms = step,
+             .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
+        taken_out += step;
+        settled = i;
+      }
+    }
+    facts.arrivals_ms[at] -= taken_out;
+  }
+}
+
+// Offsets, their drift taken off, that lie below nearly all others.
+void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts) {
+  const auto size = static_cast<std::ptrdiff_t>(frames.size());
+  if (size < 2 * kJumpWindow) return;
+  std::vector<double> offsets(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    offsets[i] = facts.arrivals_ms[i] -
+                 difference_ms(frames[i].sensor.count(), frames.front().sensor.count());
+  }
+  const std::ptrdiff_t tenth = std::max(kLeastJumpWindow, size / 10);
+  const double change = median_of(offsets, size - tenth, size) - median_of(offsets, 0, tenth);
+  const double per_frame = change / static_cast<double>(size - tenth);
+  for (std::ptrdiff_t i = 0; i < size; ++i) {
+    offsets[static_cast<std::size_t>(i)] -= per_frame * static_cast<double>(i);
+  }
+  const double lowest = quantile(offsets, 0.01);
+  const double limit = lowest - std::max(kLeastFutureMs, facts.period_ms / 4);
+  for (const double offset : offsets) {
+    if (offset >= limit) continue;
+    ++facts.future_stamps;
+    facts.future_ms = std::max(facts.future_ms, lowest - offset);
+  }
+}
+
+// Medians of batches of frames, which a late frame hardly moves; between jumps only. Each stretch
+// between two jumps has its own zero, as a jump is known no better than the arrivals are.
+struct Batches {
+  std::vector<double> x;  // periods, about the stretch's mean
+  std::vector<double> y;  // arrival less the camera's periods, likewise
+  std::size_t stretches = 0;
+};
+
+void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, Batches& batches) {
+  const std::size_t all = facts.periods.size() >= kManyFrames ? kBatches : kFewBatches;
+  const std::size_t share = std::max<std::size_t>(2, all * (end - begin) / facts.periods.size());
+  const std::size_t count = std::min(share, (end - begin) / kLeastBatchFrames);
+  if (count < 2) return;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (std::size_t batch = 0; batch < count; ++batch) {
+    const std::size_t first = begin + batch * (end - begin) / count;
+    const std::size_t last = begin + (batch + 1) * (end - begin) / count;
+    std::vector<double> periods;
+    std::vector<double> offsets;
+    for (std::size_t i = first; i < last; ++i) {
+      periods.push_back(static_cast<double>(facts.periods[i]));
+      offsets.push_back(facts.arrivals_ms[i] - periods.back() * facts.period_ms);
+    }
+    x.push_back(mean_of(periods));
+    y.push_back(median(std::move(offsets)));
+  }
+  const double mean_x = mean_of(x);
+  const double mean_y = mean_of(y);
+  for (std::size_t i = 0; i < count; ++i) {
+    batches.x.push_back(x[i] - mean_x);
+    batches.y.push_back(y[i] - mean_y);
+  }
+  ++batches.stretches;
+}
+
+// The period in host time: a line through the batches, whose scatter about it says how well it is
+// known, also where lateness lasts for many frames.
+void note_host_period(StreamFacts& facts) {
+  Batches batches;
+  std::size_t begin = 0;
+  for (const StampJump& jump : facts.jumps) {
+    add_stretch(facts, begin, jump.frame, batches);
+    begin = jump.frame;
+  }
+  add_stretch(facts, begin, facts.periods.size(), batches);
+  if (batches.x.size() < kFewBatches || batches.x.size() < 2 * batches.stretches + 2) return;
+  const FittedLine line = fit_line(batches.x, batches.y);
+  double scatter = 0;
+  double width = 0;
+  for (std::size_t i = 0; i < batches.x.size(); ++i) {
+    const double residual = batches.y[i] - line.at(batches.x[i]);
+    scatter += residual * residual;
+    width += batches.x[i] * batches.x[i];
+  }
+  const auto freedom = static_cast<double>(batches.x.size() - batches.stretches - 1);
+  const double period_ms = facts.period_ms + line.slope;
+  const double sd_ppm = std::sqrt(scatter / freedom / width) / period_ms * 1e6;
+  if (!(period_ms > 0) || !std::isfinite(sd_ppm)) return;
+  facts.host_period_ms = period_ms;
+  facts.host_period_sd_ppm = sd_ppm;
+}
+
+}  // namespace
+
+StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
+  StreamFacts facts;
+  facts.frames = static_cast<std::int64_t>(recorded.size());
+  if (recorded.empty()) return facts;
+  facts.wraps = count_wraps(recorded);
+  note_arrivals(recorded, facts);
+  const std::vector<StampedFrame> all = unwrapped(recorded);
+  const std::span<const StampedFrame> frames = without_warm_up(all);
+  const std::optional<double> period_ms = period_of(frames);
+  if (!period_ms) return facts;
+  facts.period_ms = *period_ms;
+  note_intervals(frames, facts);
+
+  std::vector<double> offsets;
+  for (const StampedFrame& frame : frames) {
+    facts.arrivals_ms.push_back(difference_ms(frame.arrival.count(), 0));
+    offsets.push_back(difference_ms(frame.arrival.count(), frames.front().arrival.count()) -
+                      difference_ms(frame.sensor.count(), frames.front().sensor.count()));
+  }
+  note_jumps(frames, offsets, facts);
+  note_future_stamps(frames, facts);
+  note_host_period(facts);
+  return facts;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,118 @@
+#include "evaluation/fit/fit_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "algorithms/ports/time.h"
+#include "evaluation/replay/replay_camera.h"
+
+namespace simbench::evaluation {
+namespace {
+
+const std::string kOneHost = "host0";
+
+void name_all(std::vector<std::string>& names, std::size_t count, const char* kind) {
+  names.resize(std::min(names.size(), count));
+  while (names.size() < count) names.push_back(fmt::format("{}{}", kind, names.size()));
+}
+
+}  // namespace
+
+void FitInputSink::on_start(const RigLayout& layout) {
+  input_ = {};
+  stamps_.clear();
+  input_.hosts = options_.hosts;
+  name_all(input_.hosts, layout.hosts, "host");
+  std::vector<std::string> names = options_.cameras;
+  name_all(names, layout.cameras.size(), "camera");
+  for (std::size_t i = 0; i < layout.cameras.size(); ++i) {
+    input_.cameras.push_back({names[i], layout.cameras[i].host});
+  }
+}
+
+void FitInputSink::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
+  if (frame.domain != StampDomain::kHardwareClock) {
+    throw FitError(fmt::format(
+        "camera {}: found stamps that are not of the camera's clock, allowed hardware stamps (of a "
+        "RealSense: with its frame metadata enabled, and the option \"global time\" off)",
+        input_.cameras[frame.camera].name));
+  }
+  std::int64_t arrival_ns = frame.arrival_steady.time_since_epoch().count();
+  if (options_.true_time && truth != nullptr) {
+    // A host's rate changes the milliseconds between exposure and arrival by less than 1 ns.
+    const Nanoseconds since_exposure = frame.arrival_steady - truth->own_steady;
+    arrival_ns = (truth->mid_exposure().time_since_epoch() + since_exposure).count();
+  }
+  stamps_[{frame.camera, frame.stream}].push_back(
+      {frame.counter, frame.sensor.us, frame.frame.us, arrival_ns});
+}
+
+void FitInputSink::on_adjustment(const ClockAdjustment& adjustment) {
+  input_.clock_events.emplace_back(adjustment);
+}
+
+void FitInputSink::on_exchange(std::uint32_t host, const Exchange& exchange) {
+  input_.clock_events.emplace_back(ExchangeEvent{host, exchange});
+}
+
+FitInput FitInputSink::take() {
+  for (const auto& [key, stamps] : stamps_) {
+    const bool has_frame_stamps =
+        std::any_of(stamps.begin(), stamps.end(), [](const Stamps& s) { return s.frame_us != 0; });
+    const std::int64_t begin_ns = stamps.front().arrival_ns + from_ms(options_.warm_up_ms).count();
+    std::vector<StampedFrame> frames;
+    for (const Stamps& s : stamps) {
+      if (s.arrival_ns < begin_ns) continue;
+      const std::int64_t device_us = has_frame_stamps ? s.frame_us : s.sensor_us;
+      frames.push_back({.counter = s.counter,
+                        .sensor = Nanoseconds(device_us * 1000),
+                        .arrival = Nanoseconds(s.arrival_ns)});
+    }
+    input_.streams.push_back({.camera = key.first,
+                              .kind = key.second == StreamKind::kColour ? "colour" : "depth",
+                              .frames = unwrapped(frames)});
+  }
+  stamps_.clear();
+  return std::move(input_);
+}
+
+FitInput fit_input(std::vector<CameraStream> streams, bool one_host) {
+  FitInput input;
+  const auto number_of = [](auto& all, const std::string& name, auto&& add) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& known) {
+      if constexpr (requires { known.name; }) {
+        return known.name == name;
+      } else {
+        return known == name;
+      }
+    });
+    if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+    all.push_back(add());
+    return all.size() - 1;
+  };
+  for (CameraStream& stream : streams) {
+    const std::string& host = one_host ? kOneHost : stream.host;
+    const std::size_t host_number = number_of(input.hosts, host, [&] { return host; });
+    const std::size_t camera = number_of(input.cameras, stream.camera, [&] {
+      return FitCamera{stream.camera, static_cast<std::uint32_t>(host_number)};
+    });
+    input.streams.push_back(
+        {.camera = camera, .kind = stream.stream, .frames = unwrapped(stream.frames)});
+  }
+  return input;
+}
+
+std::pair<FitInput, FitInput> halves(const FitInput& input) {
+  std::pair<FitInput, FitInput> result{input, input};
+  for (std::size_t i = 0; i < input.streams.size(); ++i) {
+    auto& first = result.first.streams[i].frames;
+    auto& second = result.second.streams[i].frames;
+    const auto middle = static_cast<std::ptrdiff_t>(first.size() / 2);
+    first.erase(first.begin() + middle, first.end());
+    second.erase(second.begin(), second.begin() + middle);
+  }
+  return result;
+}
+
+}  // namespace simbench::evaluation

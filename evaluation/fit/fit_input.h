@@ -1,0 +1,99 @@
+// What a recording offers to a fit: stamp pairs of cameras on hosts, and what hosts told each
+// other.
+//
+// Arrivals are on the hosts' steady clocks where the recording has them, so that no setting of a
+// system clock is taken for delay. Device stamps are those of the start of transmission, where the
+// camera gave them: what lies between them and the arrival does not depend on the exposure; else
+// the camera's only stamp. Both in nanoseconds, device stamps with their register unwrapped.
+//
+//   FitInputSink sink({.warm_up_ms = 5000});
+//   folder.play(capture, sink);
+//   const FitInput input = sink.take();
+//
+// Errors: FitError, one line that names the camera: stamps that are not of the camera's clock.
+#ifndef SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_
+#define SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recording/event.h"
+#include "recording/recording.h"
+#include "recording/rs_csv.h"
+
+namespace simbench::evaluation {
+
+// A recording that nothing can be fitted to; what() is for the user.
+class FitError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct FitCamera {
+  std::string name;
+  std::uint32_t host = 0;
+};
+
+// One stream of one camera, frames in order of delivery.
+struct FitStream {
+  std::size_t camera = 0;
+  std::string kind;
+  std::vector<StampedFrame> frames;
+};
+
+struct FitInput {
+  std::vector<std::string> hosts;
+  std::vector<FitCamera> cameras;
+  std::vector<FitStream> streams;
+  // Exchanges and clock adjustments, in order; other kinds do not occur.
+  std::vector<RecordingEvent> clock_events;
+};
+
+struct FitInputOptions {
+  std::vector<std::string> hosts = {};    // names; those that are missing are "host0", ...
+  std::vector<std::string> cameras = {};  // likewise "camera0", ...
+  double warm_up_ms = 0;                  // of each stream, from its first frame: left out
+  // Of a simulated recording: arrivals in true time instead of the host's steady time.
+  bool true_time = false;
+};
+
+class FitInputSink final : public RecordingSink {
+ public:
+  explicit FitInputSink(FitInputOptions options) : options_(std::move(options)) {}
+  void on_start(const RigLayout& layout) override;
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
+  void on_pulse(const PulseTruth&) override {}
+  void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_poll(const DevicePoll&) override {}
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override;
+  void on_outcome(const SyncOutcome&) override {}
+
+  FitInput take();
+
+ private:
+  struct Stamps {
+    std::uint32_t counter;
+    std::uint32_t sensor_us;
+    std::uint32_t frame_us;
+    std::int64_t arrival_ns;
+  };
+
+  FitInputOptions options_;
+  FitInput input_;
+  std::map<std::pair<std::uint32_t, StreamKind>, std::vector<Stamps>> stamps_;
+};
+
+// From files of real cameras. `one_host`: one computer stamped all arrivals, whatever the files
+// say.
+FitInput fit_input(std::vector<CameraStream> streams, bool one_host);
+
+// Halves of every stream, for a fit to the one and a test on the other.
+std::pair<FitInput, FitInput> halves(const FitInput& input);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_FIT_FIT_INPUT_H_

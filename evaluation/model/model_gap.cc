@@ -1,0 +1,69 @@
+#include "evaluation/model/model_gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "evaluation/statistics/statistics.h"
+#include "evaluation/statistics/two_sample_ks.h"
+
+namespace simbench::evaluation {
+namespace {
+
+struct Metric {
+  const char* name;
+  Series Row::*series;
+};
+
+constexpr Metric kMetrics[] = {{"host_error_ms", &Row::host_error_ms},
+                               {"amd_ms", &Row::amd_ms},
+                               {"rmdv_ms", &Row::rmdv_ms},
+                               {"absolute_error_ms", &Row::absolute_error_ms}};
+
+GapSide side_of(const Series& series) {
+  GapSide side;
+  side.series = make_series(series.values);
+  side.count = static_cast<std::size_t>(std::count_if(
+      series.values.begin(), series.values.end(), [](double value) { return !std::isnan(value); }));
+  for (std::size_t i = 0; i < kGapQuantiles.size(); ++i) {
+    side.quantiles[i] = quantile(series.values, kGapQuantiles[i]);
+  }
+  return side;
+}
+
+ModelGapRow compare(const std::string& pipeline, const char* metric, const Series& measured,
+                    const Series& simulated) {
+  ModelGapRow row;
+  row.pipeline = pipeline;
+  row.metric = metric;
+  row.measured = side_of(measured);
+  row.simulated = side_of(simulated);
+  row.ks = ks_distance(measured.values, simulated.values);
+  row.ks_critical = ks_critical_distance(row.measured.count, row.simulated.count);
+  const double found = row.measured.series.median;
+  row.median_gap = (row.simulated.series.median - found) / found;
+  if (found > kSmallestJudgedMs && !std::isnan(row.median_gap)) {
+    row.within_20_percent = std::abs(row.median_gap) <= kLargestGap;
+  }
+  return row;
+}
+
+}  // namespace
+
+std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simulated) {
+  std::vector<ModelGapRow> rows;
+  for (const Row& found : measured.rows) {
+    const auto predicted =
+        std::find_if(simulated.rows.begin(), simulated.rows.end(),
+                     [&](const Row& row) { return row.pipeline == found.pipeline; });
+    if (predicted == simulated.rows.end()) continue;
+    for (const Metric& metric : kMetrics) {
+      ModelGapRow row =
+          compare(found.pipeline, metric.name, found.*metric.series, (*predicted).*metric.series);
+      if (row.measured.count + row.simulated.count > 0) rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,76 @@
+// Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
+//
+// Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
+// threads; results do not depend on how many. A job that throws ends the evaluation after the
+// running jobs have finished; finished jobs are kept in the error (EvaluationFailed). A capture
+// that could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing
+// from its row, whose notes say why, and so do what other captures noted (RecordingCost::notes).
+//
+// With one thread the source is called in order: every pipeline at the first seed, then at the
+// next.
+//
+//   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
+//                        nullptr);
+#ifndef SIMBENCH_EVALUATION_RUN_EVALUATE_H_
+#define SIMBENCH_EVALUATION_RUN_EVALUATE_H_
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "evaluation/scoring/results.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::evaluation {
+
+struct EvaluationOptions {
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 32;
+  unsigned jobs = 0;                     // threads; 0: as many as there are cores
+  std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
+  bool keep_pulses = false;              // keep SeedScore::pulses (for frames.csv)
+  // Looked at before each job; once true, no more are begun. May be set by a signal handler.
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+// Called from worker threads, one call at a time; must not throw.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+// Makes the backend of one worker thread; called once per thread, from that thread.
+using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
+
+// An evaluation that did not get to its end, with what it had by then.
+class EvaluationFailed : public std::runtime_error {
+ public:
+  EvaluationFailed(const std::string& what, Results finished)
+      : std::runtime_error(what), finished_(std::make_shared<const Results>(std::move(finished))) {}
+  // The rows of the seeds that were done; rows may have different seeds, and there are no claims.
+  const Results& finished() const { return *finished_; }
+
+ private:
+  std::shared_ptr<const Results> finished_;
+};
+
+// One that was ended through EvaluationOptions::cancel.
+class EvaluationCancelled final : public EvaluationFailed {
+ public:
+  using EvaluationFailed::EvaluationFailed;
+};
+
+// Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
+// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, whose
+// message names scenario, pipeline, seed, version and commit. What make_source throws passes
+// through.
+Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
+                 const EvaluationOptions& options, const Progress& progress);
+
+// Checks that every pipeline of the scenario names known algorithms with allowed parameters.
+void check_pipelines(const scenarios::Scenario& scenario);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_RUN_EVALUATE_H_

@@ -1,0 +1,110 @@
+#include "evaluation/run/leaderboard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/ports/assert.h"
+#include "evaluation/statistics/statistics.h"
+
+namespace simbench::evaluation {
+namespace {
+
+std::string board_of(const Row& row) {
+  const std::size_t dot = row.pipeline.find('.');
+  return dot == std::string::npos ? "" : row.pipeline.substr(0, dot);
+}
+
+const Row* find_row(const Results& results, const std::string& pipeline) {
+  for (const Row& row : results.rows) {
+    if (row.pipeline == pipeline) return &row;
+  }
+  return nullptr;
+}
+
+PairedRatios ratios(const Row& row, const Row* other) {
+  if (other == nullptr) {
+    const Series none = make_series({});
+    return {.error = none, .amd = none};
+  }
+  return {.error = paired_ratio(row.absolute_error_ms, other->absolute_error_ms),
+          .amd = paired_ratio(row.amd_ms, other->amd_ms)};
+}
+
+// What does not exist comes last; equal ones stay as they were listed.
+void sort_by_error(std::vector<Rank>& ranks) {
+  std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
+    const double left = a.row->absolute_error_ms.median;
+    const double right = b.row->absolute_error_ms.median;
+    if (std::isnan(left) || std::isnan(right)) return !std::isnan(left) && std::isnan(right);
+    return left < right;
+  });
+}
+
+void sort_by_recall(std::vector<Rank>& ranks) {
+  std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
+    const auto rank = [](double share) { return std::isnan(share) ? -1 : share; };
+    if (rank(a.row->recall) != rank(b.row->recall)) {
+      return rank(a.row->recall) > rank(b.row->recall);
+    }
+    return rank(a.row->precision) > rank(b.row->precision);
+  });
+}
+
+bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
+  const Row& first = *ranks.front().row;
+  const auto same_stamps = [&first](const Rank& rank) {
+    return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time;
+  };
+  const auto other_gathering = [&first](const Rank& rank) {
+    return rank.row->gathering != first.gathering;
+  };
+  return std::all_of(ranks.begin(), ranks.end(), same_stamps) &&
+         std::any_of(ranks.begin(), ranks.end(), other_gathering);
+}
+
+}  // namespace
+
+Series paired_ratio(const Series& numerator, const Series& denominator) {
+  SIMBENCH_ASSERT(numerator.values.size() == denominator.values.size(),
+                  "paired series have the same seeds");
+  std::vector<double> values;
+  values.reserve(numerator.values.size());
+  for (std::size_t seed = 0; seed < numerator.values.size(); ++seed) {
+    const double below = denominator.values[seed];
+    values.push_back(below > 0 ? numerator.values[seed] / below
+                               : std::numeric_limits<double>::quiet_NaN());
+  }
+  return make_series(std::move(values));
+}
+
+std::vector<Board> leaderboard(const Results& results) {
+  const Row* paper = find_row(results, std::string(kPaperPipeline));
+  std::vector<Board> boards;
+  for (const Row& row : results.rows) {
+    const std::string name = board_of(row);
+    auto board = std::find_if(boards.begin(), boards.end(),
+                              [&](const Board& known) { return known.name == name; });
+    if (board == boards.end()) {
+      boards.push_back({.name = name, .online = {}, .offline = {}});
+      board = boards.end() - 1;
+    }
+    const Row* oracle = find_row(results, name.empty() ? "oracle" : name + ".oracle");
+    (row.offline ? board->offline : board->online)
+        .push_back({.row = &row, .to_oracle = ratios(row, oracle), .to_paper = ratios(row, paper)});
+  }
+  for (Board& board : boards) {
+    std::vector<Rank>& ranks = board.online.empty() ? board.offline : board.online;
+    board.of_gathering =
+        (board.online.empty() || board.offline.empty()) && differ_in_gathering_alone(ranks);
+    if (board.of_gathering) {
+      sort_by_recall(ranks);
+    } else {
+      sort_by_error(board.online);
+      sort_by_error(board.offline);
+    }
+  }
+  return boards;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,262 @@
+#include "evaluation/run/pipeline_choice.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "algorithms/parameters.h"
+#include "evaluation/scoring/claims.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::Scenario;
+
+constexpr std::int64_t kMostFramesKept = 200'000;
+
+// found "genlok", did you mean genlock? Known: genlock, yoon2021
+std::string unknown(const std::string& name, const std::vector<std::string>& known) {
+  const std::vector<std::string> near = scenarios::nearest(name, known);
+  const std::string guess =
+      near.empty() ? "" : fmt::format(", did you mean {}? Known", fmt::join(near, " or "));
+  return fmt::format("found \"{}\"{}: {}", name, guess.empty() ? ", known" : guess,
+                     fmt::join(known, ", "));
+}
+
+// A name as a part of a JSON pointer (RFC 6901).
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '~') {
+      text += "~0";
+    } else if (c == '/') {
+      text += "~1";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+template <class Entry>
+void append_infos(const std::vector<Entry>& entries, std::vector<const AlgorithmInfo*>& infos) {
+  for (const Entry& entry : entries) infos.push_back(&entry.info);
+}
+
+std::vector<const AlgorithmInfo*> all_algorithms() {
+  std::vector<const AlgorithmInfo*> infos;
+  append_infos(host_sync_algorithms(), infos);
+  append_infos(device_time_algorithms(), infos);
+  append_infos(gathering_algorithms(), infos);
+  return infos;
+}
+
+bool declares(const AlgorithmInfo& info, const std::string& parameter) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(),
+                     [&](const ParameterSpec& spec) { return spec.name == parameter; });
+}
+
+// Every parameter in the scenario is declared by an algorithm of that name or family, and allowed.
+void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
+                     const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
+  const std::string pointer = fmt::format("/algorithms/{}/{}", escaped(key), escaped(parameter));
+  bool declared = false;
+  std::vector<std::string> known;
+  for (const AlgorithmInfo* info : named) {
+    for (const ParameterSpec& spec : info->parameters) {
+      if (std::find(known.begin(), known.end(), spec.name) == known.end()) {
+        known.push_back(spec.name);
+      }
+    }
+    if (!declares(*info, parameter)) continue;
+    declared = true;
+    try {
+      check_parameters(info->parameters, {{parameter, value}});
+    } catch (const ParameterError& error) {
+      scenarios::fail_at(scenario, pointer, error.what());
+    }
+  }
+  if (declared) return;
+  scenarios::fail_at(
+      scenario, pointer,
+      known.empty() ? fmt::format("\"{}\" has no parameters", key) : unknown(parameter, known));
+}
+
+void check_all_parameters(const Scenario& scenario) {
+  const std::vector<const AlgorithmInfo*> infos = all_algorithms();
+  for (const auto& [key, parameters] : scenario.algorithms) {
+    std::vector<const AlgorithmInfo*> named;
+    std::vector<std::string> known;
+    for (const AlgorithmInfo* info : infos) {
+      for (const std::string& name : {info->family, info->name}) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+      }
+      if (info->family == key || info->name == key) named.push_back(info);
+    }
+    if (named.empty()) {
+      scenarios::fail_at(scenario, "/algorithms/" + escaped(key), unknown(key, known));
+    }
+    for (const auto& [parameter, value] : parameters) {
+      check_parameter(scenario, key, parameter, value, named);
+    }
+  }
+}
+
+Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
+  ParameterValues given;
+  for (const std::string& key : {info.family, info.name}) {
+    const auto found = scenario.algorithms.find(key);
+    if (found == scenario.algorithms.end()) continue;
+    for (const auto& [parameter, value] : found->second) {
+      if (declares(info, parameter)) given[parameter] = value;
+    }
+  }
+  return check_parameters(info.parameters, given);
+}
+
+// What the scenario lacks of what an algorithm needs; empty if nothing.
+std::string lacking(const Scenario& scenario, Need need) {
+  const scenarios::PulseLines& lines = scenario.hosts.pulse_lines;
+  switch (need) {
+    case Need::kHardwareStamps:
+      return scenario.hosts.nic.hardware_stamps
+                 ? ""
+                 : "network cards with a clock (/hosts/nic/hardware_stamps is false)";
+    case Need::kPps:
+      return lines.pps ? "" : "a pulse per second (/hosts/pulse_lines/pps is false)";
+    case Need::kGnss:
+      return lines.gnss ? "" : "a receiver that tells the time (/hosts/pulse_lines/gnss is false)";
+    case Need::kTriggerLine:
+      return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
+    case Need::kPolls:
+      return scenario.cameras.clock_poll.interval_ms > 0
+                 ? ""
+                 : "polls of the cameras' clocks (/cameras/clock_poll/interval_ms is 0)";
+    case Need::kFrames:
+    case Need::kTruth:
+      return "";
+  }
+  return "";
+}
+
+void check_needs(const Scenario& scenario, std::size_t pipeline, const char* stage,
+                 const AlgorithmInfo& info) {
+  for (const Need need : info.needs) {
+    const std::string missing = lacking(scenario, need);
+    if (missing.empty()) continue;
+    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
+                       fmt::format("found \"{}\", which needs {}", info.name, missing));
+  }
+}
+
+CalibratedDelays calibrated_delays(const Scenario& scenario) {
+  CalibratedDelays delays;
+  delays.poll_asymmetry = from_ms(scenario.cameras.clock_poll.calibrated_asymmetry_ms);
+  for (const scenarios::Stream& stream : scenario.cameras.streams) {
+    if (stream.kind != scenario.evaluation.stream) continue;
+    delays.arrival = from_ms(stream.calibrated_delay_ms);
+  }
+  return delays;
+}
+
+template <class Entry>
+const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const char* stage,
+                          const std::string& name, const std::vector<Entry>& entries) {
+  std::vector<std::string> known;
+  for (const Entry& entry : entries) {
+    if (entry.info.name == name) return entry;
+    known.push_back(entry.info.name);
+  }
+  scenarios::fail_at(scenario, fmt::format("/pipelines/{}/{}", pipeline, stage),
+                     unknown(name, known));
+}
+
+PipelineChoice choose(const Scenario& scenario, std::size_t index) {
+  const scenarios::Pipeline& pipeline = scenario.pipelines[index];
+  const HostSyncEntry& host_sync =
+      algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
+  const DeviceTimeName variants = parse_device_time_name(pipeline.device_time);
+  const DeviceTimeEntry& device_time =
+      algorithm_at(scenario, index, "device_time", variants.base, device_time_algorithms());
+  const GatheringEntry& gathering =
+      algorithm_at(scenario, index, "gathering", pipeline.gathering, gathering_algorithms());
+  check_needs(scenario, index, "host_sync", host_sync.info);
+  check_needs(scenario, index, "device_time", device_time.info);
+  check_needs(scenario, index, "gathering", gathering.info);
+  if (!device_time.make && variants.base != pipeline.device_time) {
+    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/device_time", index),
+                       fmt::format("found \"{}\", but \"{}\" has no variants", pipeline.device_time,
+                                   variants.base));
+  }
+  return {.pipeline = pipeline,
+          .host_sync = host_sync,
+          .host_sync_parameters = parameters_of(scenario, host_sync.info),
+          .device_time = device_time,
+          .device_time_variants = variants,
+          .device_time_parameters = parameters_of(scenario, device_time.info),
+          .gathering = gathering,
+          .gathering_parameters = parameters_of(scenario, gathering.info)};
+}
+
+}  // namespace
+
+std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
+                                             const std::vector<std::string>& names) {
+  check_all_parameters(scenario);
+  std::vector<PipelineChoice> all;
+  std::vector<std::string> known;
+  for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
+    all.push_back(choose(scenario, index));
+    known.push_back(scenario.pipelines[index].name);
+  }
+  if (names.empty()) return all;
+
+  std::vector<PipelineChoice> chosen;
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    const auto found = std::find(known.begin(), known.end(), *name);
+    if (found == known.end()) {
+      throw scenarios::InputError(
+          fmt::format("pipelines of {}: {}", scenario.name, unknown(*name, known)));
+    }
+    if (std::find(names.begin(), name, *name) != name) {
+      throw scenarios::InputError(fmt::format("pipelines: \"{}\" is named twice", *name));
+    }
+    chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return chosen;
+}
+
+ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
+  ScorerSetup setup;
+  setup.stream = scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth;
+  setup.median = median_kind(scenario.evaluation.rmdv_median);
+  setup.genlock = scenario.cameras.sync_mode == "genlock";
+  setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
+  setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
+                            const GatheringSetup& gathering) {
+    return make(parameters, gathering);
+  };
+  setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
+  if (choice.device_time.make) {
+    setup.make_estimator =
+        [make = choice.device_time.make, parameters = choice.device_time_parameters,
+         variants = choice.device_time_variants, delays = calibrated_delays(scenario)] {
+          return make_variant(variants, make(parameters), delays);
+        };
+  }
+  const DeviceTimeEntry* offline = find_device_time("regression_offline");
+  if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&
+      scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
+    setup.make_second_estimator = [make = offline->make,
+                                   parameters = parameters_of(scenario, offline->info)] {
+      return make(parameters);
+    };
+  }
+  return setup;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,265 @@
+#include "evaluation/run/run_detail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "evaluation/run/run_world.h"
+#include "evaluation/scoring/pipeline_scorer.h"
+#include "recording/forwarding_sink.h"
+
+namespace simbench::evaluation {
+namespace {
+
+// The estimators of one camera beside the pipeline's own, and what they need.
+struct Companion {
+  std::unique_ptr<DeviceTimeEstimator> from_start;  // null: the oracle
+  DeviceStampUnwrapper unwrapper;
+  std::vector<DeviceSample> samples;              // by frame
+  std::vector<std::optional<GlobalTime>> global;  // by frame, as the pipeline's estimator gave it
+  std::map<DeviceTime, std::size_t> frame_by_sensor;  // what scorer and gatherer know a frame by
+};
+
+// The frame stamp, unwrapped with the sensor stamp, from which it is never far.
+DeviceTime frame_stamp(const FrameRecord& frame, DeviceTime sensor) {
+  return sensor + Microseconds(static_cast<std::int32_t>(frame.frame.us - frame.sensor.us));
+}
+
+double device_ms(DeviceTime time) { return to_ms(time.time_since_epoch()); }
+double true_ms(TrueTime time) { return to_ms(time.time_since_epoch()); }
+
+// Keeps what passes on its way to the scorer, and what comes out of that.
+class DetailKeeper final : public ForwardingSink, public ScoreObserver {
+ public:
+  DetailKeeper(PipelineScorer& scorer, const ScorerSetup& setup, RunDetail& run)
+      : ForwardingSink(scorer), setup_(setup), run_(run) {
+    scorer.watch(*this);
+  }
+
+  void on_start(const RigLayout& layout) override {
+    run_.frame_rate_hz = layout.frame_rate_hz;
+    run_.camera_count = layout.cameras.size();
+    run_.host_count = layout.hosts;
+    run_.first_pulse = layout.first_pulse;
+    run_.pulses = layout.pulses;
+    run_.cameras.resize(std::min(layout.cameras.size(), kDetailCameras));
+    companions_.resize(run_.cameras.size());
+    for (std::size_t camera = 0; camera < run_.cameras.size(); ++camera) {
+      run_.cameras[camera].host = layout.cameras[camera].host;
+      if (setup_.make_estimator) companions_[camera].from_start = setup_.make_estimator();
+    }
+    ForwardingSink::on_start(layout);
+  }
+
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
+    if (frame.stream == setup_.stream && frame.camera < companions_.size()) keep(frame, truth);
+    ForwardingSink::on_frame(frame, truth);
+  }
+
+  // The world's own samples may be far apart (run_world.h).
+  void on_pulse(const PulseTruth& truth) override {
+    run_.clocks.push_back(clock_errors(truth.at, truth.host_errors));
+    ForwardingSink::on_pulse(truth);
+  }
+
+  void on_adjustment(const ClockAdjustment& adjustment) override {
+    for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
+      if (run_.cameras[camera].host != adjustment.host) continue;
+      if (companions_[camera].from_start) companions_[camera].from_start->on_adjustment(adjustment);
+    }
+    ForwardingSink::on_adjustment(adjustment);
+  }
+
+  void on_poll(const DevicePoll& poll) override {
+    if (poll.camera < companions_.size()) {
+      Companion& companion = companions_[poll.camera];
+      const DeviceTime device = companion.unwrapper.unwrap(poll.device);
+      if (companion.from_start) {
+        companion.from_start->on_poll({device, poll.t0, poll.t1, poll.t0_steady, poll.t1_steady});
+      }
+    }
+    ForwardingSink::on_poll(poll);
+  }
+
+  void on_stamp(const DeferredFrame& frame, GlobalTime global) override {
+    const std::optional<std::size_t> index = frame_index(frame.source, frame.sample.sensor);
+    if (!index) return;
+    FrameDetail& detail = run_.cameras[frame.source].frames[*index];
+    detail.in_warm_up = false;
+    detail.pulse = std::max<std::int64_t>(frame.pulse, -1);
+    detail.evaluated =
+        frame.pulse >= run_.first_pulse && frame.pulse < run_.first_pulse + run_.pulses;
+    companions_[frame.source].global[*index] = global;
+  }
+
+  void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) override {
+    SetDetail detail;
+    detail.complete = complete;
+    detail.emitted_ms = from_zero_ms(HostTime(now.time_since_epoch()));
+    std::map<std::int64_t, std::size_t> members_of_pulse;
+    GlobalTime first = GlobalTime::max();
+    GlobalTime last = GlobalTime::min();
+    for (const GatherFrame& frame : set) {
+      if (frame.tag >= 0) ++members_of_pulse[frame.tag];
+      first = std::min(first, frame.stamp);
+      last = std::max(last, frame.stamp);
+      const std::optional<std::size_t> index = frame_index(frame.source, frame.sensor);
+      if (index) detail.members.push_back({frame.source, *index});
+    }
+    detail.range_ms = to_ms(last - first);
+    std::size_t most = 0;
+    for (const auto& [pulse, members] : members_of_pulse) {
+      if (members > most) detail.pulse = pulse;
+      most = std::max(most, members);
+    }
+    detail.pure = most == set.size();
+    run_.sets.push_back(std::move(detail));
+  }
+
+  void on_shift(Nanoseconds shift) override { shift_ = shift; }
+
+  // When the scorer is done: the stamps that had to wait for the end.
+  void finish(const EstimatorFactory& make_online, const EstimatorFactory& make_offline) {
+    for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
+      Companion& companion = companions_[camera];
+      std::vector<FrameDetail>& frames = run_.cameras[camera].frames;
+      if (companion.from_start && companion.from_start->offline()) {
+        companion.from_start->learn(companion.samples);
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+          frames[i].from_start_ms = stamp_ms(*companion.from_start, companion.samples[i]);
+        }
+      }
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (companion.global[i]) frames[i].global_ms = from_zero_ms(*companion.global[i] + shift_);
+      }
+      stamp_by(*make_online(), companion.samples, frames, &FrameDetail::online_ms);
+      stamp_by(*make_offline(), companion.samples, frames, &FrameDetail::offline_ms);
+    }
+  }
+
+ private:
+  double from_zero_ms(HostTime time) const { return to_ms(time - *zero_); }
+  double from_zero_ms(GlobalTime time) const {
+    return from_zero_ms(HostTime(time.time_since_epoch()));
+  }
+  double stamp_ms(DeviceTimeEstimator& estimator, const DeviceSample& sample) const {
+    return from_zero_ms(estimator.stamp(sample));
+  }
+
+  void keep(const FrameRecord& frame, const FrameTruth* truth) {
+    if (!zero_) {
+      zero_ = truth != nullptr ? truth->reference : frame.arrival;
+      run_.zero = *zero_;
+    }
+    Companion& companion = companions_[frame.camera];
+    const DeviceTime sensor = companion.unwrapper.unwrap(frame.sensor);
+    FrameDetail detail;
+    detail.counter = frame.counter;
+    detail.in_warm_up = true;  // until it gets a stamp
+    detail.sensor_ms = device_ms(sensor);
+    detail.frame_ms = device_ms(frame_stamp(frame, sensor));
+    detail.backend_ms = from_zero_ms(frame.backend);
+    detail.arrival_ms = from_zero_ms(frame.arrival);
+    if (truth != nullptr) {
+      run_.has_truth = true;
+      detail.pulse = truth->pulse;
+      detail.reference_ms = from_zero_ms(truth->reference);
+      detail.exposure_start_ms = true_ms(truth->exposure_start);
+      detail.exposure_end_ms = true_ms(truth->exposure_end);
+    }
+    const DeviceSample sample = {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us};
+    if (!companion.from_start && truth != nullptr) {
+      detail.from_start_ms = from_zero_ms(truth->own_host);
+    } else if (companion.from_start && !companion.from_start->offline()) {
+      detail.from_start_ms = stamp_ms(*companion.from_start, sample);
+    }
+    std::vector<FrameDetail>& frames = run_.cameras[frame.camera].frames;
+    companion.frame_by_sensor[sensor] = frames.size();
+    companion.samples.push_back(sample);
+    companion.global.emplace_back();
+    frames.push_back(detail);
+  }
+
+  std::optional<std::size_t> frame_index(std::uint32_t camera, DeviceTime sensor) const {
+    if (camera >= companions_.size()) return std::nullopt;
+    const auto found = companions_[camera].frame_by_sensor.find(sensor);
+    if (found == companions_[camera].frame_by_sensor.end()) return std::nullopt;
+    return found->second;
+  }
+
+  // Another estimator's stamps of what is not warm-up.
+  void stamp_by(DeviceTimeEstimator& estimator, const std::vector<DeviceSample>& samples,
+                std::vector<FrameDetail>& frames, double FrameDetail::*stamp) const {
+    std::vector<DeviceSample> recording;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (!frames[i].in_warm_up) recording.push_back(samples[i]);
+    }
+    if (recording.empty()) return;
+    if (estimator.offline()) estimator.learn(recording);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (!frames[i].in_warm_up) frames[i].*stamp = stamp_ms(estimator, samples[i]);
+    }
+  }
+
+  const ScorerSetup& setup_;
+  RunDetail& run_;
+  std::optional<HostTime> zero_;
+  Nanoseconds shift_{};
+  std::vector<Companion> companions_;  // by camera
+};
+
+// The estimator of this name with the scenario's parameters.
+EstimatorFactory estimator_named(const scenarios::Scenario& scenario, const PipelineChoice& choice,
+                                 const std::string& device_time) {
+  scenarios::Scenario changed = scenario;
+  changed.pipelines = {choice.pipeline};
+  changed.pipelines.front().device_time = device_time;
+  return scorer_setup(changed, choose_pipelines(changed, {}).front()).make_estimator;
+}
+
+void note_times(RunDetail& run) {
+  for (const CameraDetail& camera : run.cameras) {
+    for (const FrameDetail& frame : camera.frames) {
+      run.has_pulses = run.has_pulses || frame.pulse >= 0;
+      if (!run.has_truth) continue;
+      run.capture_end_ms = std::fmax(run.capture_end_ms, frame.exposure_end_ms);
+      if (frame.in_warm_up) continue;
+      run.evaluated_start_ms = std::fmin(run.evaluated_start_ms, frame.exposure_start_ms);
+    }
+  }
+}
+
+}  // namespace
+
+RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& choice,
+                     std::uint64_t seed, RecordingSource& source) {
+  RunDetail run;
+  run.scenario = scenario.name;
+  run.pipeline = choice.pipeline.name;
+  run.seed = seed;
+  const ScorerSetup setup = scorer_setup(scenario, choice);
+  PipelineScorer scorer(setup);
+  DetailKeeper keeper(scorer, setup, run);
+  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  RunWorld world(setup.stream, scenario.hosts.count, host_sync->warm_up());
+  const RecordingCost cost = source.record({.seed = seed,
+                                            .pipeline = choice.pipeline.name,
+                                            .host_sync = host_sync.get(),
+                                            .observer = &world},
+                                           keeper);
+  run.score = scorer.finish();
+  run.score.seed = seed;
+  run.score.cost = cost;
+  run.gathering_interval_ms = 1000 / run.frame_rate_hz * setup.gathering_interval_periods;
+  keeper.finish(estimator_named(scenario, choice, "regression_30"),
+                estimator_named(scenario, choice, "regression_offline"));
+  note_times(run);
+  world.add_to(run, scenario.timeline.wait_before_capture_ms);
+  return run;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,139 @@
+// Scores one pipeline over one capture, while it is being recorded.
+//
+// Receives the capture as a RecordingSink, runs device_time and gathering on it frame by frame and
+// keeps only what the scores need: the global stamps of the evaluated pulses. Once warm, a frame
+// allocates nothing. A source is the scored stream of one camera; sources are numbered like
+// cameras.
+//
+// The rules (docs/design.md section 8):
+//  - Which frames belong together is known from the truth (the pulse that exposed them) or, on a
+//    real genlock rig, from GenLock order. In other captures without truth nobody knows: they are
+//    scored over the sets that gathering emitted, unverified (unverified_scores.h says what that is
+//    worth), and every score that needs pulses is NaN. The first frame decides: SeedScore says
+//    which it was (ground_truth).
+//  - device_time and gathering begin where the warm-up ends, with the first evaluated pulse. Only
+//    those that ask for it (relative(), from_first_frame()) see all of it.
+//    Frames that no pulse exposed (free-running) are taken from the moment another source's
+//    evaluated pulse shows that the warm-up is over; they are part of the stream, but never scored.
+//  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame
+//    of the master's first camera; if that has none, of the first frame of all.
+//  - An offline estimator stamps when the capture has ended, and gathering follows it then.
+//
+//   PipelineScorer scorer(setup);
+//   const RecordingCost cost = source.record({.seed = 1, .pipeline = "mine"}, scorer);
+//   SeedScore score = scorer.finish();
+#ifndef SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
+#define SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "algorithms/device_time/device_time.h"
+#include "algorithms/device_time/unwrap.h"
+#include "algorithms/gathering/gathering.h"
+#include "algorithms/gathering/genlock_order.h"
+#include "evaluation/scoring/deferred_stamps.h"
+#include "evaluation/scoring/host_errors.h"
+#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_scores.h"
+#include "evaluation/scoring/pulse_table.h"
+#include "evaluation/scoring/results.h"
+#include "evaluation/scoring/score_observer.h"
+#include "evaluation/scoring/set_counter.h"
+#include "evaluation/scoring/unverified_scores.h"
+#include "recording/recording.h"
+
+namespace simbench::evaluation {
+
+using GathererFactory = std::function<std::unique_ptr<Gatherer>(const GatheringSetup&)>;
+
+struct ScorerSetup {
+  StreamKind stream = StreamKind::kDepth;  // the one that is scored
+  MedianKind median = MedianKind::kUpperMiddle;
+  bool genlock = false;                     // sensor stamps tell the order of frames
+  double gathering_interval_periods = 0.5;  // T_int
+  EstimatorFactory make_estimator;          // empty: the oracle, the true time on the own host
+  EstimatorFactory make_second_estimator;   // for SeedScore::offline_amd_ms; empty: none
+  GathererFactory make_gatherer;
+  bool gatherer_needs_pulses = false;  // the oracle of gathering
+};
+
+class PipelineScorer final : public RecordingSink {
+ public:
+  explicit PipelineScorer(ScorerSetup setup);
+
+  // Shows `observer` stamps and sets as they come; before the capture starts. It must outlive this.
+  void watch(ScoreObserver& observer) { observer_ = &observer; }
+
+  void on_start(const RigLayout& layout) override;
+  // Throws RecordingFailed if an oracle, of device_time or of gathering, gets a frame without the
+  // truth it needs: no such capture can be scored.
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
+  void on_pulse(const PulseTruth& truth) override;
+  void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_poll(const DevicePoll& poll) override;
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override;
+  void on_outcome(const SyncOutcome& outcome) override;
+
+  // The scores of the capture, pulses included; seed and cost are the caller's to add. Call once.
+  SeedScore finish();
+
+ private:
+  struct Source {
+    DeviceStampUnwrapper unwrapper;
+    GenlockOrder order;
+    std::unique_ptr<DeviceTimeEstimator> estimator;
+  };
+
+  struct Place {
+    std::int64_t pulse = 0;
+    bool warm_up = false;
+  };
+
+  void learn_ground_truth(const FrameTruth* truth);
+  Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,
+                 DeviceTime sensor);
+  std::int64_t pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor);
+  bool in_warm_up(std::int64_t pulse);
+  void note_anchor(const FrameRecord& frame);
+  GlobalTime estimate(Source& source, const DeviceSample& sample, const FrameTruth* truth);
+  void gather(const DeferredFrame& frame, GlobalTime global);
+  void settle(const DeferredFrame& frame, GlobalTime global);
+  // What a relative estimator's stamps lack.
+  Nanoseconds anchor_shift() const;
+  double second_amd_ms() const;
+  Nanoseconds period() const;
+  GroundTruth ground_truth() const;
+
+  ScorerSetup setup_;
+  ScoreObserver* observer_ = nullptr;
+  RigLayout layout_;
+  std::vector<Source> sources_;
+  std::unique_ptr<Gatherer> gatherer_;
+  bool relative_ = false;
+  bool stamp_warm_up_ = false;
+  bool gather_warm_up_ = false;
+  bool warm_up_over_ = false;
+  std::optional<std::uint32_t> anchor_camera_;  // the master's first
+  std::optional<HostTime> anchor_;
+  std::optional<HostTime> first_arrival_;
+  std::optional<std::int64_t> first_true_pulse_;  // of the capture's first frame
+  std::optional<GroundTruth> ground_truth_;       // of the frames, from the first on
+  bool pulses_with_truth_ = false;
+  // Made when the capture starts.
+  std::optional<PulseTable> table_;
+  std::optional<SetCounter> sets_;
+  std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
+  std::optional<HostErrors> host_errors_;
+  std::optional<DeferredStamps> deferred_;         // if the estimator is offline
+  std::optional<DeferredStamps> second_deferred_;  // if a second one was asked for
+  std::int64_t genlock_index_errors_ = 0;
+  std::vector<SyncOutcome> failures_;
+};
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_SCORING_PIPELINE_SCORER_H_

@@ -1,0 +1,165 @@
+#include "evaluation/scoring/pulse_scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMsPerNs = 1e-6;
+
+class Mean {
+ public:
+  void add(double value) {
+    sum_ += value;
+    ++count_;
+  }
+  double value() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : kNan; }
+
+ private:
+  double sum_ = 0;
+  std::int64_t count_ = 0;
+};
+
+// The spread of a pulse taken apart: inside its hosts, and between their means.
+class HostSpreads {
+ public:
+  explicit HostSpreads(const PulseScoring& scoring)
+      : host_of_source_(scoring.host_of_source), hosts_(scoring.hosts) {}
+
+  void add_pulse(std::span<const std::int64_t> global_ns) {
+    std::fill(hosts_.begin(), hosts_.end(), Host{});
+    const std::int64_t base = global_ns.front();
+    for (std::size_t source = 0; source < global_ns.size(); ++source) {
+      hosts_[host_of_source_[source]].add(global_ns[source] - base);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -least;
+    int hosts_with_sources = 0;
+    for (const Host& host : hosts_) {
+      if (host.count == 0) continue;
+      if (host.count > 1) inside_.add(static_cast<double>(host.greatest - host.least) * kMsPerNs);
+      const double mean = host.sum / static_cast<double>(host.count);
+      least = std::min(least, mean);
+      greatest = std::max(greatest, mean);
+      ++hosts_with_sources;
+    }
+    if (hosts_with_sources > 1) between_.add((greatest - least) * kMsPerNs);
+  }
+
+  double inside_ms() const { return inside_.value(); }
+  double between_ms() const { return between_.value(); }
+
+ private:
+  struct Host {
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    std::int64_t greatest = std::numeric_limits<std::int64_t>::min();
+    double sum = 0;
+    std::int64_t count = 0;
+
+    void add(std::int64_t stamp) {
+      least = std::min(least, stamp);
+      greatest = std::max(greatest, stamp);
+      sum += static_cast<double>(stamp);
+      ++count;
+    }
+  };
+
+  const std::vector<std::uint32_t>& host_of_source_;
+  std::vector<Host> hosts_;
+  Mean inside_;
+  Mean between_;
+};
+
+// Change of the spread from the first complete pulse to the last, along the least-squares line.
+double trend_ms(const std::vector<PulseScore>& pulses) {
+  if (pulses.size() < 2) return kNan;
+  Mean mean_pulse;
+  Mean mean_spread;
+  const std::int64_t first = pulses.front().pulse;
+  for (const PulseScore& pulse : pulses) {
+    mean_pulse.add(static_cast<double>(pulse.pulse - first));
+    mean_spread.add(pulse.spread_ms);
+  }
+  double variance = 0;
+  double covariance = 0;
+  for (const PulseScore& pulse : pulses) {
+    const double x = static_cast<double>(pulse.pulse - first) - mean_pulse.value();
+    variance += x * x;
+    covariance += x * (pulse.spread_ms - mean_spread.value());
+  }
+  return covariance / variance * static_cast<double>(pulses.back().pulse - first);
+}
+
+void score_errors(const PulseTable& table, SeedScore& score) {
+  Mean absolute;
+  Mean bias;
+  Mean exposure;
+  for (std::size_t row = 0; row < table.rows() && table.has_truth(); ++row) {
+    if (!table.complete(row)) continue;
+    const auto global = table.global_ns(row);
+    const auto reference = table.reference_ns(row);
+    for (std::size_t source = 0; source < global.size(); ++source) {
+      const double error = static_cast<double>(global[source] - reference[source]) * kMsPerNs;
+      absolute.add(std::abs(error));
+      bias.add(error);
+    }
+    exposure.add(to_ms(table.exposure_spread(row)));
+  }
+  score.absolute_error_ms = absolute.value();
+  score.bias_ms = bias.value();
+  score.exposure_spread_ms = exposure.value();
+}
+
+void count_frames(const PulseTable& table, FrameCounts& frames) {
+  frames.expected = static_cast<std::int64_t>(table.rows() * table.sources());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    frames.delivered += static_cast<std::int64_t>(table.delivered(row));
+  }
+  frames.dropped = frames.expected - frames.delivered;
+}
+
+}  // namespace
+
+void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score) {
+  count_frames(table, score.frames);
+  score_errors(table, score);
+
+  HostSpreads hosts(scoring);
+  Mean amd;
+  Mean rmdv;
+  Mean below_half_period;
+  std::vector<std::int64_t> workspace;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (!table.complete(row)) continue;
+    const auto stamps = table.global_ns(row);
+    const PulseScore pulse = {.pulse = table.pulse_of(row),
+                              .spread_ms = spread_ms(stamps),
+                              .deviation_ms = deviation_ms(stamps, scoring.median, workspace)};
+    amd.add(pulse.spread_ms);
+    rmdv.add(pulse.deviation_ms);
+    below_half_period.add(pulse.spread_ms < to_ms(scoring.period) / 2 ? 1 : 0);
+    hosts.add_pulse(stamps);
+    score.pulses.push_back(pulse);
+  }
+  score.amd_ms = amd.value();
+  score.rmdv_ms = rmdv.value();
+  score.share_below_half_period = below_half_period.value();
+  score.spread_in_host_ms = hosts.inside_ms();
+  score.spread_between_hosts_ms = hosts.between_ms();
+  score.trend_ms = trend_ms(score.pulses);
+  score.sets.complete_pulses = static_cast<std::int64_t>(score.pulses.size());
+}
+
+double amd_ms(const PulseTable& table) {
+  Mean amd;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.complete(row)) amd.add(spread_ms(table.global_ns(row)));
+  }
+  return amd.value();
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,84 @@
+#include "evaluation/scoring/set_counter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace simbench::evaluation {
+
+bool SetCounter::counts(std::span<const GatherFrame> set) const {
+  return std::any_of(set.begin(), set.end(),
+                     [this](const GatherFrame& frame) { return table_.holds(frame.tag); });
+}
+
+void SetCounter::on_partial_set(std::span<const GatherFrame> set) {
+  if (!counts(set)) return;
+  ++partial_;
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now_);
+}
+
+void SetCounter::on_set(std::span<const GatherFrame> set) {
+  if (!counts(set)) return;
+  const std::int64_t errors = index_errors(set);
+  index_errors_ += errors;
+  if (errors == 0) ++pure_;
+  GlobalTime latest_arrival = set.front().arrival;
+  GlobalTime first = set.front().stamp;
+  GlobalTime last = first;
+  for (const GatherFrame& frame : set) {
+    latest_arrival = std::max(latest_arrival, frame.arrival);
+    first = std::min(first, frame.stamp);
+    last = std::max(last, frame.stamp);
+  }
+  range_sum_ms_ += to_ms(last - first);
+  const double latency_ms = to_ms(now_ - latest_arrival);
+  latency_sum_ms_ += latency_ms;
+  latency_max_ms_ = emitted_ == 0 ? latency_ms : std::max(latency_max_ms_, latency_ms);
+  ++emitted_;
+  if (table_.has_truth()) add_errors(set);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
+}
+
+// Members that are not of the pulse that most members are of.
+std::int64_t SetCounter::index_errors(std::span<const GatherFrame> set) {
+  const auto size = static_cast<std::int64_t>(set.size());
+  const std::int64_t tag = set.front().tag;
+  if (std::all_of(set.begin(), set.end(), [tag](const GatherFrame& f) { return f.tag == tag; })) {
+    return 0;
+  }
+  tags_.clear();
+  for (const GatherFrame& frame : set) {
+    if (frame.tag >= 0) tags_.push_back(frame.tag);  // most may be of no pulse, which is none
+  }
+  std::sort(tags_.begin(), tags_.end());
+  std::int64_t most = 0;
+  for (auto begin = tags_.begin(); begin != tags_.end();) {
+    const auto end = std::upper_bound(begin, tags_.end(), *begin);
+    most = std::max<std::int64_t>(most, end - begin);
+    begin = end;
+  }
+  return size - most;
+}
+
+void SetCounter::add_errors(std::span<const GatherFrame> set) {
+  for (const GatherFrame& frame : set) {
+    if (!table_.holds(frame.tag)) continue;
+    const std::int64_t reference = table_.reference_ns(table_.row_of(frame.tag))[frame.source];
+    error_sum_ms_ += std::abs(to_ms(frame.stamp + shift_ - GlobalTime(Nanoseconds(reference))));
+    ++errors_;
+  }
+}
+
+void SetCounter::score(SeedScore& score) const {
+  score.sets.emitted = emitted_;
+  score.sets.pure = pure_;
+  score.sets.partial = partial_;
+  score.sets.index_errors = index_errors_;
+  if (emitted_ == 0) return;  // they stay NaN
+  const auto sets = static_cast<double>(emitted_);
+  score.set_amd_ms = range_sum_ms_ / sets;
+  score.emission_latency_ms = latency_sum_ms_ / sets;
+  score.emission_latency_max_ms = latency_max_ms_;
+  if (errors_ > 0) score.set_absolute_error_ms = error_sum_ms_ / static_cast<double>(errors_);
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,172 @@
+#include "reports/archive/archive_reader.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "reports/results/ground_truth_text.h"
+#include "reports/text/json_node.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Row;
+
+constexpr const char* kAdvice =
+    "`simbench run --output DIR` writes a result archive, and `simbench run --format json > FILE` "
+    "a result without one";
+
+evaluation::Percentile percentile(const JsonNode& published, const char* name) {
+  const JsonNode interval = published[fmt::format("{}_interval", name).c_str()];
+  const std::vector<JsonNode> ends = interval.elements();
+  if (ends.size() != 2) interval.refuse("two numbers");
+  return {published[name].number(), ends[0].number(), ends[1].number()};
+}
+
+std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
+  if (node.is_null()) return std::nullopt;
+  return evaluation::PublishedComparison{.amd_ms = node["amd_ms"].number(),
+                                         .rmdv_ms = node["rmdv_ms"].number(),
+                                         .amd_inside = node["amd_inside"].flag(),
+                                         .rmdv_inside = node["rmdv_inside"].flag(),
+                                         .rmdv_attainable = node["rmdv_attainable"].flag(),
+                                         .amd_percentile = percentile(node, "amd_percentile"),
+                                         .rmdv_percentile = percentile(node, "rmdv_percentile")};
+}
+
+// Null where a row is not verified.
+std::int64_t count_or_none(const JsonNode& node) { return node.is_null() ? 0 : node.count(); }
+
+// Archives of simbench 0.1 do not have these members: they are all of simulations.
+void read_ground_truth(const JsonNode& node, Row& row) {
+  if (!node.has("ground_truth")) return;
+  using evaluation::GroundTruth;
+  const JsonNode name = node["ground_truth"];
+  const std::string text = name.text();
+  bool known = false;
+  for (const GroundTruth truth :
+       {GroundTruth::kSimulation, GroundTruth::kGenlockOrder, GroundTruth::kNone}) {
+    if (text != ground_truth_name(truth)) continue;
+    row.ground_truth = truth;
+    known = true;
+  }
+  if (!known) name.refuse("\"simulation\", \"genlock_order\" or \"none\"");
+  for (const JsonNode& note : node["notes"].elements()) row.notes.push_back(note.text());
+}
+
+void read_gathering(const JsonNode& node, std::size_t seeds, Row& row) {
+  row.precision = node["precision"].number();
+  row.recall = node["recall"].number();
+  row.margin_ms = node["margin_ms"].number();
+  row.seed_precision = node["seed_precision"].series(seeds);
+  row.seed_recall = node["seed_recall"].series(seeds);
+  row.sets = {.emitted = node["sets"].count(),
+              .pure = count_or_none(node["pure_sets"]),
+              .complete_pulses = count_or_none(node["complete_pulses"]),
+              .discarded_frames = node["discarded_frames"].count(),
+              .partial = node["partial_sets"].count(),
+              .index_errors = count_or_none(node["index_errors"])};
+  row.set_amd_ms = node["set_amd_ms"].series(seeds);
+  row.set_absolute_error_ms = node["set_absolute_error_ms"].series(seeds);
+  row.emission_latency_ms = node["emission_latency_ms"].series(seeds);
+  row.emission_latency_max_ms = node["emission_latency_max_ms"].number();
+}
+
+Row read_row(const JsonNode& node, std::size_t seeds) {
+  Row row;
+  row.pipeline = node["pipeline"].text();
+  row.host_sync = node["host_sync"].text();
+  row.device_time = node["device_time"].text();
+  row.gathering = node["gathering"].text();
+  row.offline = node["offline"].flag();
+  row.amd_ms = node["amd_ms"].series(seeds);
+  row.rmdv_ms = node["rmdv_ms"].series(seeds);
+  row.absolute_error_ms = node["absolute_error_ms"].series(seeds);
+  row.bias_ms = node["bias_ms"].series(seeds);
+  row.host_error_ms = node["host_error_ms"].series(seeds);
+  row.exposure_spread_ms = node["exposure_spread_ms"].series(seeds);
+  read_gathering(node["gathering_score"], seeds, row);
+  const JsonNode frames = node["frames"];
+  row.frames = {.expected = frames["expected"].count(),
+                .delivered = frames["delivered"].count(),
+                .dropped = frames["dropped"].count()};
+  row.evaluated_pulses = node["evaluated_pulses"].count();
+  row.unsynchronised_hosts = node["unsynchronised_hosts"].count();
+  row.published = published(node["published"]);
+  read_ground_truth(node, row);
+  return row;
+}
+
+evaluation::Claim read_claim(const JsonNode& node) {
+  evaluation::Claim claim;
+  claim.id = node["id"].text();
+  claim.text = node["text"].text();
+  if (!node["holds_fraction"].is_null()) claim.holds_fraction = node["holds_fraction"].number();
+  if (!node["needs"].is_null()) claim.needs = node["needs"].text();
+  return claim;
+}
+
+evaluation::Results read_results(const JsonNode& root) {
+  evaluation::Results results;
+  results.scenario = root["scenario"].text();
+  results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
+  results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
+  for (const JsonNode& row : root["rows"].elements()) {
+    results.rows.push_back(read_row(row, results.seed_count));
+  }
+  for (const JsonNode& claim : root["claims"].elements())
+    results.claims.push_back(read_claim(claim));
+  if (const JsonNode floor = root["asymmetry_floor"]; !floor.is_null()) {
+    results.asymmetry_floor =
+        evaluation::AsymmetryFloor{.sigma_ms = floor["sigma_ms"].number(),
+                                   .host_error_ms = floor["host_error_ms"].number(),
+                                   .amd_ms = floor["amd_ms"].number()};
+  }
+  for (const JsonNode& warning : root["warnings"].elements()) {
+    results.warnings.push_back(warning.text());
+  }
+  const JsonNode cost = root["performance"];
+  results.performance = {
+      .events = static_cast<std::uint64_t>(cost["events"].count()),
+      .simulated_seconds = cost["simulated_seconds"].number(),
+      .cpu_seconds = cost["cpu_seconds"].number(),
+      .wall_seconds = cost["wall_seconds"].number(),
+      .events_per_second = cost["events_per_second"].number(),
+      .simulated_seconds_per_second = cost["simulated_seconds_per_second"].number()};
+  return results;
+}
+
+void read_manifest(const JsonFile& file, Archive& archive) {
+  const JsonNode root(file, file.value);
+  root.check_schema_version(kArchiveSchemaVersion);
+  for (const JsonNode& word : root["command"].elements()) archive.command.push_back(word.text());
+  archive.started = root["started"].text();
+  archive.finished = root["finished"].text();
+  archive.scenario_json = root["scenario"].dump();
+  if (const JsonNode name = root["scenario"]["name"]; name.text() != archive.results.scenario) {
+    name.refuse(fmt::format("'{}', as in results.json beside it", archive.results.scenario));
+  }
+}
+
+}  // namespace
+
+Archive read_archive(const std::string& path) {
+  const bool is_folder = std::filesystem::is_directory(path);
+  const std::filesystem::path folder = path;
+  const JsonFile file =
+      read_json_file(is_folder ? (folder / "results.json").string() : path, kAdvice);
+  const JsonNode root(file, file.value);
+  root.check_schema_version(kArchiveSchemaVersion);
+  Archive archive;
+  archive.path = path;
+  archive.version = root["version"].text();
+  archive.commit = root["commit"].text();
+  archive.results = read_results(root);
+  if (is_folder) {
+    read_manifest(read_json_file((folder / "manifest.json").string(), kAdvice), archive);
+  }
+  return archive;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,67 @@
+// What a build is held to: the gated metrics of every pipeline, seed by seed, in a small file that
+// lives beside the sources.
+//
+//   {"schema_version": 1, "kind": "simbench baseline", "version": ..., "commit": ...,
+//    "scenario": "18cam_6host_45fps", "seeds": {"first": 1, "count": 32},
+//    "margins": {"amd_ms": {"relative": 0.02, "absolute": 0.001}, ... one for each metric},
+//    "scenario_digest": ..., "pipelines_digest": ...,
+//    "resolved_scenario": {...},
+//    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,
+//                   seed_recall likewise}, ...]}
+//
+// Margins are meant to be edited by hand. The rest is not: two digests (comparison_scenarios.h)
+// show it, and the scenario is there to say where another one differs. Values have 12 digits, a
+// thousand times finer than the rounding that a gate forgives (kRounding in gate.h). A value that
+// does not exist is null.
+//
+// Errors: scenarios::InputError with file, line and pointer for a file that was cut short, edited
+// or written by a newer simbench; OutputError for one that cannot be written.
+//
+//   write_baseline(make_baseline(read_archive("results")), "reports/baselines/mine.json");
+#ifndef SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
+#define SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "evaluation/statistics/paired_metrics.h"
+#include "reports/archive/archive_reader.h"
+#include "reports/comparison/comparison_seeds.h"
+
+namespace simbench::reports {
+
+inline constexpr int kBaselineSchemaVersion = 1;  // written, and the newest that is read
+
+struct BaselinePipeline {
+  std::string name;
+  // By paired_metrics(); in seed order.
+  std::array<std::vector<double>, evaluation::kPairedMetrics> values;
+};
+
+struct Baseline {
+  std::string path;  // as the user named it; empty if it is no file yet
+  std::string version;
+  std::string commit;
+  std::string scenario;
+  std::string scenario_json;  // resolved
+  SeedRange seeds;
+  std::array<evaluation::GateMargin, evaluation::kPairedMetrics> margins;
+  std::vector<BaselinePipeline> pipelines;
+};
+
+// With the default margins. Throws InputError for a result without its scenario: a results.json
+// alone.
+Baseline make_baseline(const Archive& archive);
+
+// What the file holds: a line for each pipeline's metric, so that a change is seen in a diff.
+std::string baseline_json(const Baseline& baseline);
+
+// The file appears whole or not at all.
+void write_baseline(const Baseline& baseline, const std::string& path);
+
+Baseline read_baseline(const std::string& path);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_

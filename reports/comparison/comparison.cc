@@ -1,0 +1,209 @@
+#include "reports/comparison/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/comparison/comparison_scenarios.h"
+#include "reports/comparison/comparison_seeds.h"
+#include "scenarios/loader.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Row;
+using scenarios::InputError;
+
+std::vector<std::string> names_of(const Archive& archive) {
+  std::vector<std::string> names;
+  for (const Row& row : archive.results.rows) names.push_back(row.pipeline);
+  return names;
+}
+
+const Row* find_row(const Archive& archive, const std::string& name) {
+  const std::vector<Row>& rows = archive.results.rows;
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.pipeline == name; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+const Row& row_of(const Archive& archive, const std::string& name, const char* option) {
+  if (const Row* row = find_row(archive, name)) return *row;
+  throw InputError(fmt::format("{}: found '{}', which {} does not have; it has {}", option, name,
+                               archive.path, fmt::join(names_of(archive), ", ")));
+}
+
+ComparedPipeline compared(const Row& a, const Row& b, const SeedPairing& pairing,
+                          const ComparisonOptions& options) {
+  ComparedPipeline result{.pipeline_a = a.pipeline, .pipeline_b = b.pipeline, .metrics = {}};
+  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+    const evaluation::PairedMetric& metric = evaluation::paired_metrics().at(i);
+    const evaluation::PairedValues values =
+        evaluation::pair_up(pairing.of_a(metric.of(a).values), pairing.of_b(metric.of(b).values));
+    result.metrics.at(i) =
+        evaluation::compare(values, {.smallest_effect = options.smallest_effect,
+                                     .smallest_step = metric.smallest_step,
+                                     .higher_is_better = metric.higher_is_better});
+  }
+  return result;
+}
+
+Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairing,
+                    const ComparisonOptions& options) {
+  Comparison comparison;
+  comparison.scenario = a.results.scenario;
+  comparison.by_index = options.by_index;
+  comparison.first_seed_a = a.results.first_seed + pairing.skip_a;
+  comparison.first_seed_b = b.results.first_seed + pairing.skip_b;
+  comparison.seed_count = pairing.count;
+  comparison.smallest_effect = options.smallest_effect;
+  return comparison;
+}
+
+std::string described(const Archive& archive) {
+  return fmt::format("{} (simbench {}, commit {})", archive.path, archive.version, archive.commit);
+}
+
+[[noreturn]] void refuse_worlds(const Archive& a, const Archive& b, const std::string& what) {
+  throw InputError(fmt::format(
+      "{} and {} are of different scenarios, so a difference says nothing about the pipelines: {}. "
+      "What can be compared: pipelines within one of them (--pipelines or --with-baseline), or "
+      "what "
+      "the other world makes of the same pipelines, with --different-scenarios",
+      a.path, b.path, what));
+}
+
+// Refuses other worlds, or says what differs in `notes`.
+void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions& options,
+                     std::vector<std::string>& notes) {
+  const std::string& name_a = a.results.scenario;
+  const std::string& name_b = b.results.scenario;
+  const std::string names = fmt::format("scenario {} against {}", name_a, name_b);
+  if (a.scenario_json.empty() || b.scenario_json.empty()) {
+    if (name_a != name_b && !options.different_scenarios) refuse_worlds(a, b, names);
+    if (name_a != name_b) notes.push_back(names);
+    notes.emplace_back(
+        "a results.json alone does not hold its scenario: that both are of the same world is "
+        "not checked");
+    return;
+  }
+  const ScenarioDifferences found = compare_scenarios(a.scenario_json, b.scenario_json);
+  if (!found.world.empty()) {
+    const std::string world = first_few(found.world);
+    if (!options.different_scenarios) refuse_worlds(a, b, world);
+    notes.push_back(fmt::format(
+        "different worlds, as asked for; the differences are theirs and not the pipelines': {}",
+        world));
+  }
+  if (name_a != name_b) notes.push_back(names);
+  if (!found.algorithms.empty()) {
+    notes.push_back(fmt::format("the algorithms differ: {}", first_few(found.algorithms)));
+  }
+}
+
+SeedPairing paired_seeds(const Archive& a, const Archive& b, const ComparisonOptions& options,
+                         std::vector<std::string>& notes) {
+  const SeedRange of_a = seeds_of(a.results);
+  const SeedRange of_b = seeds_of(b.results);
+  const SeedPairing pairing =
+      options.by_index ? pair_by_index(of_a, of_b) : pair_by_seed(of_a, of_b);
+  if (pairing.count == 0) {
+    throw InputError(fmt::format(
+        "{} has the seeds {} and {} has {}: none in common. Run one of them with the seeds of the "
+        "other (--first-seed, --seeds), or compare them as independent runs with --by-index, which "
+        "needs many more seeds",
+        a.path, seeds_text(of_a), b.path, seeds_text(of_b)));
+  }
+  if (of_a.first != of_b.first || of_a.count != of_b.count) {
+    const SeedRange used{of_a.first + pairing.skip_a, pairing.count};
+    notes.push_back(fmt::format(
+        "seeds {} against {}: {}", seeds_text(of_a), seeds_text(of_b),
+        options.by_index ? fmt::format("the first {} of each, by index", pairing.count)
+                         : fmt::format("the common ones, {}, are compared", seeds_text(used))));
+  }
+  return pairing;
+}
+
+void note_other_pipelines(const Archive& archive, const Archive& other,
+                          std::vector<std::string>& notes) {
+  std::vector<std::string> missing;
+  for (const std::string& name : names_of(archive)) {
+    if (find_row(other, name) == nullptr) missing.push_back(name);
+  }
+  if (missing.empty()) return;
+  notes.push_back(
+      fmt::format("only in {}, not compared: {}", archive.path, fmt::join(missing, ", ")));
+}
+
+void note_versions(const Archive& a, const Archive& b, std::vector<std::string>& notes) {
+  if (a.version != b.version) {
+    notes.push_back(fmt::format("version {} against {}", a.version, b.version));
+  }
+  if (a.commit != b.commit) {
+    notes.push_back(fmt::format("commit {} against {}", a.commit, b.commit));
+  }
+}
+
+}  // namespace
+
+Comparison compare_archives(const Archive& a, const Archive& b, const ComparisonOptions& options) {
+  std::vector<std::string> notes;
+  check_scenarios(a, b, options, notes);
+  const SeedPairing pairing = paired_seeds(a, b, options, notes);
+  Comparison comparison = prepared(a, b, pairing, options);
+  comparison.a = described(a);
+  comparison.b = described(b);
+  note_versions(a, b, notes);
+  if (options.pipelines.empty()) {
+    for (const Row& row : a.results.rows) {
+      const Row* other = find_row(b, row.pipeline);
+      if (other == nullptr) continue;
+      comparison.pipelines.push_back(compared(row, *other, pairing, options));
+    }
+    note_other_pipelines(a, b, notes);
+    note_other_pipelines(b, a, notes);
+  }
+  for (const std::string& name : options.pipelines) {
+    comparison.pipelines.push_back(
+        compared(row_of(a, name, "--pipelines"), row_of(b, name, "--pipelines"), pairing, options));
+  }
+  if (comparison.pipelines.empty()) {
+    throw InputError(fmt::format("no pipeline is in both: {} has {}, {} has {}", a.path,
+                                 fmt::join(names_of(a), ", "), b.path,
+                                 fmt::join(names_of(b), ", ")));
+  }
+  comparison.notes = std::move(notes);
+  return comparison;
+}
+
+Comparison compare_pipelines(const Archive& archive, const std::string& a, const std::string& b,
+                             const ComparisonOptions& options) {
+  const SeedPairing pairing = pair_by_seed(seeds_of(archive.results), seeds_of(archive.results));
+  Comparison comparison = prepared(archive, archive, pairing, options);
+  comparison.a = fmt::format("pipeline {} of {}", a, described(archive));
+  comparison.b = fmt::format("pipeline {} of {}", b, described(archive));
+  comparison.pipelines.push_back(compared(row_of(archive, a, "--pipelines"),
+                                          row_of(archive, b, "--pipelines"), pairing, options));
+  return comparison;
+}
+
+Comparison compare_with_baseline(const Archive& archive, const std::string& baseline,
+                                 const ComparisonOptions& options) {
+  const SeedPairing pairing = pair_by_seed(seeds_of(archive.results), seeds_of(archive.results));
+  Comparison comparison = prepared(archive, archive, pairing, options);
+  comparison.with_baseline = true;
+  comparison.a = fmt::format("pipeline {} of {}", baseline, described(archive));
+  comparison.b = "each other pipeline of it";
+  const Row& against = row_of(archive, baseline, "--with-baseline");
+  for (const Row& row : archive.results.rows) {
+    if (row.pipeline == baseline) continue;
+    comparison.pipelines.push_back(compared(against, row, pairing, options));
+  }
+  if (comparison.pipelines.empty()) {
+    throw InputError(
+        fmt::format("--with-baseline: {} has no pipeline beside {}", archive.path, baseline));
+  }
+  return comparison;
+}
+
+}  // namespace simbench::reports

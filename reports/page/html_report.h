@@ -1,0 +1,38 @@
+// One self-contained HTML file of one or more result archives: tables, figures, and how to
+// reproduce them. It opens offline, in light and dark, prints, and asks nothing of any server.
+//
+// The tables stand in the file as HTML. The figures stand in it as data
+// (reports/page/html_figures.h) and are drawn by the page's own JavaScript (reports/web/) with
+// uPlot, which is embedded too. Whatever comes from an archive is escaped.
+//
+//   const ReportInput input = {.archives = {{.archive = read_archive("results/monday"),
+//                                            .figures = figures, .notes = {}}},
+//                              .command = {"simbench", "report", "results/monday"}};
+//   file << html_report(input);
+#ifndef SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_
+#define SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "reports/archive/archive_reader.h"
+#include "reports/figures/figure.h"
+
+namespace simbench::reports {
+
+struct ReportedArchive {
+  Archive archive;
+  std::vector<Figure> figures{};
+  std::vector<std::string> notes{};  // what a reader of the figures has to know
+};
+
+struct ReportInput {
+  std::vector<ReportedArchive> archives;  // at least one
+  std::vector<std::string> command;       // that makes the report, argv
+};
+
+std::string html_report(const ReportInput& input);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_PAGE_HTML_REPORT_H_

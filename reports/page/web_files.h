@@ -1,0 +1,19 @@
+// The page of the report and what it is drawn with, as the build embedded them
+// (reports/embed_web.cmake): the files of reports/web/, and uPlot.
+#ifndef SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
+#define SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
+
+#include <string_view>
+
+namespace simbench::reports::web {
+
+std::string_view page();    // report.html, a template of html_text.h
+std::string_view style();   // report.css
+std::string_view script();  // the .js files, one after another: one module
+std::string_view uplot_script();
+std::string_view uplot_style();
+std::string_view uplot_licence();
+
+}  // namespace simbench::reports::web
+
+#endif  // SIMBENCH_REPORTS_PAGE_WEB_FILES_H_

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "evaluation/statistics/statistics.h"
+#include "recording/version.h"
+#include "reports/reconstruction/reconstruction_report.h"
+#include "reports/reconstruction/reconstruction_text.h"
+#include "reports/results/csv.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Series;
+using reconstruction::CurvePoint;
+using reconstruction::ReconstructionResults;
+using reconstruction::ReprojectionRow;
+using reconstruction::SeedReprojection;
+using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
+
+Json series_json(const Series& series) {
+  return {{"median", series.median},
+          {"p05", series.p05},
+          {"p95", series.p95},
+          {"values", series.values}};
+}
+
+std::int64_t total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
+  std::int64_t sum = 0;
+  for (const SeedReprojection& seed : row.seeds) sum += seed.*member;
+  return sum;
+}
+
+Json published_json(const ReprojectionRow& row) {
+  if (!row.published) return nullptr;
+  return {{"mean_cm", row.published->mean_cm},
+          {"std_cm", row.published->std_cm},
+          {"mean_inside", evaluation::inside(row.published->mean_cm, row.mean_cm())},
+          {"std_inside", evaluation::inside(row.published->std_cm, row.std_cm())}};
+}
+
+Json row_json(const ReprojectionRow& row) {
+  return {{"pipeline", row.pipeline},
+          {"host_sync", row.host_sync},
+          {"device_time", row.device_time},
+          {"gathering", row.gathering},
+          {"mean_cm", series_json(row.mean_cm())},
+          {"std_cm", series_json(row.std_cm())},
+          {"median_cm", series_json(row.median_cm())},
+          {"p95_cm", series_json(row.p95_cm())},
+          {"desync_ms", series_json(row.desync_ms())},
+          {"sets", total(row, &SeedReprojection::sets)},
+          {"failed_sets", total(row, &SeedReprojection::failed_sets)},
+          {"missing_frames", total(row, &SeedReprojection::missing_frames)},
+          {"no_gathered_set_share", no_gathered_set_share(row)},
+          {"published", published_json(row)},
+          {"notes", row.notes}};
+}
+
+Json all_published_json(const ReconstructionResults& results) {
+  Json json = Json::object();
+  if (!results.scenario.studio) return json;
+  for (const auto& [pipeline, value] : results.scenario.studio->published) {
+    json[pipeline] = {{"mean_cm", value.mean_cm}, {"std_cm", value.std_cm}};
+  }
+  return json;
+}
+
+Json ratio_json(const ReconstructionResults& results) {
+  const auto ratio = published_ratio(results.rows);
+  if (!ratio) return nullptr;
+  return {{"worst", ratio->worst},
+          {"best", ratio->best},
+          {"ratio", series_json(ratio->ratio)},
+          {"published", ratio->published}};
+}
+
+Json curve_json(const std::vector<CurvePoint>& curve) {
+  Json json = Json::array();
+  for (const CurvePoint& point : curve) {
+    json.push_back({{"speed_m_per_s", point.speed_m_per_s},
+                    {"speed_factor", point.speed_factor},
+                    {"desync_ms", point.desync_ms},
+                    {"mean_cm", series_json(evaluation::make_series(point.mean_cm))},
+                    {"std_cm", series_json(evaluation::make_series(point.std_cm))}});
+  }
+  return json;
+}
+
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json limits_json(const std::vector<CurvePoint>& curve) {
+  Json json = Json::array();
+  for (const SyncLimit& limit : sync_limits(curve)) {
+    json.push_back({{"speed_m_per_s", limit.speed_m_per_s},
+                    {"speed_factor", limit.speed_factor},
+                    {"floor_cm", limit.floor_cm},
+                    {"limit_ms", optional_json(limit.limit_ms)},
+                    {"last_ms", limit.last_ms},
+                    {"cost_cm_per_ms", limit.cost_cm_per_ms}});
+  }
+  return json;
+}
+
+Json speed_needed_json(const std::optional<reconstruction::SpeedNeeded>& needed) {
+  if (!needed) return nullptr;
+  return {{"pipeline", needed->pipeline},
+          {"desync_ms", needed->desync_ms},
+          {"published_mean_cm", needed->published_mean_cm},
+          {"speed_m_per_s", optional_json(needed->speed_m_per_s)},
+          {"points", curve_json(needed->points)}};
+}
+
+struct NamedSeries {
+  const char* name;
+  Series (ReprojectionRow::*series)() const;
+};
+
+constexpr NamedSeries kSeries[] = {{"mean_cm", &ReprojectionRow::mean_cm},
+                                   {"std_cm", &ReprojectionRow::std_cm},
+                                   {"median_cm", &ReprojectionRow::median_cm},
+                                   {"p95_cm", &ReprojectionRow::p95_cm},
+                                   {"desync_ms", &ReprojectionRow::desync_ms}};
+
+std::string csv_header() {
+  std::string line = "pipeline,host_sync,device_time,gathering";
+  for (const NamedSeries& each : kSeries) line += fmt::format(",{0},{0}_p05,{0}_p95", each.name);
+  return line +
+         ",sets,failed_sets,missing_frames,no_gathered_set_share,published_mean_cm,"
+         "published_std_cm\n";
+}
+
+std::string csv_line(const ReprojectionRow& row) {
+  std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
+                                    csv_cell(row.device_time), csv_cell(row.gathering)};
+  for (const NamedSeries& each : kSeries) {
+    const Series series = (row.*each.series)();
+    cells.insert(cells.end(),
+                 {csv_cell(series.median), csv_cell(series.p05), csv_cell(series.p95)});
+  }
+  for (const auto member : {&SeedReprojection::sets, &SeedReprojection::failed_sets,
+                            &SeedReprojection::missing_frames}) {
+    cells.push_back(std::to_string(total(row, member)));
+  }
+  cells.push_back(csv_cell(no_gathered_set_share(row)));
+  cells.push_back(row.published ? csv_cell(row.published->mean_cm) : "");
+  cells.push_back(row.published ? csv_cell(row.published->std_cm) : "");
+  return fmt::format("{}\n", fmt::join(cells, ","));
+}
+
+}  // namespace
+
+std::string reconstruction_json(const ReconstructionResults& results) {
+  Json rows = Json::array();
+  for (const ReprojectionRow& row : results.rows) rows.push_back(row_json(row));
+  const Json root = {
+      {"schema_version", 1},
+      {"scenario", results.scenario.name},
+      {"version", version()},
+      {"commit", commit()},
+      {"first_seed", results.first_seed},
+      {"seeds", results.seeds},
+      {"frames", results.frames},
+      {"rows", rows},
+      {"published", all_published_json(results)},
+      {"published_ratio", ratio_json(results)},
+      {"curve", curve_json(results.curve)},
+      {"limits", limits_json(results.curve)},
+      {"speed_needed", speed_needed_json(results.speed_needed)},
+      {"notes", honest_notes(results)},
+      {"performance", {{"wall_s", results.wall_s}, {"seconds_per_set", results.seconds_per_set}}}};
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string reconstruction_csv(const ReconstructionResults& results) {
+  std::string text = csv_header();
+  for (const ReprojectionRow& row : results.rows) text += csv_line(row);
+  return text;
+}
+
+}  // namespace simbench::reports

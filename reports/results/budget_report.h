@@ -1,0 +1,30 @@
+// Error budgets as text, Markdown or JSON: what each stage adds to a pipeline's error.
+//
+// JSON: {"schema_version", "version", "commit", "scenario", "seeds", "budgets": [{"pipeline",
+// "amd_of_sets", "amd_ms": {"total", "remainder", "stages": [{"stage", "mean", "p05", "p95",
+// "values"}]}, "absolute_error_ms", "physical_ms"}]}; what does not exist is null.
+#ifndef SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
+#define SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evaluation/budget/budget.h"
+
+namespace simbench::reports {
+
+struct BudgetReport {
+  std::string scenario;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 0;
+  std::vector<evaluation::Budget> budgets;
+};
+
+std::string budget_table(const BudgetReport& report);
+std::string budget_markdown(const BudgetReport& report);
+std::string budget_json(const BudgetReport& report);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_

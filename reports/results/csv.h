@@ -1,0 +1,31 @@
+// Results as CSV: a header line, then one line per pipeline, frame or host. Numbers in the shortest
+// text that reads back as the same double; what does not exist is an empty cell.
+#ifndef SIMBENCH_REPORTS_RESULTS_CSV_H_
+#define SIMBENCH_REPORTS_RESULTS_CSV_H_
+
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+// One line per pipeline: medians and bands, gathering score, frames, published values, scores over
+// the gathered sets (medians). If a row is not of a simulation, three more columns at the end:
+// ground_truth (as in reports/results/json.h), verified ("verified" or "unverified") and notes.
+std::string csv(const evaluation::Results& results);
+
+// frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.
+void write_frames_csv(const evaluation::Results& results, std::ostream& out);
+
+// hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0).
+void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
+
+// A cell: quoted where it has to be (RFC 4180).
+std::string csv_cell(std::string_view text);
+std::string csv_cell(double value);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_CSV_H_

@@ -1,0 +1,73 @@
+#include "reports/results/ground_truth_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::GroundTruth;
+using evaluation::Results;
+using evaluation::Row;
+
+bool has_values(const Row& row) {
+  const std::vector<double>& values = row.amd_ms.values;
+  return row.frames.delivered > 0 ||
+         std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
+}
+
+}  // namespace
+
+const char* ground_truth_name(GroundTruth truth) {
+  switch (truth) {
+    case GroundTruth::kSimulation:
+      return "simulation";
+    case GroundTruth::kGenlockOrder:
+      return "genlock_order";
+    case GroundTruth::kNone:
+      break;
+  }
+  return "none";
+}
+
+std::string ground_truth_label(const Row& row) {
+  switch (row.ground_truth) {
+    case GroundTruth::kSimulation:
+      return "simulation";
+    case GroundTruth::kGenlockOrder:
+      return "GenLock order";
+    case GroundTruth::kNone:
+      break;
+  }
+  return has_values(row) ? "unverified" : "-";
+}
+
+bool has_real_rows(const Results& results) {
+  return std::any_of(results.rows.begin(), results.rows.end(),
+                     [](const Row& row) { return row.ground_truth != GroundTruth::kSimulation; });
+}
+
+std::string unverified_legend(const Results& results) {
+  const bool any = std::any_of(results.rows.begin(), results.rows.end(), [](const Row& row) {
+    return ground_truth_label(row) == "unverified";
+  });
+  if (!any) return "";
+  return "unverified: nothing tells which frames belong together, so AMD and RMDV are over the "
+         "sets "
+         "that gathering emitted, and \"pulses scored\" counts these. A gatherer that mixes "
+         "neighbours consistently looks perfect there; capture in genlock to verify it.";
+}
+
+std::vector<std::string> note_lines(const Results& results) {
+  std::vector<std::string> lines;
+  for (const Row& row : results.rows) {
+    for (const std::string& note : row.notes) {
+      lines.push_back(fmt::format("{}, {}", row.pipeline, note));
+    }
+  }
+  return lines;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,31 @@
+// How reports say on what ground truth a score rests, and what went wrong while it was recorded.
+//
+// Results of simulations alone say nothing about it: they look as they always did.
+#ifndef SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
+#define SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+// For programs: "simulation", "genlock_order" or "none".
+const char* ground_truth_name(evaluation::GroundTruth truth);
+
+// For people: "simulation", "GenLock order", "unverified"; "-" for a row without any recording.
+std::string ground_truth_label(const evaluation::Row& row);
+
+// Whether a row needs such a label: it is not of a simulation.
+bool has_real_rows(const evaluation::Results& results);
+
+// What "unverified" means; empty if no row is.
+std::string unverified_legend(const evaluation::Results& results);
+
+// The notes of all rows, a line each: "PIPELINE, repetition 3: ...".
+std::vector<std::string> note_lines(const evaluation::Results& results);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_

@@ -1,0 +1,42 @@
+// results.json: the results for programs.
+//
+// schema_version 1. Members only ever get added within a version. What does not exist (0/0, no
+// truth, no recording of that seed) is null. The text is a function of the results alone: equal
+// results give equal bytes, with every compiler and any number of threads; only /performance
+// differs from run to run.
+//
+//   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
+//    "seeds": {"first": 1, "count": 32},
+//    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
+//              "amd_ms": {"median", "p05", "p95", "values": [in seed order]},
+//              rmdv_ms, absolute_error_ms, bias_ms, host_error_ms, exposure_spread_ms likewise,
+//              "gathering_score": {"precision", "recall", "margin_ms",
+//                "seed_precision": like amd_ms, seed_recall likewise, "sets", "pure_sets",
+//                "complete_pulses", "partial_sets", "index_errors", "discarded_frames",
+//                "set_amd_ms": like amd_ms, set_absolute_error_ms, emission_latency_ms likewise,
+//                "emission_latency_max_ms"},
+//              "frames": {"expected", "delivered", "dropped"}, "evaluated_pulses": ...,
+//              "unsynchronised_hosts": ...,
+//              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
+//                known which frames belong together (else "evaluated_pulses" counts sets; what
+//                needs pulses is null), "notes": [what went wrong, "repetition 3: ..."],
+//              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside",
+//                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
+//                rmdv_percentile likewise}}],
+//    "claims": [{"id", "holds_fraction", "text", "needs"}], "warnings": [...],
+//    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}
+#ifndef SIMBENCH_REPORTS_RESULTS_JSON_H_
+#define SIMBENCH_REPORTS_RESULTS_JSON_H_
+
+#include <string>
+
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+// Indented by two, ends with a line feed.
+std::string json(const evaluation::Results& results);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_JSON_H_

@@ -1,0 +1,232 @@
+#include "reports/rigs/diagnose_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "recording/version.h"
+#include "reports/text/number_text.h"
+#include "reports/text/text_table.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::CameraDiagnosis;
+using evaluation::Diagnosis;
+using evaluation::Finding;
+using evaluation::Follows;
+using evaluation::GroupVerdict;
+using evaluation::PairDiagnosis;
+using evaluation::SyncStatus;
+using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
+
+const char* status_text(SyncStatus status) {
+  switch (status) {
+    case SyncStatus::kWorks:
+      return "works";
+    case SyncStatus::kDoesNotWork:
+      return "does not work";
+    case SyncStatus::kCannotBeTold:
+      break;
+  }
+  return "cannot be told";
+}
+
+const char* status_name(SyncStatus status) {
+  switch (status) {
+    case SyncStatus::kWorks:
+      return "works";
+    case SyncStatus::kDoesNotWork:
+      return "does_not_work";
+    case SyncStatus::kCannotBeTold:
+      break;
+  }
+  return "cannot_be_told";
+}
+
+const char* follows_text(Follows follows) {
+  switch (follows) {
+    case Follows::kTrigger:
+      return "the trigger";
+    case Follows::kOwnClock:
+      return "its own clock";
+    case Follows::kOtherRate:
+      return "another rate";
+    case Follows::kHostOrOwn:
+      return "its own or its host's clock";
+    case Follows::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+const char* follows_name(Follows follows) {
+  switch (follows) {
+    case Follows::kTrigger:
+      return "trigger";
+    case Follows::kOwnClock:
+      return "own_clock";
+    case Follows::kOtherRate:
+      return "other_rate";
+    case Follows::kHostOrOwn:
+      return "host_or_own";
+    case Follows::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string verdict_line(const GroupVerdict& verdict) {
+  return wrapped(
+      fmt::format("{}: hardware sync {}{}{}", verdict.stream, status_text(verdict.status),
+                  verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason));
+}
+
+std::string cameras_text(const Diagnosis& diagnosis) {
+  TextTable table({{"camera", Align::kLeft},
+                   {"host", Align::kLeft},
+                   {"stream", Align::kLeft},
+                   {"frames"},
+                   {"rate\nHz"},
+                   {"follows", Align::kLeft},
+                   {"against the\nothers ppm"},
+                   {"moves ms\na minute"},
+                   {"phase\nms"},
+                   {"intervals\nsd ms"},
+                   {"lost\nframes"},
+                   {"skipped\npulses"},
+                   {"jumps"}});
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    const evaluation::StreamFacts& facts = camera.facts;
+    const evaluation::Standing& standing = camera.standing;
+    table.add({camera.camera, camera.host, camera.stream, count_text(facts.frames),
+               number_text(1000 / facts.host_period_ms), follows_text(standing.follows),
+               number_text(standing.rate_ppm), number_text(standing.moves_ms_per_minute),
+               number_text(standing.phase_ms), number_text(facts.interval_jitter_ms),
+               count_text(facts.lost_frames), count_text(facts.skipped_pulses),
+               count_text(static_cast<std::int64_t>(facts.jumps.size()))});
+  }
+  return table.plain();
+}
+
+std::string pairs_text(const Diagnosis& diagnosis) {
+  TextTable table({{"camera", Align::kLeft},
+                   {"stream", Align::kLeft},
+                   {"against", Align::kLeft},
+                   {"offset\nms"},
+                   {"spread\nms"},
+                   {"moves ms\na minute"},
+                   {"is", Align::kLeft}},
+                  2);
+  for (const PairDiagnosis& pair : diagnosis.pairs) {
+    const char* const is = std::isnan(pair.offset_ms) ? "unknown"
+                           : pair.runs_free           ? "free-running"
+                                                      : "in step";
+    table.add({pair.camera, pair.stream, pair.against, number_text(pair.offset_ms),
+               number_text(pair.spread_ms), number_text(pair.moves_ms_per_minute), is});
+  }
+  return table.plain();
+}
+
+Json verdict_json(const GroupVerdict& verdict) {
+  return {{"stream", verdict.stream},
+          {"status", status_name(verdict.status)},
+          {"reason", verdict.reason},
+          {"period_ms", verdict.period_ms},
+          {"resolution_ppm", verdict.resolution_ppm}};
+}
+
+Json camera_json(const CameraDiagnosis& camera) {
+  const evaluation::StreamFacts& facts = camera.facts;
+  const evaluation::Standing& standing = camera.standing;
+  Json jumps = Json::array();
+  for (const evaluation::StampJump& jump : facts.jumps) {
+    jumps.push_back({{"at_s", jump.at_s}, {"step_ms", jump.step_ms}, {"periods", jump.periods}});
+  }
+  return {{"camera", camera.camera},
+          {"host", camera.host},
+          {"stream", camera.stream},
+          {"frames", facts.frames},
+          {"span_s", facts.span_s()},
+          {"rate_hz", 1000 / facts.host_period_ms},
+          {"period_ms", facts.period_ms},
+          {"follows", follows_name(standing.follows)},
+          {"period_multiple", standing.period_multiple},
+          {"rate_ppm", standing.rate_ppm},
+          {"rate_sd_ppm", standing.rate_sd_ppm},
+          {"moves_ms_per_minute", standing.moves_ms_per_minute},
+          {"phase_ms", standing.phase_ms},
+          {"interval_jitter_ms", facts.interval_jitter_ms},
+          {"on_grid_share", facts.on_grid_share},
+          {"lost_frames", facts.lost_frames},
+          {"skipped_pulses", facts.skipped_pulses},
+          {"counter_restarts", facts.counter_restarts},
+          {"backward_stamps", facts.backward_stamps},
+          {"backward_arrivals", facts.backward_arrivals},
+          {"future_stamps", facts.future_stamps},
+          {"wraps", facts.wraps},
+          {"longest_gap_s", facts.longest_gap_s},
+          {"jumps", jumps}};
+}
+
+constexpr const char* kLegend = R"(
+How to read it
+  follows: the trigger, if its frame period in host time is that of the others; free-running ones
+    differ by tens of ppm. phase: of the arrivals, against the first camera that follows.
+  intervals: how far the stamps are from whole periods. lost: counted by the camera, never arrived.
+    skipped: periods without a frame that its counter does not know.
+)";
+
+}  // namespace
+
+std::string diagnose_table(const Diagnosis& diagnosis) {
+  std::string text;
+  for (const GroupVerdict& verdict : diagnosis.groups) text += verdict_line(verdict);
+  text += "\nThe cameras\n\n" + cameras_text(diagnosis);
+  if (!diagnosis.pairs.empty()) {
+    text += "\nStreams of one camera against each other\n\n" + pairs_text(diagnosis);
+  }
+  text += "\nFindings\n";
+  if (diagnosis.findings.empty()) text += "  none\n";
+  for (const Finding& finding : diagnosis.findings) text += wrapped(finding.text, 2);
+  text += "\nWhat the stamps alone cannot tell\n";
+  for (const std::string& unknown : diagnosis.cannot_know) text += wrapped(unknown, 2);
+  return fitted(text + kLegend);
+}
+
+std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::string>& files) {
+  Json root = {{"schema_version", 1},
+               {"version", version()},
+               {"commit", commit()},
+               {"files", files},
+               {"verdict", verdict_json(diagnosis.verdict)},
+               {"streams", Json::array()},
+               {"cameras", Json::array()},
+               {"pairs", Json::array()},
+               {"findings", Json::array()},
+               {"cannot_know", diagnosis.cannot_know}};
+  for (const GroupVerdict& group : diagnosis.groups) root["streams"].push_back(verdict_json(group));
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    root["cameras"].push_back(camera_json(camera));
+  }
+  for (const PairDiagnosis& pair : diagnosis.pairs) {
+    root["pairs"].push_back({{"camera", pair.camera},
+                             {"stream", pair.stream},
+                             {"against", pair.against},
+                             {"offset_ms", pair.offset_ms},
+                             {"spread_ms", pair.spread_ms},
+                             {"moves_ms_per_minute", pair.moves_ms_per_minute},
+                             {"runs_free", pair.runs_free}});
+  }
+  for (const Finding& finding : diagnosis.findings) {
+    root["findings"].push_back({{"camera", finding.camera},
+                                {"stream", finding.stream},
+                                {"kind", finding.kind},
+                                {"text", finding.text}});
+  }
+  // A file may name its cameras in bytes that are no UTF-8.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace simbench::reports

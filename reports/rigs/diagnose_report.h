@@ -1,0 +1,35 @@
+// What `simbench diagnose` found, for people and for programs.
+//
+// JSON, schema_version 1 (what does not exist is null):
+//   {"schema_version", "version", "commit", "files",
+//    "verdict": {"stream", "status": "works" | "does_not_work" | "cannot_be_told", "reason",
+//                "period_ms", "resolution_ppm"},
+//    "streams": [like verdict, one per kind of stream],
+//    "cameras": [{"camera", "host", "stream", "frames", "span_s", "rate_hz", "period_ms",
+//                 "follows": "trigger" | "own_clock" | "other_rate" | "host_or_own" | "unknown",
+//                 "period_multiple", "rate_ppm", "rate_sd_ppm", "moves_ms_per_minute", "phase_ms",
+//                 "interval_jitter_ms", "on_grid_share", "lost_frames", "skipped_pulses",
+//                 "counter_restarts", "backward_stamps", "backward_arrivals", "future_stamps",
+//                 "wraps", "longest_gap_s", "jumps": [{"at_s", "step_ms", "periods"}]}],
+//    "pairs": [{"camera", "stream", "against", "offset_ms", "spread_ms", "moves_ms_per_minute",
+//               "runs_free"}],
+//    "findings": [{"camera", "stream", "kind", "text"}], "cannot_know": [...]}
+// rate_hz is by the host's clock, period_ms by the camera's. Definitions:
+// evaluation/diagnosis/diagnose.h.
+#ifndef SIMBENCH_REPORTS_RIGS_DIAGNOSE_REPORT_H_
+#define SIMBENCH_REPORTS_RIGS_DIAGNOSE_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/diagnosis/diagnose.h"
+
+namespace simbench::reports {
+
+std::string diagnose_table(const evaluation::Diagnosis& diagnosis);
+std::string diagnose_json(const evaluation::Diagnosis& diagnosis,
+                          const std::vector<std::string>& files);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RIGS_DIAGNOSE_REPORT_H_

@@ -1,0 +1,169 @@
+#include "reports/rigs/prediction_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "evaluation/statistics/statistics.h"
+#include "reports/results/json.h"
+#include "reports/text/number_text.h"
+#include "reports/text/text_table.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Results;
+using evaluation::Row;
+using evaluation::Series;
+using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
+
+struct Metric {
+  const char* name;
+  const char* text;
+  Series Row::*series;
+};
+
+constexpr Metric kOfPulses[] = {{"amd_ms", "AMD", &Row::amd_ms},
+                                {"rmdv_ms", "RMDV", &Row::rmdv_ms},
+                                {"host_error_ms", "host clock error", &Row::host_error_ms},
+                                {"absolute_error_ms", "absolute error", &Row::absolute_error_ms}};
+constexpr Metric kOfSets[] = {{"set_amd_ms", "AMD of sets", &Row::set_amd_ms}};
+
+constexpr const char* kLegend =
+    "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
+    "simulated 5-95 % band, which this one number cannot distinguish from such a world; outside: "
+    "the scenario does not describe this rig (simbench fit makes one that does).";
+constexpr const char* kOneRepetition = "One repetition has a value and no band.";
+
+std::size_t count_of(const Series& series) {
+  return static_cast<std::size_t>(std::count_if(series.values.begin(), series.values.end(),
+                                                [](double value) { return !std::isnan(value); }));
+}
+
+std::span<const Metric> metrics_of(const Row& measured) {
+  if (measured.verified() || count_of(measured.amd_ms) == 0) return kOfPulses;
+  return kOfSets;
+}
+
+// Real rigs cannot measure errors: AMD is always shown, what nobody could measure is not.
+bool is_shown(const Metric& metric, std::size_t measured) {
+  return measured > 0 || metric.series == &Row::amd_ms || metric.series == &Row::set_amd_ms;
+}
+
+std::string measured_band(const Prediction& prediction) {
+  return prediction.measured_count > 1 ? band_text(prediction.measured) : "-";
+}
+
+std::string inside_text(const Prediction& prediction) {
+  if (!prediction.inside) return "-";
+  return *prediction.inside ? "inside" : "outside";
+}
+
+std::string metric_text(const Prediction& prediction) {
+  for (const std::span<const Metric> metrics :
+       {std::span<const Metric>(kOfPulses), std::span<const Metric>(kOfSets)}) {
+    for (const Metric& metric : metrics) {
+      if (prediction.metric != metric.name) continue;
+      const bool unverified = !prediction.verified && prediction.measured_count > 0;
+      return unverified ? fmt::format("{} (unverified)", metric.text) : metric.text;
+    }
+  }
+  return prediction.metric;
+}
+
+TextTable block(const std::vector<Prediction>& rows) {
+  TextTable table({{"pipeline", Align::kLeft},
+                   {"metric", Align::kLeft},
+                   {"measured\nmedian ms"},
+                   {"measured\n5-95 %"},
+                   {"simulated\nmedian ms"},
+                   {"simulated\n5-95 %"},
+                   {"measured\nmedian is", Align::kLeft}},
+                  2);
+  for (const Prediction& row : rows) {
+    table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),
+               number_text(row.simulated.median), band_text(row.simulated), inside_text(row)});
+  }
+  return table;
+}
+
+std::string report(const Results& measured, const Results& simulated, bool markdown) {
+  const std::vector<Prediction> rows = predictions(measured, simulated);
+  const bool one = std::any_of(rows.begin(), rows.end(),
+                               [](const Prediction& row) { return row.measured_count == 1; });
+  const std::string legend =
+      one ? fmt::format("{} {}", kLegend, kOneRepetition) : std::string(kLegend);
+  const std::string heading =
+      fmt::format("Measured beside predicted ({} simulated seed{})", simulated.seed_count,
+                  simulated.seed_count == 1 ? "" : "s");
+  if (markdown) return fmt::format("### {}\n\n{}\n{}\n", heading, block(rows).markdown(), legend);
+  return fmt::format("{}\n\n{}\n{}", heading, block(rows).plain(), wrapped(legend));
+}
+
+Json band_json(const Series& series) {
+  return {{"median", series.median}, {"p05", series.p05}, {"p95", series.p95}};
+}
+
+Json prediction_json(const Prediction& row) {
+  Json measured = {{"count", row.measured_count}};
+  measured.update(band_json(row.measured));
+  if (row.measured_count < 2) measured["p05"] = measured["p95"] = Json();
+  return {{"pipeline", row.pipeline},
+          {"metric", row.metric},
+          {"verified", row.verified},
+          {"measured", measured},
+          {"simulated", band_json(row.simulated)},
+          {"inside", row.inside ? Json(*row.inside) : Json()}};
+}
+
+}  // namespace
+
+std::vector<Prediction> predictions(const Results& measured, const Results& simulated) {
+  std::vector<Prediction> all;
+  for (const Row& found : measured.rows) {
+    const auto predicted =
+        std::find_if(simulated.rows.begin(), simulated.rows.end(),
+                     [&](const Row& row) { return row.pipeline == found.pipeline; });
+    if (predicted == simulated.rows.end()) continue;
+    for (const Metric& metric : metrics_of(found)) {
+      Prediction row{.pipeline = found.pipeline,
+                     .metric = metric.name,
+                     .verified = found.verified(),
+                     .measured = found.*metric.series,
+                     .simulated = (*predicted).*metric.series,
+                     .measured_count = count_of(found.*metric.series),
+                     .inside = std::nullopt};
+      if (!is_shown(metric, row.measured_count)) continue;
+      if (row.measured_count > 0 && count_of(row.simulated) > 0) {
+        row.inside = evaluation::inside(row.measured.median, row.simulated);
+      }
+      all.push_back(std::move(row));
+    }
+  }
+  return all;
+}
+
+std::string prediction_table(const Results& measured, const Results& simulated) {
+  return fitted(report(measured, simulated, false));
+}
+
+std::string prediction_markdown(const Results& measured, const Results& simulated) {
+  return report(measured, simulated, true);
+}
+
+std::string json_with_prediction(const Results& measured, const Results& simulated) {
+  Json root = Json::parse(json(measured));
+  Json rows = Json::array();
+  for (const Prediction& row : predictions(measured, simulated)) {
+    rows.push_back(prediction_json(row));
+  }
+  root["prediction"] = {
+      {"seeds", {{"first", simulated.first_seed}, {"count", simulated.seed_count}}},
+      {"rows", std::move(rows)}};
+  return root.dump(2) + "\n";
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,55 @@
+// What a real rig did beside what the simulator predicts for the same scenario.
+//
+// The measured median of each pipeline and metric stands beside the simulated band: inside the band
+// means that this rig is one of the simulated worlds as far as this number can tell, no more. One
+// repetition has a value and no band. An unverified row (evaluation/scoring/unverified_scores.h) is
+// compared by the range of its gathered sets, which simulated rows have too; the others by AMD,
+// RMDV and, where they exist, the errors.
+//
+//   print(table(measured, summary));
+//   print(prediction_table(measured, simulated));
+#ifndef SIMBENCH_REPORTS_RIGS_PREDICTION_REPORT_H_
+#define SIMBENCH_REPORTS_RIGS_PREDICTION_REPORT_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+struct Prediction {
+  std::string pipeline;
+  std::string metric;  // "amd_ms", "rmdv_ms", "host_error_ms", "absolute_error_ms", "set_amd_ms"
+  bool verified = true;
+  evaluation::Series measured;
+  evaluation::Series simulated;
+  std::size_t measured_count = 0;  // of values that exist
+  // Whether the measured median lies in the simulated 5-95 % band; nothing if one does not exist.
+  std::optional<bool> inside;
+};
+
+// In the order of `measured`. A pipeline that `simulated` lacks has no prediction; one that was
+// never measured has, with nothing beside it.
+std::vector<Prediction> predictions(const evaluation::Results& measured,
+                                    const evaluation::Results& simulated);
+
+std::string prediction_table(const evaluation::Results& measured,
+                             const evaluation::Results& simulated);
+std::string prediction_markdown(const evaluation::Results& measured,
+                                const evaluation::Results& simulated);
+
+// results.json of `measured` (reports/results/json.h) with one more member:
+//   "prediction": {"seeds": {"first", "count"},
+//                  "rows": [{"pipeline", "metric", "verified",
+//                            "measured": {"count", "median", "p05", "p95"},
+//                            "simulated": {"median", "p05", "p95"}, "inside": true, false or
+//                            null}]}
+std::string json_with_prediction(const evaluation::Results& measured,
+                                 const evaluation::Results& simulated);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RIGS_PREDICTION_REPORT_H_

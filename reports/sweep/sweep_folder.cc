@@ -1,0 +1,174 @@
+#include "reports/sweep/sweep_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "reports/text/output_folder.h"
+
+namespace simbench::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kManifest = "manifest.json";
+constexpr const char* kLog = "runs.log";
+constexpr const char* kLock = "lock";
+constexpr std::array<const char*, 7> kOwnFiles = {kManifest,   kLog,        kLock,      "sweep.csv",
+                                                  "hosts.csv", "sweep.txt", "sweep.svg"};
+constexpr const char* kWayOut =
+    "name another folder, give that sweep's command again, or start anew here with --restart";
+
+[[noreturn]] void fail(const fs::path& folder, const std::string& problem) {
+  throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
+}
+
+std::vector<std::string> own_names() {
+  std::vector<std::string> names;
+  for (const char* name : kOwnFiles) {
+    names.emplace_back(name);
+    names.push_back(fmt::format("{}.tmp", name));
+  }
+  return names;
+}
+
+std::optional<std::string> content_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string shown(const json& flat, const std::string& pointer) {
+  constexpr std::size_t kLongest = 60;
+  if (!flat.contains(pointer)) return "absent";
+  const std::string text = flat[pointer].dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+// What tells two manifests apart: the first difference, and how many more there are.
+std::string difference(const json& there, const json& here) {
+  const json flat_there = there.flatten();
+  const json flat_here = here.flatten();
+  std::vector<std::string> pointers;
+  for (const auto& [pointer, value] : flat_here.items()) {
+    if (!flat_there.contains(pointer) || flat_there[pointer] != value) pointers.push_back(pointer);
+  }
+  for (const auto& [pointer, value] : flat_there.items()) {
+    if (!flat_here.contains(pointer)) pointers.push_back(pointer);
+  }
+  if (pointers.empty()) return "its manifest.json was edited";
+  const std::string& first = pointers.front();
+  std::string text = fmt::format("{} is {} there and {} here", first, shown(flat_there, first),
+                                 shown(flat_here, first));
+  if (pointers.size() > 1) text += fmt::format(", and {} more differ", pointers.size() - 1);
+  return text;
+}
+
+}  // namespace
+
+SweepFolder::SweepFolder(const fs::path& folder, const std::string& manifest, std::size_t runs,
+                         bool restart)
+    : folder_(folder) {
+  std::error_code error;
+  if (fs::exists(folder_, error)) {
+    if (!fs::is_directory(folder_, error)) fail(folder_, "is a file; name a folder");
+    check_contents();
+  } else if (!fs::create_directories(folder_, error) && error) {
+    fail(folder_, fmt::format("cannot be made: {}", error.message()));
+  }
+  lock();
+  for (const char* name : kOwnFiles) fs::remove(path(fmt::format("{}.tmp", name)), error);
+  if (restart) remove_all();
+  if (!fs::exists(path(kManifest), error)) {
+    if (fs::exists(path(kLog), error)) {
+      fail(folder_, fmt::format("holds runs of a sweep but no manifest.json; {}", kWayOut));
+    }
+    write(kManifest, manifest);
+  } else {
+    check_manifest(manifest);
+  }
+  log_ = std::make_unique<SweepLog>(path(kLog), manifest, runs);
+}
+
+SweepFolder::~SweepFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void SweepFolder::check_contents() const {
+  const std::vector<std::string> own = own_names();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (std::find(own.begin(), own.end(), name) == own.end()) {
+      fail(folder_,
+           fmt::format("holds other files ({}); name a new folder or that of a sweep", name));
+    }
+  }
+  if (error) fail(folder_, error.message());
+}
+
+void SweepFolder::lock() {
+  lock_ = ::open(path(kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0) fail(folder_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  if (errno == EWOULDBLOCK) {
+    fail(folder_, "another simbench is working on this sweep; wait for it or name another folder");
+  }
+  // A file system without locks, as some clusters have: nothing to rely on, nothing to refuse.
+}
+
+void SweepFolder::check_manifest(const std::string& manifest) const {
+  const std::optional<std::string> there = content_of(path(kManifest));
+  if (!there) fail(folder_, fmt::format("{} cannot be read", kManifest));
+  if (*there == manifest) return;
+  const json found = json::parse(*there, nullptr, false);
+  if (!found.is_object()) {
+    fail(folder_, fmt::format("its {} is damaged; {}", kManifest, kWayOut));
+  }
+  check_is_sweep(*there);
+  fail(folder_, fmt::format("holds another sweep: {}; {}", difference(found, json::parse(manifest)),
+                            kWayOut));
+}
+
+// A manifest that is damaged may have been a sweep's.
+void SweepFolder::check_is_sweep(const std::string& manifest) const {
+  const json found = json::parse(manifest, nullptr, false);
+  if (found.is_object() && found.value("kind", json()) != "sweep") {
+    fail(folder_, "holds a result that is no sweep; name another folder");
+  }
+}
+
+void SweepFolder::remove_all() const {
+  const std::optional<std::string> there = content_of(path(kManifest));
+  if (there) check_is_sweep(*there);
+  for (const std::string_view name : kOwnFiles) {
+    std::error_code error;
+    if (name != kLock) fs::remove(folder_ / name, error);
+    if (error) fail(folder_, fmt::format("{} cannot be removed: {}", name, error.message()));
+  }
+}
+
+void SweepFolder::write(const std::string& name, std::string_view content) {
+  replace_file(path(name), content);
+}
+
+void SweepFolder::remove(const std::string& name) {
+  std::error_code ignored;  // it is not there
+  fs::remove(path(name), ignored);
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,45 @@
+// The results of a sweep: tables for people, CSV for scripts.
+#ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
+#define SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/sweep/sweep_plan.h"
+#include "evaluation/sweep/sweep_response.h"
+#include "evaluation/sweep/sweep_score.h"
+
+namespace simbench::reports {
+
+// The manifest of a sweep, which is its identity (reports/sweep/sweep_folder.h). `study`: its name,
+// or
+// "".
+std::string sweep_manifest(const evaluation::SweepPlan& plan, const std::string& study);
+
+// sweep.csv, one line for each point, pipeline and seed: what is swept under its JSON pointers,
+// pipeline, seed, and the columns of evaluation::score_columns(). Numbers are the shortest that
+// read back as the same double; what does not exist is an empty cell.
+std::string sweep_csv(const evaluation::SweepPlan& plan,
+                      const std::vector<evaluation::SweepScore>& scores);
+
+// hosts.csv, one line for each host of each of these: the same, then host (0 is the master) and
+// error_ms, its mean clock error.
+std::string sweep_hosts_csv(const evaluation::SweepPlan& plan,
+                            const std::vector<evaluation::SweepScore>& scores);
+
+// The response: median AMD with its band, absolute error, host error, precision, recall and margin
+// of each pipeline at each point.
+std::string response_table(const evaluation::SweepPlan& plan,
+                           const std::vector<evaluation::ResponseRow>& rows);
+
+// The median clock error of each host, in the order of their sessions.
+std::string host_order_table(const evaluation::SweepPlan& plan,
+                             const std::vector<evaluation::ResponseRow>& rows);
+
+// How near the median AMD of n seeds comes to that of all, and how many are needed.
+std::string seeds_needed_table(const evaluation::SweepPlan& plan,
+                               const std::vector<evaluation::ResponseRow>& rows);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_

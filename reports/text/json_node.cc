@@ -1,0 +1,145 @@
+#include "reports/text/json_node.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "evaluation/statistics/statistics.h"
+#include "scenarios/document.h"
+#include "scenarios/loader.h"
+
+namespace simbench::reports {
+namespace {
+
+using nlohmann::json;
+using scenarios::InputError;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kLargestCount = std::numeric_limits<std::int64_t>::max();
+
+// "FILE:LINE", as far as it can be told.
+std::string place_of(const JsonFile& file, const std::string& pointer) {
+  try {
+    const auto lines = scenarios::parse_document(file.text).lines;
+    if (const auto line = lines.find(pointer); line != lines.end()) {
+      return fmt::format("{}:{}", file.path, line->second);
+    }
+  } catch (const scenarios::DocumentError& error) {
+    return fmt::format("{}:{}", file.path, error.line());
+  }
+  return file.path;
+}
+
+// What is wrong with a text that is no JSON.
+[[noreturn]] void fail_syntax(const std::string& path, const std::string& text) {
+  try {
+    scenarios::parse_document(text);
+  } catch (const scenarios::DocumentError& error) {
+    throw InputError(fmt::format("{}:{}:{}: {}; was the file cut short or edited?", path,
+                                 error.line(), error.column(), error.what()));
+  }
+  throw InputError(fmt::format("{}: is no JSON", path));
+}
+
+}  // namespace
+
+JsonFile read_json_file(const std::string& path, const std::string& advice) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(fmt::format("{}: {}; {}", path, std::strerror(errno), advice));
+  JsonFile file{path, {std::istreambuf_iterator<char>(in), {}}, {}};
+  try {
+    file.value = json::parse(file.text);
+  } catch (const json::exception&) {  // no JSON, or a number that no double holds
+    fail_syntax(path, file.text);
+  }
+  return file;
+}
+
+void JsonNode::refuse(const std::string& allowed) const {
+  fail(fmt::format("found {}, allowed: {}", scenarios::shown(value_), allowed));
+}
+
+void JsonNode::fail(const std::string& problem) const {
+  throw InputError(fmt::format("{}: {}: {}", place_of(file_, pointer_),
+                               pointer_.empty() ? "the whole file" : pointer_, problem));
+}
+
+JsonNode JsonNode::operator[](const char* key) const {
+  if (!value_.is_object()) refuse("an object");
+  const auto member = value_.find(key);
+  if (member == value_.end()) fail(fmt::format("'{}' is missing; was the file edited?", key));
+  return {file_, *member, scenarios::child_pointer(pointer_, key)};
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+  if (!value_.is_array()) refuse("an array");
+  std::vector<JsonNode> all;
+  for (std::size_t i = 0; i < value_.size(); ++i) {
+    all.emplace_back(file_, value_[i], fmt::format("{}/{}", pointer_, i));
+  }
+  return all;
+}
+
+std::vector<std::string> JsonNode::keys() const {
+  if (!value_.is_object()) refuse("an object");
+  std::vector<std::string> all;
+  for (const auto& member : value_.items()) all.push_back(member.key());
+  return all;
+}
+
+std::string JsonNode::text() const {
+  if (!value_.is_string()) refuse("text");
+  return value_.get<std::string>();
+}
+
+bool JsonNode::flag() const {
+  if (!value_.is_boolean()) refuse("true or false");
+  return value_.get<bool>();
+}
+
+double JsonNode::number() const {
+  if (value_.is_null()) return kNaN;
+  if (!value_.is_number()) refuse("a number or null");
+  return value_.get<double>();
+}
+
+std::int64_t JsonNode::count() const {
+  if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > kLargestCount) {
+    refuse("a whole number from 0");
+  }
+  return value_.get<std::int64_t>();
+}
+
+std::vector<double> JsonNode::numbers(std::size_t seeds) const {
+  if (!value_.is_array()) refuse(fmt::format("an array of {} values, one for each seed", seeds));
+  if (value_.size() != seeds) {
+    fail(fmt::format("found {} values, allowed: {}, one for each seed", value_.size(), seeds));
+  }
+  std::vector<double> all;
+  all.reserve(seeds);
+  for (const json& value : value_) {
+    const bool is_right = value.is_number() || value.is_null();
+    if (!is_right) elements()[all.size()].refuse("a number or null");
+    all.push_back(value.is_null() ? kNaN : value.get<double>());
+  }
+  return all;
+}
+
+evaluation::Series JsonNode::series(std::size_t seeds) const {
+  return evaluation::make_series((*this)["values"].numbers(seeds));
+}
+
+void JsonNode::check_schema_version(int newest) const {
+  const JsonNode version = (*this)["schema_version"];
+  const std::int64_t found = version.count();
+  if (found > newest) {
+    version.refuse(fmt::format("at most {}; a newer simbench wrote this, use that one", newest));
+  }
+  if (found < 1) version.refuse(fmt::format("1 to {}", newest));
+}
+
+}  // namespace simbench::reports

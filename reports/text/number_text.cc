@@ -1,0 +1,63 @@
+#include "reports/text/number_text.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace simbench::reports {
+
+std::string number_text(double value) {
+  if (std::isnan(value)) return "-";
+  const double size = std::abs(value);
+  if (size >= 1e6) return fmt::format("{:.1e}", value);
+  if (size < 0.0005) return "0.000";  // never "-0.000"
+  return fmt::format("{:.{}f}", value, size < 100 ? 3 : 1);
+}
+
+std::string band_text(const evaluation::Series& series) {
+  if (std::isnan(series.p05)) return "-";
+  return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
+}
+
+std::string share_text(double share) {
+  if (std::isnan(share)) return "-";
+  if (share == 0) return "0 %";
+  if (share == 1) return "100 %";
+  const std::string text = fmt::format("{:.1f}", share * 100);
+  if (text == "100.0") return "> 99.9 %";
+  if (text == "0.0") return "< 0.1 %";
+  return text + " %";
+}
+
+std::string percentile_text(const evaluation::Percentile& percentile) {
+  if (std::isnan(percentile.percent)) return "-";
+  return fmt::format("{:.0f} % [{:.0f}-{:.0f}]", percentile.percent, percentile.low,
+                     percentile.high);
+}
+
+std::string count_text(std::int64_t count) {
+  const std::string digits = std::to_string(count);
+  const std::size_t sign = count < 0 ? 1 : 0;
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > sign && (digits.size() - i) % 3 == 0) text += ' ';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string short_text(double value) {
+  struct Prefix {
+    double factor;
+    const char* symbol;
+  };
+  constexpr std::array<Prefix, 3> kPrefixes = {{{1e9, " G"}, {1e6, " M"}, {1e3, " k"}}};
+  for (const Prefix& prefix : kPrefixes) {
+    if (value >= prefix.factor)
+      return fmt::format("{:.3g}{}", value / prefix.factor, prefix.symbol);
+  }
+  return fmt::format("{:.3g}", value);
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,33 @@
+// Numbers as people read them in a table: a sensible number of digits, "-" for what does not exist.
+#ifndef SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
+#define SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
+
+#include <cstdint>
+#include <string>
+
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+// Three decimals (a microsecond, where the unit is a millisecond), fewer for numbers of 100 and
+// more, scientific from a million on: "0.004", "12.345", "547.5", "1.6e+09"; "-" for NaN.
+std::string number_text(double value);
+
+// The 5-95 % band: "[1.802, 3.511]".
+std::string band_text(const evaluation::Series& series);
+
+// A share in percent: "97.3 %"; "-" for NaN. Only exactly 0 and 1 are written as 0 % and 100 %.
+std::string share_text(double share);
+
+// A percentile with its binomial interval: "33 % [18-51]".
+std::string percentile_text(const evaluation::Percentile& percentile);
+
+// A count with thousands set apart: "1 234 567".
+std::string count_text(std::int64_t count);
+
+// A large number in short: "950", "12.3 k", "4.56 M", "1.20 G".
+std::string short_text(double value);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_

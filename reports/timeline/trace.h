@@ -1,0 +1,115 @@
+// What happened in one simulated run, kept for a timeline: pulses, the way of every frame,
+// messages, clocks and gathered sets, in order of true time.
+//
+// Kept by TraceRecorder (trace_recorder.h), drawn by write_chrome_trace() (trace_chrome.h) and
+// write_trace_csv() (trace_csv.h). Its size is bounded: what begins outside the wanted window is
+// left out, and so is everything that begins after the instant at which the number of events would
+// exceed the limit. Both are told in `left_out`. A thing is there whole or not at all.
+//
+// Units: true time (recording/true_time.h), nanoseconds.
+#ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_H_
+#define SIMBENCH_REPORTS_TIMELINE_TRACE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algorithms/ports/time.h"
+#include "recording/recording.h"
+#include "recording/world_observer.h"
+
+namespace simbench::reports {
+
+struct TraceOptions {
+  // What begins in [from, to) is wanted; a set belongs to its first frame.
+  TrueTime from = TrueTime::min();
+  TrueTime to = TrueTime::max();
+  std::uint64_t max_events = 200'000;
+};
+
+struct TraceFrame {
+  ObservedFrame way;
+  DeviceStamp sensor{};             // delivered frames only
+  std::optional<GlobalTime> stamp;  // that device_time gave it, if it did
+  HostTime reference{};             // that it should have given
+  std::optional<std::uint32_t> set;
+  bool leads_set = false;  // it is the set's first
+};
+
+struct TraceSet {
+  std::vector<std::uint32_t> frames;  // those that are kept
+  std::size_t members = 0;
+  bool complete = false;
+  Nanoseconds range{};  // of the members' stamps
+  TrueTime begin{};     // its first frame is delivered
+  TrueTime end{};       // it is emitted, at least 1 ns after the last one is delivered
+};
+
+// A host's system clock minus the master's.
+struct TraceClock {
+  TrueTime at{};
+  std::uint32_t host = 0;
+  Nanoseconds error{};
+};
+
+struct TraceAdjustment {
+  // Worked out from the host's steady clock between two instants at which both are known: to
+  // microseconds, or to what a host without cameras has drifted since the world's start.
+  TrueTime at{};
+  std::uint32_t host = 0;
+  SteadyTime at_steady{};
+  Nanoseconds step{};
+  double rate_ppb = 0;
+};
+
+// Numbers of events.
+struct TraceLeftOut {
+  std::uint64_t outside = 0;   // of the window
+  std::uint64_t too_many = 0;  // beyond the limit
+  TrueTime cut_at = TrueTime::max();
+};
+
+struct Trace {
+  std::string scenario;
+  std::string pipeline;
+  std::uint64_t seed = 0;
+  std::uint32_t hosts = 0;
+  std::vector<CameraLayout> cameras;
+  TrueTime world_start{};
+  std::optional<TrueTime> capture_start;
+
+  // Each in order of time; frames by the begin of their exposure.
+  std::vector<ObservedPulse> pulses;
+  std::vector<TraceFrame> frames;
+  std::vector<ObservedMessage> messages;
+  std::vector<TraceClock> clocks;
+  std::vector<TraceAdjustment> adjustments;
+  std::vector<TraceSet> sets;
+
+  TraceOptions options;
+  TraceLeftOut left_out;
+};
+
+// When a thing begins, and the most events that it can become.
+inline TrueTime begin_of(const ObservedPulse& pulse) { return pulse.at; }
+inline TrueTime begin_of(const TraceFrame& frame) { return frame.way.exposure_start; }
+inline TrueTime begin_of(const ObservedMessage& message) { return message.left; }
+inline TrueTime begin_of(const TraceClock& clock) { return clock.at; }
+inline TrueTime begin_of(const TraceAdjustment& adjustment) { return adjustment.at; }
+
+inline std::uint64_t events_of(const ObservedPulse&) { return 1; }
+inline std::uint64_t events_of(const TraceFrame& frame) {
+  if (frame.way.fate != FrameFate::kDelivered) return 4;  // exposure, loss, and an arrow's ends
+  return frame.leads_set ? 8 : 7;  // exposure, transfer, stack, an arrow with four points; set
+}
+inline std::uint64_t events_of(const ObservedMessage&) { return 4; }
+inline std::uint64_t events_of(const TraceClock&) { return 1; }
+inline std::uint64_t events_of(const TraceAdjustment&) { return 1; }
+
+// A sentence for each reason why something was left out; none if all is there.
+std::vector<std::string> left_out_notes(const Trace& trace);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TIMELINE_TRACE_H_

@@ -1,0 +1,193 @@
+#include "reports/timeline/trace_events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "reports/timeline/trace_tracks.h"
+
+namespace simbench::reports {
+namespace {
+
+std::string host_name(std::uint32_t host) {
+  return fmt::format("host{}{}", host, host == 0 ? " (master)" : "");
+}
+
+class TimelineBuilder {
+ public:
+  explicit TimelineBuilder(const Trace& trace) : trace_(trace) {}
+
+  TraceTimeline build() {
+    add_pulses();
+    for (std::uint32_t i = 0; i < trace_.sets.size(); ++i) {
+      const TraceSet& set = trace_.sets[i];
+      set_slices_.push_back(tracks_.slice(host_track(0, TrackKind::kGathering), TraceWhat::kSet, i,
+                                          set.begin, set.end));
+    }
+    for (std::uint32_t i = 0; i < trace_.frames.size(); ++i) add_frame(i);
+    add_messages();
+    add_clocks();
+    TraceTimeline timeline = tracks_.lay_out();
+    timeline.processes.emplace_back("trigger");
+    for (std::uint32_t host = 0; host < trace_.hosts; ++host) {
+      timeline.processes.push_back(host_name(host));
+    }
+    return timeline;
+  }
+
+ private:
+  using EventIndex = TraceTracks::EventIndex;
+
+  void add_pulses() {
+    for (std::uint32_t i = 0; i < trace_.pulses.size(); ++i) {
+      const ObservedPulse& pulse = trace_.pulses[i];
+      pulse_slices_[pulse.pulse] =
+          tracks_.slice(trigger_track(), TraceWhat::kPulse, i, pulse.at, pulse.at + kShownPulse);
+    }
+    const TraceOptions& options = trace_.options;
+    const auto start = trace_.capture_start;
+    if (start && *start >= options.from && *start < options.to && *start < trace_.left_out.cut_at) {
+      tracks_.mark(trigger_track(), TracePhase::kInstant, TraceWhat::kCaptureStart, 0, *start);
+    }
+  }
+
+  // The pulse that a frame's arrow can come from.
+  std::optional<EventIndex> pulse_before(const ObservedFrame& way) const {
+    const auto pulse = pulse_slices_.find(way.pulse);
+    if (pulse == pulse_slices_.end()) return std::nullopt;
+    if (tracks_.event(pulse->second).at >= way.exposure_end) return std::nullopt;
+    return pulse->second;
+  }
+
+  void add_frame(std::uint32_t index) {
+    const TraceFrame& frame = trace_.frames[index];
+    const ObservedFrame& way = frame.way;
+    const EventIndex exposure =
+        tracks_.slice(frame_track(way, TrackKind::kExposure), TraceWhat::kExposure, index,
+                      way.exposure_start, way.exposure_end);
+    const std::optional<EventIndex> pulse = pulse_before(way);
+    TrueTime exposed = way.exposure_start;
+    if (pulse) {
+      exposed = std::max(exposed, tracks_.event(*pulse).at);
+      tracks_.point(TracePhase::kArrowBegin, TraceWhat::kFrameArrow, index + 1, *pulse,
+                    tracks_.event(*pulse).at);
+    }
+    if (way.fate != FrameFate::kDelivered) {
+      if (pulse) {
+        tracks_.point(TracePhase::kArrowEnd, TraceWhat::kFrameArrow, index + 1, exposure, exposed);
+      }
+      return add_loss(index);
+    }
+    tracks_.point(pulse ? TracePhase::kArrowStep : TracePhase::kArrowBegin, TraceWhat::kFrameArrow,
+                  index + 1, exposure, exposed);
+    tracks_.slice(frame_track(way, TrackKind::kUsb), TraceWhat::kUsb, index, way.offered,
+                  way.transferred);
+    const EventIndex stack = tracks_.slice(frame_track(way, TrackKind::kHostStack),
+                                           TraceWhat::kHostStack, index, way.copied, way.delivered);
+    tracks_.point(frame.set ? TracePhase::kArrowStep : TracePhase::kArrowEnd,
+                  TraceWhat::kFrameArrow, index + 1, stack, way.copied);
+    if (!frame.set) return;
+    tracks_.point(TracePhase::kArrowEnd, TraceWhat::kFrameArrow, index + 1, set_slices_[*frame.set],
+                  way.delivered);
+  }
+
+  void add_loss(std::uint32_t index) {
+    const ObservedFrame& way = trace_.frames[index].way;
+    if (way.fate == FrameFate::kLostInCamera) {
+      tracks_.mark(frame_track(way, TrackKind::kExposure), TracePhase::kInstant,
+                   TraceWhat::kLostInCamera, index, way.exposure_end);
+    } else {
+      tracks_.mark(frame_track(way, TrackKind::kUsb), TracePhase::kInstant, TraceWhat::kLostOnUsb,
+                   index, way.offered);
+    }
+  }
+
+  struct Conversation {
+    std::uint32_t last = 0;  // message
+    std::optional<EventIndex> received;
+    std::uint64_t arrow = 0;
+    bool goes_on = false;  // the arrow has a begin
+  };
+
+  void add_messages() {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Conversation> links;
+    for (std::uint32_t i = 0; i < trace_.messages.size(); ++i) {
+      const ObservedMessage& message = trace_.messages[i];
+      add_message(i, links[std::minmax(message.from, message.to)]);
+    }
+    for (const auto& [link, conversation] : links) end(conversation);
+  }
+
+  bool answers(const ObservedMessage& message, const Conversation& conversation) const {
+    if (!conversation.received) return false;
+    const ObservedMessage& before = trace_.messages[conversation.last];
+    return before.to == message.from && before.arrived <= message.left &&
+           message.left - before.arrived <= kLongestAnswer;
+  }
+
+  // The arrow's last point is where the last message arrived.
+  void end(const Conversation& conversation) {
+    if (!conversation.received) return;
+    tracks_.point(TracePhase::kArrowEnd, TraceWhat::kMessageArrow, conversation.arrow,
+                  *conversation.received, trace_.messages[conversation.last].arrived);
+  }
+
+  void add_message(std::uint32_t index, Conversation& conversation) {
+    const ObservedMessage& message = trace_.messages[index];
+    const TrackKey there = channel_track(message.from, message.to);
+    const EventIndex sent =
+        tracks_.slice(there, TraceWhat::kSent, index, message.left, message.left + kShownMessage);
+    TracePhase phase = TracePhase::kArrowBegin;
+    if (answers(message, conversation)) {
+      tracks_.point(TracePhase::kArrowStep, TraceWhat::kMessageArrow, conversation.arrow,
+                    *conversation.received, trace_.messages[conversation.last].arrived);
+      phase = message.lost ? TracePhase::kArrowEnd : TracePhase::kArrowStep;
+    } else {
+      end(conversation);
+      conversation.arrow = ++message_arrows_;
+    }
+    if (phase != TracePhase::kArrowBegin || !message.lost) {
+      tracks_.point(phase, TraceWhat::kMessageArrow, conversation.arrow, sent, message.left);
+    }
+    conversation.last = index;
+    conversation.received.reset();
+    if (message.lost) {
+      return tracks_.mark(there, TracePhase::kInstant, TraceWhat::kLostMessage, index,
+                          message.left);
+    }
+    conversation.received =
+        tracks_.slice(channel_track(message.to, message.from), TraceWhat::kReceived, index,
+                      message.arrived, message.arrived + kShownMessage);
+  }
+
+  void add_clocks() {
+    std::map<std::uint32_t, Nanoseconds> shown;
+    for (std::uint32_t i = 0; i < trace_.clocks.size(); ++i) {
+      const TraceClock& clock = trace_.clocks[i];
+      const auto [last, is_first] = shown.try_emplace(clock.host, clock.error);
+      if (!is_first && std::exchange(last->second, clock.error) == clock.error) continue;
+      tracks_.mark(host_track(clock.host, TrackKind::kClock), TracePhase::kCounter,
+                   TraceWhat::kClock, i, clock.at);
+    }
+    for (std::uint32_t i = 0; i < trace_.adjustments.size(); ++i) {
+      const TraceAdjustment& adjustment = trace_.adjustments[i];
+      tracks_.mark(host_track(adjustment.host, TrackKind::kClock), TracePhase::kInstant,
+                   TraceWhat::kAdjustment, i, adjustment.at);
+    }
+  }
+
+  const Trace& trace_;
+  TraceTracks tracks_;
+  std::map<std::int64_t, EventIndex> pulse_slices_;
+  std::vector<EventIndex> set_slices_;
+  std::uint64_t message_arrows_ = 0;
+};
+
+}  // namespace
+
+TraceTimeline trace_timeline(const Trace& trace) { return TimelineBuilder(trace).build(); }
+
+}  // namespace simbench::reports

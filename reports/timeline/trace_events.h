@@ -1,0 +1,88 @@
+// A trace as the events of a timeline: slices on tracks, arrows between them, counters, instants.
+//
+// Processes: the trigger (pid 1), then the hosts in order (pid 2 is the master). Tracks are those
+// of the Chrome trace format's threads; slices on a track never overlap: what would goes to a
+// further track of the same name, "(2)". Per host: clock; gathering (of the master, which has no
+// other place); for each stream of a camera exposure, usb (offered to the bus -> transferred) and
+// host stack (copied to the kernel -> delivered); a channel for each peer, with what leaves for
+// there and what has come from there.
+//
+// Arrows: trigger pulse -> exposure -> host stack -> gathered set for each frame, as far as it got;
+// along the messages of a link for as long as each answers the one before it within 50 ms.
+//
+// A slice lasts at least 1 ns so that arrows hold on to it. Pulses, and messages that leave or
+// arrive, have no length: they are shown with a nominal one, or less where the next slice of the
+// track follows sooner.
+//
+//   const TraceTimeline timeline = trace_timeline(trace);
+#ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_
+#define SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "reports/timeline/trace.h"
+
+namespace simbench::reports {
+
+inline constexpr Nanoseconds kShownPulse = std::chrono::microseconds(100);
+inline constexpr Nanoseconds kShownMessage = std::chrono::microseconds(10);
+inline constexpr Nanoseconds kLongestAnswer = std::chrono::milliseconds(50);
+
+enum class TracePhase : char {
+  kSlice = 'X',
+  kCounter = 'C',
+  kInstant = 'i',
+  kArrowBegin = 's',
+  kArrowStep = 't',
+  kArrowEnd = 'f',
+};
+
+// What an event shows, and the list of the trace that its `subject` counts in. An arrow's points
+// have none.
+enum class TraceWhat : std::uint8_t {
+  kPulse,         // pulses
+  kCaptureStart,  // none
+  kExposure,      // frames
+  kUsb,           // frames
+  kHostStack,     // frames
+  kLostInCamera,  // frames
+  kLostOnUsb,     // frames
+  kFrameArrow,
+  kSet,          // sets
+  kSent,         // messages
+  kReceived,     // messages
+  kLostMessage,  // messages
+  kMessageArrow,
+  kClock,       // clocks
+  kAdjustment,  // adjustments
+};
+
+struct TraceEvent {
+  TrueTime at{};
+  Nanoseconds length{};  // of slices
+  TracePhase phase = TracePhase::kSlice;
+  TraceWhat what = TraceWhat::kPulse;
+  std::uint32_t subject = 0;
+  std::uint32_t track = 0;
+  std::uint64_t arrow = 0;  // number of it, among those of its kind
+};
+
+struct TraceTrack {
+  std::uint32_t process = 0;
+  std::string name;
+};
+
+struct TraceTimeline {
+  std::vector<std::string> processes;  // [i] has pid i + 1
+  std::vector<TraceTrack> tracks;      // by process, in the order to be shown; all are used
+  std::vector<TraceEvent> events;      // by time; at the same instant slices before their arrows
+};
+
+TraceTimeline trace_timeline(const Trace& trace);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_

@@ -1,0 +1,209 @@
+#include "reports/timeline/trace_recorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "algorithms/ports/host_sync.h"
+
+namespace simbench::reports {
+namespace {
+
+constexpr Nanoseconds kClockInterval = std::chrono::milliseconds(50);
+// Oscillators are straight enough in between.
+constexpr Nanoseconds kAnchorInterval = std::chrono::seconds(1);
+
+std::uint32_t register_of(DeviceTime sensor) {
+  return static_cast<std::uint32_t>(sensor.time_since_epoch().count());  // modulo 2^32
+}
+
+}  // namespace
+
+TraceRecorder::TraceRecorder(evaluation::PipelineScorer& scorer, StreamKind scored,
+                             const TraceOptions& options)
+    : ForwardingSink(scorer), scored_(scored) {
+  trace_.options = options;
+  scorer.watch(*this);
+}
+
+void TraceRecorder::on_start(const RigLayout& layout) {
+  trace_.hosts = layout.hosts;
+  trace_.cameras = layout.cameras;
+  anchors_.resize(layout.hosts);
+  ForwardingSink::on_start(layout);
+}
+
+void TraceRecorder::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
+  under_way_ = {};
+  under_way_.sensor = frame.sensor;
+  under_way_.reference = truth->reference;
+  under_way_key_ = {frame.camera, frame.sensor.us};
+  std::vector<Anchor>& anchors = anchors_[trace_.cameras[frame.camera].host];
+  if (anchors.empty() || truth->mid_exposure() - anchors.back().at >= kAnchorInterval) {
+    anchors.push_back({truth->own_steady, truth->mid_exposure()});
+  }
+  ForwardingSink::on_frame(frame, truth);
+}
+
+void TraceRecorder::on_adjustment(const ClockAdjustment& adjustment) {
+  ForwardingSink::on_adjustment(adjustment);
+  std::vector<Anchor>& anchors = anchors_[adjustment.host];
+  if (anchors.empty()) {  // the setting that the world starts with
+    anchors.push_back({adjustment.at, trace_.world_start});
+    return;
+  }
+  if (last_seen_ >= trace_.left_out.cut_at) {
+    ++trace_.left_out.too_many;
+    return;
+  }
+  ++kept_events_;
+  trace_.adjustments.push_back({.at = last_seen_,
+                                .host = adjustment.host,
+                                .at_steady = adjustment.at,
+                                .step = adjustment.after - adjustment.before,
+                                .rate_ppb = adjustment.rate_ppb});
+}
+
+Nanoseconds TraceRecorder::clock_interval() const { return kClockInterval; }
+
+void TraceRecorder::on_world(TrueTime start) { trace_.world_start = last_seen_ = start; }
+
+void TraceRecorder::on_capture_start(TrueTime at) { trace_.capture_start = last_seen_ = at; }
+
+void TraceRecorder::on_pulse(const ObservedPulse& pulse) {
+  last_seen_ = pulse.at;
+  take(trace_.pulses, pulse);
+}
+
+void TraceRecorder::on_frame(const ObservedFrame& frame) {
+  TraceFrame kept;
+  if (frame.fate == FrameFate::kDelivered) {
+    last_seen_ = frame.delivered;
+    kept = std::exchange(under_way_, {});
+    under_way_key_ = {};
+  }
+  kept.way = frame;
+  take(trace_.frames, std::move(kept));
+}
+
+void TraceRecorder::on_message(const ObservedMessage& message) {
+  last_seen_ = std::max(last_seen_, message.left);
+  take(trace_.messages, message);
+}
+
+void TraceRecorder::on_clocks(TrueTime at, std::span<const Nanoseconds> errors) {
+  for (std::uint32_t host = 0; host < errors.size(); ++host) {
+    take(trace_.clocks, {.at = at, .host = host, .error = errors[host]});
+  }
+}
+
+void TraceRecorder::on_stamp(const evaluation::DeferredFrame& frame, GlobalTime global) {
+  const FrameKey key = {frame.source, register_of(frame.sample.sensor)};
+  if (key == under_way_key_) {
+    under_way_.stamp = global;
+  } else {
+    late_stamps_.push_back({key, global});
+  }
+}
+
+void TraceRecorder::on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) {
+  KeptSet kept = {.members = {}, .complete = complete, .range = {}, .now = now};
+  const auto [first, last] = std::minmax_element(
+      set.begin(), set.end(),
+      [](const GatherFrame& a, const GatherFrame& b) { return a.stamp < b.stamp; });
+  kept.range = last->stamp - first->stamp;
+  for (const GatherFrame& frame : set) {
+    kept.members.push_back({{frame.source, register_of(frame.sensor)}, frame.arrival});
+  }
+  sets_.push_back(std::move(kept));
+}
+
+template <class Thing>
+void TraceRecorder::take(std::vector<Thing>& list, Thing thing) {
+  const TrueTime begin = begin_of(thing);
+  const std::uint64_t events = events_of(thing);
+  if (begin < trace_.options.from || begin >= trace_.options.to) {
+    trace_.left_out.outside += events;
+  } else if (begin >= trace_.left_out.cut_at) {
+    trace_.left_out.too_many += events;
+  } else {
+    list.push_back(std::move(thing));
+    kept_events_ += events;
+    if (kept_events_ / 2 > trace_.options.max_events) cut_to_limit();
+  }
+}
+
+template <class Function>
+void TraceRecorder::for_each_list(const Function& function) {
+  function(trace_.pulses);
+  function(trace_.frames);
+  function(trace_.messages);
+  function(trace_.clocks);
+  function(trace_.adjustments);
+}
+
+void TraceRecorder::cut_to_limit() {
+  std::vector<std::pair<TrueTime, std::uint64_t>> things;
+  for_each_list([&](const auto& list) {
+    for (const auto& thing : list) things.emplace_back(begin_of(thing), events_of(thing));
+  });
+  std::sort(things.begin(), things.end());
+  std::uint64_t events = trace_.capture_start ? 1 : 0;
+  for (const auto& [begin, of_thing] : things) {
+    events += of_thing;
+    if (events > trace_.options.max_events) return cut_at(begin);
+  }
+}
+
+void TraceRecorder::cut_at(TrueTime instant) {
+  trace_.left_out.cut_at = instant;
+  kept_events_ = 0;
+  for_each_list([&](auto& list) {
+    std::erase_if(list, [&](const auto& thing) {
+      const bool late = begin_of(thing) >= instant;
+      (late ? trace_.left_out.too_many : kept_events_) += events_of(thing);
+      return late;
+    });
+  });
+}
+
+Trace TraceRecorder::finish() {
+  resolve_adjustments();
+  sort_by_begin();
+  index_frames();
+  mark_leaders();
+  cut_to_limit();
+  index_frames();
+  resolve_stamps();
+  resolve_sets();
+  return std::move(trace_);
+}
+
+void TraceRecorder::sort_by_begin() {
+  for_each_list([](auto& list) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return begin_of(a) < begin_of(b); });
+  });
+}
+
+Trace record_trace(const scenarios::Scenario& scenario, const evaluation::PipelineChoice& choice,
+                   std::uint64_t seed, RecordingSource& source, const TraceOptions& options) {
+  const evaluation::ScorerSetup setup = evaluation::scorer_setup(scenario, choice);
+  evaluation::PipelineScorer scorer(setup);
+  TraceRecorder recorder(scorer, setup.stream, options);
+  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  source.record({.seed = seed,
+                 .pipeline = choice.pipeline.name,
+                 .host_sync = host_sync.get(),
+                 .observer = &recorder},
+                recorder);
+  scorer.finish();
+  Trace trace = recorder.finish();
+  trace.scenario = scenario.name;
+  trace.pipeline = choice.pipeline.name;
+  trace.seed = seed;
+  return trace;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,107 @@
+#include "algorithms/host_sync/chrony/chrony_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/host_sync/chrony/chrony_client.h"
+#include "algorithms/host_sync/chrony/chrony_poll.h"
+
+namespace simbench {
+namespace {
+
+ChronyEstimate estimate(double offset_s, double frequency, double skew) {
+  return {.at_s = 0,
+          .offset_s = offset_s,
+          .offset_sd_s = 10e-6,
+          .frequency = frequency,
+          .skew = skew,
+          .sd_s = 20e-6};
+}
+
+TEST(ChronyReference, TheFirstGoodFrequencyIsTakenOver) {
+  ChronyReference reference({});
+  const ChronyCorrection correction = reference.update(estimate(0.1, 20e-6, 5e-6), 0, 0);
+  EXPECT_NEAR(correction.frequency, 20e-6, 1e-15);
+  EXPECT_NEAR(reference.skew(), 5e-6, 1e-8);
+}
+
+TEST(ChronyReference, AnUncertainFrequencyChangesNothing) {
+  ChronyReference reference({});
+  const ChronyCorrection correction = reference.update(estimate(0.1, 2e-3, 1.1e-3), 0, 0);
+  EXPECT_EQ(correction.frequency, 0);
+  EXPECT_EQ(correction.offset_s, 0.1);
+}
+
+TEST(ChronyReference, FrequenciesAreWeighedByTheirSkews) {
+  ChronyReference reference({});
+  reference.update(estimate(0, 20e-6, 2e-6), 0, 0);
+  const double present = reference.skew();
+  const double gain = 3 * present * present / (3 * present * present + 4e-6 * 4e-6);
+  const ChronyCorrection correction = reference.update(estimate(0, 1e-6, 4e-6), 0, 0);
+  EXPECT_NEAR(correction.frequency, gain * 1e-6, 1e-15);
+  EXPECT_NEAR(reference.frequency(), 20e-6 + gain * 1e-6, 1e-12);
+}
+
+TEST(ChronyReference, TheOffsetIsThatOfNow) {
+  ChronyReference reference({});
+  EXPECT_NEAR(reference.update(estimate(1e-3, 10e-6, 1e-6), 50, 0).offset_s, 1.5e-3, 1e-15);
+}
+
+TEST(ChronyReference, AnOffsetOfOneDeviationTakesThreeIntervals) {
+  ChronyReference reference({});
+  reference.update(estimate(0, 0, 1e-6), 0, 0);
+  const ChronyCorrection one = reference.update(estimate(10e-6, 0, 1e-6), 64, 0);
+  EXPECT_NEAR(10e-6 / one.slew_rate, 3 * 64, 1e-9);
+  const ChronyCorrection ten = reference.update(estimate(50e-6, 0, 1e-6), 128, 50e-6);
+  EXPECT_NEAR(100e-6 / ten.slew_rate, 3 * 64 / 10.0, 1e-9) << "what was left counts";
+}
+
+TEST(ChronyReference, ASlewIsNeitherTooShortNorTooFast) {
+  ChronyReference reference({});
+  EXPECT_NEAR(reference.update(estimate(1e-3, 0, 1e-6), 0, 0).slew_rate, 1e-3, 1e-15);
+  EXPECT_NEAR(reference.update(estimate(-10, 0, 1e-6), 1, 0).slew_rate, 83333e-6, 1e-15);
+  EXPECT_EQ(reference.update(estimate(0, 0, 1e-6), 2, 0).slew_rate, 0);
+}
+
+TEST(ChronyReference, TheFrequencyIsCapped) {
+  ChronyReference reference({});
+  EXPECT_EQ(reference.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency,
+            ChronyReference::kMaxFrequency);
+  EXPECT_EQ(reference.update(estimate(0, 5e-3, 1e-6), 0, 0).frequency, 0);
+}
+
+TEST(UnfinishedSlew, EndsWhenAllIsAdded) {
+  const UnfinishedSlew slew{-1e-3, 100e-6, 50, 10};
+  EXPECT_EQ(slew.left_s(40), -1e-3);
+  EXPECT_NEAR(slew.left_s(55), -0.5e-3, 1e-15);
+  EXPECT_EQ(std::abs(slew.left_s(70)), 0);
+  EXPECT_EQ(UnfinishedSlew{}.left_s(10), 0);
+  const UnfinishedSlew begun{1e-3, 100e-6, 50, 4};
+  EXPECT_NEAR(begun.left_s(1000), 0.6e-3, 1e-15) << "a part of 4 s was begun";
+}
+
+TEST(ChronyPoll, GrowsWithTheSamplesOnTheLine) {
+  ChronyPoll poll(6, 10, 8);
+  // (16/8 - 1)/8 a sample: eight to a step.
+  for (int i = 0; i < 7; ++i) poll.update(16, 0, 1e-3);
+  EXPECT_EQ(poll.exponent(), 6);
+  poll.update(16, 0, 1e-3);
+  EXPECT_EQ(poll.exponent(), 7);
+  for (int i = 0; i < 1000; ++i) poll.update(64, 0, 1e-3);
+  EXPECT_EQ(poll.exponent(), 10);
+}
+
+TEST(ChronyPoll, ShrinksTwiceAsFastAndAtOnceWhenThePredictionFails) {
+  ChronyPoll poll(6, 10, 8);
+  for (int i = 0; i < 1000; ++i) poll.update(64, 0, 1e-3);
+  for (int i = 0; i < 8; ++i) poll.update(4, 0, 1e-3);  // -1/8 each
+  EXPECT_EQ(poll.exponent(), 9);
+  poll.update(8, 4e-3, 1e-3);  // -2
+  EXPECT_EQ(poll.exponent(), 7);
+  poll.update(8, 1, 1e-3);
+  EXPECT_EQ(poll.exponent(), 6);
+}
+
+}  // namespace
+}  // namespace simbench

@@ -1,0 +1,197 @@
+#include "algorithms/host_sync/chrony/chrony_regression.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "algorithms/host_sync/chrony/chrony_robust_regression.h"
+
+namespace simbench {
+namespace {
+
+using Values = std::vector<double>;
+
+void expect_near(double actual, double expected, const std::string& what) {
+  EXPECT_NEAR(actual, expected, 1e-9 * std::abs(expected)) << what;
+}
+
+TEST(ChronyRegressionVectors, AllFortyAgree) {
+  const std::filesystem::path path =
+      std::filesystem::path(SIMBENCH_SOURCE_DIR) / "../shared/vectors/chrony_regress_golden.json";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "not run: no " << path;
+  std::ifstream file(path);
+  const nlohmann::json sets = nlohmann::json::parse(file);
+  ASSERT_EQ(sets.size(), 40U);
+  for (std::size_t index = 0; index < sets.size(); ++index) {
+    const nlohmann::json& set = sets[index];
+    const std::string name = "set " + std::to_string(index);
+    const auto x = set.at("x").get<Values>();
+    const auto y = set.at("y").get<Values>();
+    const auto w = set.at("w").get<Values>();
+    const auto extra = set.at("m_extra").get<std::size_t>();
+    const std::span<const double> used_x = std::span(x).subspan(extra);
+    const std::span<const double> used_y = std::span(y).subspan(extra);
+
+    const auto best = best_regression(x, y, w, extra, set.at("min_samples").get<std::size_t>());
+    const nlohmann::json& expected = set.at("best");
+    ASSERT_EQ(best.has_value(), expected.at("ok") == 1) << name;
+    EXPECT_EQ(best->start, expected.at("start").get<std::size_t>()) << name;
+    EXPECT_EQ(best->runs, expected.at("runs").get<int>()) << name;
+    EXPECT_EQ(best->degrees_of_freedom, expected.at("dof").get<int>()) << name;
+    const auto line_agrees = [&](const WeightedLine& line, const nlohmann::json& values) {
+      expect_near(line.intercept, values.at("b0"), name + " b0");
+      expect_near(line.slope, values.at("b1"), name + " b1");
+      expect_near(line.variance, values.at("s2"), name + " s2");
+      expect_near(line.intercept_sd, values.at("sb0"), name + " sb0");
+      expect_near(line.slope_sd, values.at("sb1"), name + " sb1");
+    };
+    line_agrees(best->line, expected);
+
+    const auto weighted = weighted_regression(used_x, used_y, w);
+    ASSERT_TRUE(weighted) << name;
+    line_agrees(*weighted, set.at("weighted"));
+
+    const auto robust = robust_regression(used_x, used_y, 1e-12);
+    const nlohmann::json& robust_expected = set.at("robust");
+    ASSERT_EQ(robust.has_value(), robust_expected.at("ok") == 1) << name;
+    EXPECT_EQ(robust->start, robust_expected.at("start").get<std::size_t>()) << name;
+    EXPECT_EQ(robust->runs, robust_expected.at("runs").get<int>()) << name;
+    expect_near(robust->intercept, robust_expected.at("b0"), name + " robust b0");
+    expect_near(robust->slope, robust_expected.at("b1"), name + " robust b1");
+
+    expect_near(median(used_y), set.at("median_y"), name + " median");
+  }
+}
+
+struct Points {
+  Values x;
+  Values y;
+  Values w;
+};
+
+// y = 2 - 0.5 x with noise, and a rate of its own before `break_at`.
+Points line_with_noise(std::size_t n, std::size_t break_at, double slope_before, unsigned seed) {
+  boost::random::mt19937 engine(seed);
+  boost::random::normal_distribution<double> noise(0, 1e-3);
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) - static_cast<double>(n - 1);
+    const double x_break = static_cast<double>(break_at) - static_cast<double>(n - 1);
+    const double y = i < break_at ? 2 - 0.5 * x_break + slope_before * (x - x_break) : 2 - 0.5 * x;
+    points.x.push_back(x);
+    points.y.push_back(y + noise(engine));
+    points.w.push_back(1);
+  }
+  return points;
+}
+
+TEST(ChronyRegression, AnExactLineIsFound) {
+  const Values x = {-6, -3, -1, 0};
+  const Values y = {5, 3.5, 2.5, 2};
+  const Values w = {1, 4, 2, 9};
+  const auto fit = weighted_regression(x, y, w);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->intercept, 2, 1e-15);
+  EXPECT_NEAR(fit->slope, -0.5, 1e-15);
+  EXPECT_NEAR(fit->slope_sd, 0, 1e-15);
+}
+
+TEST(ChronyRegression, AHeavyWeightTakesAPointOut) {
+  const Values x = {-3, -2, -1, 0};
+  const Values y = {3, 2, 100, 0};
+  const auto fit = weighted_regression(x, y, Values{1, 1, 1e12, 1});
+  EXPECT_NEAR(fit->slope, -1, 1e-9);
+}
+
+TEST(ChronyRegression, SlopeErrorIsTheTextbooks) {
+  // Equal weights, residuals +-1 about y = 0: s^2 = 4/2, sum (x - mean)^2 = 5.
+  const auto fit = weighted_regression(Values{0, 1, 2, 3}, Values{1, -1, -1, 1}, Values(4, 1.0));
+  EXPECT_NEAR(fit->slope, 0, 1e-15);
+  EXPECT_NEAR(fit->slope_sd, std::sqrt(2.0 / 5), 1e-15);
+  EXPECT_NEAR(fit->intercept_sd, std::sqrt(2.0 / 4 + 1.5 * 1.5 * 2 / 5), 1e-15);
+  EXPECT_NEAR(fit->variance, 2, 1e-15);
+}
+
+TEST(ChronyRegression, TheRunsTestDropsThePointsBeforeARateChange) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Points points = line_with_noise(60, 30, 0.5, seed);
+    const auto best = best_regression(points.x, points.y, points.w, 0, 3);
+    ASSERT_TRUE(best) << "seed " << seed;
+    EXPECT_GE(best->start, 25U) << "seed " << seed;
+    EXPECT_NEAR(best->line.slope, -0.5, 0.01) << "seed " << seed;
+    EXPECT_NEAR(best->line.intercept, 2, 0.02) << "seed " << seed;
+  }
+}
+
+TEST(ChronyRegression, OneLineIsKeptWholeAsOftenAsTheTestSays) {
+  int whole = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    const Points points = line_with_noise(40, 0, 0, seed);
+    if (best_regression(points.x, points.y, points.w, 0, 3)->start == 0) ++whole;
+  }
+  // Rejected at 5 to 11 % (the binomial's steps); residuals of a fit have a few more runs.
+  EXPECT_GE(whole, 400 * 0.85);
+  EXPECT_LE(whole, 400);
+}
+
+TEST(ChronyRegression, MinSamplesAreLeft) {
+  const Points points = line_with_noise(20, 19, 5, 3);
+  EXPECT_LE(best_regression(points.x, points.y, points.w, 0, 12)->start, 8U);
+}
+
+TEST(ChronyRegression, TooFewOrCoincidentPointsGiveNothing) {
+  EXPECT_FALSE(weighted_regression(Values{0, 1}, Values{0, 1}, Values{1, 1}));
+  EXPECT_FALSE(weighted_regression(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0)));
+  EXPECT_FALSE(best_regression(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0), 0, 3));
+  EXPECT_FALSE(best_regression(Values{}, Values{}, Values{}, 0, 3));
+  EXPECT_FALSE(robust_regression(Values{1}, Values{1}, 1e-9));
+  EXPECT_FALSE(robust_regression(Values{1, 1}, Values{1, 2}, 1e-9));
+  EXPECT_FALSE(robust_regression(Values(5, 3.0), Values(5, 1.0), 1e-9));
+  EXPECT_FALSE(second_slope(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0)));
+}
+
+TEST(ChronyRegression, TheRobustFitIgnoresOutliers) {
+  const Values x = {-6, -5, -4, -3, -2, -1, 0};
+  const Values y = {6.1, 50, 4.05, 2.9, 2.02, -70, 0.01};
+  const auto fit = robust_regression(x, y, 1e-9);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->slope, -1, 0.1);
+  EXPECT_NEAR(robust_regression(Values{1, 3}, Values{1, 5}, 1e-9)->slope, 2, 1e-15);
+}
+
+TEST(ChronyRegression, TheSecondSlopeIsFoundBesideTheFirst) {
+  Values time;
+  Values delay;
+  Values offset;
+  for (int i = 0; i < 10; ++i) {
+    time.push_back(i);
+    delay.push_back((i * 7) % 5);
+    offset.push_back(3 - 0.2 * time.back() + 0.5 * delay.back());
+  }
+  EXPECT_NEAR(*second_slope(time, delay, offset), 0.5, 1e-12);
+  EXPECT_FALSE(second_slope(time, time, offset)) << "undetermined";
+}
+
+TEST(ChronyRegression, CriticalRunsAreTheQuantileOfTheBinomial) {
+  EXPECT_EQ(critical_runs(7), 0);
+  EXPECT_EQ(critical_runs(8), 2);   // P(runs <= 1) = 0.8 %, <= 2: 6.3 %
+  EXPECT_EQ(critical_runs(14), 5);  // P(runs <= 4) = 4.6 %, <= 5: 13 %
+  EXPECT_EQ(critical_runs(100), 42);
+}
+
+TEST(ChronyRegression, StudentsQuantiles) {
+  EXPECT_NEAR(student_t_9995(1), 636.62, 0.01);
+  EXPECT_NEAR(student_t_9995(10), 4.587, 0.001);
+  EXPECT_EQ(student_t_9995(500), student_t_9995(62));
+}
+
+}  // namespace
+}  // namespace simbench

@@ -1,0 +1,242 @@
+#include "algorithms/host_sync/ntp/w32time.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "algorithms/host_sync/ntp/ntp_packet.h"
+#include "tests/algorithms/host_sync/script_host.h"
+
+namespace simbench {
+namespace {
+
+constexpr Nanoseconds kLatency{2'000'000};
+
+W32TimeSettings settings_with_poll(double poll_s) {
+  W32TimeSettings settings;
+  settings.poll_interval = from_ms(poll_s * 1e3);
+  settings.start_spread = Nanoseconds{0};
+  return settings;
+}
+
+void connect(ScriptWorld& world) {
+  for (const PeerId slave : world.slaves()) {
+    world.set_latency(0, slave, kLatency);
+    world.set_latency(slave, 0, kLatency);
+  }
+}
+
+TEST(W32TimeRule, TheDocumentedExampleIsSlewedAt47UnitsATick) {
+  const auto correction = w32time_correction(from_ms(540), settings_with_poll(1024));
+  EXPECT_FALSE(correction.set);
+  EXPECT_NEAR(correction.units_per_tick, 47.08, 0.01);
+  EXPECT_NEAR(correction.rate_ppb, 301e3, 1e3);
+}
+
+TEST(W32TimeRule, ASlewTakesTheSameTimeForEveryOffset) {
+  const double ticks = 16 * 7 * 1024;
+  for (const double offset_ms : {0.01, 1.0, 540.0, -540.0, 999.0}) {
+    const auto correction = w32time_correction(from_ms(offset_ms), settings_with_poll(1024));
+    EXPECT_NEAR(std::abs(offset_ms) * 1e6 / (correction.rate_ppb * 1e-9), ticks * 15.625e6, 1.0)
+        << offset_ms;
+  }
+}
+
+TEST(W32TimeRule, FromTheLargestPhaseOffsetOnTheClockIsSet) {
+  const W32TimeSettings settings = settings_with_poll(1024);
+  EXPECT_FALSE(w32time_correction(from_ms(1000) - Nanoseconds{1}, settings).set);
+  EXPECT_TRUE(w32time_correction(from_ms(1000), settings).set);
+  EXPECT_FALSE(w32time_correction(from_ms(-1000) + Nanoseconds{1}, settings).set);
+  EXPECT_TRUE(w32time_correction(from_ms(-1000), settings).set);
+}
+
+TEST(W32TimeRule, BeyondHalfTheClockRateTheClockIsSet) {
+  // 78125 units a tick at a poll of 16 s and PhaseCorrectRate 1: 2.0 s.
+  W32TimeSettings settings = settings_with_poll(16);
+  settings.phase_correct_rate = 1;
+  settings.max_allowed_phase_offset = from_ms(300e3);
+  EXPECT_FALSE(w32time_correction(from_ms(2000), settings).set);
+  EXPECT_TRUE(w32time_correction(from_ms(2000) + Nanoseconds{100}, settings).set);
+}
+
+TEST(W32Time, SetsALargeOffsetAndSlewsASmallOne) {
+  ScriptWorld world(3);
+  connect(world);
+  world.host(0).offset = from_ms(10e3);
+  world.host(1).offset = from_ms(-5e3);
+  world.host(2).offset = from_ms(10.3e3);
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(100));
+  EXPECT_EQ(world.host(1).steps, std::vector{from_ms(15e3)});
+  EXPECT_TRUE(world.host(1).slews.empty());
+  EXPECT_TRUE(world.host(2).steps.empty());
+  ASSERT_EQ(world.host(2).slews.size(), 1U);
+  EXPECT_EQ(world.host(2).slews.front().offset, from_ms(-300));
+  EXPECT_NEAR(world.host(2).slews.front().rate_ppb, 300e6 / (16 * 7 * 1024 * 15.625e6) * 1e9, 1);
+  for (const PeerId slave : {1U, 2U}) {
+    EXPECT_EQ(world.host(slave).lead_over(world.host(0)), Nanoseconds{0});
+    ASSERT_EQ(world.host(slave).outcomes.size(), 1U);
+    EXPECT_TRUE(world.host(slave).outcomes.front().synchronised);
+    EXPECT_EQ(world.host(slave).outcomes.front().slave, slave);
+  }
+}
+
+TEST(W32Time, ReportsTheFourStamps) {
+  ScriptWorld world(2);
+  connect(world);
+  world.host(0).offset = from_ms(400);
+  world.host(0).costs.send = from_ms(0.1);
+  world.host(1).costs.send = from_ms(0.1);
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(100));
+  ASSERT_EQ(world.host(1).exchanges.size(), 1U);
+  const Exchange& exchange = world.host(1).exchanges.front();
+  EXPECT_EQ(exchange.peer, 0U);
+  EXPECT_EQ(*exchange.t1, HostTime{});
+  EXPECT_EQ(*exchange.t2, HostTime{from_ms(400 + 0.1 + 2)});
+  EXPECT_EQ(*exchange.t3, HostTime{from_ms(400 + 0.1 + 2)});
+  EXPECT_EQ(*exchange.t4, HostTime{from_ms(0.2 + 4)});
+}
+
+TEST(W32Time, PollsAtItsIntervalAfterARandomStart) {
+  ScriptWorld world(3);
+  connect(world);
+  world.host(1).uniform = 0.25;
+  world.host(2).uniform = 0.5;
+  W32TimeSettings settings = settings_with_poll(1000);
+  settings.start_spread = from_ms(100e3);
+  W32Time algorithm(settings);
+  world.run(algorithm, from_ms(3100e3));
+  ASSERT_EQ(world.host(1).exchanges.size(), 4U);
+  ASSERT_EQ(world.host(2).exchanges.size(), 4U);
+  EXPECT_EQ(*world.host(1).exchanges[0].t1, HostTime{from_ms(25e3)});
+  EXPECT_EQ(*world.host(2).exchanges[0].t1, HostTime{from_ms(50e3)});
+  EXPECT_EQ(*world.host(1).exchanges[3].t1, HostTime{from_ms(3025e3) + 3 * 2 * kLatency});
+  EXPECT_EQ(world.host(1).outcomes.size(), 1U);
+}
+
+TEST(W32Time, ALostReplyIsAskedForAgain) {
+  ScriptWorld world(2);
+  connect(world);
+  world.script_link(0, 1, [](std::size_t index, const Bytes&) {
+    return index == 0 ? std::vector<Nanoseconds>{} : std::vector{kLatency};
+  });
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(10e3));
+  ASSERT_EQ(world.host(1).exchanges.size(), 1U);
+  EXPECT_EQ(world.host(1).outcomes.at(0).passes, 2U);
+}
+
+TEST(W32Time, ASilentServerIsAnOutcomeAndAskedAtTheNextPoll) {
+  ScriptWorld world(2);
+  connect(world);
+  std::size_t requests = 0;
+  world.script_link(1, 0, [&requests](std::size_t, const Bytes&) {
+    ++requests;
+    return std::vector<Nanoseconds>{};
+  });
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(1000e3));
+  EXPECT_EQ(requests, 4U);
+  ASSERT_EQ(world.host(1).outcomes.size(), 1U);
+  EXPECT_FALSE(world.host(1).outcomes.front().synchronised);
+  EXPECT_EQ(world.host(1).outcomes.front().message,
+            "slave 1: no valid reply from time server 0 to 4 requests; is it running and "
+            "reachable?");
+  world.run(from_ms(2000e3));
+  EXPECT_EQ(requests, 8U);
+  EXPECT_EQ(world.host(1).outcomes.size(), 1U);
+}
+
+using Spoil = void (*)(NtpPacket&);
+
+// Whether the client takes a reply that would be right but for what `spoil` does to it.
+bool takes_reply(Spoil spoil) {
+  ScriptWorld world(2);
+  world.script_link(1, 0, [&world, spoil](std::size_t, const Bytes& bytes) {
+    const NtpPacket request = *decode_ntp_packet(bytes);
+    NtpPacket reply = request;
+    reply.mode = kNtpModeServer;
+    reply.stratum = 1;
+    reply.origin = request.transmit;
+    reply.receive = to_ntp(HostTime{from_ms(5000)});
+    reply.transmit = reply.receive;
+    spoil(reply);
+    world.call_at(world.now() + kLatency,
+                  [&world, reply] { world.host(1).deliver(0, encode(reply)); });
+    return std::vector<Nanoseconds>{};
+  });
+  W32Time algorithm(settings_with_poll(1024));
+  world.host(1).offset = from_ms(77);
+  world.run(algorithm, from_ms(100e3));
+  const bool taken = !world.host(1).exchanges.empty();
+  EXPECT_EQ(world.host(1).offset != from_ms(77), taken);
+  return taken;
+}
+
+TEST(W32Time, BogusRepliesAreIgnored) {
+  EXPECT_TRUE(takes_reply([](NtpPacket&) {}));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { ++reply.origin.fraction; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.origin = {}; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.mode = kNtpModeClient; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.mode = 5; }));  // a broadcast
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.leap = kNtpLeapAlarm; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.stratum = 0; }));  // kiss of death
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.stratum = 16; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.transmit = {}; }));
+  EXPECT_FALSE(takes_reply([](NtpPacket& reply) { reply.version = 7; }));
+}
+
+TEST(W32Time, ALateReplyToAnEarlierRequestIsIgnored) {
+  ScriptWorld world(2);
+  connect(world);
+  world.script_link(0, 1, [](std::size_t index, const Bytes&) {
+    return std::vector{index == 0 ? from_ms(1001) : kLatency};  // after the second request
+  });
+  world.host(0).offset = from_ms(400);
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(10e3));
+  ASSERT_EQ(world.host(1).exchanges.size(), 1U);
+  EXPECT_EQ(world.host(1).lead_over(world.host(0)), Nanoseconds{0});
+}
+
+TEST(W32Time, TheServerEchoesTheRequestAndIgnoresTheRest) {
+  ScriptWorld world(2);
+  std::vector<NtpPacket> replies;
+  world.script_link(0, 1, [&replies](std::size_t, const Bytes& bytes) {
+    replies.push_back(*decode_ntp_packet(bytes));
+    return std::vector<Nanoseconds>{};
+  });
+  world.host(0).offset = from_ms(123);
+  NtpPacket request;
+  request.version = 4;
+  request.transmit = {0xDEADBEEF, 0x12345678};
+  NtpPacket broadcast = request;
+  broadcast.mode = 5;
+  world.call_at(from_ms(1), [&] {
+    world.host(0).deliver(1, Bytes(3));
+    world.host(0).deliver(1, encode(broadcast));
+    world.host(0).deliver(1, encode(request));
+  });
+  W32Time algorithm(settings_with_poll(1024));
+  world.start(algorithm.run_master(world.host(0), {1}));
+  world.run(from_ms(10));
+  ASSERT_EQ(replies.size(), 1U);
+  const NtpPacket& reply = replies.front();
+  EXPECT_EQ(reply.origin, request.transmit);
+  EXPECT_EQ(reply.mode, kNtpModeServer);
+  EXPECT_EQ(reply.version, 4);
+  EXPECT_EQ(reply.stratum, 1);
+  EXPECT_EQ(reply.receive, to_ntp(HostTime{from_ms(124)}));
+  EXPECT_EQ(reply.transmit, to_ntp(HostTime{from_ms(124)}));
+}
+
+TEST(W32Time, RunsBeforeTheCapture) {
+  W32Time algorithm((W32TimeSettings()));
+  EXPECT_EQ(algorithm.warm_up(), from_ms(20 * 3600e3));
+  EXPECT_EQ(algorithm.initial_clocks(), InitialClocks::kUnsynchronised);
+}
+
+}  // namespace
+}  // namespace simbench

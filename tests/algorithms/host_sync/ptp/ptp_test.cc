@@ -1,0 +1,158 @@
+#include "algorithms/host_sync/ptp/ptp.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <string>
+#include <vector>
+
+#include "algorithms/host_sync/ptp/ptp_message.h"
+#include "algorithms/host_sync/ptp/ptp_offset.h"
+#include "tests/algorithms/host_sync/script_host.h"
+
+namespace simbench {
+namespace {
+
+constexpr Nanoseconds kLatency{150'000};
+
+TEST(PtpOffsetTest, EndToEndAndPeerDelayFindTheOffset) {
+  // Slave 5000 ahead, delay 300 each way.
+  PtpOffset filter(10);
+  filter.add_request(0, 0);
+  EXPECT_FALSE(filter.offset());
+  filter.add_sync(1'000'000, 1'000'300 + 5'000);
+  EXPECT_FALSE(filter.offset());
+  filter.add_request(1'205'000, 1'200'300);
+  EXPECT_EQ(filter.offset(), Nanoseconds(5000));
+  PtpOffset peer(10);
+  peer.add_peer_delay(1'005'000, 1'000'300, 1'000'700, 1'006'000);
+  peer.add_sync(2'000'000, 2'000'300 + 5'000);
+  EXPECT_EQ(peer.offset(), Nanoseconds(5000));
+  peer.forget_sync();
+  EXPECT_FALSE(peer.offset());
+}
+
+TEST(PtpOffsetTest, ALateRequestDoesNotCountInTheMedian) {
+  PtpOffset filter(3);
+  filter.add_sync(1000, 1300);
+  for (const std::int64_t late : {0, 90'000, 0}) filter.add_request(2000, 2300 + late);
+  EXPECT_EQ(filter.offset(), Nanoseconds(0));
+}
+
+class PtpTest : public testing::TestWithParam<bool> {
+ protected:
+  PtpTest() {
+    for (const PeerId slave : world_.slaves()) {
+      world_.set_latency(0, slave, kLatency);
+      world_.set_latency(slave, 0, kLatency);
+      world_.host(slave).offset = from_ms(-400.0 * slave);
+      world_.host(slave).uniform = 0.4;
+    }
+    settings_.is_peer_delay = GetParam();
+  }
+  double lead_us(PeerId slave) { return to_ms(world_.host(slave).lead_over(world_.host(0))) * 1e3; }
+
+  ScriptWorld world_{3};
+  PtpSettings settings_;
+};
+
+TEST_P(PtpTest, StepsTheSlavesToTheMaster) {
+  Ptp sync(settings_);
+  EXPECT_EQ(sync.warm_up(), from_ms(300e3));
+  world_.run(sync, from_ms(60e3));
+  EXPECT_EQ(world_.unfinished(), 3u);
+  for (const PeerId slave : world_.slaves()) {
+    EXPECT_NEAR(lead_us(slave), 0, 0.01);
+    ASSERT_EQ(world_.host(slave).outcomes.size(), 1u);
+    EXPECT_TRUE(world_.host(slave).outcomes[0].synchronised)
+        << world_.host(slave).outcomes[0].message;
+    ASSERT_FALSE(world_.host(slave).exchanges.empty());
+    const Exchange& exchange = world_.host(slave).exchanges.front();
+    EXPECT_EQ((*exchange.t2 - *exchange.t1) + (*exchange.t4 - *exchange.t3), 2 * kLatency);
+  }
+}
+
+TEST_P(PtpTest, AsymmetryIsInTheResultWithItsHalf) {
+  world_.set_latency(1, 0, kLatency + from_ms(0.1));
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(60e3));
+  EXPECT_NEAR(lead_us(1), 50, 0.01);
+}
+
+// What a transparent clock does: event messages take longer and say so in their correction.
+TEST_P(PtpTest, CorrectionsOfTransparentClocksAreTakenOut) {
+  ScriptWorld& world = world_;
+  const auto deliver_corrected = [&world](PeerId from, PeerId to, Nanoseconds residence) {
+    return [&world, from, to, residence](std::size_t, const Bytes& bytes) {
+      const auto message = decode_ptp_message(bytes);
+      if (!message || static_cast<int>(message->type) > 3) return std::vector{kLatency};
+      PtpMessage corrected = *message;
+      corrected.correction += residence.count() * 65'536;
+      const Bytes changed = encode(corrected);
+      world.call_at(world.now() + kLatency + residence,
+                    [&world, from, to, changed] { world.host(to).deliver(from, changed); });
+      return std::vector<Nanoseconds>{};
+    };
+  };
+  world_.script_link(0, 1, deliver_corrected(0, 1, from_ms(0.7)));
+  world_.script_link(1, 0, deliver_corrected(1, 0, from_ms(0.1)));
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(60e3));
+  EXPECT_NEAR(lead_us(1), 0, 0.01);
+}
+
+TEST_P(PtpTest, LossDuplicatesReorderingAndGarbageCostMeasurementsOnly) {
+  boost::random::mt19937_64 engine(17);
+  const LinkScript unreliable = [&engine](std::size_t, const Bytes&) {
+    switch (engine() % 5) {
+      case 0:
+        return std::vector<Nanoseconds>{};
+      case 1:
+        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(0.3)};
+      case 2:
+        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(2500)};
+      default:
+        return std::vector<Nanoseconds>{kLatency};
+    }
+  };
+  world_.script_link(0, 1, unreliable);
+  world_.script_link(1, 0, unreliable);
+  for (int i = 0; i < 1000; ++i) {
+    Bytes bytes(engine() % 60);
+    for (std::byte& byte : bytes) byte = static_cast<std::byte>(engine());
+    world_.call_at(from_ms(60.0 * i), [this, bytes] { world_.host(1).deliver(0, bytes); });
+    world_.call_at(from_ms(60.0 * i + 9), [this, bytes] { world_.host(0).deliver(1, bytes); });
+  }
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(120e3));
+  // A duplicate that comes later than its like is taken for it where that one was lost.
+  EXPECT_NEAR(lead_us(1), 0, 0.5) << "seed 17";
+  EXPECT_NEAR(lead_us(2), 0, 0.01);
+}
+
+TEST_P(PtpTest, ASilentMasterIsOneOutcome) {
+  world_.script_link(0, 2, [](std::size_t, const Bytes&) { return std::vector<Nanoseconds>{}; });
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(60e3));
+  ASSERT_EQ(world_.host(2).outcomes.size(), 1u);
+  EXPECT_FALSE(world_.host(2).outcomes[0].synchronised);
+  EXPECT_NE(world_.host(2).outcomes[0].message.find("has not locked"), std::string::npos);
+  EXPECT_TRUE(world_.host(1).outcomes.at(0).synchronised);
+}
+
+TEST_P(PtpTest, WithoutAHardwareClockTheOutcomeNamesThePort) {
+  settings_.has_hardware_stamps = true;
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(60e3));
+  for (const PeerId slave : world_.slaves()) {
+    ASSERT_EQ(world_.host(slave).outcomes.size(), 1u);
+    EXPECT_FALSE(world_.host(slave).outcomes[0].synchronised);
+    EXPECT_NE(world_.host(slave).outcomes[0].message.find("Host::hardware_clock"),
+              std::string::npos);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EndToEndAndPeerDelay, PtpTest, testing::Bool());
+
+}  // namespace
+}  // namespace simbench

@@ -1,0 +1,46 @@
+// The same scenario and seed give the same bytes: on one thread or several, and - through the
+// digest below, which every build of the project must reproduce - with every compiler, build type
+// and sanitizer. A change that is meant changes the digest; say why in its commit.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "evaluation/run/evaluate.h"
+#include "reports/results/json.h"
+#include "scenarios/loader.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench {
+namespace {
+
+std::string results_without_performance(const scenarios::Scenario& scenario, unsigned jobs) {
+  const evaluation::Results results =
+      evaluation::evaluate(scenario, [&] { return sim::make_simulation(scenario); },
+                           {.first_seed = 1, .seeds = 3, .jobs = jobs, .pipelines = {}}, {});
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(reports::json(results));
+  for (const char* varies : {"performance", "version", "commit"}) json.erase(varies);
+  return json.dump();
+}
+
+std::uint64_t digest(const std::string& text) {
+  std::uint64_t hash = 0xCBF29CE484222325;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+  return hash;
+}
+
+TEST(Determinism, ResultsDependOnNeitherThreadsNorCompilerNorFlags) {
+  for (const auto& [name, expected] : {std::pair{"18cam_6host_45fps", 0x24373953e7497d50ULL},
+                                       std::pair{"18cam_6host_15fps_lan", 0x03a1a9bfafd77b3eULL}}) {
+    const scenarios::Scenario scenario =
+        scenarios::load_scenario(name, {{"/timeline/frames", "60"}});
+    const std::string one_thread = results_without_performance(scenario, 1);
+    EXPECT_EQ(one_thread, results_without_performance(scenario, 4)) << name << ", seeds 1 to 3";
+    EXPECT_EQ(digest(one_thread), expected)
+        << name << ", seeds 1 to 3: the digest is now 0x" << std::hex << digest(one_thread);
+  }
+}
+
+}  // namespace
+}  // namespace simbench

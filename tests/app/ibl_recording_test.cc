@@ -1,0 +1,136 @@
+#include "app/ibl_recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "evaluation/replay/replay.h"
+
+namespace simbench::app {
+namespace {
+
+using testing::HasSubstr;
+
+// The recordings are not part of the project: they lie beside it, or the tests on them do not run.
+const std::string kData = SIMBENCH_SOURCE_DIR "/../shared/data/ibl/";
+const std::string kBody = kData + "_iblrig_bodyCamera.timestamps.ssv";
+const std::string kLeft = kData + "_iblrig_leftCamera.frameData.bin";
+
+std::uint32_t cycle_clock(unsigned seconds, unsigned cycles, unsigned offsets) {
+  return seconds << 25 | cycles << 12 | offsets;
+}
+
+std::string row(double ticks, double reading, double counter) {
+  const std::array<double, 4> cells = {ticks, reading, counter, 0};
+  std::string bytes(sizeof cells, '\0');
+  std::memcpy(bytes.data(), cells.data(), sizeof cells);
+  return bytes;
+}
+
+TEST(IblRecording, TextIsDecodedAndItsClockGoesOn) {
+  const std::string text =
+      "2020-08-19T23:59:59.9000000-04:00 " + std::to_string(cycle_clock(127, 7999, 3071)) +
+      " \n2020-08-20T00:00:00.1234567-04:00 " + std::to_string(cycle_clock(0, 4000, 1536)) + "\n";
+  const auto frames = parse_ibl_timestamps(text, "x.ssv");
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].arrival, Nanoseconds(0));
+  EXPECT_EQ(frames[1].arrival, Nanoseconds(223'456'700));
+  EXPECT_NEAR(to_ms(frames[0].sensor), 128'000 - 1e3 / 8000 / 3072, 1e-6);
+  EXPECT_NEAR(to_ms(frames[1].sensor), 128'500.0625, 1e-6);
+  EXPECT_EQ(frames[1].counter, 1U);
+}
+
+TEST(IblRecording, FrameDataIsDecoded) {
+  const auto frames =
+      parse_ibl_frame_data(row(637568488067305600.0, cycle_clock(81, 0, 0), 40) +
+                               row(637568488067635712.0, cycle_clock(81, 264, 0), 41),
+                           "x.bin");
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].counter, 40U);
+  EXPECT_EQ(frames[1].arrival, Nanoseconds(33'011'200));
+  EXPECT_EQ(frames[1].sensor - frames[0].sensor, Nanoseconds(33'000'000));
+}
+
+TEST(IblRecording, DamagedFilesAreRefused) {
+  const std::string good = "2020-08-19T12:42:57.7903616-04:00 2330554981 \n";
+  for (const char* line :
+       {"hello", "2020-08-19T12:42:57.7903616-04:00", "2020-13-19T12:42:57.7903616-04:00 1",
+        "2020-08-19T12:42:57.7903616-04:00 99999999999", "2020-08-19T12:42:57.7903616-04:00 4095",
+        "2020-08-19T12:42:57 2330554981"}) {
+    try {
+      parse_ibl_timestamps(good + line + "\n", "x.ssv");
+      ADD_FAILURE() << "accepted: " << line;
+    } catch (const CsvError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("x.ssv:2: allowed: a time")) << line;
+    }
+  }
+  EXPECT_THROW(parse_ibl_timestamps("", "x.ssv"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data("", "x.bin"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data("short", "x.bin"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data(row(1, 4096, -1), "x.bin"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data(row(1, 4095, 1), "x.bin"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data(row(0.5, 4096, 1), "x.bin"), CsvError);
+  EXPECT_THROW(parse_ibl_frame_data(row(1, 4096, 1) + row(0x1p62, 4096, 1), "x.bin"), CsvError);
+  EXPECT_THROW(read_ibl_recording("frames.txt"), CsvError);
+  EXPECT_THROW(read_ibl_recording("/no/such.bin"), CsvError);
+}
+
+std::vector<CameraStream> through_csv(const std::string& path) {
+  CsvRecordingReader reader;
+  reader.read_text(rs_csv_text(read_ibl_recording(path)), "body.csv");
+  return reader.take();
+}
+
+TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
+  if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "not run: data absent";
+  const evaluation::Replay replay = evaluation::run_replay(through_csv(kBody));
+  ASSERT_EQ(replay.cameras.size(), 1U);
+  const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
+  EXPECT_EQ(found.frames, 6001);
+  EXPECT_EQ(found.long_intervals, 0);
+  EXPECT_NEAR(found.span_s, 198.6, 0.05);
+  EXPECT_NEAR(found.sensor_period.mean_ms, 33.1007, 0.00005);
+  EXPECT_NEAR(found.sensor_period.sd_ms, 0.00126, 0.000005);
+  EXPECT_NEAR(found.arrival_period.mean_ms, 33.0935, 0.00005);
+  EXPECT_NEAR(found.arrival_period.sd_ms, 0.2455, 0.00005);
+  EXPECT_NEAR(found.drift_ppm, -215.385, 0.0005);
+  EXPECT_NEAR(found.envelope_drift_ppm, -214.932, 0.0005);
+  EXPECT_NEAR(found.residual.sd_ms, 0.1878, 0.00005);
+  EXPECT_NEAR(found.residual.p99_ms, 0.636, 0.0005);
+  EXPECT_NEAR(found.residual.max_ms, 3.069, 0.0005);
+  EXPECT_NEAR(found.excess.mean_ms, 0.217, 0.0005);
+  EXPECT_NEAR(found.excess.p50_ms, 0.160, 0.0005);
+  EXPECT_NEAR(found.excess.p95_ms, 0.600, 0.0005);
+  EXPECT_NEAR(found.excess.p99_ms, 0.872, 0.0005);
+  EXPECT_NEAR(found.excess.max_ms, 3.327, 0.0005);
+  for (const evaluation::DeviceTimeReplay& row : replay.cameras[0].rows) {
+    if (row.device_time != "regression_offline") continue;
+    EXPECT_NEAR(row.drift_ppm, -215.385, 0.005);
+    EXPECT_NEAR(row.residual.sd_ms, 0.1878, 0.0005);
+  }
+}
+
+TEST(IblRecording, TheRealLeftCameraIsRead) {
+  if (!std::filesystem::exists(kLeft)) GTEST_SKIP() << "not run: data absent";
+  const auto frames = read_ibl_recording(kLeft);
+  ASSERT_EQ(frames.size(), 135U);
+  EXPECT_EQ(frames.front().counter, 389918212U);
+  EXPECT_EQ(frames.back().counter, 389918346U);
+  const evaluation::CameraStatistics found = evaluation::camera_statistics(frames);
+  EXPECT_EQ(found.missing_frames, 0);
+  EXPECT_NEAR(found.sensor_period.mean_ms, 33.341, 0.0005);
+  EXPECT_NEAR(found.sensor_period.sd_ms, 0.00229, 0.000005);
+  EXPECT_NEAR(found.arrival_period.mean_ms, 33.3319, 0.00005);
+  EXPECT_NEAR(found.arrival_period.sd_ms, 0.5055, 0.00005);
+  EXPECT_NEAR(found.drift_ppm, 59.313, 0.0005);
+  EXPECT_NEAR(found.envelope_drift_ppm, 117.742, 0.0005);
+  EXPECT_NEAR(found.residual.sd_ms, 0.3643, 0.00005);
+}
+
+}  // namespace
+}  // namespace simbench::app

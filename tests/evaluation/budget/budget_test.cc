@@ -1,0 +1,134 @@
+#include "evaluation/budget/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "scenarios/loader.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::evaluation {
+namespace {
+
+TEST(Shapley, IndependentErrorsKeepTheirOwn) {
+  const std::vector<double> own = {1, 2, 4};
+  std::vector<double> worth(8);
+  for (std::size_t ideal = 0; ideal < worth.size(); ++ideal) {
+    for (std::size_t player = 0; player < own.size(); ++player) {
+      if ((ideal >> player & 1U) == 0) worth[ideal] += own[player];
+    }
+  }
+  const std::vector<double> values = shapley_values(worth);
+  for (std::size_t player = 0; player < own.size(); ++player) {
+    EXPECT_NEAR(values[player], own[player], 1e-12);
+  }
+}
+
+TEST(Shapley, EqualOnesShareAndDummiesGetNothing) {
+  // The error is there while player 0 or player 1 is real; player 2 does nothing.
+  std::vector<double> worth(8);
+  for (std::size_t ideal = 0; ideal < worth.size(); ++ideal)
+    worth[ideal] = (ideal & 3U) == 3 ? 0 : 6;
+  const std::vector<double> values = shapley_values(worth);
+  EXPECT_NEAR(values[0], 3, 1e-12);
+  EXPECT_NEAR(values[1], 3, 1e-12);
+  EXPECT_NEAR(values[2], 0, 1e-12);
+}
+
+// The definition: what each player takes off when it joins, averaged over all orders.
+std::vector<double> by_all_orders(const std::vector<double>& worth, std::size_t players) {
+  std::vector<std::size_t> order(players);
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<double> values(players, 0.0);
+  double orders = 0;
+  do {
+    std::size_t coalition = 0;
+    for (const std::size_t player : order) {
+      const std::size_t joined = coalition | (std::size_t{1} << player);
+      values[player] += worth[coalition] - worth[joined];
+      coalition = joined;
+    }
+    ++orders;
+  } while (std::next_permutation(order.begin(), order.end()));
+  for (double& value : values) value /= orders;
+  return values;
+}
+
+TEST(Shapley, IsTheMeanOverAllOrders) {
+  constexpr unsigned kSeed = 3;
+  constexpr std::size_t kPlayers = 5;
+  boost::random::mt19937_64 engine(kSeed);
+  boost::random::uniform_real_distribution<double> draw(-1, 1);
+  std::vector<double> worth(std::size_t{1} << kPlayers);
+  for (double& value : worth) value = draw(engine);
+  const std::vector<double> values = shapley_values(worth);
+  const std::vector<double> expected = by_all_orders(worth, kPlayers);
+  for (std::size_t player = 0; player < kPlayers; ++player) {
+    EXPECT_NEAR(values[player], expected[player], 1e-12) << "seed " << kSeed;
+  }
+}
+
+// Two hosts of one camera each, in a world whose only faults are the ones given.
+scenarios::Scenario small_world(const std::string& set_pointer, const std::string& value) {
+  return scenarios::load_scenario("18cam_6host_45fps_lan",
+                                  {{"/hosts/count", "2"},
+                                   {"/cameras/count", "2"},
+                                   {"/cameras/cameras_per_host", "1"},
+                                   {"/timeline/frames", "40"},
+                                   {"/timeline/warm_up_ms", "200"},
+                                   {"/cameras/unstable_start_jitter_sigma_ms", "0"},
+                                   {set_pointer, value}});
+}
+
+Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
+  return error_budget(
+      scenario, pipeline,
+      [](const scenarios::Scenario& world) { return sim::make_simulation(world); },
+      {.seeds = 2, .jobs = 1}, nullptr);
+}
+
+void expect_sum(const ErrorParts& error) {
+  for (std::size_t seed = 0; seed < error.total.values.size(); ++seed) {
+    double sum = error.remainder.values[seed];
+    for (const BudgetPart& stage : error.stages) sum += stage.values[seed];
+    EXPECT_NEAR(sum, error.total.values[seed], 1e-9) << "seed " << seed + 1;
+  }
+}
+
+double stage_mean(const ErrorParts& error, Stage stage) {
+  return error.stages[static_cast<std::size_t>(stage)].mean;
+}
+
+TEST(Budget, PartsAddUpAndNothingIsLeft) {
+  const scenarios::Scenario scenario = small_world("/hosts/count", "2");
+  const Budget budget = budget_of(scenario, {"both", "yoon2021_both", "regression_30", "yoon2021"});
+  EXPECT_TRUE(budget.amd_of_sets);
+  expect_sum(budget.amd_ms);
+  expect_sum(budget.absolute_error_ms);
+  expect_sum(budget.physical_ms);
+  // With everything ideal a microsecond of the camera's register and of the fit remains.
+  EXPECT_LT(budget.amd_ms.remainder.mean, 0.003);
+  EXPECT_LT(budget.absolute_error_ms.remainder.mean, 0.003);
+  // The latency of the delivery goes straight into the stamps of a one-way method.
+  EXPECT_GT(stage_mean(budget.absolute_error_ms, Stage::kUsbDelivery), 10);
+  EXPECT_GT(stage_mean(budget.amd_ms, Stage::kHostClock), 0);
+}
+
+TEST(Budget, ALateBranchIsPhysicalAndTheTriggersAlone) {
+  const scenarios::Scenario scenario = small_world("/trigger/cable_delay_max_us", "3000");
+  const Budget budget = budget_of(scenario, {"oracle", "oracle", "oracle", "yoon2021"});
+  expect_sum(budget.physical_ms);
+  EXPECT_NEAR(stage_mean(budget.physical_ms, Stage::kTrigger), budget.physical_ms.total.mean, 0.01);
+  EXPECT_NEAR(stage_mean(budget.amd_ms, Stage::kTrigger), budget.amd_ms.total.mean, 0.01);
+  EXPECT_NEAR(stage_mean(budget.amd_ms, Stage::kUsbDelivery), 0, 1e-9);
+  EXPECT_NEAR(stage_mean(budget.absolute_error_ms, Stage::kTrigger), 0, 1e-6);
+}
+
+}  // namespace
+}  // namespace simbench::evaluation

@@ -1,0 +1,203 @@
+// Fits to simulated recordings whose parameters are known.
+#include "evaluation/fit/fit.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "evaluation/fit/fit_check.h"
+#include "evaluation/fit/fit_evidence.h"
+#include "recording/kept_recording.h"
+#include "scenarios/loader.h"
+#include "sim/rig/simulation.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+// Quantiles of Exp(mean_ms), cut off where 1 in 2000 is later.
+std::vector<double> exponential_table(double mean_ms) {
+  std::vector<double> table;
+  for (int i = 0; i <= 200; ++i) {
+    table.push_back(-mean_ms * std::log1p(-std::min(i / 200.0, 1 - 1 / 2000.0)));
+  }
+  return table;
+}
+
+// Three cameras with known rates, delays, correlation and losses; 1500 frames each.
+scenarios::Scenario known_world() {
+  scenarios::Scenario world = scenarios::load_scenario("3cam_1host_30fps");
+  world.timeline.frames = 1500;
+  world.timeline.warm_up_ms = 500;
+  world.hosts.clock.oscillator.skew_sigma_ppm = 0;
+  world.cameras.skew_of_camera_ppm = {-40, 3, 215};
+  world.cameras.drop_probability = 0.05;
+  world.cameras.sensor_stamp_jitter_sigma_us = 0;
+  world.usb.delivery_quantiles_ms = exponential_table(0.3);
+  world.usb.delivery_correlation = 0.4;
+  return world;
+}
+
+FitInput recorded(const scenarios::Scenario& world, std::uint64_t seed) {
+  FitInputSink sink({.warm_up_ms = world.timeline.warm_up_ms});
+  sim::make_simulation(world)->record({.seed = seed, .pipeline = world.pipelines.front().name},
+                                      sink);
+  return sink.take();
+}
+
+FitBase base_of(const char* name) {
+  return {.scenario = scenarios::load_scenario(name), .stated = name};
+}
+
+TEST(Fit, GivesBackWhatWasSimulated) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const scenarios::Scenario world = known_world();
+    const RigFit fit = fit_rig(recorded(world, seed));
+    ASSERT_THAT(fit.skew_ppm, SizeIs(3)) << "seed " << seed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      // A register of whole microseconds, over 50 s.
+      EXPECT_NEAR(fit.skew_ppm[i].value, world.cameras.skew_of_camera_ppm[i],
+                  5 * fit.skew_ppm[i].error + 0.02)
+          << "camera " << i << ", seed " << seed;
+      EXPECT_LT(fit.skew_ppm[i].error, 0.5) << "seed " << seed;
+    }
+    ASSERT_TRUE(fit.correlation) << "seed " << seed;
+    EXPECT_NEAR(fit.correlation->value, 0.4, 5 * fit.correlation->error) << "seed " << seed;
+    // Clopper and Pearson's interval is of 95 %: 5 standard errors never fail.
+    EXPECT_NEAR(fit.drop_share(), 0.05, 5 * std::sqrt(0.05 * 0.95 / 4500)) << "seed " << seed;
+    for (const double p : {0.1, 0.5, 0.9, 0.99}) {
+      const double expected = -0.3 * std::log1p(-p);
+      // Of an order statistic, sqrt(p (1 - p) / n) / density, n reduced by the correlation.
+      const double error = std::sqrt(p * (1 - p) / (4275 * 0.6 / 1.4)) * 0.3 / (1 - p);
+      EXPECT_NEAR(quantile(fit.excess_ms, p), expected, 5 * error + 0.001)
+          << "quantile " << p << ", seed " << seed;
+    }
+  }
+}
+
+TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+    const FitInput input = recorded(known_world(), seed);
+    const FitStudy study =
+        study_fit(input, base_of("3cam_1host_30fps"), "model.json", sim::make_simulation);
+    EXPECT_LT(study.whole.ks, study.whole.ks_limit) << "seed " << seed;
+    ASSERT_TRUE(study.hold_out) << "seed " << seed;
+    EXPECT_LT(study.hold_out->ks, 1.5 * study.hold_out->ks_limit) << "seed " << seed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const FittedValue& found = study.whole.simulated.skew_ppm[i];
+      EXPECT_NEAR(found.value, study.whole.recorded.skew_ppm[i].value, 5 * found.error + 0.02)
+          << "camera " << i << ", seed " << seed;
+    }
+    EXPECT_NEAR(study.whole.simulated.drop_share, study.whole.recorded.drop_share,
+                5 * std::sqrt(2 * 0.05 * 0.95 / 4500))
+        << "seed " << seed;
+  }
+}
+
+// The check must notice a model that is wrong.
+TEST(Fit, TheCheckSeesAnotherDistribution) {
+  const RigFit fit = fit_rig(recorded(known_world(), 31));
+  scenarios::Scenario other = known_world();
+  other.usb.delivery_quantiles_ms = exponential_table(0.4);
+  const FitCheck check = check_fit(fit, other, sim::make_simulation);
+  // Of Exp(0.3) and Exp(0.4) the distance is (3/4)^3 - (3/4)^4 = 0.105.
+  EXPECT_NEAR(check.ks, 0.105, 0.05);
+  EXPECT_GT(check.ks, check.ks_limit);
+}
+
+TEST(Fit, AFitOfAFitIsTheSame) {
+  const FitBase base = base_of("3cam_1host_30fps");
+  const FitInput input = recorded(known_world(), 41);
+  const RigFit first = fit_rig(input);
+  RigFit last = first;
+  for (int generation = 0; generation < 3; ++generation) {
+    const FitModel model = fit_model(last, input, base, "model.json");
+    last = simulate_fit(model.scenario, 1500, sim::make_simulation,
+                        static_cast<std::uint64_t>(generation) + 50);
+  }
+  for (const double p : {0.1, 0.5, 0.9}) {
+    const double error = std::sqrt(p * (1 - p) / (4275 * 0.6 / 1.4)) * 0.3 / (1 - p);
+    EXPECT_NEAR(quantile(last.excess_ms, p), quantile(first.excess_ms, p), 5 * std::sqrt(3) * error)
+        << "quantile " << p;
+  }
+  EXPECT_NEAR(last.correlation->value, first.correlation->value,
+              5 * std::sqrt(3) * first.correlation->error);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(last.skew_ppm[i].value, first.skew_ppm[i].value, 0.5) << "camera " << i;
+  }
+}
+
+TEST(Fit, SettingsOfTheSystemClockAreNoDelay) {
+  scenarios::Scenario world = known_world();
+  const RigFit plain = fit_rig(recorded(world, 3));
+  world.faults = {{.kind = "clock_step", .host = 0, .at_ms = 20'000, .step_ms = 500}};
+  const RigFit stepped = fit_rig(recorded(world, 3));
+  EXPECT_EQ(plain.excess_ms, stepped.excess_ms);
+}
+
+TEST(FitInput, WarmUpIsLeftOut) {
+  scenarios::Scenario world = known_world();
+  world.cameras.drop_probability = 0;
+  const FitInput input = recorded(world, 1);
+  ASSERT_THAT(input.streams, SizeIs(3));
+  for (const FitStream& stream : input.streams) {
+    EXPECT_NEAR(static_cast<double>(stream.frames.size()), 1500, 2);
+    EXPECT_GE(stream.frames.front().counter, 14U);  // 500 ms of 30 Hz
+  }
+}
+
+TEST(FitInput, ACameraWithoutFramesIsNamed) {
+  FitInputSink sink({.cameras = {"left", "right"}});
+  sink.on_start({.hosts = 1, .cameras = {{0}, {0}}, .frame_rate_hz = 30});
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    FrameRecord frame;
+    frame.frame.us = 1000 + i * 33'333;
+    frame.counter = i;
+    frame.arrival_steady = SteadyTime(Nanoseconds(i * 33'333'000LL));
+    sink.on_frame(frame, nullptr);
+  }
+  const FitInput input = sink.take();
+  EXPECT_THAT([&] { fit_rig(input); },
+              ThrowsMessage<FitError>("camera right: found no frames, a fit needs 100 at least"));
+}
+
+TEST(FitInput, StampsOfAnotherClockAreRefused) {
+  FitInputSink sink({.cameras = {"left"}});
+  sink.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 30});
+  FrameRecord frame;
+  frame.domain = StampDomain::kSystemTime;
+  EXPECT_THAT([&] { sink.on_frame(frame, nullptr); },
+              ThrowsMessage<FitError>(HasSubstr("camera left: found stamps that are not of the "
+                                                "camera's clock")));
+}
+
+TEST(FitInput, CamerasWithoutFrameStampsAreFittedByTheirOther) {
+  FitInputSink sink({});
+  sink.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 30});
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    FrameRecord frame;
+    frame.sensor.us = 7 + i * 100;
+    sink.on_frame(frame, nullptr);
+  }
+  const FitInput input = sink.take();
+  EXPECT_EQ(input.cameras[0].name, "camera0");
+  EXPECT_EQ(input.streams[0].frames[2].sensor, Nanoseconds(207'000));
+}
+
+TEST(QuantileTable, IsAsLongAsThereIsSomethingToSay) {
+  EXPECT_EQ(quantile_table({1, 2, 4}), (std::vector<double>{1, 2, 4}));
+  std::vector<double> many(20'001);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i);
+  const std::vector<double> table = quantile_table(many);
+  ASSERT_THAT(table, SizeIs(kLongestTable));
+  EXPECT_EQ(table[1], 20);
+  EXPECT_EQ(table[999], 19'980);
+}
+
+}  // namespace
+}  // namespace simbench::evaluation

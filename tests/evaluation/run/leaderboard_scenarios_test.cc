@@ -1,0 +1,52 @@
+// The leaderboards leave nobody out.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "algorithms/device_time/variants.h"
+#include "algorithms/registry.h"
+#include "evaluation/run/evaluate.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+class LeaderboardScenario : public testing::TestWithParam<const char*> {};
+
+TEST_P(LeaderboardScenario, HasEveryHostSyncAndEveryDeviceTime) {
+  const scenarios::Scenario scenario = scenarios::load_scenario(GetParam());
+  EXPECT_NO_THROW(check_pipelines(scenario));
+  EXPECT_EQ(scenario.evaluation.table, "leaderboard");
+  std::set<std::string> host_syncs;
+  std::set<std::string> device_times;
+  for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
+    if (pipeline.name.starts_with("host.")) host_syncs.insert(pipeline.host_sync);
+    if (!pipeline.name.starts_with("device.")) continue;
+    device_times.insert(parse_device_time_name(pipeline.device_time).base);
+  }
+  for (const HostSyncEntry& entry : host_sync_algorithms()) {
+    EXPECT_TRUE(host_syncs.contains(entry.info.name)) << entry.info.name;
+  }
+  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+    if (entry.info.family.starts_with("test_")) continue;  // of another test
+    EXPECT_TRUE(device_times.contains(entry.info.name)) << entry.info.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Builtin, LeaderboardScenario,
+                         testing::Values("leaderboard_lan", "leaderboard_calibrated"));
+
+TEST(LeaderboardGathering, HasEveryGathering) {
+  const scenarios::Scenario scenario = scenarios::load_scenario("leaderboard_gathering");
+  std::set<std::string> gatherings;
+  for (const scenarios::Pipeline& pipeline : scenario.pipelines) {
+    gatherings.insert(pipeline.gathering);
+  }
+  for (const GatheringEntry& entry : gathering_algorithms()) {
+    EXPECT_TRUE(gatherings.contains(entry.info.name)) << entry.info.name;
+  }
+}
+
+}  // namespace
+}  // namespace simbench::evaluation

@@ -1,0 +1,198 @@
+#include "evaluation/run/pipeline_choice.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/device_time/raw_arrival.h"
+#include "evaluation/run/evaluate.h"
+#include "scenarios/loader.h"
+#include "tests/evaluation/test_scenario.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::InputError;
+using scenarios::Scenario;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kLag = "test_lag";
+
+// An estimator with a parameter, as a user would register it.
+class Lag final : public DeviceTimeEstimator {
+ public:
+  explicit Lag(double lag_ms) : lag_(from_ms(lag_ms)) {}
+  GlobalTime stamp(const DeviceSample& sample) override {
+    return GlobalTime(sample.arrival.time_since_epoch() + lag_);
+  }
+
+ private:
+  Nanoseconds lag_;
+};
+
+void register_lag() {
+  if (find_device_time(kLag) != nullptr) return;
+  register_device_time({.info = {.name = kLag,
+                                 .family = "test_lags",
+                                 .summary = "arrival plus a constant",
+                                 .source = "this test",
+                                 .parameters = {{.name = "lag_ms",
+                                                 .fallback = 1.0,
+                                                 .low = 0,
+                                                 .high = 100,
+                                                 .choices = {},
+                                                 .meaning = "the constant",
+                                                 .source = "this test"}}},
+                        .make = [](const Parameters& parameters) {
+                          return std::make_unique<Lag>(parameters.number("lag_ms"));
+                        }});
+}
+
+Scenario lag_scenario() {
+  register_lag();
+  Scenario scenario = test_scenario();
+  scenario.pipelines[0].device_time = kLag;
+  return scenario;
+}
+
+std::string error_of(const Scenario& scenario, const std::vector<std::string>& names = {}) {
+  try {
+    choose_pipelines(scenario, names);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+double stamp_ms(const Scenario& scenario) {
+  const PipelineChoice choice = choose_pipelines(scenario, {})[0];
+  return to_ms(scorer_setup(scenario, choice).make_estimator()->stamp({}).time_since_epoch());
+}
+
+TEST(PipelineChoiceTest, ParametersComeFromFamilyThenName) {
+  Scenario scenario = lag_scenario();
+  EXPECT_DOUBLE_EQ(stamp_ms(scenario), 1);
+  scenario.algorithms["test_lags"]["lag_ms"] = 2.0;
+  EXPECT_DOUBLE_EQ(stamp_ms(scenario), 2);
+  scenario.algorithms[kLag]["lag_ms"] = 3.0;
+  EXPECT_DOUBLE_EQ(stamp_ms(scenario), 3);
+}
+
+TEST(PipelineChoiceTest, RefusesAValueThatIsNotAllowed) {
+  Scenario scenario = lag_scenario();
+  scenario.algorithms["test_lags"]["lag_ms"] = 101.0;
+  EXPECT_THAT(error_of(scenario), HasSubstr("/algorithms/test_lags/lag_ms"));
+  scenario.algorithms["test_lags"]["lag_ms"] = std::string("long");
+  EXPECT_THAT(error_of(scenario), HasSubstr("/algorithms/test_lags/lag_ms"));
+}
+
+TEST(PipelineChoiceTest, RefusesAParameterThatIsNotDeclared) {
+  Scenario scenario = lag_scenario();
+  scenario.algorithms[kLag]["lag_us"] = 2.0;
+  EXPECT_THAT(error_of(scenario),
+              AllOf(HasSubstr("/algorithms/test_lag/lag_us"), HasSubstr("did you mean lag_ms")));
+  scenario.algorithms.erase(kLag);
+  scenario.algorithms["raw_arrival"]["lag_ms"] = 2.0;
+  EXPECT_THAT(error_of(scenario),
+              AllOf(HasSubstr("/algorithms/raw_arrival/lag_ms"), HasSubstr("no parameters")));
+}
+
+TEST(PipelineChoiceTest, RefusesParametersOfAnUnknownAlgorithm) {
+  Scenario scenario = lag_scenario();
+  scenario.algorithms["a/b~c"]["x"] = true;
+  EXPECT_THAT(error_of(scenario), HasSubstr("/algorithms/a~1b~0c"));
+}
+
+TEST(PipelineChoiceTest, RefusesAlgorithmsThatNeedWhatTheWorldHasNot) {
+  struct Case {
+    const char* stage;
+    const char* algorithm;
+    const char* missing;
+  };
+  for (const Case& needy : {Case{"host_sync", "ptp_e2e_hardware", "/hosts/nic/hardware_stamps"},
+                            Case{"host_sync", "pps", "/hosts/pulse_lines/pps"},
+                            Case{"host_sync", "trigger_wired", "/hosts/pulse_lines/trigger"},
+                            Case{"device_time", "two_way_poll", "/cameras/clock_poll/interval_ms"},
+                            Case{"device_time", "librealsense_global_steady", "clock_poll"}}) {
+    Scenario scenario = test_scenario();
+    scenarios::Pipeline& pipeline = scenario.pipelines[0];
+    (needy.stage == std::string("host_sync") ? pipeline.host_sync : pipeline.device_time) =
+        needy.algorithm;
+    EXPECT_THAT(error_of(scenario),
+                AllOf(HasSubstr(std::string("/pipelines/0/").append(needy.stage)),
+                      HasSubstr("which needs"), HasSubstr(needy.missing)));
+  }
+}
+
+TEST(PipelineChoiceTest, SuffixesOfADeviceTimeAreItsVariants) {
+  Scenario scenario = test_scenario();
+  scenario.pipelines[0].device_time = "hull_300_steady_calibrated";
+  const PipelineChoice choice = choose_pipelines(scenario, {}).front();
+  EXPECT_EQ(choice.device_time.info.name, "hull_300");
+  EXPECT_TRUE(choice.device_time_variants.steady);
+  EXPECT_TRUE(choice.device_time_variants.calibrated);
+  scenario.pipelines[0].device_time = "oracle_steady";
+  EXPECT_THAT(error_of(scenario), HasSubstr("has no variants"));
+}
+
+TEST(PipelineChoiceTest, NamesKnownAlgorithmsOfTheStage) {
+  Scenario scenario = test_scenario();
+  scenario.pipelines[1].device_time = "regresion_30";
+  EXPECT_THAT(error_of(scenario),
+              AllOf(HasSubstr("/pipelines/1/device_time"), HasSubstr("found \"regresion_30\""),
+                    HasSubstr("did you mean regression_30"), HasSubstr("oracle")));
+  scenario = test_scenario();
+  scenario.pipelines[0].gathering = "oracel";
+  EXPECT_THAT(error_of(scenario), AllOf(HasSubstr("/pipelines/0/gathering"), HasSubstr("genlock")));
+  scenario = test_scenario();
+  scenario.pipelines[0].host_sync = "ntpd";
+  EXPECT_THAT(error_of(scenario),
+              AllOf(HasSubstr("/pipelines/0/host_sync"), HasSubstr("ntp_last_set")));
+  EXPECT_THROW(check_pipelines(scenario), InputError);
+}
+
+TEST(PipelineChoiceTest, NamesKnownPipelines) {
+  EXPECT_THAT(error_of(test_scenario(), {"smoth"}),
+              AllOf(HasSubstr("found \"smoth\""), HasSubstr("did you mean smooth"),
+                    HasSubstr("arrival, smooth")));
+  EXPECT_THAT(error_of(test_scenario(), {"smooth", "smooth"}), HasSubstr("twice"));
+  EXPECT_EQ(error_of(test_scenario(), {"smooth"}), "no error");
+}
+
+TEST(PipelineChoiceTest, TheOracleHasNoEstimator) {
+  Scenario scenario = test_scenario();
+  scenario.pipelines[0].device_time = "oracle";
+  const ScorerSetup setup = scorer_setup(scenario, choose_pipelines(scenario, {})[0]);
+  EXPECT_FALSE(setup.make_estimator);
+}
+
+TEST(PipelineChoiceTest, OnlyTheClaimsPipelineIsAlsoScoredOffline) {
+  Scenario scenario = test_scenario();
+  scenario.pipelines[1].name = "yoon2021_both";
+  auto choices = choose_pipelines(scenario, {});
+  EXPECT_FALSE(scorer_setup(scenario, choices[0]).make_second_estimator);
+  EXPECT_TRUE(scorer_setup(scenario, choices[1]).make_second_estimator);
+  scenario.cameras.count = 18'000;
+  scenario.timeline.frames = 90;
+  EXPECT_FALSE(scorer_setup(scenario, choices[1]).make_second_estimator);
+}
+
+TEST(PipelineChoiceTest, TheScenarioDecidesWhatIsScored) {
+  Scenario scenario = test_scenario();
+  scenario.evaluation.stream = "colour";
+  scenario.evaluation.rmdv_median = "mean_of_middle_two";
+  scenario.evaluation.gathering_interval_periods = 0.25;
+  scenario.cameras.sync_mode = "genlock";
+  const ScorerSetup setup = scorer_setup(scenario, choose_pipelines(scenario, {})[0]);
+  EXPECT_EQ(setup.stream, StreamKind::kColour);
+  EXPECT_EQ(setup.median, MedianKind::kMeanOfMiddleTwo);
+  EXPECT_DOUBLE_EQ(setup.gathering_interval_periods, 0.25);
+  EXPECT_TRUE(setup.genlock);
+}
+
+}  // namespace
+}  // namespace simbench::evaluation

@@ -1,0 +1,64 @@
+#include "evaluation/sweep/sweep_score.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+
+namespace simbench::evaluation {
+namespace {
+
+// The same double to the last bit, or both NaN.
+bool same(double a, double b) {
+  return (std::isnan(a) && std::isnan(b)) ||
+         std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+TEST(SweepScore, TextKeepsEveryBit) {
+  constexpr std::uint64_t kSeed = 11;
+  std::mt19937_64 random(kSeed);
+  for (int round = 0; round < 500; ++round) {
+    SweepScore score;
+    for (const ScoreColumn& column : score_columns()) {
+      score.*column.member = std::bit_cast<double>(random());
+    }
+    score.host_errors_ms = {std::bit_cast<double>(random()), 0.0, -0.0};
+    const auto read = score_of(text_of(score));
+    ASSERT_TRUE(read) << text_of(score);
+    for (const ScoreColumn& column : score_columns()) {
+      EXPECT_TRUE(same((*read).*column.member, score.*column.member)) << column.name << kSeed;
+    }
+    ASSERT_EQ(read->host_errors_ms.size(), 3U);
+    for (std::size_t host = 0; host < 3; ++host) {
+      EXPECT_TRUE(same(read->host_errors_ms[host], score.host_errors_ms[host]));
+    }
+  }
+}
+
+TEST(SweepScore, WhatDoesNotExistIsAnEmptyCell) {
+  SweepScore score;
+  score.amd_ms = std::numeric_limits<double>::quiet_NaN();
+  score.rmdv_ms = 0.25;
+  const std::string text = text_of(score);
+  EXPECT_EQ(text.substr(0, 6), ",0.25,");
+  EXPECT_EQ(text.back(), ';');
+  EXPECT_TRUE(std::isnan(score_of(text)->amd_ms));
+}
+
+TEST(SweepScore, RefusesOtherTexts) {
+  const std::string text = text_of({});
+  EXPECT_TRUE(score_of(text));
+  EXPECT_FALSE(score_of(""));
+  EXPECT_FALSE(score_of(text.substr(0, text.size() - 1)));
+  EXPECT_FALSE(score_of(fmt::format("1,{}", text)));
+  EXPECT_FALSE(score_of(text.substr(2)));
+  EXPECT_FALSE(score_of(fmt::format("x{}", text.substr(1))));
+  EXPECT_FALSE(score_of(text + "1,x"));
+}
+
+}  // namespace
+}  // namespace simbench::evaluation

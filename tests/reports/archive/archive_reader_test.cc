@@ -1,0 +1,197 @@
+#include "reports/archive/archive_reader.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+#include "recording/version.h"
+#include "reports/archive/archive.h"
+#include "reports/results/json.h"
+#include "scenarios/loader.h"
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class ArchiveReader : public testing::Test {
+ protected:
+  ArchiveReader() {
+    const scenarios::Scenario scenario = scenarios::load_scenario("3cam_1host_30fps");
+    written_.scenario = scenario.name;
+    OutputFolder output(folder_);
+    write_archive(output, written_, scenario,
+                  {.command = {"simbench", "run"}, .started = {}, .finished = {}});
+  }
+  ~ArchiveReader() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string content(const std::string& name) const {
+    std::ifstream in(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+  }
+  void edit(const std::string& name, const std::string& from, const std::string& to) const {
+    std::string text = content(name);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    write(name, text.replace(at, from.size(), to));
+  }
+  // What reading the archive says is wrong.
+  std::string problem() const {
+    try {
+      Archive archive = read_archive(folder_.string());
+      read_seed_details(archive);
+    } catch (const scenarios::InputError& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("archive_reader_" + std::to_string(getpid()));
+  evaluation::Results written_ = sample_results();
+};
+
+TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
+  const Archive archive = read_archive(folder_.string());
+  EXPECT_EQ(archive.version, version());
+  EXPECT_EQ(archive.commit, commit());
+  EXPECT_EQ(archive.command, (std::vector<std::string>{"simbench", "run"}));
+  EXPECT_THAT(archive.scenario_json, HasSubstr("\"timeline\""));
+  ASSERT_EQ(archive.results.rows.size(), 2);
+  const evaluation::Row& both = archive.results.rows[0];
+  EXPECT_EQ(both.amd_ms.values, (std::vector<double>{1.5, 2.5}));
+  EXPECT_EQ(both.seed_recall.values, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(both.sets.complete_pulses, 960);
+  EXPECT_TRUE(std::isnan(archive.results.rows[1].host_error_ms.values[1]));
+}
+
+TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
+  Archive archive = read_archive(folder_.string());
+  for (std::size_t i = 0; i < archive.results.rows.size(); ++i) {
+    evaluation::Row& read = archive.results.rows[i];
+    const evaluation::Row& row = written_.rows[i];
+    // The sample's bands are made up; those of an archive are computed from its values.
+    for (auto series :
+         {&evaluation::Row::amd_ms, &evaluation::Row::rmdv_ms, &evaluation::Row::absolute_error_ms,
+          &evaluation::Row::bias_ms, &evaluation::Row::host_error_ms,
+          &evaluation::Row::exposure_spread_ms, &evaluation::Row::seed_precision,
+          &evaluation::Row::seed_recall, &evaluation::Row::set_amd_ms,
+          &evaluation::Row::set_absolute_error_ms, &evaluation::Row::emission_latency_ms}) {
+      (read.*series).p05 = (row.*series).p05;
+      (read.*series).p95 = (row.*series).p95;
+    }
+  }
+  EXPECT_EQ(json(archive.results), json(written_));
+}
+
+TEST_F(ArchiveReader, MediansAreComputedNotRead) {
+  edit("results.json", "\"median\": 2.0", "\"median\": 7.0");
+  EXPECT_EQ(read_archive(folder_.string()).results.rows[0].amd_ms.median, 2.0);
+}
+
+TEST_F(ArchiveReader, AResultAloneHasNoManifest) {
+  const Archive archive = read_archive(path("results.json"));
+  EXPECT_EQ(archive.results.rows.size(), 2);
+  EXPECT_EQ(archive.scenario_json, "");
+}
+
+TEST_F(ArchiveReader, SeedsHaveTheirPulsesAndHosts) {
+  Archive archive = read_archive(folder_.string());
+  read_seed_details(archive);
+  const evaluation::SeedScore& second = archive.results.rows[0].seeds[1];
+  EXPECT_EQ(second.seed, 2);
+  ASSERT_EQ(second.pulses.size(), 2);
+  EXPECT_EQ(second.pulses[1].pulse, 226);
+  EXPECT_EQ(second.pulses[1].spread_ms, 2);
+  EXPECT_EQ(second.host_errors_ms, (std::vector<double>{0, -0.125}));
+}
+
+TEST_F(ArchiveReader, SaysWhereAnEditedValueIsWrong) {
+  edit("results.json", "\"evaluated_pulses\": 960", "\"evaluated_pulses\": \"many\"");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("results.json:"), HasSubstr("/rows/0/evaluated_pulses"),
+                               HasSubstr("found \"many\", allowed: a whole number from 0")));
+}
+
+TEST_F(ArchiveReader, RefusesANumberThatNoDoubleHolds) {
+  edit("results.json", "\"evaluated_pulses\": 960", "\"evaluated_pulses\": 1e999");
+  EXPECT_THAT(problem(),
+              AllOf(HasSubstr("results.json:"), HasSubstr("the number 1e999 is too large")));
+}
+
+TEST_F(ArchiveReader, SaysWhatIsMissing) {
+  edit("results.json", "\"seed_recall\"", "\"seed_recoil\"");
+  EXPECT_THAT(problem(),
+              AllOf(HasSubstr("/rows/0/gathering_score"), HasSubstr("'seed_recall' is missing")));
+}
+
+TEST_F(ArchiveReader, RefusesValuesThatAreNoSeeds) {
+  edit("results.json", "\"count\": 2", "\"count\": 3");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("/rows/0/amd_ms/values"),
+                               HasSubstr("found 2 values, allowed: 3, one for each seed")));
+}
+
+TEST_F(ArchiveReader, RefusesANewerSchema) {
+  edit("results.json", "\"schema_version\": 1", "\"schema_version\": 2");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("/schema_version"), HasSubstr("a newer simbench")));
+}
+
+TEST_F(ArchiveReader, RefusesTheManifestOfAnotherScenario) {
+  edit("manifest.json", "\"name\": \"3cam_1host_30fps\"", "\"name\": \"another\"");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("manifest.json"), HasSubstr("/scenario/name")));
+}
+
+TEST_F(ArchiveReader, RefusesDamagedLinesOfFrames) {
+  edit("frames.csv", "225,1.5", "225;1.5");
+  EXPECT_THAT(problem(), HasSubstr("frames.csv:2: 5 cells"));
+}
+
+TEST_F(ArchiveReader, RefusesSeedsAndPipelinesThatResultsDoNotHave) {
+  edit("frames.csv", "yoon2021_both,2,", "yoon2021_both,9,");
+  EXPECT_THAT(problem(), HasSubstr("found seed 9, allowed: the 2 seeds from 1"));
+  edit("frames.csv", "yoon2021_both,1,", "yoon2020_both,1,");
+  EXPECT_THAT(problem(), HasSubstr("found pipeline 'yoon2020_both'"));
+}
+
+TEST_F(ArchiveReader, SaysHowToMakeWhatIsNotThere) {
+  EXPECT_THROW(read_archive("nowhere"), scenarios::InputError);
+  std::filesystem::remove(path("results.json"));
+  EXPECT_THAT(problem(), AllOf(HasSubstr("No such file"), HasSubstr("simbench run --output")));
+}
+
+// Whatever is cut off or turned over, the reader refuses it or reads it: it never fails otherwise.
+TEST_F(ArchiveReader, SurvivesAnyDamage) {
+  constexpr unsigned kSeed = 20210;
+  std::minstd_rand random(kSeed);
+  for (const std::string name : {"results.json", "manifest.json", "frames.csv", "hosts.csv"}) {
+    const std::string good = content(name);
+    for (int i = 0; i < 60; ++i) {
+      std::string bad = good;
+      const std::size_t at = random() % good.size();
+      if (i % 2 == 0) {
+        bad.resize(at);
+      } else {
+        bad[at] = static_cast<char>(random() % 256);
+      }
+      write(name, bad);
+      EXPECT_NO_THROW(problem()) << name << " at " << at << ", seed " << kSeed;
+      if (i % 2 == 0 && name == "results.json" && at + 2 < good.size()) {
+        EXPECT_NE(problem(), "nothing") << "cut at " << at << ", seed " << kSeed;
+      }
+    }
+    write(name, good);
+  }
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,200 @@
+#include "reports/comparison/comparison.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "reports/comparison/comparison_seeds.h"
+#include "reports/comparison/comparison_words.h"
+#include "scenarios/loader.h"
+#include "tests/reports/sample_archive.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Verdict;
+using Json = nlohmann::ordered_json;
+using scenarios::InputError;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::ThrowsMessage;
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+}
+
+TEST(SeedPairing, HoldsWhatBothHave) {
+  const SeedPairing pairing = pair_by_seed({1, 10}, {8, 10});
+  EXPECT_EQ(pairing.count, 3U);
+  EXPECT_THAT(pairing.of_a({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), ElementsAre(8, 9, 10));
+  EXPECT_THAT(pairing.of_b({8, 9, 10, 11, 12, 13, 14, 15, 16, 17}), ElementsAre(8, 9, 10));
+  EXPECT_EQ(pair_by_seed({1, 10}, {11, 10}).count, 0U);
+  EXPECT_EQ(pair_by_seed({20, 5}, {1, 10}).count, 0U);
+  EXPECT_EQ(pair_by_index({1, 10}, {100, 4}).count, 4U);
+  EXPECT_EQ(seeds_text({7, 1}), "7");
+  EXPECT_EQ(seeds_text({7, 3}), "7-9");
+}
+
+TEST(CompareArchives, TheSameArchiveTwiceShowsNoDifference) {
+  const Archive a = sample_archive("a");
+  const Comparison c = compare_archives(a, a, {});
+  ASSERT_EQ(c.pipelines.size(), 2U);
+  for (const ComparedPipeline& pipeline : c.pipelines) {
+    for (const auto& metric : pipeline.metrics) {
+      EXPECT_EQ(metric.verdict, Verdict::kNoDifferenceSeen);
+      EXPECT_EQ(metric.pairs, 32U);
+    }
+  }
+  EXPECT_THAT(c.notes, IsEmpty());
+}
+
+TEST(CompareArchives, CommonSeedsAndPipelinesAreComparedAndTheRestIsSaid) {
+  const Archive a = sample_archive("a", 1, 32);
+  Archive b = sample_archive("b", 11, 32);
+  b.version = "1.3.0";
+  b.commit = "def";
+  b.results.rows[0].pipeline = "other";
+  scale(b.results.rows[1].amd_ms, 0.5);
+  replace(b.scenario_json, "\"stamps\": 100", "\"stamps\": 50");
+  const Comparison c = compare_archives(a, b, {});
+  EXPECT_EQ(c.first_seed_a, 11U);
+  EXPECT_EQ(c.first_seed_b, 11U);
+  EXPECT_EQ(c.seed_count, 22U);
+  ASSERT_EQ(c.pipelines.size(), 1U);
+  // Paired by seed, all that differs is the factor.
+  EXPECT_NEAR(c.pipelines[0].metrics[0].ratio.low, 0.5, 1e-12);
+  EXPECT_NEAR(c.pipelines[0].metrics[0].ratio.high, 0.5, 1e-12);
+  EXPECT_EQ(c.pipelines[0].metrics[2].verdict, Verdict::kNoDifferenceSeen);
+  EXPECT_THAT(c.notes, ElementsAre(HasSubstr("/algorithms/yoon2021/stamps: 100 against 50"),
+                                   HasSubstr("seeds 1-32 against 11-42: the common ones, 11-32"),
+                                   "version 1.2.3 against 1.3.0", "commit abc against def",
+                                   HasSubstr("only in a, not compared: plain"),
+                                   HasSubstr("only in b, not compared: other")));
+}
+
+TEST(CompareArchives, AnotherWorldIsRefusedUnlessAskedFor) {
+  const Archive a = sample_archive("a");
+  Archive b = sample_archive("b");
+  replace(b.scenario_json, "0.1", "0.25");
+  EXPECT_THAT([&] { compare_archives(a, b, {}); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("/network/latency_fixed_ms: 0.1 against 0.25"),
+                        HasSubstr("--different-scenarios"), HasSubstr("--with-baseline"))));
+  const Comparison c = compare_archives(a, b, {.different_scenarios = true});
+  EXPECT_THAT(c.notes, ElementsAre(HasSubstr("different worlds, as asked for")));
+}
+
+TEST(CompareArchives, WithoutManifestsOnlyTheNamesCanBeChecked) {
+  const Archive a = sample_archive("a");
+  Archive b = sample_archive("b");
+  b.scenario_json.clear();
+  EXPECT_THAT(compare_archives(a, b, {}).notes, ElementsAre(HasSubstr("not checked")));
+  b.results.scenario = "other";
+  EXPECT_THAT([&] { compare_archives(a, b, {}); },
+              ThrowsMessage<InputError>(HasSubstr("scenario sample against other")));
+  EXPECT_EQ(compare_archives(a, b, {.different_scenarios = true}).pipelines.size(), 2U);
+}
+
+TEST(CompareArchives, WithoutCommonSeedsTheIndexIsOffered) {
+  const Archive a = sample_archive("a", 1, 32);
+  const Archive b = sample_archive("b", 33, 40);
+  EXPECT_THAT([&] { compare_archives(a, b, {}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("a has the seeds 1-32 and b has 33-72"),
+                                              HasSubstr("--by-index"))));
+  const Comparison c = compare_archives(a, b, {.by_index = true});
+  EXPECT_EQ(c.seed_count, 32U);
+  EXPECT_EQ(c.first_seed_b, 33U);
+  EXPECT_THAT(comparison_table(c), HasSubstr("32 pairs by index: seeds 1-32 with 33-64"));
+}
+
+TEST(CompareArchives, WithoutCommonPipelinesThereIsNothingToCompare) {
+  const Archive a = sample_archive("a");
+  Archive b = sample_archive("b");
+  for (evaluation::Row& row : b.results.rows) row.pipeline += "_b";
+  EXPECT_THAT([&] { compare_archives(a, b, {}); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("no pipeline is in both"), HasSubstr("plain_b, good_b"))));
+  EXPECT_THAT([&] { compare_archives(a, b, {.pipelines = {"good"}}); },
+              ThrowsMessage<InputError>(HasSubstr("'good', which b does not have")));
+}
+
+TEST(ComparePipelines, BIsHeldAgainstA) {
+  const Comparison c = compare_pipelines(sample_archive("a"), "plain", "good", {});
+  ASSERT_EQ(c.pipelines.size(), 1U);
+  EXPECT_NEAR(c.pipelines[0].metrics[0].ratio.value, 0.2, 1e-12);
+  EXPECT_EQ(c.pipelines[0].metrics[0].verdict, Verdict::kBetter);
+  EXPECT_THAT([] { compare_pipelines(sample_archive("a"), "plain", "godo", {}); },
+              ThrowsMessage<InputError>(HasSubstr("it has plain, good")));
+}
+
+TEST(CompareWithBaseline, SaysHowMuchBetterInPlainWords) {
+  const Comparison c = compare_with_baseline(sample_archive("a"), "plain", {});
+  EXPECT_THAT(
+      comparison_table(c),
+      AllOf(HasSubstr("good against plain: AMD 5 times smaller [5, 5]; RMDV 5 times smaller"),
+            HasSubstr("absolute error 5 times smaller [5, 5]; recall: no")));
+  EXPECT_THAT([] { compare_with_baseline(sample_archive("a"), "ntp", {}); },
+              ThrowsMessage<InputError>(HasSubstr("--with-baseline: found 'ntp'")));
+}
+
+TEST(EffectWords, ChooseTheFormThatReadsBest) {
+  const evaluation::PairedMetric& amd = evaluation::paired_metrics()[0];
+  const auto words = [&](double factor) {
+    evaluation::PairedValues values;
+    for (int i = 0; i < 32; ++i) values.pairs.push_back({10, 10 * factor});
+    return effect_words(amd, evaluation::compare(values, {}), 0.05);
+  };
+  EXPECT_EQ(words(250), "AMD 250 times larger [250, 250]");
+  EXPECT_EQ(words(1.5), "AMD 50 % larger [50 %, 50 %]");
+  EXPECT_EQ(words(0.75), "AMD 25 % smaller [25 %, 25 %]");
+  EXPECT_EQ(words(0.001), "AMD 1000 times smaller [1000, 1000]");
+  EXPECT_EQ(words(1), "AMD: no difference seen: all equal");
+}
+
+TEST(VerdictText, SaysWhatIsMissing) {
+  EXPECT_EQ(verdict_text({}, 0.05), "no values");
+  evaluation::PairedComparison c;
+  c.pairs = 1;
+  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: more needed");
+  c.seeds_needed = 120;
+  c.left_out = 2;
+  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: 120 needed (2 seeds left out: no value)");
+  c.seeds_needed = 5'000'000;
+  c.left_out = 0;
+  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: over a million needed");
+}
+
+TEST(ComparisonOutput, JsonHasNullWhereThereIsNothing) {
+  Archive b = sample_archive("b");
+  b.results.rows[0].amd_ms.values.assign(32, std::numeric_limits<double>::quiet_NaN());
+  const Comparison c = compare_archives(sample_archive("a"), b, {});
+  const Json root = Json::parse(comparison_json(c));
+  EXPECT_EQ(root["schema_version"], 1);
+  EXPECT_EQ(root["pipelines"][0]["amd_ms"]["left_out"], 32);
+  EXPECT_TRUE(root["pipelines"][0]["amd_ms"]["difference"]["low"].is_null());
+  EXPECT_EQ(root["pipelines"][1]["amd_ms"]["verdict"], "no_difference_seen");
+  EXPECT_TRUE(root["pipelines"][1]["amd_ms"]["seeds_needed"].is_null());
+  EXPECT_THAT(comparison_table(c), AllOf(HasSubstr("no values"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(comparison_csv(c),
+              AllOf(HasSubstr("plain,plain,amd_ms,0,32,,,"), Not(HasSubstr("nan"))));
+}
+
+TEST(ComparisonOutput, CsvHasALinePerPipelineAndMetric) {
+  const std::string csv = comparison_csv(compare_with_baseline(sample_archive("a"), "plain", {}));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv, HasSubstr("\nplain,good,seed_recall,32,0,1,1,1,1,0,0,0,1,1,1,"));
+}
+
+TEST(ComparisonOutput, MarkdownIsATableWithItsNotes) {
+  Archive b = sample_archive("b");
+  b.version = "2";
+  EXPECT_THAT(comparison_markdown(compare_archives(sample_archive("a"), b, {})),
+              AllOf(HasSubstr("| plain"), HasSubstr("- version 1.2.3 against 2\n")));
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,224 @@
+#include "reports/comparison/gate.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "reports/comparison/gate_commands.h"
+#include "scenarios/loader.h"
+#include "tests/reports/sample_archive.h"
+
+namespace simbench::reports {
+namespace {
+
+using scenarios::InputError;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::ThrowsMessage;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Baseline baseline_of(const Archive& archive) {
+  Baseline baseline = make_baseline(archive);
+  baseline.path = "b.json";
+  return baseline;
+}
+
+// The sample with the AMD of "good" (2 ms) scaled.
+Archive scaled(double factor) {
+  Archive archive = sample_archive("now");
+  scale(archive.results.rows[1].amd_ms, factor);
+  return archive;
+}
+
+const GateCheck& amd_of_good(const GateReport& report) { return report.checks.at(4); }
+
+GateReport exact(const Archive& now) {
+  return gate(now, baseline_of(sample_archive("before")), GateMode::kExact);
+}
+
+GateReport statistical(const Archive& now) {
+  return gate(now, baseline_of(sample_archive("before")), GateMode::kStatistical);
+}
+
+TEST(ExactGate, EqualResultsPass) {
+  const GateReport report = exact(sample_archive("now"));
+  EXPECT_TRUE(report.passed());
+  EXPECT_EQ(report.count(GateOutcome::kSame), 8U);
+  EXPECT_THAT(report.notes, IsEmpty());
+}
+
+TEST(ExactGate, RoundingIsNoChangeAndAMillionthIs) {
+  EXPECT_EQ(amd_of_good(exact(scaled(1 + 1e-11))).outcome, GateOutcome::kSame);
+  const GateReport report = exact(scaled(1 + 1e-6));
+  EXPECT_TRUE(report.passed());
+  EXPECT_EQ(amd_of_good(report).outcome, GateOutcome::kChanged);
+  EXPECT_EQ(amd_of_good(report).changed_seeds, 32U);
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("--save-baseline")));
+}
+
+TEST(ExactGate, TheMarginDecides) {
+  EXPECT_TRUE(exact(scaled(1.019)).passed());
+  const GateReport worse = exact(scaled(1.021));
+  EXPECT_FALSE(worse.passed());
+  EXPECT_EQ(amd_of_good(worse).outcome, GateOutcome::kFailed);
+  EXPECT_EQ(worse.count(GateOutcome::kFailed), 1U);
+  const GateReport better = exact(scaled(0.9));
+  EXPECT_TRUE(better.passed());
+  EXPECT_EQ(amd_of_good(better).outcome, GateOutcome::kBetter);
+}
+
+TEST(ExactGate, SmallValuesHaveAnAbsoluteMargin) {
+  Archive before = sample_archive("before");
+  scale(before.results.rows[1].amd_ms, 0.001);  // 2 us, of which 2 % would be nothing
+  Archive now = before;
+  for (double& value : now.results.rows[1].amd_ms.values) value += 0.0009;
+  EXPECT_TRUE(gate(now, baseline_of(before), GateMode::kExact).passed());
+  for (double& value : now.results.rows[1].amd_ms.values) value += 0.0002;
+  EXPECT_FALSE(gate(now, baseline_of(before), GateMode::kExact).passed());
+}
+
+TEST(ExactGate, OfRecallTheMeanCountsAndLessIsWorse) {
+  Archive now = sample_archive("now");
+  std::vector<double>& recall = now.results.rows[0].seed_recall.values;
+  recall[3] = 0.9;  // mean 0.997
+  EXPECT_TRUE(exact(now).passed());
+  recall[4] = 0;  // its median stays 1
+  const GateReport report = exact(now);
+  EXPECT_FALSE(report.passed());
+  EXPECT_THAT(check_text(report, report.checks.at(3)),
+              HasSubstr("recall of plain in sample, seeds 1-32: mean 96.5"));
+}
+
+TEST(ExactGate, AValueThatVanishedFails) {
+  Archive now = sample_archive("now");
+  now.results.rows[1].amd_ms.values[7] = kNaN;
+  const GateReport report = exact(now);
+  EXPECT_FALSE(report.passed());
+  EXPECT_EQ(amd_of_good(report).lost_seeds, 1U);
+  EXPECT_THAT(check_text(report, amd_of_good(report)), HasSubstr("1 of 32 seeds have no value"));
+  // One that appeared does not.
+  Archive before = sample_archive("before");
+  before.results.rows[1].amd_ms.values[7] = kNaN;
+  EXPECT_TRUE(gate(sample_archive("now"), baseline_of(before), GateMode::kExact).passed());
+}
+
+TEST(ExactGate, PipelinesThatVanishedFailAndNewOnesAreSaid) {
+  Archive now = sample_archive("now");
+  now.results.rows[0].pipeline = "new";
+  const GateReport report = exact(now);
+  EXPECT_FALSE(report.passed());
+  EXPECT_THAT(report.vanished_pipelines, ElementsAre("plain"));
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("not held to anything: new")));
+  EXPECT_THAT(gate_text(report), HasSubstr("the pipeline plain of the baseline is not in the"));
+}
+
+TEST(ExactGate, WantsTheSeedsOfTheBaseline) {
+  EXPECT_THAT([] { exact(sample_archive("now", 2, 32)); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("--first-seed 1 --seeds 32"), HasSubstr("--mode statistical"))));
+}
+
+TEST(Gate, WantsTheWorldOfTheBaselineButNotItsAlgorithms) {
+  Archive now = sample_archive("now");
+  std::string& scenario = now.scenario_json;
+  scenario.replace(scenario.find("100"), 3, "5");
+  EXPECT_THAT(exact(now).notes,
+              ElementsAre(HasSubstr("/algorithms/yoon2021/stamps: 100 against 5")));
+  scenario.replace(scenario.find("0.1"), 3, "9.5");
+  EXPECT_THAT([&] { exact(now); },
+              ThrowsMessage<InputError>(HasSubstr("/network/latency_fixed_ms: 0.1 against 9.5")));
+  EXPECT_THAT([&] { statistical(now); }, ThrowsMessage<InputError>(HasSubstr("another world")));
+  scenario.clear();
+  EXPECT_THAT(exact(now).notes, ElementsAre(HasSubstr("not checked")));
+  now.results.scenario = "other";
+  EXPECT_THAT([&] { exact(now); }, ThrowsMessage<InputError>(
+                                       HasSubstr("of the scenario other, the baseline b.json of")));
+}
+
+TEST(StatisticalGate, FailsWhereWorseIsBothMuchAndSure) {
+  const GateReport much = statistical(scaled(1.2));
+  EXPECT_EQ(amd_of_good(much).outcome, GateOutcome::kFailed);
+  EXPECT_FALSE(much.passed());
+  EXPECT_GT(amd_of_good(much).difference.low, 0);
+  EXPECT_TRUE(statistical(scaled(1.015)).passed());  // sure, but within the margin
+  EXPECT_EQ(amd_of_good(statistical(scaled(0.8))).outcome, GateOutcome::kBetter);
+  // A few seeds that are far worse: much, but not sure.
+  Archive now = sample_archive("now");
+  now.results.rows[1].amd_ms.values[5] += 30;
+  const GateReport unsure = statistical(now);
+  EXPECT_TRUE(unsure.passed());
+  EXPECT_EQ(amd_of_good(unsure).outcome, GateOutcome::kPossible);
+  EXPECT_THAT(gate_text(unsure), HasSubstr("possibly worse"));
+}
+
+TEST(StatisticalGate, TheIntervalIsCorrectedForAllChecks) {
+  const GateReport report = statistical(scaled(1.2));
+  EXPECT_NEAR(amd_of_good(report).confidence, 1 - 0.05 / 8, 1e-12);  // the surest of eight
+}
+
+TEST(StatisticalGate, OtherSeedsArePairedByIndex) {
+  const GateReport report = statistical(sample_archive("now", 33, 40));
+  EXPECT_TRUE(report.by_index);
+  EXPECT_TRUE(report.passed());
+  EXPECT_EQ(report.seeds.first, 33U);
+  EXPECT_EQ(report.seeds.count, 32U);
+  EXPECT_THAT(gate_text(report), HasSubstr("seeds 33-64 against 1-32"));
+  EXPECT_FALSE(statistical(sample_archive("now", 1, 40)).by_index);
+  EXPECT_THAT([] { statistical(sample_archive("now", 33, 31)); },
+              ThrowsMessage<InputError>(HasSubstr("at least 32")));
+}
+
+TEST(StatisticalGate, ValuesThatVanishFailWhereThatIsNoChance) {
+  Archive now = sample_archive("now");
+  now.results.rows[1].amd_ms.values[7] = kNaN;
+  EXPECT_FALSE(statistical(now).passed());
+  Archive others = sample_archive("now", 101, 32);
+  others.results.rows[1].amd_ms.values[7] = kNaN;
+  EXPECT_TRUE(statistical(others).passed());
+  others.results.rows[1].amd_ms.values.assign(32, kNaN);
+  EXPECT_FALSE(statistical(others).passed());
+}
+
+TEST(GateText, NamesAllThatIsNeededToRepeatAFailure) {
+  const std::string text = gate_text(exact(scaled(1.5)));
+  for (const char* part :
+       {"gate FAILED: 1 of 8 checks (exact)", "AMD of good in sample, seeds 1-32", "(+50 %)",
+        "32 of 32 seeds changed", "simbench run --scenario 'my sample.json'",
+        "simbench gate now --baseline b.json"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  EXPECT_THAT(gate_text(exact(sample_archive("now"))),
+              AllOf(HasSubstr("gate passed: 8 checks, 8 of them the same"),
+                    Not(HasSubstr("To reproduce"))));
+}
+
+TEST(GateCommands, OfAResultAloneAreMadeUpFromWhatItTells) {
+  Archive now = scaled(1.5);
+  now.command.clear();
+  EXPECT_THAT(exact(now).reproduce,
+              ElementsAre("simbench run --scenario sample --first-seed 1 --seeds 32 --pipelines "
+                          "plain,good --output results",
+                          "simbench gate results --baseline b.json"));
+  EXPECT_EQ(shell_line({"a b", "it's", "", "/x=1"}), "'a b' 'it'\\''s' '' /x=1");
+}
+
+TEST(GateJson, HoldsEveryCheck) {
+  using Json = nlohmann::ordered_json;
+  const Json failed = Json::parse(gate_json(statistical(scaled(1.5))));
+  EXPECT_EQ(failed["passed"], false);
+  EXPECT_EQ(failed["mode"], "statistical");
+  ASSERT_EQ(failed["checks"].size(), 8U);
+  EXPECT_EQ(failed["checks"][4]["outcome"], "failed");
+  EXPECT_GT(failed["checks"][4]["difference"]["low"], 0);
+  const Json passed = Json::parse(gate_json(exact(sample_archive("now"))));
+  EXPECT_EQ(passed["passed"], true);
+  EXPECT_FALSE(passed["checks"][4].contains("difference"));
+}
+
+}  // namespace
+}  // namespace simbench::reports

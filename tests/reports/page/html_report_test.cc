@@ -1,0 +1,158 @@
+// The page as text: what stands in it, and what may not. How it looks and behaves is tested in a
+// browser (tests/browser/).
+#include "reports/page/html_report.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/page/html_figures.h"
+#include "tests/reports/sample_figures.h"
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+using Json = nlohmann::json;
+
+ReportedArchive sample_archive() {
+  Archive archive;
+  archive.path = "results/monday";
+  archive.version = "0.1.0";
+  archive.commit = "abc";
+  archive.command = {"build/bin/simbench", "run", "--scenario", "it's mine.json"};
+  archive.started = "2026-11-21T05:00:00.000Z";
+  archive.finished = "2026-11-21T05:00:02.000Z";
+  archive.scenario_json = R"({"name": "sample", "summary": "A rig.", "hosts": {"count": 6}})";
+  archive.results = sample_results();
+  return {.archive = archive, .figures = sample_figures(), .notes = {"a note"}};
+}
+
+std::string page_of(const std::vector<ReportedArchive>& archives) {
+  return html_report({.archives = archives, .command = {"simbench", "report", "results/monday"}});
+}
+
+// What the page's script reads.
+Json data_of(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" class=\"data\">";
+  const std::size_t start = page.find(open) + open.size();
+  return Json::parse(page.substr(start, page.find("</script>", start) - start));
+}
+
+// Not HasSubstr: a failure would print the page, which is long.
+bool has(const std::string& page, const std::string& part) {
+  return page.find(part) != std::string::npos;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+TEST(HtmlReport, HasTheNumbersOfTheTable) {
+  const std::string page = page_of({sample_archive()});
+  for (const char* part :
+       {"<th scope=\"row\" class=\"text\">yoon2021_both</th><td>2.000</td><td>[1.500, 2.500]</td>",
+        "<td>2.438</td><td class=\"text\">inside</td><td>50 % [1-99]</td>",
+        "<td class=\"text\">not attainable</td>", "<td>29.000</td>", "<td>75.0 %</td>",
+        "none is worst", "(needs 18cam_6host_15fps)", "a host was not synchronised",
+        "1.23 M events", "2 seeds (1 to 2)", "0.1.0 (abc)", "A rig.", "a note"}) {
+    EXPECT_TRUE(has(page, part)) << part;
+  }
+}
+
+TEST(HtmlReport, SaysHowToReproduceIt) {
+  const std::string page = page_of({sample_archive()});
+  EXPECT_TRUE(has(page, "simbench run --scenario &#39;it&#39;\\&#39;&#39;s mine.json&#39;"));
+  EXPECT_TRUE(has(page, "simbench report results/monday<"));
+  EXPECT_TRUE(has(page, "simbench figure frame_errors results/monday -o frame_errors.svg"));
+  EXPECT_TRUE(has(page, "&quot;count&quot;: 6"));
+}
+
+TEST(HtmlReport, AsksNothingOfAnyServer) {
+  const std::string page = page_of({sample_archive()});
+  EXPECT_TRUE(has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
+  EXPECT_FALSE(has(page, "src="));
+  EXPECT_FALSE(has(page, "@import"));
+  EXPECT_FALSE(has(page, "url("));
+  EXPECT_EQ(count(page, "href="), count(page, "href=\"data:,\""));
+  EXPECT_TRUE(has(page, "The MIT License"));  // uPlot's, which has to come along
+}
+
+TEST(HtmlReport, HoldsTheFiguresAsData) {
+  const Json data = data_of(page_of({sample_archive()}));
+  ASSERT_EQ(data["figures"].size(), 7U);
+  const Json& curves = data["figures"][0];
+  EXPECT_EQ(curves["id"], "frame_errors");
+  EXPECT_EQ(curves["seed"], "1");
+  const Json& panel = curves["panels"][0];
+  EXPECT_EQ(panel["x_is_pulse"], true);
+  EXPECT_EQ(panel["lines"][0]["at"], 2.438);
+  EXPECT_EQ(panel["spans"][0]["to"], 260);
+  EXPECT_EQ(panel["series"][1]["mark"], "steps");
+  // One column of pulses for all curves of all pipelines and seeds.
+  const std::size_t pulses = panel["series"][0]["x"];
+  EXPECT_EQ(data["columns"][pulses]["n"], 300);
+  EXPECT_EQ(data["figures"][2]["panels"][0]["series"][1]["x"], pulses);
+  EXPECT_EQ(data["figures"][6]["absent"], "This scenario has one host.");
+  EXPECT_EQ(data["figures"][5]["photographs"][1]["photographs"][0]["readings"][0]["share"], 0.6);
+  EXPECT_TRUE(data["figures"][3]["seed"].is_null());
+}
+
+TEST(HtmlReport, MarkupInNamesIsText) {
+  const std::string evil = "</script><img src=x onerror=alert(1)>\"'&";
+  ReportedArchive archive = sample_archive();
+  archive.archive.path = evil;
+  archive.archive.version = evil;
+  archive.archive.command = {evil, evil};
+  archive.archive.scenario_json = Json{{"summary", evil}}.dump();
+  archive.archive.results.scenario = evil;
+  archive.archive.results.warnings = {evil};
+  archive.archive.results.claims[0].text = evil;
+  for (auto& row : archive.archive.results.rows) row.pipeline = row.gathering = evil;
+  archive.notes = {evil};
+  for (Figure& figure : archive.figures) figure.title = figure.caption = figure.id = evil;
+  const std::string page =
+      html_report({.archives = {archive, archive}, .command = {"simbench", evil}});
+  EXPECT_FALSE(has(page, "<img"));
+  // Each script ends once, and nothing ends one before.
+  EXPECT_EQ(count(page, "</script>"), count(page, "<script"));
+  EXPECT_EQ(data_of(page)["figures"][0]["title"], evil);
+}
+
+TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
+  ReportedArchive tuesday = sample_archive();
+  tuesday.archive.path = "results/tuesday";
+  tuesday.archive.results.rows[0].amd_ms = series(3, 5);
+  tuesday.archive.results.rows.pop_back();
+  const std::string page = page_of({sample_archive(), tuesday});
+  EXPECT_TRUE(has(page, "The archives side by side"));
+  EXPECT_TRUE(has(page,
+                  "<td>2.000 [1.500, 2.500]</td><td>29.000 [28.000, 30.000]</td>"
+                  "<td>4.000 [3.000, 5.000]</td>"));
+  EXPECT_EQ(count(page, "<article class=\"archive\""), 2U);
+  EXPECT_EQ(count(page, "class=\"data\">"), 2U);
+  EXPECT_FALSE(has(page_of({tuesday}), "The archives side by side"));
+}
+
+TEST(HtmlReport, WithoutAManifestItSaysWhatIsMissing) {
+  ReportedArchive archive = sample_archive();
+  archive.archive.scenario_json.clear();
+  archive.archive.command.clear();
+  archive.archive.started.clear();
+  archive.figures.clear();
+  const std::string page = page_of({archive});
+  EXPECT_TRUE(has(page, "holds neither the scenario nor the command"));
+  EXPECT_FALSE(has(page, "simbench figure"));
+}
+
+TEST(HtmlReport, EqualInputGivesEqualBytes) {
+  EXPECT_EQ(page_of({sample_archive()}), page_of({sample_archive()}));
+}
+
+}  // namespace
+}  // namespace simbench::reports

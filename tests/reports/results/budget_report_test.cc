@@ -1,0 +1,64 @@
+#include "reports/results/budget_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace simbench::reports {
+namespace {
+
+using testing::HasSubstr;
+
+evaluation::BudgetPart part(double mean) {
+  return {.values = {mean}, .mean = mean, .p05 = mean, .p95 = mean};
+}
+
+// Every stage adds its number; an eighth remains.
+evaluation::ErrorParts parts() {
+  evaluation::ErrorParts error;
+  for (std::size_t stage = 0; stage < evaluation::kStageCount; ++stage) {
+    error.stages[stage] = part(static_cast<double>(stage));
+  }
+  error.remainder = part(0.125);
+  error.total = part(21.125);
+  return error;
+}
+
+BudgetReport sample() {
+  evaluation::Budget budget;
+  budget.pipeline = "mine";
+  budget.amd_ms = parts();
+  budget.absolute_error_ms = parts();
+  budget.physical_ms = parts();
+  return {.scenario = "sample", .first_seed = 1, .seeds = 1, .budgets = {budget}};
+}
+
+TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
+  const std::string text = budget_table(sample());
+  EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed from 1"));
+  EXPECT_THAT(text, HasSubstr("USB delivery"));
+  EXPECT_THAT(text, HasSubstr("28.4 %"));  // of the gathering: 6 / 21.125
+  EXPECT_THAT(text, HasSubstr("over the sets that gathering emits"));
+  EXPECT_THAT(budget_markdown(sample()), HasSubstr("## Error budget of mine"));
+}
+
+TEST(BudgetReport, SaysWhenGatheringHasNoPart) {
+  BudgetReport report = sample();
+  report.budgets[0].amd_of_sets = false;
+  EXPECT_THAT(budget_table(report), HasSubstr("gathering has no part"));
+}
+
+TEST(BudgetReport, JsonHasEveryStageAndNullForWhatDoesNotExist) {
+  BudgetReport report = sample();
+  report.budgets[0].physical_ms.total = part(std::numeric_limits<double>::quiet_NaN());
+  const auto root = nlohmann::json::parse(budget_json(report));
+  const auto& budget = root["budgets"][0];
+  EXPECT_EQ(budget["amd_ms"]["stages"][6]["stage"], "gathering");
+  EXPECT_DOUBLE_EQ(budget["amd_ms"]["stages"][6]["mean"].get<double>(), 6);
+  EXPECT_TRUE(budget["physical_ms"]["total"]["mean"].is_null());
+}
+
+}  // namespace
+}  // namespace simbench::reports

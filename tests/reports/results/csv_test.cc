@@ -1,0 +1,62 @@
+#include "reports/results/csv.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+TEST(ResultsCsv, OneLinePerPipeline) {
+  EXPECT_EQ(csv(sample_results()),
+            "pipeline,host_sync,device_time,gathering,amd_ms,amd_ms_p05,amd_ms_p95,rmdv_ms,"
+            "rmdv_ms_p05,rmdv_ms_p95,absolute_error_ms,absolute_error_ms_p05,"
+            "absolute_error_ms_p95,bias_ms,bias_ms_p05,bias_ms_p95,host_error_ms,"
+            "host_error_ms_p05,host_error_ms_p95,exposure_spread_ms,exposure_spread_ms_p05,"
+            "exposure_spread_ms_p95,precision,recall,margin_ms,frames_expected,frames_delivered,"
+            "frames_dropped,evaluated_pulses,unsynchronised_hosts,published_amd_ms,"
+            "published_amd_inside,published_amd_percentile,published_rmdv_ms,"
+            "published_rmdv_inside,published_rmdv_attainable,sets,pure_sets,"
+            "partial_sets,index_errors,discarded_frames,set_amd_ms,set_absolute_error_ms,"
+            "emission_latency_ms,emission_latency_max_ms\n"
+            "yoon2021_both,yoon2021_both,regression_30,yoon2021,2,1.5,2.5,0.75,0.5,1,29,28,30,"
+            "-29,-28,-30,0.5,0.25,0.75,0.0625,0,0.125,1,0.75,8.5,34560,34557,3,960,1,2.438,1,50,"
+            "1.8044,0,0,720,720,4,0,21,1.75,28,0.25,6\n"
+            "free_running,free_running,raw_arrival,yoon2021,750250,500,1500000,250,200,300,,,,,,"
+            ",,,,,,,,0,,0,0,0,0,0,,,,,,,0,0,0,0,0,,,,\n");
+}
+
+TEST(ResultsCsv, FramesHaveALinePerPulse) {
+  std::ostringstream out;
+  write_frames_csv(sample_results(), out);
+  EXPECT_EQ(out.str(),
+            "pipeline,seed,pulse,spread_ms,deviation_ms\n"
+            "yoon2021_both,1,225,1.5,0.25\n"
+            "yoon2021_both,1,226,2,0.5\n"
+            "yoon2021_both,2,225,1.5,0.25\n"
+            "yoon2021_both,2,226,2,0.5\n");
+}
+
+TEST(ResultsCsv, HostsSayWhetherTheyWereSynchronised) {
+  std::ostringstream out;
+  write_hosts_csv(sample_results(), out);
+  EXPECT_EQ(out.str(),
+            "pipeline,seed,host,error_ms,synchronised\n"
+            "yoon2021_both,1,0,0,1\n"
+            "yoon2021_both,1,1,-0.125,1\n"
+            "yoon2021_both,2,0,0,1\n"
+            "yoon2021_both,2,1,-0.125,0\n");
+}
+
+TEST(ResultsCsv, CellsAreQuotedWhereTheyMustBe) {
+  EXPECT_EQ(csv_cell("plain"), "plain");
+  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_cell("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_cell(kNaN), "");
+  EXPECT_EQ(csv_cell(0.1 + 0.2), "0.30000000000000004");
+}
+
+}  // namespace
+}  // namespace simbench::reports

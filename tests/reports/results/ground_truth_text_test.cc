@@ -1,0 +1,181 @@
+// How results of real rigs look: what they rest on, and what went wrong.
+#include "reports/results/ground_truth_text.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/archive/archive_reader.h"
+#include "reports/page/html_tables.h"
+#include "reports/results/csv.h"
+#include "reports/results/json.h"
+#include "reports/results/leaderboard_report.h"
+#include "reports/results/table.h"
+#include "scenarios/loader.h"
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::GroundTruth;
+using evaluation::Results;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+// A slave capture and, of the other pipeline, none that could be made.
+Results rig_results() {
+  Results results = sample_results();
+  results.performance.simulated_seconds = 0;
+  evaluation::Row& both = results.rows[0];
+  both.ground_truth = GroundTruth::kNone;
+  both.absolute_error_ms = both.bias_ms = both.host_error_ms = no_series();
+  both.precision = both.recall = both.margin_ms = kNaN;
+  both.published.reset();
+  both.evaluated_pulses = both.sets.emitted;
+  both.sets.pure = both.sets.complete_pulses = 0;
+  both.notes = {"repetition 2: camera 7 was unplugged"};
+  evaluation::Row& none = results.rows[1];
+  none.ground_truth = GroundTruth::kNone;
+  none.amd_ms = none.rmdv_ms = no_series();
+  none.frames = {};
+  none.notes = {"repetition 1: host2 could not be reached", "repetition 2: host2 is \"lost\", too"};
+  return results;
+}
+
+Results genlock_results() {
+  Results results = sample_results();
+  for (evaluation::Row& row : results.rows) row.ground_truth = GroundTruth::kGenlockOrder;
+  return results;
+}
+
+TEST(GroundTruthText, Labels) {
+  evaluation::Row row = sample_results().rows[0];
+  EXPECT_EQ(ground_truth_label(row), "simulation");
+  row.ground_truth = GroundTruth::kGenlockOrder;
+  EXPECT_EQ(ground_truth_label(row), "GenLock order");
+  row.ground_truth = GroundTruth::kNone;
+  EXPECT_EQ(ground_truth_label(row), "unverified");
+  EXPECT_EQ(ground_truth_label(rig_results().rows[1]), "-");
+}
+
+TEST(GroundTruthText, SimulatedResultsLookAsTheyAlwaysDid) {
+  const Results results = sample_results();
+  EXPECT_FALSE(has_real_rows(results));
+  for (const std::string& text :
+       {table(results, ""), markdown(results, ""), csv(results), html_tables(results, false)}) {
+    EXPECT_THAT(text, AllOf(Not(HasSubstr("unverified")), Not(HasSubstr("truth,")),
+                            Not(HasSubstr("GenLock order"))));
+  }
+}
+
+TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
+  const std::string text = table(rig_results(), "");
+  EXPECT_THAT(text, HasSubstr("yoon2021_both  unverified      2.000"));
+  EXPECT_THAT(text, HasSubstr("free_running   -                   -"));
+  EXPECT_THAT(text, HasSubstr("What went wrong\n"
+                              "  yoon2021_both, repetition 2: camera 7 was unplugged\n"
+                              "  free_running, repetition 1: host2 could not be reached\n"));
+  EXPECT_THAT(text, HasSubstr("looks perfect"));
+  EXPECT_THAT(text, HasSubstr("Every repetition of a pipeline is a capture of its own."));
+  EXPECT_THAT(text, Not(HasSubstr("events/s")));
+  EXPECT_THAT(markdown(rig_results(), ""), HasSubstr("| yoon2021_both | unverified | 2.000 |"));
+}
+
+TEST(GroundTruthText, GenlockCapturesAreVerified) {
+  const std::string text = table(genlock_results(), "");
+  EXPECT_THAT(text, HasSubstr("GenLock order"));
+  EXPECT_THAT(text, Not(HasSubstr("unverified")));
+}
+
+TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
+  Results results = rig_results();
+  results.rows[1].gathering = "epsilon";  // so that the sets are shown
+  EXPECT_THAT(table(results, ""),
+              HasSubstr("yoon2021_both  yoon2021        720          -       -       -        4"));
+}
+
+TEST(GroundTruthText, CsvHasThreeMoreColumns) {
+  const std::string text = csv(rig_results());
+  EXPECT_THAT(text, HasSubstr(",emission_latency_max_ms,ground_truth,verified,notes\n"));
+  EXPECT_THAT(text, HasSubstr(",none,unverified,repetition 2: camera 7 was unplugged\n"));
+  EXPECT_THAT(text, HasSubstr("; repetition 2: host2 is \"\"lost\"\", too\"\n"));
+  EXPECT_THAT(text, HasSubstr(",720,,4,,21,"));  // neither pure sets nor index errors
+  EXPECT_THAT(csv(genlock_results()), HasSubstr(",genlock_order,verified,\n"));
+}
+
+TEST(GroundTruthText, HtmlAndLeaderboardLabelThemToo) {
+  EXPECT_THAT(html_tables(rig_results(), false),
+              AllOf(HasSubstr("unverified"), HasSubstr("camera 7 was unplugged")));
+  EXPECT_THAT(leaderboard_table(rig_results(), ""),
+              AllOf(HasSubstr("yoon2021_both (unverified)"), HasSubstr("host2 is \"lost\"")));
+}
+
+TEST(GroundTruthText, JsonSaysItOfEachRow) {
+  const auto simulated = nlohmann::json::parse(json(sample_results()));
+  EXPECT_EQ(simulated["rows"][0]["ground_truth"], "simulation");
+  EXPECT_EQ(simulated["rows"][0]["verified"], true);
+  EXPECT_EQ(simulated["rows"][0]["notes"], nlohmann::json::array());
+  const auto row = nlohmann::json::parse(json(rig_results()))["rows"][0];
+  EXPECT_EQ(row["ground_truth"], "none");
+  EXPECT_EQ(row["verified"], false);
+  EXPECT_EQ(row["notes"][0], "repetition 2: camera 7 was unplugged");
+  for (const char* name :
+       {"precision", "recall", "margin_ms", "pure_sets", "complete_pulses", "index_errors"}) {
+    EXPECT_TRUE(row["gathering_score"][name].is_null()) << name;
+  }
+  EXPECT_TRUE(row["absolute_error_ms"]["median"].is_null());
+}
+
+class GroundTruthArchive : public testing::Test {
+ protected:
+  ~GroundTruthArchive() override { std::filesystem::remove(path_); }
+  Results read(const nlohmann::ordered_json& root) const {
+    std::ofstream(path_) << root.dump(2);
+    return read_archive(path_).results;
+  }
+  std::string path_ = (std::filesystem::temp_directory_path() /
+                       ("ground_truth_" + std::to_string(getpid()) + ".json"))
+                          .string();
+};
+
+TEST_F(GroundTruthArchive, ReadsWhatItWrites) {
+  const Results results = rig_results();
+  const Results read_back = read(nlohmann::ordered_json::parse(json(results)));
+  EXPECT_EQ(read_back.rows[0].ground_truth, GroundTruth::kNone);
+  EXPECT_EQ(read_back.rows[0].sets.pure, 0);
+  EXPECT_THAT(read_back.rows[0].notes, ElementsAre("repetition 2: camera 7 was unplugged"));
+  EXPECT_EQ(read(nlohmann::ordered_json::parse(json(genlock_results()))).rows[1].ground_truth,
+            GroundTruth::kGenlockOrder);
+}
+
+TEST_F(GroundTruthArchive, OlderArchivesAreOfSimulations) {
+  auto root = nlohmann::ordered_json::parse(json(sample_results()));
+  for (auto& row : root["rows"]) {
+    for (const char* name : {"ground_truth", "verified", "notes"}) row.erase(name);
+  }
+  const Results read_back = read(root);
+  EXPECT_EQ(read_back.rows[0].ground_truth, GroundTruth::kSimulation);
+  EXPECT_TRUE(read_back.rows[0].verified());
+}
+
+TEST_F(GroundTruthArchive, RefusesATruthThatIsNone) {
+  auto root = nlohmann::ordered_json::parse(json(sample_results()));
+  root["rows"][0]["ground_truth"] = "guess";
+  try {
+    read(root);
+    FAIL() << "nothing was thrown";
+  } catch (const scenarios::InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("/rows/0/ground_truth: found \"guess\", allowed: "
+                                              "\"simulation\", \"genlock_order\" or \"none\"")));
+  }
+}
+
+}  // namespace
+}  // namespace simbench::reports

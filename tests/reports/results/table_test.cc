@@ -1,0 +1,164 @@
+// The whole table, as a newcomer sees it.
+#include "reports/results/table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "reports/text/text_table.h"
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Table, PlainText) {
+  EXPECT_EQ(table(sample_results(), "A fit, stated as such."), R"(sample: 2 seeds (1-2)
+A fit, stated as such.
+
+The paper's metrics
+
+                     AMD               AMD  published  published    at percentile       RMDV            RMDV  published  published
+pipeline       median ms            5-95 %     AMD ms  AMD is     [95 % interval]  median ms          5-95 %    RMDV ms  RMDV is
+-------------  ---------  ----------------  ---------  ---------  ---------------  ---------  --------------  ---------  --------------
+yoon2021_both      2.000    [1.500, 2.500]      2.438  inside         50 % [1-99]      0.750  [0.500, 1.000]      1.804  not attainable
+free_running    750250.0  [500.0, 1.5e+06]          -  -                        -      250.0  [200.0, 300.0]          -  -
+
+What only known true time can tell
+
+               absolute error    absolute error     bias  host clock error  host clock error   exposure      sets:   sets:  margin   frames  pulses
+pipeline            median ms            5-95 %       ms         median ms            5-95 %  spread ms  precision  recall      ms  dropped  scored
+-------------  --------------  ----------------  -------  ----------------  ----------------  ---------  ---------  ------  ------  -------  ------
+yoon2021_both          29.000  [28.000, 30.000]  -29.000             0.500    [0.250, 0.750]      0.062      100 %  75.0 %   8.500        3     960
+free_running                -                 -        -                 -                 -          -          -     0 %       -        0       0
+
+yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
+
+How to read it
+  Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, [a, b] their band from 5 to 95 %.
+  AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
+  absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with its sign. AMD is blind to what all share.
+  host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
+  precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: from the range to the limit of a set.
+  published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
+
+Pipelines = host_sync + device_time + gathering
+  yoon2021_both = yoon2021_both + regression_30 + yoon2021
+  free_running = free_running + raw_arrival + yoon2021
+
+The paper's claims, and the fraction of seeds in which each holds
+
+claim  holds in  of the paper
+-----  --------  ----------------------------------------------------
+C1       50.0 %  none is worst
+C4            -  lower at 45 than at 15 FPS (needs 18cam_6host_15fps)
+
+Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated seconds per second.
+)");
+}
+
+TEST(Table, GatheringHasABlockOnlyIfThePipelinesDiffer) {
+  EXPECT_THAT(table(sample_results(), ""), Not(HasSubstr("What gathering made")));
+  evaluation::Results results = sample_results();
+  results.rows[1].gathering = "epsilon";
+  EXPECT_THAT(table(results, ""), HasSubstr(
+                                      R"(What gathering made of the stamps, over all seeds
+
+                          complete      sets:   sets:   index  partial     frames   AMD of  abs. error  emitted after  emitted after
+pipeline       gathering      sets  precision  recall  errors     sets  discarded  sets ms  of sets ms        mean ms     largest ms
+-------------  ---------  --------  ---------  ------  ------  -------  ---------  -------  ----------  -------------  -------------
+yoon2021_both  yoon2021        720      100 %  75.0 %       0        4         21    1.750      28.000          0.250          6.000
+free_running   epsilon           0          -     0 %       0        0          0        -           -              -              -
+)"));
+}
+
+TEST(Table, Markdown) {
+  EXPECT_EQ(markdown(sample_results(), "A fit, stated as such."), R"(## sample: 2 seeds (1-2)
+
+A fit, stated as such.
+
+### The paper's metrics
+
+| pipeline | AMD median ms | AMD 5-95 % | published AMD ms | published AMD is | at percentile [95 % interval] | RMDV median ms | RMDV 5-95 % | published RMDV ms | published RMDV is |
+|---|---:|---:|---:|---|---:|---:|---:|---:|---|
+| yoon2021_both | 2.000 | [1.500, 2.500] | 2.438 | inside | 50 % [1-99] | 0.750 | [0.500, 1.000] | 1.804 | not attainable |
+| free_running | 750250.0 | [500.0, 1.5e+06] | - | - | - | 250.0 | [200.0, 300.0] | - | - |
+
+### What only known true time can tell
+
+| pipeline | absolute error median ms | absolute error 5-95 % | bias ms | host clock error median ms | host clock error 5-95 % | exposure spread ms | sets: precision | sets: recall | margin ms | frames dropped | pulses scored |
+|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
+| yoon2021_both | 29.000 | [28.000, 30.000] | -29.000 | 0.500 | [0.250, 0.750] | 0.062 | 100 % | 75.0 % | 8.500 | 3 | 960 |
+| free_running | - | - | - | - | - | - | - | 0 % | - | 0 | 0 |
+
+yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
+
+### How to read it
+
+- Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, [a, b] their band from 5 to 95 %.
+- AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
+- absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with its sign. AMD is blind to what all share.
+- host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
+- precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: from the range to the limit of a set.
+- published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
+
+### Pipelines = host_sync + device_time + gathering
+
+- yoon2021_both = yoon2021_both + regression_30 + yoon2021
+- free_running = free_running + raw_arrival + yoon2021
+
+### The paper's claims, and the fraction of seeds in which each holds
+
+| claim | holds in | of the paper |
+|---|---:|---|
+| C1 | 50.0 % | none is worst |
+| C4 | - | lower at 45 than at 15 FPS (needs 18cam_6host_15fps) |
+
+Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated seconds per second.
+)");
+}
+
+TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {
+  evaluation::Results results = sample_results();
+  results.rows[0].published.reset();
+  results.claims.clear();
+  const std::string text = table(results, "");
+  EXPECT_THAT(text, Not(HasSubstr("published")));
+  EXPECT_THAT(text, Not(HasSubstr("claim")));
+}
+
+TEST(Table, AVerdictForEveryPublishedValue) {
+  evaluation::Results results = sample_results();
+  results.rows[0].published->amd_inside = false;
+  results.rows[0].published->rmdv_attainable = true;
+  EXPECT_THAT(table(results, ""), Not(HasSubstr("2.438  inside")));
+  EXPECT_THAT(table(results, ""), HasSubstr("2.438  outside"));
+  EXPECT_THAT(table(results, ""), HasSubstr("1.804  outside"));
+  results.rows[0].published->rmdv_inside = true;
+  EXPECT_THAT(table(results, ""), HasSubstr("1.804  inside"));
+}
+
+TEST(Table, FitsAWideTerminal) {
+  std::istringstream lines(table(sample_results(), "A summary " + std::string(300, '.')));
+  std::string line;
+  while (std::getline(lines, line)) {
+    const bool one_word = line.find("....") != std::string::npos;
+    EXPECT_TRUE(one_word || line.size() <= 150) << line;
+  }
+}
+
+TEST(Wrapped, BreaksBetweenWords) {
+  EXPECT_EQ(wrapped(""), "");
+  EXPECT_EQ(wrapped("one two", 2), "  one two\n");
+  const std::string word(50, 'x');
+  EXPECT_EQ(wrapped(word + " " + word + " " + word, 1),
+            " " + word + " " + word + "\n " + word + "\n");
+  const std::string endless(kTextWidth + 10, 'y');
+  EXPECT_EQ(wrapped("a " + endless + " b"), "a\n" + endless + "\nb\n");
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,157 @@
+#include "reports/sweep/sweep_report.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/sweep/sweep_figure.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+using evaluation::SweepScore;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Two hosts counts, two words; two pipelines; two seeds.
+SweepPlan plan() {
+  SweepPlan plan;
+  plan.scenario = "rig";
+  plan.scenario_json = R"({"name": "rig"})";
+  plan.axes = {evaluation::parse_axis("/hosts/count=4,2+/cameras/count=8,4"),
+               evaluation::parse_axis("/network/stamp_point=kernel,application")};
+  plan.pipelines = {"fast", "slow"};
+  plan.first_seed = 7;
+  plan.seeds = 2;
+  return plan;
+}
+
+// AMD counts the runs: 0, 1, 2, ...; recall is 3/4 in all; the slaves are late by 1, 2, ... ms.
+std::vector<SweepScore> scores() {
+  std::vector<SweepScore> scores;
+  for (std::size_t run = 0; run < plan().runs(); ++run) {
+    SweepScore score;
+    score.amd_ms = static_cast<double>(run);
+    score.absolute_error_ms = std::numeric_limits<double>::quiet_NaN();
+    score.emitted_sets = 3;
+    score.pure_sets = 3;
+    score.complete_pulses = 4;
+    score.host_errors_ms = {0, 1, -2};
+    scores.push_back(score);
+  }
+  return scores;
+}
+
+std::vector<ResponseRow> rows() { return evaluation::response(plan(), scores()); }
+
+TEST(SweepReport, TheManifestSaysWhatIsSwept) {
+  const auto manifest = nlohmann::json::parse(sweep_manifest(plan(), "a_study"));
+  EXPECT_EQ(manifest["kind"], "sweep");
+  EXPECT_EQ(manifest["study"], "a_study");
+  EXPECT_EQ(manifest["axes"][0]["/hosts/count"], nlohmann::json({4, 2}));
+  EXPECT_EQ(manifest["axes"][1]["/network/stamp_point"], nlohmann::json({"kernel", "application"}));
+  EXPECT_EQ(manifest["seeds"]["first"], 7);
+  EXPECT_EQ(manifest["scenario"]["name"], "rig");
+  EXPECT_FALSE(nlohmann::json::parse(sweep_manifest(plan(), "")).contains("study"));
+}
+
+TEST(SweepReport, CsvHasALineForEachRun) {
+  const std::string csv = sweep_csv(plan(), scores());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 17);
+  EXPECT_THAT(csv, testing::StartsWith("/hosts/count,/cameras/count,/network/stamp_point,pipeline,"
+                                       "seed,amd_ms,rmdv_ms,absolute_error_ms,bias_ms,"));
+  EXPECT_THAT(csv, HasSubstr("\n4,8,kernel,fast,7,0,0,,0,"));
+  EXPECT_THAT(csv, HasSubstr("\n2,4,application,slow,8,15,0,,0,"));
+}
+
+TEST(SweepReport, HostsCsvHasALineForEachHostOfEachRun) {
+  const std::string csv = sweep_hosts_csv(plan(), scores());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
+  EXPECT_THAT(csv, HasSubstr("\n4,8,kernel,fast,7,2,-2\n"));
+}
+
+TEST(SweepReport, TheResponseIsOfAllSeeds) {
+  const std::vector<ResponseRow> all = rows();
+  ASSERT_EQ(all.size(), 8U);
+  EXPECT_EQ(all[0].amd_ms.median, 0.5);
+  EXPECT_EQ(all[7].amd_ms.median, 14.5);
+  EXPECT_EQ(all[3].recall, 0.75);
+  EXPECT_EQ(all[3].precision, 1);
+  EXPECT_EQ(all[3].hosts[2].median, 2);
+  const std::string table = response_table(plan(), all);
+  EXPECT_THAT(table, HasSubstr("4 points, 2 pipelines, 2 seeds"));
+  EXPECT_THAT(table, testing::ContainsRegex("2 +4 +application +slow +14.500 "));
+  EXPECT_THAT(table, HasSubstr("75.0 %"));
+}
+
+TEST(SweepReport, HostsInTheOrderOfTheirSessions) {
+  EXPECT_THAT(host_order_table(plan(), rows()),
+              testing::ContainsRegex("4 +8 +kernel +fast +1.000  2.000\n"));
+}
+
+TEST(SweepReport, SeedsNeededUpToThoseThatWereRun) {
+  SweepPlan one = plan();
+  one.axes = {};
+  one.pipelines = {"fast"};
+  one.seeds = 40;
+  std::vector<SweepScore> many(40);
+  for (std::size_t i = 0; i < many.size(); ++i) many[i].amd_ms = 1 + static_cast<double>(i) / 39;
+  const std::string table = seeds_needed_table(one, evaluation::response(one, many));
+  EXPECT_THAT(table, HasSubstr("n = 32"));
+  EXPECT_THAT(table, testing::Not(HasSubstr("n = 64")));
+  EXPECT_THAT(table, HasSubstr("+-5 %"));
+}
+
+TEST(SweepFigure, ACurveForEachPipelineAndOtherStep) {
+  const Figure figure = response_figure(plan(), rows());
+  ASSERT_EQ(figure.panels.size(), 4U);
+  const FigurePanel& amd = figure.panels[0];
+  EXPECT_EQ(amd.x_label, "/hosts/count");
+  ASSERT_EQ(amd.series.size(), 4U);
+  EXPECT_EQ(amd.series[0].label, "fast, stamp_point=kernel");
+  EXPECT_THAT(amd.series[0].x, ElementsAre(2, 4));  // ascending, though swept downwards
+  EXPECT_THAT(amd.series[0].y, ElementsAre(8.5, 0.5));
+  EXPECT_EQ(amd.series[3].label, "slow, stamp_point=application");
+  EXPECT_THAT(amd.series[3].y, ElementsAre(14.5, 6.5));
+  EXPECT_THAT(figure.panels[2].series[1].y, ElementsAre(75, 75));
+}
+
+TEST(SweepFigure, WordsAreCategories) {
+  SweepPlan words = plan();
+  std::swap(words.axes[0], words.axes[1]);
+  const FigurePanel panel =
+      response_figure(words, evaluation::response(words, scores())).panels.front();
+  EXPECT_THAT(panel.categories, ElementsAre("kernel", "application"));
+  EXPECT_THAT(panel.series[0].x, ElementsAre(0, 1));
+}
+
+TEST(SweepFigure, OnePointIsNoResponse) {
+  SweepPlan one = plan();
+  one.axes = {};
+  const Figure figure =
+      response_figure(one, evaluation::response(one, std::vector<SweepScore>(one.runs())));
+  EXPECT_TRUE(figure.panels.empty());
+  EXPECT_FALSE(figure.absent.empty());
+}
+
+TEST(SweepFigure, HostsAndSeeds) {
+  const Figure hosts = host_order_figure(plan(), rows());
+  EXPECT_THAT(hosts.panels[0].series[0].x, ElementsAre(1, 2));
+  EXPECT_THAT(hosts.panels[0].series[0].y, ElementsAre(1, 2));
+  SweepPlan one = plan();
+  one.axes = {};
+  one.seeds = 16;
+  const std::vector<SweepScore> equal(one.runs(), scores()[3]);
+  const FigureSeries series =
+      seeds_needed_figure(one, evaluation::response(one, equal)).panels[0].series[0];
+  EXPECT_EQ(series.x.front(), 8);
+  EXPECT_EQ(series.x.back(), 16);
+  EXPECT_EQ(series.y.back(), 0);
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,62 @@
+#include "reports/text/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/reports/sample_results.h"
+
+namespace simbench::reports {
+namespace {
+
+TEST(NumberText, HasAsManyDigitsAsMakeSense) {
+  EXPECT_EQ(number_text(0.0042), "0.004");
+  EXPECT_EQ(number_text(2.438), "2.438");
+  EXPECT_EQ(number_text(-29.5), "-29.500");
+  EXPECT_EQ(number_text(547.5033), "547.5");
+  EXPECT_EQ(number_text(1.6e9), "1.6e+09");
+}
+
+TEST(NumberText, ZeroHasNoSign) {
+  EXPECT_EQ(number_text(0), "0.000");
+  EXPECT_EQ(number_text(-0.0), "0.000");
+  EXPECT_EQ(number_text(-0.0004), "0.000");
+}
+
+TEST(NumberText, WhatDoesNotExistIsADash) {
+  EXPECT_EQ(number_text(kNaN), "-");
+  EXPECT_EQ(band_text(no_series()), "-");
+  EXPECT_EQ(share_text(kNaN), "-");
+  EXPECT_EQ(percentile_text({kNaN, 0, 100}), "-");
+}
+
+TEST(NumberText, ASharePretendsNothing) {
+  EXPECT_EQ(share_text(0), "0 %");
+  EXPECT_EQ(share_text(1), "100 %");
+  EXPECT_EQ(share_text(0.5), "50.0 %");
+  EXPECT_EQ(share_text(0.99999), "> 99.9 %");
+  EXPECT_EQ(share_text(0.00001), "< 0.1 %");
+}
+
+TEST(NumberText, BandsAndPercentiles) {
+  EXPECT_EQ(band_text(series(1.5, 2.25)), "[1.500, 2.250]");
+  EXPECT_EQ(percentile_text({33.3, 18, 51.2}), "33 % [18-51]");
+}
+
+TEST(NumberText, CountsAreGroupedByThousands) {
+  EXPECT_EQ(count_text(0), "0");
+  EXPECT_EQ(count_text(999), "999");
+  EXPECT_EQ(count_text(1000), "1 000");
+  EXPECT_EQ(count_text(-100), "-100");
+  EXPECT_EQ(count_text(1234567), "1 234 567");
+}
+
+TEST(NumberText, LargeNumbersInShort) {
+  EXPECT_EQ(short_text(950), "950");
+  EXPECT_EQ(short_text(12345), "12.3 k");
+  EXPECT_EQ(short_text(4.56e6), "4.56 M");
+  EXPECT_EQ(short_text(1.2e9), "1.2 G");
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,163 @@
+// Tables and prose on pages of a given width. Expectations are written out; then, over seeded
+// random tables, what must hold of every layout.
+#include "reports/text/table_layout.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <optional>
+#include <sstream>
+
+namespace simbench::reports {
+namespace {
+
+// Sets the page for one test.
+struct PageGuard {
+  explicit PageGuard(std::size_t width) { set_page_width(width); }
+  ~PageGuard() { set_page_width(std::nullopt); }
+  PageGuard(const PageGuard&) = delete;
+  PageGuard& operator=(const PageGuard&) = delete;
+};
+
+std::vector<std::string> lines(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> found;
+  for (std::string line; std::getline(in, line);) found.push_back(line);
+  return found;
+}
+
+std::size_t widest(const std::string& text) {
+  std::size_t width = 0;
+  for (const std::string& line : lines(text)) width = std::max(width, line.size());
+  return width;
+}
+
+TextTable numbers() {
+  TextTable table({{"name", Align::kLeft}, {"one"}, {"two"}, {"three"}});
+  table.add({"a", "1", "22", "333"});
+  table.add({"b", "4", "55", "666"});
+  return table;
+}
+
+TEST(TableLayout, ATableThatFitsIsOneBlock) {
+  const std::string unlimited = numbers().plain();
+  const PageGuard page(21);
+  EXPECT_EQ(widest(unlimited), 21);
+  EXPECT_EQ(numbers().plain(), unlimited);
+}
+
+TEST(TableLayout, ATableTooWideIsDividedIntoBlocksOfLikeWidthWithTheKeyInEach) {
+  const PageGuard page(20);
+  EXPECT_EQ(numbers().plain(),
+            "name  one  two\n"
+            "----  ---  ---\n"
+            "a       1   22\n"
+            "b       4   55\n"
+            "\n"
+            "name  three\n"
+            "----  -----\n"
+            "a       333\n"
+            "b       666\n");
+}
+
+TEST(TableLayout, EveryKeyColumnIsRepeated) {
+  TextTable table({{"camera", Align::kLeft}, {"stream", Align::kLeft}, {"one"}, {"two"}}, 2);
+  table.add({"a", "depth", "1", "2"});
+  const PageGuard page(20);
+  EXPECT_EQ(table.plain(),
+            "camera  stream  one\n"
+            "------  ------  ---\n"
+            "a       depth     1\n"
+            "\n"
+            "camera  stream  two\n"
+            "------  ------  ---\n"
+            "a       depth     2\n");
+}
+
+TEST(TableLayout, ProseGoesOnBelow) {
+  TextTable table({{"name", Align::kLeft}, {"meaning", Align::kLeft}});
+  table.add({"rate", "how often the trigger fires in a second"});
+  const PageGuard page(32);
+  EXPECT_EQ(table.plain(),
+            "name  meaning\n"
+            "----  --------------------------\n"
+            "rate  how often the trigger\n"
+            "      fires in a second\n");
+}
+
+TEST(TableLayout, AWordIsNeverBroken) {
+  TextTable table({{"name", Align::kLeft}, {"value"}});
+  table.add({"a", std::string(50, 'x')});
+  const PageGuard page(20);
+  EXPECT_THAT(table.plain(), testing::HasSubstr(fmt::format("a     {:x<50}\n", "")));
+}
+
+TEST(TableLayout, MarkdownKnowsNoPage) {
+  const std::string unlimited = numbers().markdown();
+  const PageGuard page(20);
+  EXPECT_EQ(numbers().markdown(), unlimited);
+}
+
+TEST(TableLayout, LosesNoCellAndKeepsToThePage) {
+  boost::random::mt19937 random(7);
+  const auto pick = [&](int low, int high) {
+    return boost::random::uniform_int_distribution<int>(low, high)(random);
+  };
+  for (int round = 0; round < 300; ++round) {
+    SCOPED_TRACE(round);
+    std::vector<Column> columns;
+    for (int c = pick(1, 14); c > 0; --c) {
+      columns.push_back({std::string(pick(1, 12), 'h'), pick(0, 1) ? Align::kLeft : Align::kRight});
+    }
+    TextTable table(columns);
+    std::vector<std::string> words;
+    for (int r = pick(0, 4); r > 0; --r) {
+      std::vector<std::string> cells;
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        std::string cell;
+        for (int w = pick(1, 9); w > 0; --w) {
+          words.push_back(fmt::format("w{}", words.size()));
+          cell += fmt::format("{}{}", cell.empty() ? "" : " ", words.back());
+        }
+        cells.push_back(cell);
+      }
+      table.add(cells);
+    }
+    const std::size_t width = static_cast<std::size_t>(pick(54, 170));
+    const PageGuard page(width);
+    const std::string text = table.plain();
+    EXPECT_LE(widest(text), width) << text;
+    for (const std::string& word : words) {
+      EXPECT_THAT(" " + text, testing::ContainsRegex("[ \n]" + word + "[ \n]"));
+    }
+    for (const std::string& line : lines(text)) EXPECT_FALSE(line.ends_with(' '));
+  }
+}
+
+TEST(Prose, IsWrappedToThePageButNeverWiderThanTextWidth) {
+  std::string prose;
+  for (int i = 0; i < 60; ++i) prose += "word ";
+  EXPECT_EQ(widest(wrapped(prose)), 139);
+  for (const std::size_t width : {40, 80, 100, 160}) {
+    const PageGuard page(width);
+    const std::size_t found = widest(wrapped(prose, 4));
+    EXPECT_LE(found, std::min(width, kTextWidth));
+    EXPECT_GT(found + 5, std::min(width, kTextWidth));
+  }
+}
+
+TEST(Fitted, BreaksLongLinesAtBlanksAndLeavesTheOthers) {
+  const std::string text = "  short   line\n  a line that is   too long\nend";
+  EXPECT_EQ(fitted(text), text);
+  const PageGuard page(20);
+  EXPECT_EQ(fitted(text), "  short   line\n  a line that is\n    too long\nend");
+  EXPECT_EQ(fitted(fmt::format("{:x<30} y\n", "")), fmt::format("{:x<30}\n  y\n", ""));
+  EXPECT_EQ(fitted(""), "");
+}
+
+}  // namespace
+}  // namespace simbench::reports
