@@ -145,7 +145,7 @@ std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command
   for (const scenarios::Pipeline& pipeline : scenario.pipelines) known.push_back(pipeline.name);
   const app::FigureOptions options = options_of(command, entry, known);
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
-    return scenario_figures(scenario, options, command.seeds, progress);
+    return app::scenario_figures(scenario, options, command.seeds, progress);
   });
 }
 
@@ -156,7 +156,7 @@ std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
   for (const evaluation::Row& row : archive.results.rows) known.push_back(row.pipeline);
   const app::FigureOptions options = options_of(command, entry, known);
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
-    return archive_figures(archive, options, progress);
+    return app::archive_figures(archive, options, progress);
   });
 }
 
