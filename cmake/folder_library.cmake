@@ -4,11 +4,10 @@
 # publicly to the given targets, lets includes be written from the root of the project, and installs
 # it with its headers.
 #
-# Two things shorten builds, without a word less being checked:
-# - RUNS_ONCE: code that tests spend no time in is not optimised under the sanitizers, which find no
-#   less in it.
-# - PRECOMPILE: the headers that most files of the folder read, compiled once under the sanitizers.
-#   Other builds do without, so that a file that includes too little does not compile there.
+# RUNS_ONCE: code in which no run spends its time. It is optimised a little in Release, and not at
+# all under the sanitizers, which find no less in it.
+# PARSES: code that fuzzers watch.
+# PRECOMPILE: headers that most files of the folder include (cmake/precompiled.cmake has the rest).
 function(simbench_folder_library name)
   cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
@@ -20,17 +19,19 @@ function(simbench_folder_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/simbench>)
   target_link_libraries(simbench_${name} PUBLIC simbench_flags ${arg_LINK})
-  if(SIMBENCH_SANITIZE AND arg_PRECOMPILE)
-    target_precompile_headers(simbench_${name} PRIVATE ${arg_PRECOMPILE})
-  endif()
-  if(SIMBENCH_SANITIZE)
-    simbench_unity(simbench_${name} SOURCES ${sources})
-  endif()
-  if(SIMBENCH_SANITIZE AND arg_RUNS_ONCE)
-    target_compile_options(simbench_${name} PRIVATE -O0)
+  set(options "")
+  if(arg_RUNS_ONCE AND SIMBENCH_SANITIZE)
+    list(APPEND options -O0)
+  elseif(arg_RUNS_ONCE AND CMAKE_BUILD_TYPE STREQUAL "Release")
+    list(APPEND options -O1)
   endif()
   if(SIMBENCH_BUILD_FUZZ AND arg_PARSES)
-    target_compile_options(simbench_${name} PRIVATE -fsanitize=fuzzer-no-link)
+    list(APPEND options -fsanitize=fuzzer-no-link)
+  endif()
+  target_compile_options(simbench_${name} PRIVATE ${options})
+  simbench_precompile(simbench_${name} ${arg_PRECOMPILE})
+  if(SIMBENCH_SANITIZE)
+    simbench_unity(simbench_${name} SOURCES ${sources})
   endif()
   install(TARGETS simbench_${name} EXPORT simbench)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
