@@ -2,8 +2,8 @@
 //
 // Every vertex is projected into every depth map. Where it is visible (z-buffer test) and the pixel
 // has a value, the error is the distance between the vertex and the point that the depth map has
-// at that pixel, in the world's frame: paper section 4.4. All of it uses believed camera poses, as
-// a user has no others.
+// at that pixel, in the world's frame: section 4.4 of the paper. All of it uses believed camera
+// poses, as a user has no others.
 //
 // z-buffer test: the mesh itself, rendered from the camera at the depth map's resolution, each
 // pixel's depth spread to the pixels around it (the nearest wins). A vertex is visible if it is no

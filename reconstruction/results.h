@@ -7,7 +7,7 @@
 // quantile are that seed's; over seeds there are series of those. A seed without any error (no set
 // could be reconstructed) has NaN.
 //
-// Units: cm for errors, ms for times. Source: paper section 4.4, Table 4.
+// Units: cm for errors, ms for times. Source: section 4.4 of the paper, Table 4.
 #ifndef SIMBENCH_RECONSTRUCTION_RESULTS_H_
 #define SIMBENCH_RECONSTRUCTION_RESULTS_H_
 

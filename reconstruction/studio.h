@@ -16,7 +16,7 @@
 // Throws scenarios::InputError: no studio, no depth stream, no known focal length, more cameras
 // than angles and heights have room for.
 //
-// Source: paper section 4 (6 angles, 3 heights), docs/reference/calibration.md section 6.
+// Source: section 4 of the paper (6 angles, 3 heights), docs/reference/calibration.md section 6.
 //
 //   const Studio studio(scenario, seed);          // throws scenarios::InputError without a studio
 //   studio.cameras()[3].world_from_camera;

@@ -1,9 +1,9 @@
 // True time: the time of the simulated world, which no clock in it can read.
 //
 // Only sim/, the Truth part of a recording and evaluation/ know this type; algorithms never see it
-// (docs/design.md: one strong type per time base). Unit: integer nanoseconds. Zero is the nominal
-// start of host synchronisation; a world with a history (clocks set hours before) starts below
-// zero.
+// (docs/design.md section 5: one type for each time base). Unit: integer nanoseconds. Zero is the
+// nominal start of host synchronisation; a world with a history (clocks set hours before) starts
+// below zero.
 #ifndef SIMBENCH_RECORDING_TRUE_TIME_H_
 #define SIMBENCH_RECORDING_TRUE_TIME_H_
 

@@ -15,8 +15,8 @@
 // than kIgnored is left alone: each adjustment is a call that costs time.
 //
 // Not for two coroutines at a time to steer; observing meanwhile is fine.
-// Complexity: O(1). Source: docs/design.md section 4; calibration.md section 2 (coarse read, cost
-// of set).
+// Complexity: O(1). Source: docs/design.md section 4; docs/reference/calibration.md section 2
+// (coarse read, cost of set).
 //
 //   SteeredClock clock(host, {});
 //   clock.observe(message.received, message.received_steady);

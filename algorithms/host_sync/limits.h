@@ -2,8 +2,8 @@
 //
 //   free_running  every system clock keeps its arbitrary initial offset
 //   ntp_last_set  the clocks were right hours ago and have run free since: the paper's row "None",
-//                 whose hosts had Windows time but differed by half a second (paper.md section 8,
-//                 calibration.md section 2)
+//                 whose hosts had Windows time but differed by half a second
+//                 (docs/reference/paper.md section 8, docs/reference/calibration.md section 2)
 //   oracle        every host reads the master's clock: the limit that no protocol can pass
 //
 // They differ in the clocks they start from alone; both sides return at once.

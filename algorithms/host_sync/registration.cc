@@ -15,7 +15,8 @@
 namespace simbench {
 namespace {
 
-const char* const kNotPublished = "not published; a fit (calibration.md section 1, FIT-C)";
+const char* const kNotPublished =
+    "not published; a fit (docs/reference/calibration.md section 1, FIT-C)";
 const char* const kRepair = "assumption; not part of the printed algorithm";
 
 std::vector<ParameterSpec> yoon2021_parameters() {
@@ -30,13 +31,13 @@ std::vector<ParameterSpec> yoon2021_parameters() {
       number_parameter("pass_limit", 200, 1, 1e6, "passes after which a slave is given up",
                        kRepair),
       number_parameter("session_gap_ms", 1000, 0, 1e6, "pause between the sessions of two slaves",
-                       "calibration.md section 1 (gap)"),
+                       "docs/reference/calibration.md section 1 (gap)"),
       number_parameter("parallel_sessions", 1, 1, 1e4,
                        "groups of slaves that are synchronised concurrently",
                        "Yoon et al. 2021, section 3: slaves in turn"),
       choice_parameter("latency_estimate", {"literal", "intended"},
                        "t_l as printed (mean spacing of the stamps), or half the mean round trip",
-                       "paper.md section 4, defect 1"),
+                       "docs/reference/paper.md section 4, defect 1"),
       choice_parameter("transport", {"stream", "datagram"}, "what the messages travel over",
                        kNotPublished),
       number_parameter("receive_timeout_ms", 5000, 1, 1e7,
@@ -109,7 +110,8 @@ std::vector<HostSyncEntry> builtin_host_sync_algorithms() {
       limit("free_running", "no synchronisation: clocks start at arbitrary offsets",
             "a limit, for comparison", InitialClocks::kUnsynchronised),
       limit("ntp_last_set", "the paper's row None: clocks set hours ago, free-running since",
-            "Yoon et al. 2021, Tables 2 and 3; calibration.md section 2", InitialClocks::kLastSet),
+            "Yoon et al. 2021, Tables 2 and 3; docs/reference/calibration.md section 2",
+            InitialClocks::kLastSet),
       limit("oracle", "every host reads the master's clock", "a limit, for comparison",
             InitialClocks::kMaster),
   };

@@ -1,4 +1,4 @@
-// engine_workloads: the workloads of docs/reference/event_engine.md, section 1.
+// engine_workloads: the workloads of docs/reference/event_engine.md section 1.
 //
 //   engine_workloads [reference] w1 TIMERS EVENTS
 //   engine_workloads [reference] w2 CAMERAS MS

@@ -1,6 +1,6 @@
 // The tables and random numbers of the engine workloads, common to every engine that runs them.
 //
-// Definitions and check values: docs/reference/event_engine.md, section 1. All times in
+// Definitions and check values: docs/reference/event_engine.md section 1. All times in
 // nanoseconds.
 #ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_TABLES_H_
 #define SIMBENCH_BENCH_ENGINE_WORKLOADS_TABLES_H_

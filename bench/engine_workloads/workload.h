@@ -2,7 +2,7 @@
 //
 // The reference is what one writes without an engine: a std::priority_queue of plain events and a
 // switch. Both sides share the models (hold_model.h, rig_model.h), so that only the queue and the
-// dispatch differ. Definitions and checksums: docs/reference/event_engine.md, section 1.
+// dispatch differ. Definitions and checksums: docs/reference/event_engine.md section 1.
 #ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
 #define SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
 

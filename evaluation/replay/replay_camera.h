@@ -3,8 +3,8 @@
 // No truth is needed for it: intervals, the frequency difference of the two clocks, and how much
 // longer than the fastest frames the others took. All in milliseconds of the clock that is named.
 //
-// Source: docs/reference/device_time.md sections 1 and 5; check values: the real recording
-// described in its README (-215.385 ppm by least squares, -214.932 ppm by the lower envelope).
+// Source: docs/reference/device_time.md sections 1 and 5; check values: tests/data/README.md
+// (ibl: -215.385 ppm by least squares, -214.932 ppm by the lower envelope).
 //
 //   CameraStatistics s = camera_statistics(unwrapped(stream));
 #ifndef SIMBENCH_EVALUATION_REPLAY_REPLAY_CAMERA_H_

@@ -141,7 +141,7 @@ struct Row {
 };
 
 struct Claim {
-  std::string id;                        // "C1" ... "C10", paper.md section 11
+  std::string id;                        // "C1" ... "C10", docs/reference/paper.md section 11
   std::string text;                      // with the threshold that decides it
   std::optional<double> holds_fraction;  // of seeds; nothing if it needs another scenario
   std::string needs;                     // which, then

@@ -9,7 +9,7 @@
 // structure cannot change the order.
 //
 // Complexity: O(log n) for few pending events, amortised O(1) for many. No allocation in steady
-// state. Reference: event_engine.md, section 2.
+// state. Reference: docs/reference/event_engine.md section 2.
 #ifndef SIMBENCH_SIM_ENGINE_EVENT_QUEUE_H_
 #define SIMBENCH_SIM_ENGINE_EVENT_QUEUE_H_
 

@@ -13,7 +13,7 @@
 // generators", ACM TOMS 47(4), 2021), seeded by splitmix64 (Steele, Lea and Flood, OOPSLA 2014).
 // Distributions: Boost.Random's ziggurats, which give the same numbers with every compiler.
 // Cost: a raw draw about 1 ns, a normal one about 4 ns, making a stream a few nanoseconds when its
-// name's ComponentKey is at hand (event_engine.md, section 5).
+// name's ComponentKey is at hand (docs/reference/event_engine.md section 5).
 //
 //   RandomStream jitter(run_seed, "camera 3: transfer");
 //   const Nanoseconds delay = from_ms(2.0 + jitter.exponential(0.3));

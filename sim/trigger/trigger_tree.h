@@ -12,7 +12,7 @@
 // All randomness is drawn per slot or per branch from streams of its own, so pulses are the same
 // for every pipeline of a seed.
 //
-// Source: paper section 4.1, docs/reference/d455.md section 2. Unit: true time, nanoseconds.
+// Source: section 4.1 of the paper, docs/reference/d455.md section 2. Unit: true time, nanoseconds.
 //
 //   TriggerTree tree(scenario.trigger, 18, seed);
 //   tree.start(capture_start);

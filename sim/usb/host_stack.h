@@ -12,8 +12,8 @@
 // so that each delay has the table's distribution and successive ones are joined by a Gaussian
 // copula, whose rank correlation (Spearman's) is 6 / pi * asin(r / 2).
 //
-// All other terms scale with the transfer time of one frame alone on the bus, as calibration.md has
-// it; frames of one stream never overtake each other.
+// All other terms scale with the transfer time of one frame alone on the bus, as
+// docs/reference/calibration.md has it; frames of one stream never overtake each other.
 //
 // The host's part is an AR(1) process on a grid of frame periods in true time,
 // h[i] = rho * h[i-1] + (1 - rho) * Exp(mean), so it does not depend on which frames ask for it.

@@ -4,7 +4,7 @@
 // fails by more than the sample's distance (delay/2 + dispersion) moves it by -log2(error/distance)
 // instead. Each whole point of the score is one step of the exponent, within its bounds.
 //
-// Source: host_sync.md section 2 (polltarget 8; ntp_core.c).
+// Source: docs/reference/host_sync.md section 2 (polltarget 8; ntp_core.c).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_POLL_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_POLL_H_
 

@@ -9,8 +9,8 @@
 //    proportion, in no less than 1 s, at no more than max_slew_rate.
 //
 // A pure state machine. chrony steps only if it is told to (makestep), which is not here.
-// Source: host_sync.md section 2 (chrony, conf.c); chrony.conf documentation (corrtimeratio,
-// maxslewrate, maxupdateskew).
+// Source: docs/reference/host_sync.md section 2 (chrony, conf.c); chrony.conf documentation
+// (corrtimeratio, maxslewrate, maxupdateskew).
 //
 //   ChronyReference reference({});
 //   const ChronyCorrection correction = reference.update(*stats.estimate(), now_s, left_s);

@@ -13,7 +13,8 @@
 // Complexity: a fit O(n), the whole O(n^2); n is at most 64 in use. The results are finite for
 // finite input.
 //
-// Source: host_sync.md section 1 (chrony, regress.c); the quantile is computed, not copied.
+// Source: docs/reference/host_sync.md section 1 (chrony, regress.c); the quantile is computed, not
+// copied.
 //
 //   const auto fit = best_regression(x, y, w, extra, 3);  // x, y: `extra` older points first
 //   if (fit) now_s = fit->line.intercept;

@@ -5,7 +5,7 @@
 // for points without weights, such as times entered by hand.
 //
 // Complexity: O(n log(spread / tolerance)) a fit, O(n^2) with the runs test.
-// Source: host_sync.md section 1 (chrony, regress.c).
+// Source: docs/reference/host_sync.md section 1 (chrony, regress.c).
 //
 //   const auto fit = robust_regression(x, y, 1e-12);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_ROBUST_REGRESSION_H_

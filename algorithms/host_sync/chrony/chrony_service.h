@@ -15,7 +15,7 @@
 // Not here: several sources and their selection, makestep, the sample filter option, interleaved
 // mode, refclocks. chrony has no broadcast client.
 //
-// Source: host_sync.md sections 1 and 2 (chrony); chrony.conf documentation.
+// Source: docs/reference/host_sync.md sections 1 and 2 (chrony); chrony.conf documentation.
 //
 //   ChronyService chrony({});
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_SERVICE_H_

@@ -15,7 +15,7 @@
 // Complexity: O(n^2) a sample in the worst case, O(n) when no sample is dropped; n <= 64.
 // Degenerate: fewer than three samples, or all at one time, have no estimate.
 //
-// Source: host_sync.md section 1 (chrony, sourcestats.c).
+// Source: docs/reference/host_sync.md section 1 (chrony, sourcestats.c).
 //
 //   ChronySourceStats stats({});
 //   if (stats.is_good(sample)) stats.add(sample);

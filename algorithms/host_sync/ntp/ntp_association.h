@@ -14,7 +14,7 @@
 // carries t3 has left by the time the server knows better, so the server's sending time then counts
 // to one direction only, and half of it is an error.
 //
-// Source: RFC 5905 sections 7 to 9; host_sync.md section 2.
+// Source: RFC 5905 sections 7 to 9; docs/reference/host_sync.md section 2.
 //
 //   NtpAssociation association(host, master, NtpStamps::kApplication);
 //   const std::optional<NtpMeasurement> reply = co_await association.exchange(from_ms(1000));

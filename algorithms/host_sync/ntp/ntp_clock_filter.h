@@ -20,7 +20,8 @@
 // dispersion of 16 s or more as no sample; a sample with a number that is not finite is refused by
 // an assertion.
 //
-// Source: RFC 5905 section 10; host_sync.md section 2 (gate 3, Allan intercept: ntp.h).
+// Source: RFC 5905 section 10; docs/reference/host_sync.md section 2 (gate 3, Allan intercept:
+// ntp.h).
 //
 //   NtpClockFilter filter(1e-6);
 //   if (const auto best = filter.add({offset, delay, dispersion, now}, 64)) use(best->offset_s);

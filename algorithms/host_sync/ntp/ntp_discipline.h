@@ -22,7 +22,8 @@
 //
 // Not here: reading and writing a drift file, and the kernel's discipline.
 //
-// Source: RFC 5905 section 11.3 (figures 24 to 28); host_sync.md section 2 (ntp_loopfilter.c).
+// Source: RFC 5905 section 11.3 (figures 24 to 28); docs/reference/host_sync.md section 2
+// (ntp_loopfilter.c).
 //
 //   NtpDiscipline discipline({});
 //   switch (discipline.update(offset_s, now_s)) { case NtpAction::kStep: ... }

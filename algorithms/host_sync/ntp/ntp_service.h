@@ -22,7 +22,7 @@
 // panic. Outcome: synchronised at the first update of the clock; not, after eight polls (or
 // broadcast intervals) without a reply or by panic.
 //
-// Source: RFC 5905; host_sync.md sections 1 and 2.
+// Source: RFC 5905; docs/reference/host_sync.md sections 1 and 2.
 //
 //   NtpSettings settings;
 //   settings.mode = NtpMode::kBroadcastVolley;

@@ -12,7 +12,8 @@
 namespace simbench {
 namespace {
 
-const char* const kReferenceNtp = "reference implementation (host_sync.md section 2)";
+const char* const kReferenceNtp =
+    "reference implementation (docs/reference/host_sync.md section 2)";
 
 void check_poll_bounds(int low, int high) {
   if (low > high) throw ParameterError("max_poll", "max_poll must not be below min_poll");
@@ -54,7 +55,7 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double se
   entry.info.name = std::move(name);
   entry.info.family = "ntp";
   entry.info.summary = std::move(summary);
-  entry.info.source = "RFC 5905; host_sync.md section 2";
+  entry.info.source = "RFC 5905; docs/reference/host_sync.md section 2";
   entry.info.parameters = ntp_parameters(service_hours);
   entry.make = [mode](const Parameters& parameters) {
     NtpSettings settings;
@@ -75,7 +76,8 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double se
   return entry;
 }
 
-const char* const kChronyDocumentation = "chrony.conf documentation (host_sync.md section 2)";
+const char* const kChronyDocumentation =
+    "chrony.conf documentation (docs/reference/host_sync.md section 2)";
 
 std::vector<ParameterSpec> chrony_parameters() {
   return {
@@ -133,7 +135,7 @@ HostSyncEntry chrony() {
   entry.info.name = "chrony";
   entry.info.family = "chrony";
   entry.info.summary = "NTP client in the manner of chronyd: weighted regression, slews only";
-  entry.info.source = "chrony (host_sync.md sections 1 and 2); RFC 5905";
+  entry.info.source = "chrony (docs/reference/host_sync.md sections 1 and 2); RFC 5905";
   entry.info.parameters = chrony_parameters();
   entry.make = make_chrony;
   return entry;
@@ -141,7 +143,8 @@ HostSyncEntry chrony() {
 
 HostSyncEntry w32time(const std::string& name, std::string summary,
                       const W32TimeSettings& defaults) {
-  const std::string documentation = "Microsoft documentation of W32Time (host_sync.md section 2)";
+  const std::string documentation =
+      "Microsoft documentation of W32Time (docs/reference/host_sync.md section 2)";
   HostSyncEntry entry;
   entry.info.name = name;
   entry.info.family = name;

@@ -28,7 +28,7 @@
 // A service: it never ends by itself. warm_up() is how long it has run when the capture starts.
 // A slave reports how its first poll ended, and every exchange (t1 to t4).
 //
-// Source: host_sync.md section 2 (W32Time); RFC 4330; RFC 5905.
+// Source: docs/reference/host_sync.md section 2 (W32Time); RFC 4330; RFC 5905.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
 

@@ -6,8 +6,8 @@
 //    persisted for kSpikeWatchPeriod. A smaller offset ends the suspicion.
 //
 // The documentation gives HoldPeriod without a unit; samples is an assumption.
-// Source: host_sync.md section 2 (LargePhaseOffset, HoldPeriod, SpikeWatchPeriod); Microsoft,
-// "Windows Time service tools and settings".
+// Source: docs/reference/host_sync.md section 2 (LargePhaseOffset, HoldPeriod, SpikeWatchPeriod);
+// Microsoft, "Windows Time service tools and settings".
 //
 //   W32TimeSpikes spikes;
 //   if (spikes.accept(offset, host.steady_clock().now())) ...correct the clock

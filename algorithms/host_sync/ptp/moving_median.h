@@ -1,7 +1,7 @@
 // The median of the last N values: linuxptp's delay filter (N = 10).
 //
 // For an even count it is the mean of the middle two, rounded towards zero.
-// Complexity: O(N) a value. Source: host_sync.md section 1 (linuxptp).
+// Complexity: O(N) a value. Source: docs/reference/host_sync.md section 1 (linuxptp).
 //
 //   MovingMedian median(10);
 //   Nanoseconds delay = median.add(measured);

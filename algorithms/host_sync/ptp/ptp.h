@@ -19,7 +19,7 @@
 // A service. Exchanges are reported for software stamps (t1, t2: Delay_Req or Pdelay_Req; t3, t4:
 // Sync or Pdelay_Resp); the card's stamps are no host times. A slave reports its outcome when its
 // system clock is first steered, or once `patience` has passed without; it goes on.
-// Source: IEEE 1588-2008 clauses 11 and 13; host_sync.md section 1 (linuxptp).
+// Source: IEEE 1588-2008 clauses 11 and 13; docs/reference/host_sync.md section 1 (linuxptp).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
 

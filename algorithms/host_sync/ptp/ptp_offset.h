@@ -7,7 +7,7 @@
 //
 // All stamps in nanoseconds, corrections of transparent clocks already taken out; the clocks' rates
 // are taken as equal within a delay measurement.
-// Source: IEEE 1588-2008 clause 11; host_sync.md section 1 (linuxptp, tsproc.c).
+// Source: IEEE 1588-2008 clause 11; docs/reference/host_sync.md section 1 (linuxptp, tsproc.c).
 //
 //   PtpOffset filter(10);
 //   filter.add_sync(t1, t2);

@@ -20,7 +20,8 @@
 // Steps: on the first update if the offset exceeds first_step_threshold, later only if it exceeds a
 // positive step_threshold; the regression then starts afresh.
 // Complexity: O(1); regression O(64). Offsets must be finite.
-// Source: host_sync.md section 1 (linuxptp); outputs agree with vectors/linuxptp_golden.json.
+// Source: docs/reference/host_sync.md section 1 (linuxptp); outputs agree with
+// tests/data/vectors/linuxptp_golden.json.
 //
 //   PiServo servo(PiServo::kHardwareStamps, {});
 //   ServoAnswer answer = servo.sample(offset_ns, t2_ns, 1.0);

@@ -39,7 +39,7 @@ HostSyncEntry ptp(std::string name, std::string summary, bool is_peer_delay, boo
   entry.info.name = std::move(name);
   entry.info.family = has_hardware ? "ptp_hardware" : "ptp_software";
   entry.info.summary = std::move(summary);
-  entry.info.source = "IEEE 1588-2008; linuxptp (host_sync.md section 1)";
+  entry.info.source = "IEEE 1588-2008; linuxptp (docs/reference/host_sync.md section 1)";
   entry.info.parameters = ptp_parameters(has_hardware ? 60 : 300);
   if (has_hardware) entry.info.needs = {Need::kHardwareStamps};
   entry.make = [is_peer_delay, has_hardware](const Parameters& parameters) {

@@ -24,7 +24,7 @@
 // Frames and trigger lines have pulses during the capture only, PPS always.
 // A slave without the port reports that as its outcome and ends; without answers from the master
 // (it lacks the port) the network alone counts.
-// Source: TriggerSync (host_sync.md names it; method as described here).
+// Source: TriggerSync (docs/reference/host_sync.md names it; method as described here).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
 

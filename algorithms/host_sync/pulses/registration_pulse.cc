@@ -28,7 +28,7 @@ HostSyncEntry common_view(std::string name, std::string summary, std::string sou
       "pulse_window_s", 60, 1, 1e5, "span of the pulses that are compared", kAssumption));
   entry.info.parameters.push_back(number_parameter(
       "settle_s", 5, 0, 1e5, "frames of a camera's first seconds that are left out",
-      "d455.md: exposures are unsteady at first"));
+      "docs/reference/paper.md section 8: the first 5 s are unsteady"));
   entry.info.parameters.push_back(number_parameter(
       "asymmetry_sigma_us", 10, 0, 1e6,
       "asymmetry to expect of a link; a correction less certain than half of it counts less",

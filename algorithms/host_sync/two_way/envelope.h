@@ -10,7 +10,7 @@
 //
 // Contract: x does not decrease (a smaller x is taken as the last one's); units are the caller's.
 // Complexity: add() amortised O(1); the first look after an add O(vertices), usually some tens.
-// Source: host_sync.md section 1 (two-way convex hull).
+// Source: docs/reference/host_sync.md section 1 (two-way convex hull).
 //
 //   Envelope envelope(60e9);
 //   envelope.add(x, y);

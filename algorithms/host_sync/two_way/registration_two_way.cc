@@ -100,9 +100,9 @@ std::vector<HostSyncEntry> two_way_host_syncs() {
   return {
       two_way("two_way_min_rtt",
               "best of N round trips, stamped on departure, rate over the rounds",
-              "Cristian 1989; host_sync.md section 1", Estimator::kRoundTrip, false),
+              "Cristian 1989; docs/reference/host_sync.md section 1", Estimator::kRoundTrip, false),
       two_way("two_way_min_rtt_naive", "the same with clocks read before the send calls",
-              "Cristian 1989; host_sync.md section 1", Estimator::kRoundTrip, true),
+              "Cristian 1989; docs/reference/host_sync.md section 1", Estimator::kRoundTrip, true),
       libsoftwaresync(),
       two_way("two_way_independent_minima",
               "smallest delay of each direction in N exchanges, rate over the rounds",

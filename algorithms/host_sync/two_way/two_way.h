@@ -19,7 +19,8 @@
 // registered; libsoftwaresync is naive best-of-300 with early stop and without rate, one round
 // every round_pause.
 //
-// Cost: two messages an exchange. Source: host_sync.md section 1; RFC 9769 (interleaved mode).
+// Cost: two messages an exchange. Source: docs/reference/host_sync.md section 1; RFC 9769
+// (interleaved mode).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
 

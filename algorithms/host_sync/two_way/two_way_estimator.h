@@ -7,7 +7,7 @@
 //   remote(sent) - sent <= arrived - sent                 an upper bound
 //
 // All of these assume equal minimum delays both ways; what the directions differ by, A, is in every
-// result with A / 2, and nothing in the stamps can tell (host_sync.md section 3).
+// result with A / 2, and nothing in the stamps can tell (docs/reference/host_sync.md section 3).
 //
 //   TwoWayHull hull({});
 //   hull.add(exchange);

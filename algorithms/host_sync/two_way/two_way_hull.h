@@ -24,7 +24,7 @@
 // than half the round trip is not seen so; it leaves with the window.
 //
 // Complexity: add() O(1) amortised, line() some tens of vertices times 64 steps
-// of bisection. Memory bounded (envelope.h). Source: host_sync.md section 1
+// of bisection. Memory bounded (envelope.h). Source: docs/reference/host_sync.md section 1
 // (MOOS, TICSync: line of maximum separation).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_HULL_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_HULL_H_

@@ -12,11 +12,11 @@
 // most). An exchange whose bounds lie more than kJumpNs on the wrong side of the line says that a
 // clock has jumped: everything starts afresh, from that exchange alone.
 // With `early_stop`, a round ends with the first exchange whose round trip is below that: on a
-// wired network nearly always the first one (host_sync.md section 1).
+// wired network nearly always the first one (docs/reference/host_sync.md section 1).
 // Without `estimate_rate` the line is flat and goes through the last offset.
 //
 // Complexity: O(1) an exchange, O(kRoundsKept) a round.
-// Source: host_sync.md sections 1, 3 and 4.
+// Source: docs/reference/host_sync.md sections 1, 3 and 4.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_MINIMUM_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_MINIMUM_H_
 

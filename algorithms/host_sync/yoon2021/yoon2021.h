@@ -1,7 +1,7 @@
 // Algorithms 1 and 2 of Yoon et al. 2021: the master measures delays with each slave in turn and
 // has it set its system clock to the master's time plus those delays.
 //
-// One pass of a session (paper.md section 4):
+// One pass of a session (docs/reference/paper.md section 4):
 //
 //   master                               slave
 //   READY                          --->
@@ -16,7 +16,7 @@
 // t_d alone (all run both measurements, so that they are comparable seed by seed):
 // yoon2021_network t_l, yoon2021_time t_t, yoon2021_both t_l + t_t, yoon2021_neither 0.
 //
-// Defects of the algorithm under test that stay (numbers as in paper.md section 4):
+// Defects of the algorithm under test that stay (numbers as in docs/reference/paper.md section 4):
 //   1. the receives are back to back, so t_l telescopes to the mean spacing of the stamps at the
 //      receiver: the sender's occupancy per stamp; the latency cancels ("literal");
 //   2. the test never bounds a lead: a slave that is ahead makes T_r - T_s smaller;

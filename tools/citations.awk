@@ -1,0 +1,57 @@
+# Citations of the project's own pages: prints FILE:LINE: what does not exist. For tools/lint, which
+# gives it all pages (*.md) and sources. A citation is the path of a page below docs/, or a link from
+# one page to another, and may go on with sections: "section 2", "(sections 1 and 2)", "sections 5
+# to 7". A page's sections are its headings "## 2 Title". Citations may go on on the next line.
+{
+  line = $0
+  gsub(/^[ \t]*(\/\/|#|"|-|\*)?[ \t]*|"?[ \t]*$/, "", line)
+  cite(last, last " " line)
+  last = line
+  file = FILENAME
+  row = FNR
+}
+FNR == 1 { page[FILENAME] = 1 }
+/^#+ [0-9]+ / && FILENAME ~ /\.md$/ { section[FILENAME, $2 + 0] = 1 }
+
+function cite(line, text,   from, path) {
+  from = 1
+  while (match(substr(text, from), /(docs\/|\]\()[A-Za-z0-9_.\/-]*\.md\)?/) &&
+         from + RSTART - 1 <= length(line)) {
+    path = substr(text, from + RSTART - 1, RLENGTH)
+    from += RSTART + RLENGTH - 1
+    if (path ~ /^\]/) path = folder_of(file) substr(path, 3)
+    sub(/\)$/, "", path)
+    while (sub(/[^\/]+\/\.\.\//, "", path)) {}
+    ++citations
+    place[citations] = file ":" row
+    target[citations] = path
+    if (match(substr(text, from), /^,? \(?sections? [0-9]+((, | and | to )[0-9]+)*/)) {
+      wanted[citations] = substr(text, from, RLENGTH)
+      gsub(/,? \(?sections? /, "", wanted[citations])
+    }
+  }
+}
+
+function folder_of(path) { return path ~ /\// ? substr(path, 1, match(path, /[^\/]*$/) - 1) : "" }
+
+function check(where, path, number) {
+  if (!((path, number) in section)) print where ": " path " has no section " number
+}
+
+END {
+  cite(last, last)
+  for (i = 1; i <= citations; ++i) {
+    if (!(target[i] in page)) {
+      print place[i] ": there is no " target[i]
+      continue
+    }
+    count = split(wanted[i], word, /,? +/)
+    for (w = 1; w <= count; ++w) {
+      if (word[w] == "to") {
+        for (n = word[w - 1] + 1; n < word[w + 1]; ++n) check(place[i], target[i], n)
+      } else if (word[w] != "and") {
+        check(place[i], target[i], word[w] + 0)
+      }
+    }
+  }
+}
