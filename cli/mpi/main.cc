@@ -37,7 +37,7 @@ namespace simbench {
 namespace {
 
 namespace mpi = boost::mpi;
-using evaluation::TaskQueue;
+using evaluation::JobQueue;
 
 constexpr std::chrono::microseconds kShortestPause{100};
 constexpr std::chrono::microseconds kLongestPause{1600};
@@ -111,7 +111,9 @@ class MpiFarm final : public evaluation::TaskFarm {
   explicit MpiFarm(mpi::communicator world) : world_(std::move(world)), outbox_(world_) {}
 
   void run(const evaluation::Tasks& tasks, const evaluation::AnswerKeeper& keep) override {
-    TaskQueue queue(tasks, keep);
+    const evaluation::AnswerKeeper keep_safely = evaluation::one_at_a_time(keep);
+    const evaluation::TaskWorkerFactory make_worker = cli::simulated_sweep_workers();
+    JobQueue queue(tasks.count);
     const unsigned threads = std::max(1U, tasks.threads);
     for (int rank = 1; rank < world_.size(); ++rank) {
       outbox_.send(rank, kSetup, {threads, tasks.setup});
@@ -119,11 +121,12 @@ class MpiFarm final : public evaluation::TaskFarm {
     {
       std::vector<std::jthread> own;
       for (unsigned i = 0; i < threads; ++i) {
-        own.emplace_back([&] { queue.work_off(cli::simulated_sweep_workers()); });
+        own.emplace_back(
+            [&] { queue.work(evaluation::task_workers(tasks, make_worker, keep_safely)); });
       }
-      give_out(queue, threads);
+      give_out(tasks, queue, threads, keep_safely);
     }
-    queue.rethrow_failure();
+    queue.finish();
   }
 
   // The others may go. Also where nothing was run.
@@ -132,16 +135,17 @@ class MpiFarm final : public evaluation::TaskFarm {
   }
 
  private:
-  void give_out(TaskQueue& queue, unsigned threads) {
+  void give_out(const evaluation::Tasks& tasks, JobQueue& queue, unsigned threads,
+                const evaluation::AnswerKeeper& keep) {
     std::vector<std::size_t> given(static_cast<std::size_t>(world_.size()), 0);
     std::size_t away = 0;
     const auto fill = [&](int rank) {
       const std::size_t others = given.size() * threads;
       std::size_t& mine = given[static_cast<std::size_t>(rank)];
       while (mine < threads * (queue.left() > kPlenty * others ? 1 + kAhead : 1)) {
-        std::optional<TaskQueue::Task> task = queue.next();
+        const std::optional<std::size_t> task = queue.next();
         if (!task) return;
-        outbox_.send(rank, kTask, {task->index, std::move(task->text)});
+        outbox_.send(rank, kTask, {*task, tasks.task(*task)});
         ++mine;
         ++away;
       }
@@ -158,11 +162,10 @@ class MpiFarm final : public evaluation::TaskFarm {
       const Message answer = receive(world_, *waiting);
       --given[static_cast<std::size_t>(waiting->source())];
       --away;
-      if (waiting->tag() == kFailure) {
-        queue.failed(std::make_exception_ptr(std::runtime_error(answer.text)));
-      } else {
-        queue.answered(answer.number, answer.text);
-      }
+      queue.attempt(answer.number, [&] {
+        if (waiting->tag() == kFailure) throw std::runtime_error(answer.text);
+        keep(answer.number, answer.text);
+      });
       fill(waiting->source());
     }
   }

@@ -9,9 +9,9 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
+#include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/pipeline_scorer.h"
@@ -34,6 +34,12 @@ bool is_offline(const PipelineChoice& choice) {
          choice.device_time.make(choice.device_time_parameters)->offline();
 }
 
+// A job that failed: scenario, pipeline, seed, version and why.
+class JobFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // The jobs of one evaluation and what has come of them.
 class Evaluation {
  public:
@@ -48,12 +54,21 @@ class Evaluation {
 
   Results run() {
     const auto begin = std::chrono::steady_clock::now();
-    run_workers();
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    if (source_error_) std::rethrow_exception(source_error_);
-    if (!failure_.empty()) throw EvaluationFailed(failure_, results(wall.count()));
-    if (done_ < scores_.size()) throw EvaluationCancelled("cancelled", results(wall.count()));
-    Results all = results(wall.count());
+    const auto wall_seconds = [begin] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    try {
+      const bool finished = run_jobs_with_workers(
+          scores_.size(), {.threads = options_.jobs, .cancel = options_.cancel}, [this]() -> Job {
+            return [this, worker = std::make_shared<Worker>(*this)](std::size_t job) {
+              run_job(job, *worker->source);
+            };
+          });
+      if (!finished) throw EvaluationCancelled("cancelled", results(wall_seconds()));
+    } catch (const JobFailed& failure) {
+      throw EvaluationFailed(failure.what(), results(wall_seconds()));
+    }
+    Results all = results(wall_seconds());
     all.claims = check_claims(all.rows, scenario_.trigger.rate_hz);
     return all;
   }
@@ -65,33 +80,21 @@ class Evaluation {
     return options_.first_seed + job / choices_.size();
   }
 
-  void run_workers() {
-    unsigned workers = options_.jobs > 0 ? options_.jobs : std::thread::hardware_concurrency();
-    workers = static_cast<unsigned>(
-        std::clamp<std::size_t>(workers, 1, std::max<std::size_t>(scores_.size(), 1)));
-    std::vector<std::jthread> threads;
-    for (unsigned i = 1; i < workers; ++i) threads.emplace_back([this] { work(); });
-    work();
-  }
-
-  void work() {
-    const double begin = thread_cpu_seconds();
-    try {
-      const std::unique_ptr<RecordingSource> source = make_source_();
-      for (std::size_t job = next(); job < scores_.size(); job = next()) run_job(job, *source);
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-      if (!source_error_) source_error_ = std::current_exception();
+  // One thread's backend, and what the thread has cost.
+  struct Worker {
+    explicit Worker(Evaluation& all) : evaluation(all), source(all.make_source_()) {}
+    ~Worker() {
+      source.reset();
+      const std::lock_guard lock(evaluation.mutex_);
+      evaluation.cpu_seconds_ += thread_cpu_seconds() - begin;
     }
-    const std::lock_guard lock(mutex_);
-    cpu_seconds_ += thread_cpu_seconds() - begin;
-  }
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
 
-  std::size_t next() {
-    const bool cancelled = options_.cancel != nullptr && options_.cancel->load();
-    return stop_ || cancelled ? scores_.size() : next_++;
-  }
+    const double begin = thread_cpu_seconds();
+    Evaluation& evaluation;
+    std::unique_ptr<RecordingSource> source;
+  };
 
   void run_job(std::size_t job, RecordingSource& source) {
     const PipelineChoice& choice = choices_[pipeline_of(job)];
@@ -101,15 +104,9 @@ class Evaluation {
     } catch (const RecordingFailed& failure) {
       scores_[job] = missing_score(seed, failure.what());
     } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-      if (failure_.empty() || job < failed_job_) {
-        failed_job_ = job;
-        failure_ =
-            fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})", scenario_.name,
-                        choice.pipeline.name, seed, error.what(), version(), commit());
-      }
-      return;
+      throw JobFailed(fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})",
+                                  scenario_.name, choice.pipeline.name, seed, error.what(),
+                                  version(), commit()));
     }
     const std::lock_guard lock(mutex_);
     ++done_;
@@ -200,14 +197,9 @@ class Evaluation {
   const Progress& progress_;
   const std::vector<PipelineChoice> choices_;
   std::vector<std::optional<SeedScore>> scores_;  // by job; each written by one worker
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;                              // guards what follows
   std::size_t done_ = 0;
   double cpu_seconds_ = 0;
-  std::exception_ptr source_error_;
-  std::size_t failed_job_ = 0;
-  std::string failure_;
 };
 
 }  // namespace

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <set>
-#include <thread>
 
+#include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 
 namespace simbench::evaluation {
@@ -41,51 +39,21 @@ std::string as_sweep(std::string message) {
   return message;
 }
 
-// Many threads look for the first point that is refused.
-class PointCheck {
- public:
-  PointCheck(const SweepPlan& plan, const SweepRequest& request)
-      : plan_(plan), request_(request), refused_(plan.points()) {}
-
-  void work() {
-    for (std::size_t point = next_++; point < refused_; point = next_++) check(point);
+// The warnings of the scenario at a point. Throws InputError if the point is refused.
+std::vector<std::string> check_point(const SweepPlan& plan, const SweepRequest& request,
+                                     std::size_t point) {
+  try {
+    std::vector<scenarios::Override> overrides = request.overrides;
+    const std::vector<scenarios::Override> swept = plan.overrides(point);
+    overrides.insert(overrides.end(), swept.begin(), swept.end());
+    const Scenario scenario = scenarios::load_scenario(request.scenario, overrides);
+    choose_pipelines(scenario, plan.pipelines);
+    return scenarios::warnings(scenario);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("point {} of {} of the sweep ({}) is refused: {}", point + 1,
+                                 plan.points(), plan.point_text(point), as_sweep(error.what())));
   }
-
-  std::vector<std::string> finish() const {
-    if (refused_ < plan_.points()) {
-      throw InputError(fmt::format("point {} of {} of the sweep ({}) is refused: {}", refused_ + 1,
-                                   plan_.points(), plan_.point_text(refused_), problem_));
-    }
-    return {warnings_.begin(), warnings_.end()};
-  }
-
- private:
-  void check(std::size_t point) {
-    try {
-      std::vector<scenarios::Override> overrides = request_.overrides;
-      const std::vector<scenarios::Override> swept = plan_.overrides(point);
-      overrides.insert(overrides.end(), swept.begin(), swept.end());
-      const Scenario scenario = scenarios::load_scenario(request_.scenario, overrides);
-      choose_pipelines(scenario, plan_.pipelines);
-      const std::vector<std::string> warnings = scenarios::warnings(scenario);
-      const std::lock_guard lock(mutex_);
-      warnings_.insert(warnings.begin(), warnings.end());
-    } catch (const InputError& error) {
-      const std::lock_guard lock(mutex_);
-      if (point >= refused_) return;
-      refused_ = point;
-      problem_ = as_sweep(error.what());
-    }
-  }
-
-  const SweepPlan& plan_;
-  const SweepRequest& request_;
-  std::atomic<std::size_t> next_ = 0;
-  std::mutex mutex_;                  // guards what follows, and writing refused_
-  std::atomic<std::size_t> refused_;  // the first; points beyond need no look
-  std::string problem_;
-  std::set<std::string> warnings_;
-};
+}
 
 }  // namespace
 
@@ -164,17 +132,14 @@ SweepPlan make_plan(const SweepRequest& request) {
 
 std::vector<std::string> check_points(const SweepPlan& plan, const SweepRequest& request,
                                       unsigned threads) {
-  PointCheck check(plan, request);
-  const unsigned workers =
-      threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min<std::size_t>(workers, plan.points()); ++i) {
-      others.emplace_back([&] { check.work(); });
-    }
-    check.work();
-  }
-  return check.finish();
+  std::mutex mutex;
+  std::set<std::string> texts;
+  run_jobs(plan.points(), {.threads = threads}, [&](std::size_t point) {
+    const std::vector<std::string> warnings = check_point(plan, request, point);
+    const std::lock_guard lock(mutex);
+    texts.insert(warnings.begin(), warnings.end());
+  });
+  return {texts.begin(), texts.end()};
 }
 
 }  // namespace simbench::evaluation

@@ -1,8 +1,9 @@
-// Many independent pieces of work, given to whoever is free: threads of this process (ThreadFarm),
-// or ranks of a cluster (cli/mpi/main.cc).
+// Tasks that are texts, so that they can be worked on anywhere: by threads of this process
+// (ThreadFarm) or by the ranks of a cluster (cli/mpi/main.cc).
 //
-// A task and its answer are texts, so that a farm need not know what they are about and can carry
-// them anywhere. A worker is made once for each thread, from `setup`, which all tasks share.
+// A task and its answer are texts: a farm need not know what they are about and can carry them to
+// other processes. A worker is made once for each thread, from `setup`, which all tasks share.
+// Order, errors and threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
 //   ThreadFarm farm([](const std::string& setup) {
 //     return [world = World(setup)](const std::string& task) { return world.answer(task); };
@@ -13,12 +14,11 @@
 #define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 
 #include <cstddef>
-#include <exception>
 #include <functional>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
+
+#include "evaluation/run/jobs.h"
 
 namespace simbench::evaluation {
 
@@ -31,16 +31,15 @@ using AnswerKeeper = std::function<void(std::size_t task, const std::string& ans
 struct Tasks {
   std::string setup;
   std::size_t count = 0;
-  std::function<std::string(std::size_t)> task;  // its text; called one at a time, in order
+  std::function<std::string(std::size_t)> task;  // its text; called from any thread
   unsigned threads = 0;                          // of each process; 0: the farm's own choice
 };
 
 class TaskFarm {
  public:
   virtual ~TaskFarm() = default;
-  // Has every task worked on once, begun in order and answered in any. If a worker or `keep`
-  // throws, no more are begun, those that run come to their end, and the first exception passes
-  // through.
+  // Has every task worked on once. If a worker or `keep` throws, no more are begun, those that run
+  // come to their end, and the exception of the first task passes through.
   virtual void run(const Tasks& tasks, const AnswerKeeper& keep) = 0;
 };
 
@@ -54,34 +53,11 @@ class ThreadFarm final : public TaskFarm {
   TaskWorkerFactory make_worker_;
 };
 
-// What is left of the tasks, for those who write a farm. Safe to be called by several threads.
-class TaskQueue {
- public:
-  struct Task {
-    std::size_t index = 0;
-    std::string text;
-  };
-
-  TaskQueue(const Tasks& tasks, const AnswerKeeper& keep) : tasks_(tasks), keep_(keep) {}
-
-  // Nothing once all are given out or one has failed.
-  std::optional<Task> next();
-  // How many next() has still to give.
-  std::size_t left() const;
-  void answered(std::size_t task, const std::string& answer);
-  void failed(std::exception_ptr error);
-  // Makes a worker and lets it work until there is nothing left; what it throws goes to failed().
-  void work_off(const TaskWorkerFactory& make_worker);
-  // Throws the first failure, if there was one.
-  void rethrow_failure() const;
-
- private:
-  const Tasks& tasks_;
-  const AnswerKeeper& keep_;
-  mutable std::mutex mutex_;  // guards what follows, and calls
-  std::size_t next_ = 0;
-  std::exception_ptr failure_;
-};
+// For those who write a farm: `keep`, whose calls from several threads wait for each other, and
+// workers of this process that work on the tasks and keep the answers. Arguments must outlive them.
+AnswerKeeper one_at_a_time(const AnswerKeeper& keep);
+WorkerFactory task_workers(const Tasks& tasks, const TaskWorkerFactory& make_worker,
+                           const AnswerKeeper& keep);
 
 }  // namespace simbench::evaluation
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/exposure_sets.h"
 #include "evaluation/statistics/statistics.h"
@@ -21,7 +22,6 @@
 #include "reconstruction/libraries/set_reconstruction.h"
 #include "reconstruction/libraries/subject_maker.h"
 #include "reconstruction/paint.h"
-#include "reconstruction/parallel_jobs.h"
 #include "reconstruction/seed_tally.h"
 #include "scenarios/loader.h"
 #include "sim/engine/random.h"
@@ -106,7 +106,8 @@ class Experiment {
   }
 
   void run_all(std::size_t count, const std::function<void(std::size_t)>& job) {
-    if (!run_jobs(count, options_.jobs, options_.cancel, job)) {
+    const evaluation::JobOptions options{.threads = options_.jobs, .cancel = options_.cancel};
+    if (!evaluation::run_jobs(count, options, job)) {
       throw ReconstructionCancelled("cancelled");
     }
   }

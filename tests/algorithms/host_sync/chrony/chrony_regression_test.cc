@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/host_sync/chrony/chrony_robust_regression.h"
 
 namespace simbench {
 namespace {
@@ -58,14 +57,6 @@ TEST(ChronyRegressionVectors, AllFortyAgree) {
     const auto weighted = weighted_regression(used_x, used_y, w);
     ASSERT_TRUE(weighted) << name;
     line_agrees(*weighted, set.at("weighted"));
-
-    const auto robust = robust_regression(used_x, used_y, 1e-12);
-    const nlohmann::json& robust_expected = set.at("robust");
-    ASSERT_EQ(robust.has_value(), robust_expected.at("ok") == 1) << name;
-    EXPECT_EQ(robust->start, robust_expected.at("start").get<std::size_t>()) << name;
-    EXPECT_EQ(robust->runs, robust_expected.at("runs").get<int>()) << name;
-    expect_near(robust->intercept, robust_expected.at("b0"), name + " robust b0");
-    expect_near(robust->slope, robust_expected.at("b1"), name + " robust b1");
 
     expect_near(median(used_y), set.at("median_y"), name + " median");
   }
@@ -152,19 +143,7 @@ TEST(ChronyRegression, TooFewOrCoincidentPointsGiveNothing) {
   EXPECT_FALSE(weighted_regression(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0)));
   EXPECT_FALSE(best_regression(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0), 0, 3));
   EXPECT_FALSE(best_regression(Values{}, Values{}, Values{}, 0, 3));
-  EXPECT_FALSE(robust_regression(Values{1}, Values{1}, 1e-9));
-  EXPECT_FALSE(robust_regression(Values{1, 1}, Values{1, 2}, 1e-9));
-  EXPECT_FALSE(robust_regression(Values(5, 3.0), Values(5, 1.0), 1e-9));
   EXPECT_FALSE(second_slope(Values(5, 3.0), Values(5, 1.0), Values(5, 1.0)));
-}
-
-TEST(ChronyRegression, TheRobustFitIgnoresOutliers) {
-  const Values x = {-6, -5, -4, -3, -2, -1, 0};
-  const Values y = {6.1, 50, 4.05, 2.9, 2.02, -70, 0.01};
-  const auto fit = robust_regression(x, y, 1e-9);
-  ASSERT_TRUE(fit);
-  EXPECT_NEAR(fit->slope, -1, 0.1);
-  EXPECT_NEAR(robust_regression(Values{1, 3}, Values{1, 5}, 1e-9)->slope, 2, 1e-15);
 }
 
 TEST(ChronyRegression, TheSecondSlopeIsFoundBesideTheFirst) {

@@ -1,0 +1,83 @@
+// Many independent jobs, numbered from 0, on the threads of this process.
+//
+// Everything here that has many runs to make makes them this way: evaluate() its pipelines and
+// seeds, a sweep its points, a reconstruction its sets. A farm over several processes
+// (evaluation/sweep/task_farm.h, cli/mpi/main.cc) takes its jobs from the same queue.
+//
+// Contract
+//  - Order: jobs begin in the order of their numbers and end in any. Each is done once. Results
+//    belong into a place of the job's own, so that they do not depend on the number of threads.
+//  - Threads: at most as many as there are jobs; the calling thread is one of them, and one thread
+//    does the jobs in order. Where the system has no further thread to give, those that there are
+//    do the work.
+//  - Workers: a worker is made once on each thread, used by it alone, and destroyed there.
+//  - Errors: if a job throws, no more begin, those that run come to their end, and the exception of
+//    the job with the lowest number is thrown: the same one with any number of threads, since every
+//    job before it had begun. A worker that cannot be made counts as an error before all jobs.
+//  - Cancelling: once `cancel` is true, no more begin. A signal handler may set it.
+//
+//   std::vector<double> squares(100);
+//   bool all = run_jobs(squares.size(), {.threads = 0, .cancel = &interrupted},
+//                       [&](std::size_t job) { squares[job] = double(job) * double(job); });
+#ifndef SIMBENCH_EVALUATION_RUN_JOBS_H_
+#define SIMBENCH_EVALUATION_RUN_JOBS_H_
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+namespace simbench::evaluation {
+
+struct JobOptions {
+  unsigned threads = 0;                       // 0: as many as there are cores
+  const std::atomic<bool>* cancel = nullptr;  // looked at before each job
+};
+
+using Job = std::function<void(std::size_t job)>;
+// Makes the worker of one thread; called on that thread.
+using WorkerFactory = std::function<Job()>;
+
+// Both return whether all jobs were done: false only if they were cancelled.
+bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
+bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
+                           const WorkerFactory& make_worker);
+
+// The jobs that are left, for those who give some of them to other processes. Any thread may call.
+class JobQueue {
+ public:
+  explicit JobQueue(std::size_t count, const std::atomic<bool>* cancel = nullptr)
+      : count_(count), cancel_(cancel) {}
+  JobQueue(const JobQueue&) = delete;
+  JobQueue& operator=(const JobQueue&) = delete;
+
+  // The next job to begin. Nothing once all have begun, one has failed or they are cancelled.
+  std::optional<std::size_t> next();
+  // How many next() has still to give.
+  std::size_t left() const;
+  // Does what a job from next() asks for; an exception of `action` is the job's error.
+  void attempt(std::size_t job, const std::function<void()>& action);
+  // Makes a worker and has it attempt jobs until there are none.
+  void work(const WorkerFactory& make_worker);
+  // After all attempts: throws the first job's error, else returns whether all were done.
+  bool finish() const;
+
+ private:
+  bool stopped() const;
+  // `rank` orders errors: that of a job is its number + 1.
+  void fail(std::size_t rank, std::exception_ptr error);
+
+  const std::size_t count_;
+  const std::atomic<bool>* const cancel_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::size_t next_ = 0;
+  std::size_t done_ = 0;
+  std::exception_ptr error_;
+  std::size_t error_rank_ = 0;
+};
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_RUN_JOBS_H_
