@@ -22,26 +22,27 @@
 #define SIMBENCH_HARDWARE_CLOCK_NODE_CLOCK_H_
 
 #include <functional>
-#include <stdexcept>
 
 #include "algorithms/ports/clock_adjustment.h"
 #include "algorithms/ports/host.h"
+#include "clocks/disciplined_clock.h"
 #include "hardware/clock/monotonic_time.h"
 
 namespace simbench::hardware {
 
-class ClockError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using clocks::ClockError;
 
 // steady = steady_zero + (1 + skew) * (monotonic - monotonic_zero). The default is the identity.
 // Rounded down to 1 ns; instants that the monotonic clock cannot reach become its last or first.
 struct NodeOscillator {
+  using Instant = MonotonicTime;
   MonotonicTime monotonic_zero{};
   SteadyTime steady_zero{};
   double skew_ppm = 0;
 
+  double deviation_ns(MonotonicTime at) const {
+    return skew_ppm / 1e6 * static_cast<double>((at - monotonic_zero).count());
+  }
   SteadyTime steady(MonotonicTime at) const;
   // The first instant at which the steady clock reads `at` or more.
   MonotonicTime when(SteadyTime at) const;

@@ -2,7 +2,7 @@
 //
 // Nothing of the operating system is changed. It begins at what the operating system's clock reads
 // (plus an offset, for nodes of tests), at rate 0, and goes on by itself from there
-// (system_timeline.h has the semantics of adjustments and the precision).
+// (clocks/disciplined_clock.h has the semantics of adjustments and the precision).
 //
 // Calls of HostClock do not suspend: they act on the present instant. While somebody observes, the
 // planned end of a slew is told when it comes, by a timer of `context`; observe(nullptr) ends that
@@ -20,8 +20,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "clocks/disciplined_clock.h"
 #include "hardware/clock/node_clock.h"
-#include "hardware/clock/system_timeline.h"
 
 namespace simbench::hardware {
 
@@ -48,20 +48,22 @@ class SoftwareClock final : public NodeClock {
   Task<void> adjust_frequency(double ppb) override;
   Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
 
-  const NodeOscillator& oscillator() const override { return timeline_.oscillator(); }
-  HostTime system_at(MonotonicTime at) const override { return timeline_.read(at); }
+  const NodeOscillator& oscillator() const override { return clock_.oscillator(); }
+  HostTime system_at(MonotonicTime at) const override { return clock_.read(at); }
   MonotonicTime when(HostTime at, MonotonicTime now) const override {
-    return timeline_.when(at, now);
+    return clock_.when(at, now);
   }
-  ClockAdjustment present(MonotonicTime now) const override { return timeline_.present(now); }
+  ClockAdjustment present(MonotonicTime now) const override { return clock_.present(now); }
   void observe(Observer observer) override;
   void restart() override;
 
  private:
+  using Clock = clocks::DisciplinedClock<NodeOscillator>;
+
   void settle_in_time();
 
   Settings settings_;
-  SystemTimeline timeline_;
+  Clock clock_;
   bool observed_ = false;
   boost::asio::steady_timer settle_timer_;
 };
