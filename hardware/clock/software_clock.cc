@@ -24,9 +24,7 @@ HostTime read_system_clock() {
 }
 
 SoftwareClock::SoftwareClock(boost::asio::io_context& context, Settings settings)
-    : settings_(std::move(settings)),
-      clock_(begin_clock(settings_)),
-      settle_timer_(context) {}
+    : settings_(std::move(settings)), clock_(begin_clock(settings_)), settle_timer_(context) {}
 
 Task<HostTime> SoftwareClock::now() { co_return clock_.read(monotonic_now()); }
 

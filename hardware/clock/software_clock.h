@@ -50,9 +50,7 @@ class SoftwareClock final : public NodeClock {
 
   const NodeOscillator& oscillator() const override { return clock_.oscillator(); }
   HostTime system_at(MonotonicTime at) const override { return clock_.read(at); }
-  MonotonicTime when(HostTime at, MonotonicTime now) const override {
-    return clock_.when(at, now);
-  }
+  MonotonicTime when(HostTime at, MonotonicTime now) const override { return clock_.when(at, now); }
   ClockAdjustment present(MonotonicTime now) const override { return clock_.present(now); }
   void observe(Observer observer) override;
   void restart() override;

@@ -6,8 +6,7 @@ namespace simbench::sim {
 
 SystemClock::SystemClock(std::uint32_t host, OscillatorModel oscillator, Nanoseconds offset,
                          SteadyTime steady_epoch)
-    : host_(host),
-      own_(host, {std::move(oscillator), steady_epoch}, TrueTime{}, HostTime(offset)) {
+    : host_(host), own_(host, {std::move(oscillator), steady_epoch}, TrueTime{}, HostTime(offset)) {
   own_.observe([this](const ClockAdjustment& adjustment) { notify(adjustment); });
 }
 
