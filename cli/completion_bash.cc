@@ -9,7 +9,7 @@
 namespace simbench::cli {
 namespace {
 
-constexpr const char* kHead =
+constexpr const char* kBashHead =
     R"bash(# bash completion for simbench; made by `simbench completion bash`.
 
 )bash";
@@ -147,7 +147,7 @@ std::string bash_completion(const CommandTable& table) {
   for (std::size_t at = body.find("DEFAULT"); at != std::string::npos; at = body.find("DEFAULT")) {
     body.replace(at, 7, kDefaultCommand);
   }
-  return fmt::format("{}_simbench_commands='{}'\n\n{}{}{}{}", kHead, fmt::join(names, " "),
+  return fmt::format("{}_simbench_commands='{}'\n\n{}{}{}{}", kBashHead, fmt::join(names, " "),
                      function("_simbench_options", "$1", options, ""),
                      function("_simbench_value", "\"$1 $2\"", values, "-"),
                      function("_simbench_argument", "\"$1 $2\"", arguments, "-"), body.substr(1));

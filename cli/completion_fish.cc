@@ -8,7 +8,8 @@
 namespace simbench::cli {
 namespace {
 
-constexpr const char* kHead = R"(# fish completion for simbench; made by `simbench completion fish`.
+constexpr const char* kFishHead =
+    R"(# fish completion for simbench; made by `simbench completion fish`.
 
 # The command of the line so far; empty while there is none.
 function __simbench_command
@@ -51,7 +52,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-std::string quoted(std::string text) {
+std::string fish_quoted(std::string text) {
   return fmt::format("'{}'", replaced(replaced(std::move(text), "\\", "\\\\"), "'", "\\'"));
 }
 
@@ -61,7 +62,7 @@ std::string candidates(const OptionEntry& entry) {
     case ValueKind::kNone:
       return "";
     case ValueKind::kWord:
-      return " -x -a " + quoted(fmt::format("{}", fmt::join(entry.words, " ")));
+      return " -x -a " + fish_quoted(fmt::format("{}", fmt::join(entry.words, " ")));
     case ValueKind::kScenario:
       return " -x -a '(__simbench_scenarios)'";
     case ValueKind::kNumber:
@@ -80,7 +81,7 @@ std::string option_line(const std::string& condition, const OptionEntry& option)
     names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   }
   return fmt::format("complete -c simbench -n '{}'{}{} -d {}\n", condition, names,
-                     candidates(option), quoted(option.text));
+                     candidates(option), fish_quoted(option.text));
 }
 
 std::string argument_line(const std::string& condition, const OptionEntry& argument) {
@@ -90,19 +91,19 @@ std::string argument_line(const std::string& condition, const OptionEntry& argum
   if (argument.value == ValueKind::kNumber) return "";
   if (offered.starts_with(" -x")) offered.erase(0, 3);
   return fmt::format("complete -c simbench -n '{}'{} -d {}\n", condition, offered,
-                     quoted(argument.value_name));
+                     fish_quoted(argument.value_name));
 }
 
 }  // namespace
 
 std::string fish_completion(const CommandTable& table) {
-  std::string text = replaced(kHead, "DEFAULT", kDefaultCommand);
+  std::string text = replaced(kFishHead, "DEFAULT", kDefaultCommand);
   for (const OptionEntry& option : table.program.options) {
     text += option_line("__simbench_starts", option);
   }
   for (const CommandEntry& command : table.commands) {
     text += fmt::format("\ncomplete -c simbench -n __simbench_starts -a {} -d {}\n", command.name,
-                        quoted(command.text));
+                        fish_quoted(command.text));
     const std::string is = "__simbench_is " + command.name;
     const std::string condition =
         command.name == kDefaultCommand ? fmt::format("{}; or __simbench_starts", is) : is;

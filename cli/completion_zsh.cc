@@ -9,7 +9,7 @@
 namespace simbench::cli {
 namespace {
 
-constexpr const char* kHead = R"zsh(#compdef simbench
+constexpr const char* kZshHead = R"zsh(#compdef simbench
 # zsh completion for simbench; made by `simbench completion zsh`.
 
 _simbench_scenarios() {
@@ -20,7 +20,7 @@ _simbench_scenarios() {
 
 )zsh";
 
-constexpr const char* kTail = R"zsh(
+constexpr const char* kZshTail = R"zsh(
 # Options without a command are those of the default command.
 _simbench() {
   local _simbench_program=$words[1] curcontext=$curcontext
@@ -50,7 +50,7 @@ else
 fi
 )zsh";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string zsh_replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos;
        at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -58,15 +58,15 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  return fmt::format("'{}'", replaced(text, "'", "'\\''"));
+std::string zsh_quoted(const std::string& text) {
+  return fmt::format("'{}'", zsh_replaced(text, "'", "'\\''"));
 }
 
 // Within the brackets of an option's explanation, and between colons.
-std::string escaped(std::string text) {
-  text = replaced(std::move(text), "\\", "\\\\");
+std::string zsh_escaped(std::string text) {
+  text = zsh_replaced(std::move(text), "\\", "\\\\");
   for (const char* special : {"[", "]", ":"}) {
-    text = replaced(std::move(text), special, std::string("\\") + special);
+    text = zsh_replaced(std::move(text), special, std::string("\\") + special);
   }
   return text;
 }
@@ -96,21 +96,21 @@ std::string option_specs(const OptionEntry& option) {
     const bool value = option.value != ValueKind::kNone;
     const std::string joined = value && name.starts_with("--") ? name + "=" : name;
     text += fmt::format(
-        "  {}\n",
-        quoted(fmt::format("{}{}[{}]{}", excluded, joined, escaped(option.text),
-                           value ? fmt::format(":{}:{}", escaped(option.value_name), action(option))
-                                 : std::string())));
+        "  {}\n", zsh_quoted(fmt::format(
+                      "{}{}[{}]{}", excluded, joined, zsh_escaped(option.text),
+                      value ? fmt::format(":{}:{}", zsh_escaped(option.value_name), action(option))
+                            : std::string())));
   }
   return text;
 }
 
 std::string specs(const std::string& name, const CommandEntry& command) {
-  std::string text = fmt::format("_simbench_{}=(\n", replaced(name, "-", "_"));
+  std::string text = fmt::format("_simbench_{}=(\n", zsh_replaced(name, "-", "_"));
   for (const OptionEntry& option : command.options) text += option_specs(option);
   for (const OptionEntry& argument : command.arguments) {
-    text +=
-        fmt::format("  {}\n", quoted(fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
-                                                 escaped(argument.value_name), action(argument))));
+    text += fmt::format(
+        "  {}\n", zsh_quoted(fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
+                                         zsh_escaped(argument.value_name), action(argument))));
   }
   return text + ")\n";
 }
@@ -118,14 +118,14 @@ std::string specs(const std::string& name, const CommandEntry& command) {
 }  // namespace
 
 std::string zsh_completion(const CommandTable& table) {
-  std::string text = fmt::format("{}_simbench_commands=(\n", kHead);
+  std::string text = fmt::format("{}_simbench_commands=(\n", kZshHead);
   for (const CommandEntry& command : table.commands) {
-    text +=
-        fmt::format("  {}\n", quoted(fmt::format("{}:{}", command.name, escaped(command.text))));
+    text += fmt::format("  {}\n",
+                        zsh_quoted(fmt::format("{}:{}", command.name, zsh_escaped(command.text))));
   }
   text += ")\n" + specs("program_options", table.program);
   for (const CommandEntry& command : table.commands) text += specs(command.name, command);
-  return text + replaced(kTail, "DEFAULT", kDefaultCommand);
+  return text + zsh_replaced(kZshTail, "DEFAULT", kDefaultCommand);
 }
 
 }  // namespace simbench::cli

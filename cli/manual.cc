@@ -12,7 +12,7 @@ namespace simbench::cli {
 namespace {
 
 // A line of text as troff takes it for what it is.
-std::string escaped(const std::string& text) {
+std::string troff(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
@@ -44,8 +44,8 @@ std::string escaped(const std::string& text) {
   return out.starts_with(".") ? "\\&" + out : out;
 }
 
-std::string bold(const std::string& text) { return fmt::format("\\fB{}\\fR", escaped(text)); }
-std::string italic(const std::string& text) { return fmt::format("\\fI{}\\fR", escaped(text)); }
+std::string bold(const std::string& text) { return fmt::format("\\fB{}\\fR", troff(text)); }
+std::string italic(const std::string& text) { return fmt::format("\\fI{}\\fR", troff(text)); }
 
 std::string heading(const std::string& text) { return fmt::format(".SH {}\n", text); }
 
@@ -62,8 +62,8 @@ std::string page_name(const CommandEntry& command) {
 std::string top(const CommandEntry& command) {
   const std::string name = page_name(command);
   return fmt::format(".TH {} 1 \"\" \"simbench {}\" \"User Commands\"\n{}{} \\- {}\n",
-                     escaped(upper(name)), version(), heading("NAME"), escaped(name),
-                     escaped(command.text));
+                     troff(upper(name)), version(), heading("NAME"), troff(name),
+                     troff(command.text));
 }
 
 // "-h, --help", "--seeds N".
@@ -75,9 +75,9 @@ std::string option_term(const OptionEntry& option) {
   return option.value_name.empty() ? term : fmt::format("{} {}", term, italic(option.value_name));
 }
 
-std::string entry_text(const std::string& term, const OptionEntry& entry) {
+std::string tagged(const std::string& term, const OptionEntry& entry) {
   return fmt::format(".TP\n{}\n{}{}\n", term, entry.required ? "Required. " : "",
-                     escaped(entry.text));
+                     troff(entry.text));
 }
 
 std::string synopsis(const CommandEntry& command) {
@@ -98,11 +98,11 @@ std::string entries(const CommandEntry& command) {
   std::string text;
   if (!command.arguments.empty()) text += heading("ARGUMENTS");
   for (const OptionEntry& argument : command.arguments) {
-    text += entry_text(italic(argument.value_name), argument);
+    text += tagged(italic(argument.value_name), argument);
   }
   text += heading("OPTIONS");
   for (const OptionEntry& option : command.options) {
-    text += entry_text(option_term(option), option);
+    text += tagged(option_term(option), option);
   }
   return text;
 }
@@ -130,7 +130,7 @@ std::string body(const Lines& lines) {
     const bool indented = line.starts_with(" ");
     if (indented != as_it_is) text += indented ? ".PP\n.nf\n" : ".fi\n";
     as_it_is = indented;
-    text += fmt::format("{}\n", escaped(line));
+    text += fmt::format("{}\n", troff(line));
   }
   return text + (as_it_is ? ".fi\n" : "");
 }
@@ -176,7 +176,7 @@ No colour, if it is 0.
 std::string references(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) {
-    text += fmt::format(".BR {} (1){}\n", escaped(name), &name == &names.back() ? "" : ",");
+    text += fmt::format(".BR {} (1){}\n", troff(name), &name == &names.back() ? "" : ",");
   }
   return section("SEE ALSO", text);
 }
@@ -186,9 +186,9 @@ std::string command_list(const CommandTable& table) {
   std::string text;
   std::string group;
   for (const CommandEntry& command : table.commands) {
-    if (command.group != group) text += fmt::format(".SS {}\n", escaped(command.group));
+    if (command.group != group) text += fmt::format(".SS {}\n", troff(command.group));
     group = command.group;
-    text += fmt::format(".TP\n{}\n{}\n", bold(command.name), escaped(command.text));
+    text += fmt::format(".TP\n{}\n{}\n", bold(command.name), troff(command.text));
   }
   return text;
 }
@@ -212,7 +212,7 @@ std::string manual_page(const CommandTable& table) {
 std::string manual_page(const CommandTable& table, const CommandEntry& command) {
   const Footer footer = divided(command);
   return top(command) + synopsis(command) +
-         section("DESCRIPTION", escaped(command.text) + ".\n" + footer.description) +
+         section("DESCRIPTION", troff(command.text) + ".\n" + footer.description) +
          entries(command) + section("EXAMPLES", footer.examples) +
          section("EXIT STATUS", footer.exit_status) + references({page_name(table.program)});
 }

@@ -7,7 +7,7 @@
 # RUNS_ONCE: code in which no run spends its time. It is optimised a little in Release, and not at
 # all under the sanitizers, which find no less in it.
 # PARSES: code that fuzzers watch.
-# PRECOMPILE: headers that most files of the folder include (cmake/precompiled.cmake has the rest).
+# PRECOMPILE: headers that most files of the folder include (cmake/fast_build.cmake has the rest).
 function(simbench_folder_library name)
   cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
@@ -29,10 +29,7 @@ function(simbench_folder_library name)
     list(APPEND options -fsanitize=fuzzer-no-link)
   endif()
   target_compile_options(simbench_${name} PRIVATE ${options})
-  simbench_precompile(simbench_${name} ${arg_PRECOMPILE})
-  if(SIMBENCH_SANITIZE)
-    simbench_unity(simbench_${name} SOURCES ${sources})
-  endif()
+  simbench_fast_build(simbench_${name} SOURCES ${sources} PRECOMPILE ${arg_PRECOMPILE})
   install(TARGETS simbench_${name} EXPORT simbench)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
           FILES_MATCHING PATTERN "*.h")

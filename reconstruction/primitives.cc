@@ -11,8 +11,6 @@
 namespace simbench::reconstruction {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 void require_positive(double length_m, const char* what) {
   if (length_m > 0 && std::isfinite(length_m)) return;
   throw std::invalid_argument(fmt::format("{} of {} m, must be more than 0", what, length_m));
@@ -30,7 +28,7 @@ struct Ring {
 // most 2 sin(t / 4)^2; no point of a triangle with these corners is deeper than r (1 - cos d),
 // which is r 4 sin(t / 4)^2.
 double longest_step(double radius, double largest_error) {
-  const double coarsest = kPi / 4;
+  const double coarsest = std::numbers::pi / 4;
   const double half_sine = std::sqrt(largest_error / radius) / 2;
   return half_sine >= std::sin(coarsest / 4) ? coarsest : 4 * std::asin(half_sine);
 }
@@ -57,7 +55,7 @@ TriangleMesh revolve(const std::vector<Ring>& rings, int segments) {
   for (int i = 1; i <= inner; ++i) {
     const Ring& ring = rings[static_cast<std::size_t>(i)];
     for (int k = 0; k < segments; ++k) {
-      const double longitude = 2 * kPi * k / segments;
+      const double longitude = 2 * std::numbers::pi * k / segments;
       const Eigen::Vector3d vertex(ring.radius * std::cos(longitude),
                                    ring.radius * std::sin(longitude), ring.z);
       mesh.vertices.emplace_back(vertex.cast<float>());
@@ -93,8 +91,8 @@ TriangleMesh make_ellipsoid(const Eigen::Vector3d& semi_axes_m, double largest_e
   require_positive(largest_error_m, "a largest error");
   const double step = longest_step(semi_axes_m.maxCoeff(), largest_error_m);
   std::vector<Ring> rings;
-  append_rings(rings, 1.0, 0.0, kPi / 2, -kPi / 2, step);
-  TriangleMesh mesh = revolve(rings, steps_for(2 * kPi, step));
+  append_rings(rings, 1.0, 0.0, std::numbers::pi / 2, -std::numbers::pi / 2, step);
+  TriangleMesh mesh = revolve(rings, steps_for(2 * std::numbers::pi, step));
   for (Eigen::Vector3f& vertex : mesh.vertices) {
     vertex = vertex.cast<double>().cwiseProduct(semi_axes_m).cast<float>();
   }
@@ -117,9 +115,9 @@ TriangleMesh make_tapered_capsule(double radius_m, double end_radius_m, double l
   const double step = longest_step(std::max(radius_m, end_radius_m), largest_error_m);
   const double touching = std::asin((end_radius_m - radius_m) / length_m);
   std::vector<Ring> rings;
-  append_rings(rings, radius_m, 0.0, kPi / 2, touching, step);
-  append_rings(rings, end_radius_m, -length_m, touching, -kPi / 2, step);
-  return revolve(rings, steps_for(2 * kPi, step));
+  append_rings(rings, radius_m, 0.0, std::numbers::pi / 2, touching, step);
+  append_rings(rings, end_radius_m, -length_m, touching, -std::numbers::pi / 2, step);
+  return revolve(rings, steps_for(2 * std::numbers::pi, step));
 }
 
 TriangleMesh make_box(const Eigen::Vector3d& sizes_m) {

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 // What the camera model's profile says of this size of depth image; 0: nothing.
 double known_focal_px(const std::string& model, const scenarios::Stream& stream) {
@@ -78,7 +78,7 @@ Isometry3d calibration_error(const scenarios::Studio& studio, std::uint64_t seed
     component = draws.normal(studio.calibration_translation_sigma_mm) * 1e-3;
   }
   for (double& component : rotated) {
-    component = draws.normal(studio.calibration_rotation_sigma_deg) * kDegree;
+    component = draws.normal(studio.calibration_rotation_sigma_deg) * kRadPerDegree;
   }
   const double angle = rotated.norm();
   const Vector3d axis = angle > 0 ? Vector3d(rotated / angle) : Vector3d::UnitX();
@@ -99,7 +99,7 @@ Studio::Studio(const scenarios::Scenario& scenario, std::uint64_t seed) {
   const std::size_t heights = studio.heights_m.size();
   for (std::size_t j = 0; j < static_cast<std::size_t>(scenario.cameras.count); ++j) {
     const std::size_t angle = j / heights;
-    const double azimuth = studio.azimuth_step_deg * static_cast<double>(angle) * kDegree;
+    const double azimuth = studio.azimuth_step_deg * static_cast<double>(angle) * kRadPerDegree;
     const Vector3d position(studio.radius_m * std::cos(azimuth),
                             studio.radius_m * std::sin(azimuth), studio.heights_m[j % heights]);
     const Isometry3d pose = looking_at(position, {0, 0, studio.look_at_height_m}, studio.portrait);

@@ -12,14 +12,15 @@ namespace {
 
 constexpr const char* kSource = "docs/reference/device_time.md section 1";
 
-AlgorithmInfo info(const char* name, const char* family, const char* summary, const char* source) {
+AlgorithmInfo clock_model_info(const char* name, const char* family, const char* summary,
+                               const char* source) {
   return {.name = name, .family = family, .summary = summary, .source = source, .parameters = {}};
 }
 
 DeviceTimeEntry olson() {
-  AlgorithmInfo olson = info("olson_50ppm", "olson",
-                             "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
-                             "Olson, IROS 2010; docs/reference/device_time.md section 1");
+  AlgorithmInfo olson = clock_model_info(
+      "olson_50ppm", "olson", "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+      "Olson, IROS 2010; docs/reference/device_time.md section 1");
   olson.parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
                                        "forgetting; must exceed the skew", kSource)};
   return {.info = olson, .make = [](const Parameters& parameters) {
@@ -29,9 +30,9 @@ DeviceTimeEntry olson() {
 
 DeviceTimeEntry kalman() {
   const KalmanSettings defaults;
-  AlgorithmInfo kalman =
-      info("kalman", "kalman", "Kalman filter of offset and skew; its gate cannot lock itself out",
-           "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1");
+  AlgorithmInfo kalman = clock_model_info(
+      "kalman", "kalman", "Kalman filter of offset and skew; its gate cannot lock itself out",
+      "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1");
   kalman.parameters = {
       number_parameter("initial_offset_sigma_ms", defaults.initial_offset_sigma_ms, 1e-3, 1e6,
                        "uncertainty of the first frame's offset", kSource),
@@ -61,19 +62,20 @@ DeviceTimeEntry kalman() {
 }  // namespace
 
 std::vector<DeviceTimeEntry> clock_model_device_times() {
-  AlgorithmInfo librealsense =
-      info("librealsense_global", "librealsense_global",
-           "librealsense's global time over polls of the camera's clock",
-           "librealsense src/global_timestamp_reader.cpp; docs/reference/d455.md section 5");
+  AlgorithmInfo librealsense = clock_model_info(
+      "librealsense_global", "librealsense_global",
+      "librealsense's global time over polls of the camera's clock",
+      "librealsense src/global_timestamp_reader.cpp; docs/reference/d455.md section 5");
   librealsense.needs = {Need::kPolls};
   return {
       olson(),
-      {.info = info("minimum_1s", "minimum",
-                    "least offset of the last second: the best of the simple ones", kSource),
+      {.info = clock_model_info("minimum_1s", "minimum",
+                                "least offset of the last second: the best of the simple ones",
+                                kSource),
        .make = [](const Parameters&) { return make_sliding_minimum({.window_s = 1}); }},
-      {.info = info("theil_sen_300", "theil_sen",
-                    "median of slopes over the last 300 frames, a refit every 15",
-                    "Sen 1968; docs/reference/device_time.md section 1"),
+      {.info = clock_model_info("theil_sen_300", "theil_sen",
+                                "median of slopes over the last 300 frames, a refit every 15",
+                                "Sen 1968; docs/reference/device_time.md section 1"),
        .make = [](const Parameters&) { return make_theil_sen({.frames = 300}); }},
       kalman(),
       {.info = librealsense, .make = [](const Parameters&) { return make_librealsense_global(); }},

@@ -8,8 +8,8 @@ namespace simbench {
 namespace {
 
 constexpr const char* kMaxSkew = "max_skew_ppm";
-constexpr const char* kWindow = "window_s";
-constexpr const char* kSource = "docs/reference/device_time.md section 1";
+constexpr const char* kWindowName = "window_s";
+constexpr const char* kHullSource = "docs/reference/device_time.md section 1";
 constexpr const char* kTicSync =
     "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
 
@@ -34,33 +34,33 @@ DeviceTimeEntry switching(const char* name, double period_s, const char* summary
 }
 
 DeviceTimeEntry two_way_poll() {
-  return {
-      .info = {.name = "two_way_poll",
-               .family = "two_way_poll",
-               .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
-               .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
-               .parameters = {max_skew(), number_parameter(kWindow, TwoWayPollSettings{}.window_s,
-                                                           1, 3600, "polls of this long are used",
-                                                           "ours: short against wander")},
-               .needs = {Need::kPolls}},
-      .make = [](const Parameters& parameters) {
-        return make_two_way_poll(
-            {.window_s = parameters.number(kWindow), .max_skew_ppm = parameters.number(kMaxSkew)});
-      }};
+  return {.info = {.name = "two_way_poll",
+                   .family = "two_way_poll",
+                   .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
+                   .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
+                   .parameters = {max_skew(),
+                                  number_parameter(kWindowName, TwoWayPollSettings{}.window_s, 1,
+                                                   3600, "polls of this long are used",
+                                                   "ours: short against wander")},
+                   .needs = {Need::kPolls}},
+          .make = [](const Parameters& parameters) {
+            return make_two_way_poll({.window_s = parameters.number(kWindowName),
+                                      .max_skew_ppm = parameters.number(kMaxSkew)});
+          }};
 }
 
 }  // namespace
 
 std::vector<DeviceTimeEntry> hull_device_times() {
   return {
-      {.info = info("hull_300", "lower hull of the last 300 frames", kSource),
+      {.info = info("hull_300", "lower hull of the last 300 frames", kHullSource),
        .make =
            [](const Parameters& parameters) {
              return make_window_hull({.frames = 300, .max_skew_ppm = parameters.number(kMaxSkew)});
            }},
       switching("hull_switch_10s", 10, "two growing lower hulls, 10 s apart: 10 to 20 s of frames"),
       switching("hull_switch_60s", 60, "two growing lower hulls, 60 s apart: 1 to 2 min of frames"),
-      {.info = info("hull_offline", "lower hull of the whole recording", kSource),
+      {.info = info("hull_offline", "lower hull of the whole recording", kHullSource),
        .make =
            [](const Parameters& parameters) {
              return make_offline_hull(parameters.number(kMaxSkew));

@@ -9,12 +9,10 @@ namespace {
 // A frequency this near to the wanted one is left alone.
 constexpr double kIgnoredRate = 1e-11;
 
-double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
-
 }  // namespace
 
 double SteeredClock::Prediction::gained_ns(SteadyTime when) const {
-  const double since_ns = as_ns(when - since);
+  const double since_ns = to_ns(when - since);
   const double slewed_ns =
       std::min(std::abs(slew_ns), std::abs(slew_rate * std::max(since_ns, 0.0)));
   return part_ns + rate * since_ns + std::copysign(slewed_ns, slew_ns);
@@ -74,7 +72,7 @@ void SteeredClock::go_on_from(SteadyTime when) {
   prediction_.value +=
       (when - prediction_.since) + Nanoseconds(static_cast<std::int64_t>(whole_ns));
   prediction_.part_ns = gained_ns - whole_ns;
-  const double slewed_ns = std::abs(prediction_.slew_rate) * as_ns(when - prediction_.since);
+  const double slewed_ns = std::abs(prediction_.slew_rate) * to_ns(when - prediction_.since);
   const double left_ns = std::max(0.0, std::abs(prediction_.slew_ns) - slewed_ns);
   prediction_.slew_ns = std::copysign(left_ns, prediction_.slew_ns);
   prediction_.since = when;
@@ -100,13 +98,13 @@ Task<void> SteeredClock::steer(ClockLine line) {
   }
   const Nanoseconds rest = -lead_over(line);
   if (rest <= kIgnored && rest >= -kIgnored) co_return;
-  const double needed_ppb = std::abs(as_ns(rest)) / as_ns(settings_.settle) * 1e9;
+  const double needed_ppb = std::abs(to_ns(rest)) / to_ns(settings_.settle) * 1e9;
   const double slew_ppb = std::min(settings_.max_slew_ppm * 1e3, needed_ppb);
   const SteadyTime before = host_.steady_clock().now();
   co_await host_.clock().slew(rest, slew_ppb);
   go_on_from(before + (host_.steady_clock().now() - before) / 2);
-  prediction_.slew_ns = as_ns(rest);
-  prediction_.slew_rate = std::copysign(slew_ppb * 1e-9, as_ns(rest));
+  prediction_.slew_ns = to_ns(rest);
+  prediction_.slew_rate = std::copysign(slew_ppb * 1e-9, to_ns(rest));
 }
 
 Task<void> SteeredClock::step_to(ClockLine line) {

@@ -62,6 +62,7 @@ struct DeviceStamp {
 
 // Milliseconds to the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
 inline Nanoseconds from_ms(double ms) { return Nanoseconds(std::llround(ms * 1e6)); }
+constexpr double to_ns(Nanoseconds d) { return static_cast<double>(d.count()); }
 constexpr double to_ms(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
 constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
 

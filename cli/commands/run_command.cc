@@ -70,8 +70,8 @@ std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
 }
 
 // The rig is one: captures are made one after the other.
-std::optional<evaluation::Results> measure(const scenarios::Scenario& scenario,
-                                           const RunOptions& options) {
+std::optional<evaluation::Results> measure_rig(const scenarios::Scenario& scenario,
+                                               const RunOptions& options) {
   evaluation::EvaluationOptions evaluation = options.evaluation;
   evaluation.jobs = 1;
   evaluation.keep_pulses = !options.output.empty();
@@ -154,7 +154,7 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
                reports::Provenance provenance) {
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-  const std::optional<evaluation::Results> measured = measure(scenario, options);
+  const std::optional<evaluation::Results> measured = measure_rig(scenario, options);
   if (!measured) return kInterrupted;
   check_anything_was_captured(*measured);
   print_warnings(measured->warnings);

@@ -26,7 +26,7 @@ namespace simbench::cli {
 namespace {
 
 // The one that is looked at most, where a scenario has it.
-constexpr const char* kUsualPipeline = "yoon2021_both";
+constexpr const char* kTracedPipeline = "yoon2021_both";
 // Hours of true time.
 constexpr double kFarthestMs = 1e9;
 
@@ -71,8 +71,8 @@ evaluation::PipelineChoice choose(const scenarios::Scenario& scenario, std::stri
   if (name.empty()) {
     const bool has_usual =
         std::any_of(scenario.pipelines.begin(), scenario.pipelines.end(),
-                    [](const scenarios::Pipeline& p) { return p.name == kUsualPipeline; });
-    name = has_usual ? kUsualPipeline : scenario.pipelines.front().name;
+                    [](const scenarios::Pipeline& p) { return p.name == kTracedPipeline; });
+    name = has_usual ? kTracedPipeline : scenario.pipelines.front().name;
   }
   return evaluation::choose_pipelines(scenario, {name}).front();
 }

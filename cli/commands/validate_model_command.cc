@@ -116,8 +116,8 @@ class RelayLateness {
 };
 
 // Nothing: interrupted.
-std::optional<reports::MeasuredStudy> measure(const ValidateModelOptions& options,
-                                              const scenarios::Scenario& scenario) {
+std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions& options,
+                                                      const scenarios::Scenario& scenario) {
   app::ExperimentOptions experiment;
   const std::string network = choose_network(experiment);
   experiment.cancelled = [] { return app::InterruptHandler::raised(); };
@@ -174,7 +174,7 @@ int validate_model(const ValidateModelOptions& options) {
   print_warnings(scenarios::warnings(scenario));
   const std::optional<reports::MeasuredStudy> study =
       options.measured.empty()
-          ? measure(options, scenario)
+          ? measure_network(options, scenario)
           : std::optional(reports::read_measured_study(options.measured, scenario.name));
   if (!study) return kInterrupted;
   if (!options.save.empty()) {

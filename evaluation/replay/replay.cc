@@ -9,11 +9,10 @@
 
 #include "algorithms/registry.h"
 #include "evaluation/replay/replay_rig.h"
+#include "evaluation/scoring/results.h"
 
 namespace simbench::evaluation {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<DeviceSample> samples_of(const std::vector<StampedFrame>& frames) {
   std::vector<DeviceSample> samples;
@@ -41,8 +40,8 @@ void score(const std::vector<StampedFrame>& frames, bool relative, DeviceTimeRep
   }
   row.jitter_ms = standard_deviation(jitter);
   if (relative) {
-    row.residual = {kNaN, kNaN, kNaN, kNaN};
-    row.drift_ppm = kNaN;
+    row.residual = {kNan, kNan, kNan, kNan};
+    row.drift_ppm = kNan;
     return;
   }
   row.residual = residual_statistics(std::move(residual));

@@ -7,12 +7,12 @@
 
 #include "algorithms/device_time/saturate.h"
 #include "algorithms/device_time/unwrap.h"
+#include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
 constexpr double kLongInterval = 1.5;
 
@@ -57,7 +57,7 @@ FittedLine envelope_line(std::span<const double> x, std::span<const double> y,
   const std::size_t tenth = std::max<std::size_t>(1, x.size() / 10);
   const std::size_t a = earliest(residuals, 0, tenth);
   const std::size_t b = earliest(residuals, x.size() - tenth, x.size());
-  const double slope = x[a] == x[b] ? kNaN : (y[b] - y[a]) / (x[b] - x[a]);
+  const double slope = x[a] == x[b] ? kNan : (y[b] - y[a]) / (x[b] - x[a]);
   return {.slope = slope, .mean_x = x[a], .mean_y = y[a]};
 }
 
@@ -81,7 +81,7 @@ double difference_ms(std::int64_t a_ns, std::int64_t b_ns) {
 }
 
 double mean_of(std::span<const double> values) {
-  if (values.empty()) return kNaN;
+  if (values.empty()) return kNan;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
@@ -89,11 +89,11 @@ double standard_deviation(std::span<const double> values) {
   const double mean = mean_of(values);
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
-  return values.size() < 2 ? kNaN : std::sqrt(sum / static_cast<double>(values.size() - 1));
+  return values.size() < 2 ? kNan : std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
 FittedLine fit_line(std::span<const double> x, std::span<const double> y) {
-  FittedLine line{.slope = kNaN, .mean_x = mean_of(x), .mean_y = mean_of(y)};
+  FittedLine line{.slope = kNan, .mean_x = mean_of(x), .mean_y = mean_of(y)};
   double sum_xx = 0;
   double sum_xy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

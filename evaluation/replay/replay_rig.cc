@@ -11,12 +11,12 @@
 #include "algorithms/gathering/genlock_order.h"
 #include "algorithms/registry.h"
 #include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // T_int: "less than half a frame interval is sufficient" (paper).
 constexpr std::int64_t kIntervalsPerPeriod = 2;
 
@@ -37,8 +37,8 @@ class SetScore {
     ++count_;
   }
   std::int64_t count() const { return count_; }
-  double amd_ms() const { return count_ ? spread_ / static_cast<double>(count_) : kNaN; }
-  double rmdv_ms() const { return count_ ? deviation_ / static_cast<double>(count_) : kNaN; }
+  double amd_ms() const { return count_ ? spread_ / static_cast<double>(count_) : kNan; }
+  double rmdv_ms() const { return count_ ? deviation_ / static_cast<double>(count_) : kNan; }
 
  private:
   double spread_ = 0;

@@ -10,8 +10,6 @@ constexpr Nanoseconds kClockInterval = std::chrono::milliseconds(20);
 constexpr std::uint64_t kLongestGap = 10'000;  // frames; a longer one is a counter that began anew
 constexpr std::int64_t kMostClockSamplesOfAService = 2000;  // before the capture
 
-double true_ms(TrueTime time) { return to_ms(time.time_since_epoch()); }
-
 // What is missing between one delivered frame and the next.
 std::vector<LostFrame> gaps(const RunDetail& run) {
   std::vector<LostFrame> lost;
@@ -31,7 +29,7 @@ std::vector<LostFrame> gaps(const RunDetail& run) {
 }  // namespace
 
 ClockErrors clock_errors(TrueTime at, std::span<const Nanoseconds> errors) {
-  ClockErrors clocks{.at_ms = true_ms(at), .errors_ms = {}};
+  ClockErrors clocks{.at_ms = to_ms(at.time_since_epoch()), .errors_ms = {}};
   for (const Nanoseconds error : errors.first(std::min(errors.size(), kDetailCameras))) {
     clocks.errors_ms.push_back(to_ms(error));
   }
@@ -53,12 +51,13 @@ void RunWorld::on_message(const ObservedMessage&) {}
 void RunWorld::on_frame(const ObservedFrame& frame) {
   if (frame.fate == FrameFate::kDelivered || frame.stream != stream_) return;
   if (frame.camera >= kDetailCameras) return;
-  lost_.push_back(
-      {.camera = frame.camera,
-       .counter = frame.counter,
-       .pulse = frame.pulse,
-       .fate = frame.fate,
-       .mid_exposure_ms = (true_ms(frame.exposure_start) + true_ms(frame.exposure_end)) / 2});
+  lost_.push_back({.camera = frame.camera,
+                   .counter = frame.counter,
+                   .pulse = frame.pulse,
+                   .fate = frame.fate,
+                   .mid_exposure_ms = (to_ms(frame.exposure_start.time_since_epoch()) +
+                                       to_ms(frame.exposure_end.time_since_epoch())) /
+                                      2});
 }
 
 void RunWorld::on_clocks(TrueTime at, std::span<const Nanoseconds> errors) {
@@ -71,9 +70,9 @@ void RunWorld::add_to(RunDetail& run, double wait_before_capture_ms) {
   run.clocks.insert(run.clocks.end(), clocks_.begin(), clocks_.end());
   std::stable_sort(run.clocks.begin(), run.clocks.end(),
                    [](const ClockErrors& a, const ClockErrors& b) { return a.at_ms < b.at_ms; });
-  if (start_) run.world_start_ms = true_ms(*start_);
+  if (start_) run.world_start_ms = to_ms(start_->time_since_epoch());
   if (!capture_start_) return;
-  run.capture_start_ms = true_ms(*capture_start_);
+  run.capture_start_ms = to_ms(capture_start_->time_since_epoch());
   if (!service_) run.sync_end_ms = run.capture_start_ms - wait_before_capture_ms;
 }
 

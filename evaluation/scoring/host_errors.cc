@@ -4,11 +4,10 @@
 #include <limits>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/scoring/results.h"
 
 namespace simbench::evaluation {
-namespace {
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 void HostErrors::add(std::span<const Nanoseconds> errors) {
   SIMBENCH_ASSERT(errors.size() == sum_ms_.size(), "the truth of a pulse has an error per host");

@@ -9,7 +9,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kNoPulse = -1;
 
 std::optional<std::uint32_t> first_camera_of_master(const RigLayout& layout) {

@@ -8,8 +8,7 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMsPerNs = 1e-6;
+constexpr double kNsInMs = 1e-6;
 
 class Mean {
  public:
@@ -41,13 +40,13 @@ class HostSpreads {
     int hosts_with_sources = 0;
     for (const Host& host : hosts_) {
       if (host.count == 0) continue;
-      if (host.count > 1) inside_.add(static_cast<double>(host.greatest - host.least) * kMsPerNs);
+      if (host.count > 1) inside_.add(static_cast<double>(host.greatest - host.least) * kNsInMs);
       const double mean = host.sum / static_cast<double>(host.count);
       least = std::min(least, mean);
       greatest = std::max(greatest, mean);
       ++hosts_with_sources;
     }
-    if (hosts_with_sources > 1) between_.add((greatest - least) * kMsPerNs);
+    if (hosts_with_sources > 1) between_.add((greatest - least) * kNsInMs);
   }
 
   double inside_ms() const { return inside_.value(); }
@@ -103,7 +102,7 @@ void score_errors(const PulseTable& table, SeedScore& score) {
     const auto global = table.global_ns(row);
     const auto reference = table.reference_ns(row);
     for (std::size_t source = 0; source < global.size(); ++source) {
-      const double error = static_cast<double>(global[source] - reference[source]) * kMsPerNs;
+      const double error = static_cast<double>(global[source] - reference[source]) * kNsInMs;
       absolute.add(std::abs(error));
       bias.add(error);
     }

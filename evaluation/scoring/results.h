@@ -17,6 +17,8 @@
 
 namespace simbench::evaluation {
 
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 // How it is known which frames belong together.
 enum class GroundTruth : std::uint8_t {
   kSimulation,    // frames came with their truth
@@ -60,11 +62,11 @@ struct SeedScore {
   double host_error_ms = 0;
   double exposure_spread_ms = 0;
   // Over the complete sets that gathering emitted; NaN: it emitted none (or there is no truth).
-  double set_amd_ms = std::numeric_limits<double>::quiet_NaN();  // mean range of a set's stamps
-  double set_absolute_error_ms = std::numeric_limits<double>::quiet_NaN();
+  double set_amd_ms = kNan;  // mean range of a set's stamps
+  double set_absolute_error_ms = kNan;
   // From the last member's arrival to that of the frame which made the gatherer emit.
-  double emission_latency_ms = std::numeric_limits<double>::quiet_NaN();  // mean over these sets
-  double emission_latency_max_ms = std::numeric_limits<double>::quiet_NaN();
+  double emission_latency_ms = kNan;  // mean over these sets
+  double emission_latency_max_ms = kNan;
   // Beyond the table; the paper's claims rest on these.
   double offline_amd_ms = 0;  // AMD of regression_offline over the same recording; NaN if not asked
   double spread_in_host_ms = 0;        // mean over pulses and hosts of the range inside one host
@@ -131,7 +133,7 @@ struct Row {
   Series set_amd_ms;
   Series set_absolute_error_ms;
   Series emission_latency_ms;
-  double emission_latency_max_ms = std::numeric_limits<double>::quiet_NaN();  // of all seeds
+  double emission_latency_max_ms = kNan;  // of all seeds
   FrameCounts frames;
   std::int64_t evaluated_pulses = 0;      // that the scores rest on; unverified: sets
   std::int64_t unsynchronised_hosts = 0;  // over all seeds

@@ -13,7 +13,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMarginQuantile = 0.999;
 
 Series series_of(const std::vector<SeedScore>& seeds, double SeedScore::*score) {

@@ -12,7 +12,7 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kTail = 0.025;                    // on each side of a 95 % interval
+constexpr double kPairedTail = 0.025;              // on each side of a 95 % interval
 constexpr std::uint64_t kRandomSeed = 20'151'104;  // any will do, as long as it is always the same
 constexpr double kMostSeeds = 1e15;                // where a number needed no longer tells anything
 
@@ -49,7 +49,7 @@ class PairDraw {
 double expanded_tail(std::size_t pairs) {
   const auto n = static_cast<double>(pairs);
   const boost::math::students_t_distribution<double> t(n - 1);
-  const double reach = std::sqrt(n / (n - 1)) * boost::math::quantile(t, kTail);
+  const double reach = std::sqrt(n / (n - 1)) * boost::math::quantile(t, kPairedTail);
   return boost::math::cdf(boost::math::normal_distribution<double>(), reach);
 }
 
@@ -88,7 +88,7 @@ double width_by_deviation(const std::vector<Pair>& pairs, double mean) {
   double squares = 0;
   for (const Pair& pair : pairs) squares += std::pow(pair.b - pair.a - mean, 2);
   const auto n = static_cast<double>(pairs.size());
-  const double z = -boost::math::quantile(boost::math::normal_distribution<double>(), kTail);
+  const double z = -boost::math::quantile(boost::math::normal_distribution<double>(), kPairedTail);
   return 2 * z * std::sqrt(squares / (n - 1) / n);
 }
 

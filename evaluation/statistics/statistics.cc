@@ -10,7 +10,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTail = 0.025;  // on each side of a 95 % interval
 
 void leave_out_nan(std::vector<double>& values) {

@@ -6,10 +6,11 @@
 #include <limits>
 #include <numeric>
 
+#include "evaluation/scoring/results.h"
+
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLevel = 0.05;
 constexpr double kAsymptotic = 1.3581015157406195;  // sqrt(-ln(0.05 / 2) / 2)
 constexpr std::size_t kMostExact = 1'000'000;       // n m

@@ -13,7 +13,7 @@
 namespace simbench::hardware {
 namespace {
 
-StreamKind kind_of(const scenarios::Stream& stream) {
+StreamKind kind_of_stream(const scenarios::Stream& stream) {
   return stream.kind == "colour" ? StreamKind::kColour : StreamKind::kDepth;
 }
 
@@ -36,7 +36,7 @@ class RecordedCamera final : public Camera {
     if (started_) fail("configured while it is started");
     std::array<bool, 2> wanted = {};
     for (const scenarios::Stream& stream : settings.streams) {
-      const StreamKind kind = kind_of(stream);
+      const StreamKind kind = kind_of_stream(stream);
       const auto& frames = play_.camera->frames;
       if (std::none_of(frames.begin(), frames.end(),
                        [kind](const PlayedFrame& frame) { return frame.stream == kind; })) {

@@ -6,7 +6,7 @@ namespace simbench::hardware {
 namespace {
 
 // What converting a stamp may be wrong by (kernel_stamps.h).
-constexpr Nanoseconds kReadingError = std::chrono::milliseconds(1);
+constexpr Nanoseconds kStampError = std::chrono::milliseconds(1);
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void TransmitLog::stamped(std::uint32_t number, MonotonicTime at) {
   // The newest first: stamps are of what was sent just now, and numbers wrap.
   const auto entry = std::find_if(entries_.rbegin(), entries_.rend(),
                                   [number](const Entry& e) { return e.number == number; });
-  if (entry == entries_.rend() || entry->left || at < entry->called - kReadingError) return;
+  if (entry == entries_.rend() || entry->left || at < entry->called - kStampError) return;
   entry->left = std::max(at, entry->called);
 }
 

@@ -59,7 +59,7 @@ std::string outcome_text(GateOutcome outcome) {
   return outcome == GateOutcome::kPossible ? "possibly worse" : outcome_name(outcome);
 }
 
-std::string head(const GateReport& report) {
+std::string gate_head(const GateReport& report) {
   const std::size_t failed = report.count(GateOutcome::kFailed) + report.vanished_pipelines.size();
   const std::string verdict =
       report.passed() ? fmt::format("gate passed: {} checks, {} of them the same",
@@ -148,7 +148,7 @@ std::string check_text(const GateReport& report, const GateCheck& check) {
 std::string gate_text(const GateReport& report) {
   std::string notes;
   for (const std::string& note : report.notes) notes += wrapped(note, 2);
-  return head(report) + failures(report) + changes(report) +
+  return gate_head(report) + failures(report) + changes(report) +
          (notes.empty() ? notes : "\nNotes\n" + notes) +
          (report.passed() ? "" : lines("To reproduce", report.reproduce));
 }

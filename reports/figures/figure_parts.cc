@@ -20,11 +20,9 @@ using evaluation::RunDetail;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // The upper-middle one, as in RMDV.
 double middle_of(std::vector<double> values) {
-  if (values.empty()) return kNan;
+  if (values.empty()) return evaluation::kNan;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -96,13 +94,13 @@ std::string frame_axis(const RunDetail& run) { return run.has_pulses ? "pulse" :
 double frame_position(const RunDetail& run, const CameraDetail& camera, std::size_t frame) {
   const std::int64_t pulse = camera.frames[frame].pulse;
   if (pulse >= 0) return static_cast<double>(pulse);
-  return run.has_pulses ? kNan : static_cast<double>(frame);
+  return run.has_pulses ? evaluation::kNan : static_cast<double>(frame);
 }
 
 CommonReference::CommonReference(const RunDetail& run, double FrameDetail::*stamp)
     : by_pulse_(run.has_pulses), first_pulse_(run.first_pulse) {
   if (!by_pulse_) return;
-  by_row_.assign(static_cast<std::size_t>(run.pulses), kNan);
+  by_row_.assign(static_cast<std::size_t>(run.pulses), evaluation::kNan);
   std::vector<std::vector<double>> stamps(run.has_truth ? 0 : by_row_.size());
   for (const CameraDetail& camera : run.cameras) {
     for (const FrameDetail& frame : camera.frames) {
@@ -120,7 +118,8 @@ CommonReference::CommonReference(const RunDetail& run, double FrameDetail::*stam
 
 double CommonReference::of(const FrameDetail& frame) const {
   if (!by_pulse_) return frame.reference_ms;
-  return frame.evaluated ? by_row_[static_cast<std::size_t>(frame.pulse - first_pulse_)] : kNan;
+  return frame.evaluated ? by_row_[static_cast<std::size_t>(frame.pulse - first_pulse_)]
+                         : evaluation::kNan;
 }
 
 FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double FrameDetail::*stamp,
@@ -134,7 +133,7 @@ FigureSeries stamp_series(const RunDetail& run, std::size_t camera, double Frame
     const bool lost_before = i > 0 && of_camera.frames[i - 1].counter + 1 != frame.counter;
     if (lost_before && !made.x.empty()) {
       made.x.push_back(x);
-      made.y.push_back(kNan);
+      made.y.push_back(evaluation::kNan);
     }
     made.x.push_back(x);
     made.y.push_back(frame.*stamp - reference.of(frame));

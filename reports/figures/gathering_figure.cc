@@ -22,7 +22,6 @@ using evaluation::LostFrame;
 using evaluation::RunDetail;
 using evaluation::SetDetail;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBucketsOfACamera = 480;  // marks closer than this share of the axis are one
 
 // What became of a frame.
@@ -79,14 +78,14 @@ double lost_position(const RunDetail& run, const LostFrame& lost) {
   if (lost.pulse >= 0) {
     const bool evaluated =
         lost.pulse >= run.first_pulse && lost.pulse < run.first_pulse + run.pulses;
-    return evaluated ? static_cast<double>(lost.pulse) : kNan;
+    return evaluated ? static_cast<double>(lost.pulse) : evaluation::kNan;
   }
   const CameraDetail& camera = run.cameras[lost.camera];
   const auto after =
       std::find_if(camera.frames.begin(), camera.frames.end(),
                    [&lost](const FrameDetail& frame) { return frame.counter > lost.counter; });
-  if (after == camera.frames.begin() || after == camera.frames.end()) return kNan;
-  if (!drawn(run, *after)) return kNan;
+  if (after == camera.frames.begin() || after == camera.frames.end()) return evaluation::kNan;
+  if (!drawn(run, *after)) return evaluation::kNan;
   return frame_position(run, camera, static_cast<std::size_t>(after - camera.frames.begin())) -
          static_cast<double>(after->counter - lost.counter);
 }
@@ -133,7 +132,7 @@ FigureSeries unbroken(const Timeline& timeline, std::size_t camera) {
     while (end != buckets.end() && *end == *std::prev(end) + 1) ++end;
     if (!line.x.empty()) {
       line.x.push_back(line.x.back());
-      line.y.push_back(kNan);
+      line.y.push_back(evaluation::kNan);
     }
     const double half = timeline.bucket / 2;
     line.x.insert(line.x.end(),

@@ -12,8 +12,8 @@ namespace simbench::reports {
 namespace {
 
 constexpr int kRowHeight = 130;
-constexpr std::size_t kMostReadings = 3;  // more lines do not fit a photograph
-constexpr double kFaintest = 0.35;        // brightness of a reading of no share
+constexpr std::size_t kReadingsInPhotograph = 3;  // more lines do not fit a photograph
+constexpr double kFaintest = 0.35;                // brightness of a reading of no share
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -37,7 +37,7 @@ std::string photograph_script(const Photograph& photograph, double x, double y) 
   std::string script =
       fmt::format("set object rect from {},{} to {},{} fc rgb '#14181D' fs solid noborder\n",
                   x + 0.03, y + 0.18, x + 0.97, y + 0.84);
-  const std::size_t shown = std::min(photograph.readings.size(), kMostReadings);
+  const std::size_t shown = std::min(photograph.readings.size(), kReadingsInPhotograph);
   for (std::size_t i = 0; i < shown; ++i) {
     const PhotographedReading& reading = photograph.readings[i];
     const double line =

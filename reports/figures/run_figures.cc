@@ -20,7 +20,6 @@ using evaluation::CameraDetail;
 using evaluation::FrameDetail;
 using evaluation::RunDetail;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCamerasOfAHost = 3;   // as in the paper's figures
 constexpr std::size_t kFramesOfStamps = 60;  // more could not be told apart beside each other
 constexpr double kFirstSeconds = 10;
@@ -37,7 +36,8 @@ FigureSeries interval_series(const RunDetail& run, std::size_t camera, double Fr
     const double x = frame_position(run, of_camera, i);
     if (before.in_warm_up || frame.in_warm_up || std::isnan(x)) continue;
     made.x.push_back(x);
-    made.y.push_back(frame.counter == before.counter + 1 ? frame.*stamp - before.*stamp : kNan);
+    made.y.push_back(frame.counter == before.counter + 1 ? frame.*stamp - before.*stamp
+                                                         : evaluation::kNan);
   }
   return thinned(std::move(made), kMostPoints);
 }
@@ -116,7 +116,7 @@ FigureSeries first_intervals(const RunDetail& run, std::size_t camera, std::size
     made.x.push_back(x);
     made.y.push_back(frames[i].counter == frames[i - 1].counter + 1
                          ? frames[i].from_start_ms - frames[i - 1].from_start_ms
-                         : kNan);
+                         : evaluation::kNan);
   }
   return made;
 }

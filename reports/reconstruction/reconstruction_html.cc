@@ -23,20 +23,20 @@ using reconstruction::ReconstructionResults;
 using reconstruction::ReprojectionRow;
 using reconstruction::SeedReprojection;
 using scenarios::PublishedReprojection;
-using Align = HtmlTable::Align;
+using HtmlAlign = HtmlTable::Align;
 
 std::string section(std::string_view heading, const std::string& content) {
   return fmt::format("<section>\n<h3>{}</h3>\n{}</section>\n", html_escaped(heading), content);
 }
 
-std::string total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
+std::string html_total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
   std::int64_t sum = 0;
   for (const SeedReprojection& seed : row.seeds) sum += seed.*member;
   return count_text(sum);
 }
 
-std::string table_4(const ReconstructionResults& results) {
-  HtmlTable table("Reprojection error", {{"pipeline", Align::kLeft},
+std::string html_table_4(const ReconstructionResults& results) {
+  HtmlTable table("Reprojection error", {{"pipeline", HtmlAlign::kLeft},
                                          {"mean error, cm"},
                                          {"published mean, cm"},
                                          {"standard deviation, cm"},
@@ -53,8 +53,8 @@ std::string table_4(const ReconstructionResults& results) {
   return table.html();
 }
 
-std::string sets_table(const ReconstructionResults& results) {
-  HtmlTable table("How it came about", {{"pipeline", Align::kLeft},
+std::string html_sets_table(const ReconstructionResults& results) {
+  HtmlTable table("How it came about", {{"pipeline", HtmlAlign::kLeft},
                                         {"desynchronisation, ms"},
                                         {"seeds without a gathered set"},
                                         {"sets"},
@@ -62,14 +62,15 @@ std::string sets_table(const ReconstructionResults& results) {
                                         {"missing frames"}});
   for (const ReprojectionRow& row : results.rows) {
     table.add({row.pipeline, ms_text(row.desync_ms()), share_text(no_gathered_set_share(row)),
-               total(row, &SeedReprojection::sets), total(row, &SeedReprojection::failed_sets),
-               total(row, &SeedReprojection::missing_frames)});
+               html_total(row, &SeedReprojection::sets),
+               html_total(row, &SeedReprojection::failed_sets),
+               html_total(row, &SeedReprojection::missing_frames)});
   }
   return table.html();
 }
 
 std::string error_section(const ReconstructionResults& results) {
-  std::string text = table_4(results) + sets_table(results);
+  std::string text = html_table_4(results) + html_sets_table(results);
   std::string legend = fmt::format("{} {}", kErrorLegend, kDesyncLegend);
   if (const auto ratio = published_ratio(results.rows)) {
     text += html_paragraph("summary", ratio_sentence(*ratio));
@@ -128,7 +129,7 @@ std::string pictures_html(const ReconstructionPage& page) {
 
 std::string limits_html(const ReconstructionResults& results) {
   if (results.curve.empty()) return "";
-  HtmlTable table("How good must my synchronisation be", {{"speed", Align::kLeft},
+  HtmlTable table("How good must my synchronisation be", {{"speed", HtmlAlign::kLeft},
                                                           {"floor, cm"},
                                                           {"desynchronisation up to, ms"},
                                                           {"cost there, cm/ms"}});
@@ -141,17 +142,17 @@ std::string limits_html(const ReconstructionResults& results) {
 }
 
 std::string stages_html(const ReconstructionResults& results) {
-  HtmlTable table("Pipelines", {{"pipeline", Align::kLeft},
-                                {"host_sync", Align::kLeft},
-                                {"device_time", Align::kLeft},
-                                {"gathering", Align::kLeft}});
+  HtmlTable table("Pipelines", {{"pipeline", HtmlAlign::kLeft},
+                                {"host_sync", HtmlAlign::kLeft},
+                                {"device_time", HtmlAlign::kLeft},
+                                {"gathering", HtmlAlign::kLeft}});
   for (const ReprojectionRow& row : results.rows) {
     table.add({row.pipeline, row.host_sync, row.device_time, row.gathering});
   }
   return section("Pipelines", table.html());
 }
 
-std::vector<std::string> row_notes(const ReconstructionResults& results) {
+std::vector<std::string> html_row_notes(const ReconstructionResults& results) {
   std::vector<std::string> notes;
   for (const ReprojectionRow& row : results.rows) {
     for (const std::string& note : row.notes) {
@@ -193,7 +194,7 @@ std::string reconstruction_html(const ReconstructionPage& page) {
       "{5}{6}{7}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{8}{9}</article>\n",
       html_escaped(name), html_paragraph("summary", results.scenario.summary),
       html_paragraph("provenance", provenance_line(results)), error_section(results),
-      html_notes(row_notes(results)), pictures_html(page), limits_html(results),
+      html_notes(html_row_notes(results)), pictures_html(page), limits_html(results),
       section("What was simulated", html_notes(honest_notes(results))), stages_html(results),
       reproduce_html(page));
   return html_page({.title = fmt::format("simbench reconstruct {}", name),

@@ -27,7 +27,7 @@ Json series_json(const Series& series) {
           {"values", series.values}};
 }
 
-std::int64_t total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
+std::int64_t json_total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
   std::int64_t sum = 0;
   for (const SeedReprojection& seed : row.seeds) sum += seed.*member;
   return sum;
@@ -51,9 +51,9 @@ Json row_json(const ReprojectionRow& row) {
           {"median_cm", series_json(row.median_cm())},
           {"p95_cm", series_json(row.p95_cm())},
           {"desync_ms", series_json(row.desync_ms())},
-          {"sets", total(row, &SeedReprojection::sets)},
-          {"failed_sets", total(row, &SeedReprojection::failed_sets)},
-          {"missing_frames", total(row, &SeedReprojection::missing_frames)},
+          {"sets", json_total(row, &SeedReprojection::sets)},
+          {"failed_sets", json_total(row, &SeedReprojection::failed_sets)},
+          {"missing_frames", json_total(row, &SeedReprojection::missing_frames)},
           {"no_gathered_set_share", no_gathered_set_share(row)},
           {"published", published_json(row)},
           {"notes", row.notes}};
@@ -144,7 +144,7 @@ std::string csv_line(const ReprojectionRow& row) {
   }
   for (const auto member : {&SeedReprojection::sets, &SeedReprojection::failed_sets,
                             &SeedReprojection::missing_frames}) {
-    cells.push_back(std::to_string(total(row, member)));
+    cells.push_back(std::to_string(json_total(row, member)));
   }
   cells.push_back(csv_cell(no_gathered_set_share(row)));
   cells.push_back(row.published ? csv_cell(row.published->mean_cm) : "");

@@ -60,7 +60,7 @@ std::string heading(const BudgetReport& report, const Budget& budget) {
                      report.first_seed);
 }
 
-std::string legend(const Budget& budget) {
+std::string budget_legend(const Budget& budget) {
   const std::string over =
       budget.amd_of_sets
           ? "Errors are over the sets that gathering emits."
@@ -95,7 +95,7 @@ std::string budget_table(const BudgetReport& report) {
   std::string text;
   for (const Budget& budget : report.budgets) {
     text += fmt::format("{}{}\n\n{}\n{}", text.empty() ? "" : "\n", heading(report, budget),
-                        block(budget).plain(), legend(budget));
+                        block(budget).plain(), budget_legend(budget));
   }
   return fitted(text);
 }
@@ -104,7 +104,7 @@ std::string budget_markdown(const BudgetReport& report) {
   std::string text;
   for (const Budget& budget : report.budgets) {
     text += fmt::format("{}## {}\n\n{}\n{}", text.empty() ? "" : "\n", heading(report, budget),
-                        block(budget).markdown(), legend(budget));
+                        block(budget).markdown(), budget_legend(budget));
   }
   return text;
 }

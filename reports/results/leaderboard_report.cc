@@ -89,7 +89,7 @@ bool any_of_gathering(const Results& results) {
                      [](const Board& board) { return board.of_gathering; });
 }
 
-std::string report(const Results& results, std::string_view summary, bool as_markdown) {
+std::string leaderboard(const Results& results, std::string_view summary, bool as_markdown) {
   std::string text = fmt::format("{}{}: {} seeds from {}\n", as_markdown ? "## " : "",
                                  results.scenario, results.seed_count, results.first_seed);
   if (!summary.empty()) text += fmt::format("{}\n", wrapped(summary));
@@ -137,11 +137,11 @@ Json ranks_json(const std::vector<Rank>& ranks) {
 }  // namespace
 
 std::string leaderboard_table(const Results& results, std::string_view summary) {
-  return fitted(report(results, summary, false));
+  return fitted(leaderboard(results, summary, false));
 }
 
 std::string leaderboard_markdown(const Results& results, std::string_view summary) {
-  return report(results, summary, true);
+  return leaderboard(results, summary, true);
 }
 
 std::string leaderboard_json(const Results& results) {

@@ -170,7 +170,7 @@ Json camera_json(const CameraDiagnosis& camera) {
           {"jumps", jumps}};
 }
 
-constexpr const char* kLegend = R"(
+constexpr const char* kDiagnosisLegend = R"(
 How to read it
   follows: the trigger, if its frame period in host time is that of the others; free-running ones
     differ by tens of ppm. phase: of the arrivals, against the first camera that follows.
@@ -192,7 +192,7 @@ std::string diagnose_table(const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) text += wrapped(finding.text, 2);
   text += "\nWhat the stamps alone cannot tell\n";
   for (const std::string& unknown : diagnosis.cannot_know) text += wrapped(unknown, 2);
-  return fitted(text + kLegend);
+  return fitted(text + kDiagnosisLegend);
 }
 
 std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::string>& files) {

@@ -59,7 +59,7 @@ std::string check_text(const std::string& heading, const FitCheck& check,
       heading, table.plain(), check.ks, check.ks_limit);
 }
 
-constexpr const char* kLegend = R"(
+constexpr const char* kFitLegend = R"(
 How to read it
   excess delay: how much later than the quickest frames of its stream a frame arrived.
   +- is a standard error, [..] a 95 % interval. Drift: device rate / host rate - 1.
@@ -121,7 +121,7 @@ std::string fit_table(const FitReport& report) {
     text += fmt::format("\nNo hold-out: it needs {} frames of each stream.\n",
                         2 * evaluation::kFewestFrames);
   }
-  return text + kLegend;
+  return text + kFitLegend;
 }
 
 std::string fit_json(const FitReport& report) {

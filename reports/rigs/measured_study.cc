@@ -22,13 +22,13 @@ using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as n
 constexpr int kSchemaVersion = 1;
 constexpr const char* kAdvice = "`simbench validate-model` says how to measure and keep one";
 
-struct Metric {
+struct StudyMetric {
   const char* name;
   double MeasuredSeed::*seed;
   Series Row::*series;
 };
 
-constexpr Metric kMetrics[] = {
+constexpr StudyMetric kMetrics[] = {
     {"host_error_ms", &MeasuredSeed::host_error_ms, &Row::host_error_ms},
     {"amd_ms", &MeasuredSeed::amd_ms, &Row::amd_ms},
     {"rmdv_ms", &MeasuredSeed::rmdv_ms, &Row::rmdv_ms},
@@ -52,7 +52,7 @@ MeasuredSeed read_seed(const JsonNode& node, std::set<std::uint64_t>& known) {
   seed.seed = static_cast<std::uint64_t>(node["seed"].count());
   if (!known.insert(seed.seed).second)
     node["seed"].fail(fmt::format("{} is there twice", seed.seed));
-  for (const Metric& metric : kMetrics) {
+  for (const StudyMetric& metric : kMetrics) {
     const JsonNode value = node[metric.name];
     seed.*metric.seed = value.number();
     if (seed.*metric.seed < 0) value.refuse("a number from 0, or null");
@@ -95,7 +95,7 @@ Results results_of(const MeasuredStudy& study) {
     Row row;
     row.pipeline = pipeline.pipeline;
     row.notes = pipeline.notes;
-    for (const Metric& metric : kMetrics) {
+    for (const StudyMetric& metric : kMetrics) {
       std::vector<double> values;
       for (const MeasuredSeed& seed : pipeline.seeds) values.push_back(seed.*metric.seed);
       row.*metric.series = evaluation::make_series(std::move(values));
@@ -115,7 +115,7 @@ std::string measured_study_json(const MeasuredStudy& study) {
         {"pipeline", pipeline.pipeline}, {"notes", pipeline.notes}, {"seeds", Json::array()}};
     for (const MeasuredSeed& seed : pipeline.seeds) {
       Json entry = {{"seed", seed.seed}};
-      for (const Metric& metric : kMetrics) entry[metric.name] = seed.*metric.seed;
+      for (const StudyMetric& metric : kMetrics) entry[metric.name] = seed.*metric.seed;
       row["seeds"].push_back(std::move(entry));
     }
     root["rows"].push_back(std::move(row));

@@ -21,7 +21,7 @@ using evaluation::ModelGapRow;
 using evaluation::StageEvidence;
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
-constexpr const char* kLegend[] = {
+constexpr const char* kGapLegend[] = {
     "A value is in milliseconds: a quantile over the repetitions (measured) or the seeds "
     "(simulated), which are independent of each other.",
     "KS: largest distance between the two distribution functions, 0 (equal) to 1 (no overlap). "
@@ -159,7 +159,7 @@ std::string report_text(const ModelGapReport& report, bool markdown) {
     for (const std::string& note : notes) out += line(note);
   }
   out += heading("How to read it");
-  for (const char* text : kLegend) out += line(text);
+  for (const char* text : kGapLegend) out += line(text);
   return out + heading("What each stage of the model rests on") + evidence_text(markdown);
 }
 

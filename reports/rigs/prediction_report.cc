@@ -32,7 +32,7 @@ constexpr Metric kOfPulses[] = {{"amd_ms", "AMD", &Row::amd_ms},
                                 {"absolute_error_ms", "absolute error", &Row::absolute_error_ms}};
 constexpr Metric kOfSets[] = {{"set_amd_ms", "AMD of sets", &Row::set_amd_ms}};
 
-constexpr const char* kLegend =
+constexpr const char* kPredictionLegend =
     "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
     "simulated 5-95 % band, which this one number cannot distinguish from such a world; outside: "
     "the scenario does not describe this rig (simbench fit makes one that does).";
@@ -94,8 +94,8 @@ std::string report(const Results& measured, const Results& simulated, bool markd
   const std::vector<Prediction> rows = predictions(measured, simulated);
   const bool one = std::any_of(rows.begin(), rows.end(),
                                [](const Prediction& row) { return row.measured_count == 1; });
-  const std::string legend =
-      one ? fmt::format("{} {}", kLegend, kOneRepetition) : std::string(kLegend);
+  const std::string legend = one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition)
+                                 : std::string(kPredictionLegend);
   const std::string heading =
       fmt::format("Measured beside predicted ({} simulated seed{})", simulated.seed_count,
                   simulated.seed_count == 1 ? "" : "s");

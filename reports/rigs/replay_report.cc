@@ -111,7 +111,7 @@ std::string rig_text(const RigReplay& rig) {
   return text + table.plain();
 }
 
-constexpr const char* kLegend = R"(
+constexpr const char* kReplayLegend = R"(
 How to read it
   host_sync cannot be replayed: it had its effect on the clocks that stamped the arrivals.
   drift: (host rate / device rate - 1) in ppm, by least squares; by envelope: by the earliest frames.
@@ -132,7 +132,7 @@ std::string replay_table(const Replay& replay) {
   std::string text = "The cameras and their clocks\n\n" + cameras_text(replay) +
                      "\nGlobal stamps, by estimator\n\n" + rows_text(replay);
   for (const RigReplay& rig : replay.rigs) text += rig_text(rig);
-  return fitted(text + kLegend);
+  return fitted(text + kReplayLegend);
 }
 
 std::string replay_csv(const Replay& replay) {

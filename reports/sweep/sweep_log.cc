@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+[[noreturn]] void log_failed(const fs::path& path, const std::string& what) {
   throw OutputError(
       fmt::format("{}: {}: {}; every run finished by now is kept, and the same "
                   "command goes on from there",
@@ -45,7 +45,7 @@ void replace_file(const fs::path& path, std::string_view content) {
   fs::path temporary = path;
   temporary += ".tmp";
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(path, "cannot be written");
+  if (file < 0) log_failed(path, "cannot be written");
   const bool written = write_all(file, content);
   const int reason = errno;
   const bool closed = ::close(file) == 0;
@@ -54,9 +54,9 @@ void replace_file(const fs::path& path, std::string_view content) {
     const int kept = errno;
     ::unlink(temporary.c_str());
     errno = kept;
-    fail(path, "cannot be written");
+    log_failed(path, "cannot be written");
   }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "cannot be written");
+  if (::rename(temporary.c_str(), path.c_str()) != 0) log_failed(path, "cannot be written");
 }
 
 SweepLog::SweepLog(fs::path path, std::string_view identity, std::size_t runs)
@@ -102,7 +102,7 @@ void SweepLog::read() {
   if (!fs::exists(path_, error)) return;
   std::ifstream in(path_, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(in), {}};
-  if (!in) fail(path_, "cannot be read");
+  if (!in) log_failed(path_, "cannot be read");
   std::string_view rest = content;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
@@ -115,9 +115,9 @@ void SweepLog::read() {
 
 void SweepLog::open_at_end() {
   file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0) fail(path_, "cannot be written");
+  if (file_ < 0) log_failed(path_, "cannot be written");
   size_ = ::lseek(file_, 0, SEEK_END);
-  if (size_ < 0) fail(path_, "cannot be written");
+  if (size_ < 0) log_failed(path_, "cannot be written");
 }
 
 void SweepLog::close() {
@@ -134,7 +134,7 @@ void SweepLog::append(std::size_t run, const std::string& text) {
     // Half a line would only be damage to report later; if this fails too, it is reported.
     if (::ftruncate(file_, size_) == 0) ::lseek(file_, size_, SEEK_SET);
     errno = reason;
-    fail(path_, "cannot be written");
+    log_failed(path_, "cannot be written");
   }
   size_ += static_cast<std::int64_t>(added.size());
   texts_[run] = text;

@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 }
 
 // Of the last call that failed; a stream keeps no reason of its own.
-std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
-
 // The full path; where a link stands, of what it leads to.
 fs::path full_path(const std::string& named) {
   std::error_code error;
@@ -40,6 +38,8 @@ fs::path full_path(const std::string& named) {
 }
 
 }  // namespace
+
+std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
 
 OutputFile::OutputFile(const std::string& path) : named_(path), path_(full_path(path)) {
   temporary_ =

@@ -40,6 +40,9 @@ class OutputFile {
 // All of it at once.
 void write_file(const std::string& path, std::string_view content);
 
+// Why the last call of the system failed, in the system's words.
+std::string system_reason();
+
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "reports/text/output_file.h"
+
 namespace simbench::reports {
 namespace {
 
@@ -23,8 +25,6 @@ constexpr std::array<const char*, 4> kOwnFiles = {kManifest, "results.json", "fr
 }
 
 // Of the last call that failed; a stream keeps no reason of its own.
-std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
-
 // The folder's full path, without a slash at its end: it gets a sibling.
 fs::path normal_path(const fs::path& folder) {
   std::error_code error;

@@ -10,7 +10,7 @@
 namespace simbench::reports {
 namespace {
 
-double us(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
+double to_us(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
 
 std::string seconds_text(TrueTime at) {
   return fmt::format("{:.9f}", static_cast<double>(at.time_since_epoch().count()) * 1e-9);
@@ -94,11 +94,11 @@ class Table {
 void add_hosts(const Trace& trace, Table& table) {
   for (const TraceClock& clock : trace.clocks) {
     if (clock.host == 0) continue;
-    table.add(clock.at, {1, clock.host, false, Series::kClock}, us(clock.error));
+    table.add(clock.at, {1, clock.host, false, Series::kClock}, to_us(clock.error));
   }
   for (const TraceAdjustment& adjustment : trace.adjustments) {
     if (adjustment.step.count() == 0) continue;
-    table.add(adjustment.at, {1, adjustment.host, false, Series::kStep}, us(adjustment.step));
+    table.add(adjustment.at, {1, adjustment.host, false, Series::kStep}, to_us(adjustment.step));
   }
 }
 
@@ -112,7 +112,7 @@ void add_frames(const Trace& trace, Table& table) {
               to_ms(way.delivered - middle));
     if (!frame.stamp) continue;
     table.add(way.delivered, {2, way.camera, colour, Series::kStampError},
-              us(frame.stamp->time_since_epoch() - frame.reference.time_since_epoch()));
+              to_us(frame.stamp->time_since_epoch() - frame.reference.time_since_epoch()));
   }
 }
 
@@ -126,7 +126,7 @@ void write_trace_csv(const Trace& trace, std::ostream& out) {
   add_hosts(trace, table);
   add_frames(trace, table);
   for (const TraceSet& set : trace.sets) {
-    table.add(set.end, {3, 0, false, Series::kRange}, us(set.range));
+    table.add(set.end, {3, 0, false, Series::kRange}, to_us(set.range));
     table.add(set.end, {3, 0, false, Series::kFrames}, static_cast<double>(set.members));
   }
   table.write(out);

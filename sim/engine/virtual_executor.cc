@@ -14,8 +14,6 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-double seconds_of(TrueTime time) { return to_seconds(time.time_since_epoch()); }
-
 // A wait and the handler that resumes its coroutine, called with (error) or (error, notified).
 template <class Handler>
 class HandlerWait : public PendingWait {
@@ -82,8 +80,10 @@ void PendingWait::finish(Outcome outcome) {
 }
 
 std::string PendingWait::describe() const {
-  std::string text = fmt::format("{}, since {:.9g} s", label_, seconds_of(since_));
-  if (deadline_) text += fmt::format(", deadline {:.9g} s", seconds_of(*deadline_));
+  std::string text =
+      fmt::format("{}, since {:.9g} s", label_, to_seconds(since_.time_since_epoch()));
+  if (deadline_)
+    text += fmt::format(", deadline {:.9g} s", to_seconds(deadline_->time_since_epoch()));
   return text;
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kUnitNs = 100;             // unit of the adjustment
 constexpr double kClockRateUnits = 156250;  // one tick, 15.625 ms
 constexpr double kPollFactor = 16;
-constexpr std::uint8_t kVersion = 3;
+constexpr std::uint8_t kSntpVersion = 3;
 constexpr double kLocalClockDispersion = 10;  // s, the documented default
 
 Nanoseconds magnitude(Nanoseconds interval) {
@@ -101,7 +101,7 @@ Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
 Task<void> W32Time::run_slave(Host& host, PeerId master) {
   const double part = host.random_uniform();
   co_await host.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
-  NtpAssociation association(host, master, NtpStamps::kApplication, kVersion);
+  NtpAssociation association(host, master, NtpStamps::kApplication, kSntpVersion);
   W32TimeSpikes spikes;
   bool reported = false;
   while (true) {

@@ -9,8 +9,6 @@ namespace {
 // No oscillator is that far off: the stamps are wrong.
 constexpr double kMostSlope = 1e-3;
 
-double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
-
 // Reports how a slave fares, once; the master's own clock is nobody's outcome.
 class Outcome {
  public:
@@ -61,12 +59,12 @@ Task<void> follow(Host& host, GnssSettings settings, bool is_slave) {
 
 }  // namespace
 
-GnssEstimator::GnssEstimator(Nanoseconds window) : lateness_(as_ns(window)) {}
+GnssEstimator::GnssEstimator(Nanoseconds window) : lateness_(to_ns(window)) {}
 
 void GnssEstimator::add(Nanoseconds gnss, SteadyTime seen) {
   if (has_zero_) {
     const std::optional<ClockLine> known = line();
-    const bool has_jumped = known && std::abs(as_ns(known->read(seen) - HostTime(gnss))) > kJumpNs;
+    const bool has_jumped = known && std::abs(to_ns(known->read(seen) - HostTime(gnss))) > kJumpNs;
     if (has_jumped) has_zero_ = false;
   }
   if (!has_zero_) {
@@ -77,7 +75,7 @@ void GnssEstimator::add(Nanoseconds gnss, SteadyTime seen) {
     lateness_.clear();
   }
   const Nanoseconds since = gnss - zero_gnss_;
-  lateness_.add(as_ns(since), as_ns((seen - zero_seen_) - since));
+  lateness_.add(to_ns(since), to_ns((seen - zero_seen_) - since));
   ++pulses_;
 }
 

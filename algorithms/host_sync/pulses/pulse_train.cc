@@ -10,16 +10,14 @@ constexpr double kStrangePart = 0.25;
 // Each pass multiplies the error by the slope of the envelope.
 constexpr int kPasses = 5;
 
-double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
-
 }  // namespace
 
 PulseTrain::PulseTrain(Settings settings)
     : settings_(settings),
-      period_ns_(settings.period ? as_ns(*settings.period) : 0),
-      all_(as_ns(settings.window)),
-      even_(as_ns(settings.window)),
-      odd_(as_ns(settings.window)) {}
+      period_ns_(settings.period ? to_ns(*settings.period) : 0),
+      all_(to_ns(settings.window)),
+      even_(to_ns(settings.window)),
+      odd_(to_ns(settings.window)) {}
 
 std::optional<Nanoseconds> PulseTrain::period() const {
   if (period_ns_ <= 0) return std::nullopt;
@@ -28,7 +26,7 @@ std::optional<Nanoseconds> PulseTrain::period() const {
 
 void PulseTrain::restart() {
   first_.clear();
-  period_ns_ = settings_.period ? as_ns(*settings_.period) : 0;
+  period_ns_ = settings_.period ? to_ns(*settings_.period) : 0;
   has_last_ = false;
   number_ = 0;
   strange_ = 0;
@@ -52,7 +50,7 @@ void PulseTrain::find_period() {
   std::vector<Nanoseconds> steps;
   for (std::size_t i = 1; i < first_.size(); ++i) steps.push_back(first_[i].first);
   std::sort(steps.begin(), steps.end());
-  period_ns_ = as_ns(steps[steps.size() / 2]);
+  period_ns_ = to_ns(steps[steps.size() / 2]);
   for (const auto& [step, seen] : first_) add_numbered(step, seen);
   first_.clear();
 }
@@ -60,7 +58,7 @@ void PulseTrain::find_period() {
 void PulseTrain::add_numbered(Nanoseconds step, SteadyTime seen) {
   if (has_last_) {
     if (step.count() <= 0) return;
-    const double periods = as_ns(step) / period_ns_;
+    const double periods = to_ns(step) / period_ns_;
     const double whole = std::max(1.0, std::round(periods));
     strange_ = std::abs(periods - whole) > kStrangePart ? strange_ + 1 : 0;
     if (strange_ >= kStrangeSteps) {
@@ -74,7 +72,7 @@ void PulseTrain::add_numbered(Nanoseconds step, SteadyTime seen) {
   }
   ++pulses_;
   const double x = number_ * period_ns_;
-  const double y = as_ns(seen - zero_) - x;
+  const double y = to_ns(seen - zero_) - x;
   all_.add(x, y);
   (std::fmod(number_, 2) == 0 ? even_ : odd_).add(x, y);
 }
@@ -88,7 +86,7 @@ std::optional<Sighting> PulseTrain::middle() const {
 std::optional<Sighting> PulseTrain::nearest(SteadyTime when) const {
   if (pulses_ < kFewestPulses) return std::nullopt;
   // x + y(x) = when. The period is known to some percent, which is then the slope of y.
-  const double wanted = as_ns(when - zero_);
+  const double wanted = to_ns(when - zero_);
   const std::vector<Envelope::Point>& hull = all_.vertices();
   double x = wanted - hull.back().y;
   for (int pass = 0; pass < kPasses; ++pass) {

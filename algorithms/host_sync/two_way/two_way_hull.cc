@@ -11,14 +11,12 @@ constexpr int kBisections = 64;
 // contradiction.
 constexpr double kToleranceNs = 1000;
 
-double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
-
 }  // namespace
 
 TwoWayHull::TwoWayHull(Settings settings)
     : settings_(settings),
-      upper_bounds_(as_ns(settings.window)),
-      negated_lower_bounds_(as_ns(settings.window)) {}
+      upper_bounds_(to_ns(settings.window)),
+      negated_lower_bounds_(to_ns(settings.window)) {}
 
 bool TwoWayHull::add(const TwoWayExchange& exchange) {
   if (exchange.round_trip().count() < 0 || exchange.received < exchange.sent) return false;
@@ -53,12 +51,12 @@ double TwoWayHull::span_ns() const {
 void TwoWayHull::add_bounds(const TwoWayExchange& exchange) {
   const Nanoseconds above = offset_between(exchange.arrived, exchange.sent) - zero_offset_;
   const Nanoseconds below = offset_between(exchange.replied, exchange.received) - zero_offset_;
-  const double sent_ns = as_ns(exchange.sent - *zero_);
-  latest_ns_ = as_ns(exchange.received - *zero_);
-  upper_bounds_.add(sent_ns, as_ns(above));
-  negated_lower_bounds_.add(latest_ns_, -as_ns(below));
-  corridor_.above_ns = std::min(corridor_.above_ns, as_ns(above) - rate_ * sent_ns);
-  corridor_.below_ns = std::max(corridor_.below_ns, as_ns(below) - rate_ * latest_ns_);
+  const double sent_ns = to_ns(exchange.sent - *zero_);
+  latest_ns_ = to_ns(exchange.received - *zero_);
+  upper_bounds_.add(sent_ns, to_ns(above));
+  negated_lower_bounds_.add(latest_ns_, -to_ns(below));
+  corridor_.above_ns = std::min(corridor_.above_ns, to_ns(above) - rate_ * sent_ns);
+  corridor_.below_ns = std::max(corridor_.below_ns, to_ns(below) - rate_ * latest_ns_);
 }
 
 double TwoWayHull::choose_rate() const {

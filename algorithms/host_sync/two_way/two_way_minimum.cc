@@ -11,8 +11,6 @@ namespace {
 // A rate from a shorter span would be worse than none.
 constexpr Nanoseconds kFirstSpan(2'000'000'000);
 
-double as_ns(Nanoseconds duration) { return static_cast<double>(duration.count()); }
-
 }  // namespace
 
 RemoteReading best_round_trip(std::span<const TwoWayExchange> exchanges) {
@@ -64,7 +62,7 @@ bool TwoWayMinimum::add(const TwoWayExchange& exchange) {
 bool TwoWayMinimum::is_jump(const TwoWayExchange& exchange) const {
   const Nanoseconds above = exchange.arrived - line_->read(exchange.sent);
   const Nanoseconds below = exchange.replied - line_->read(exchange.received);
-  return as_ns(above) < -kJumpNs || as_ns(below) > kJumpNs;
+  return to_ns(above) < -kJumpNs || to_ns(below) > kJumpNs;
 }
 
 void TwoWayMinimum::add_round(RemoteReading reading) {
@@ -84,14 +82,14 @@ void TwoWayMinimum::add_round(RemoteReading reading) {
   double mean_y = 0;
   const auto count = static_cast<double>(rounds_.size());
   for (const RemoteReading& round : rounds_) {
-    mean_x += as_ns(round.at - reading.at) / count;
-    mean_y += as_ns((round.value - reading.value) - (round.at - reading.at)) / count;
+    mean_x += to_ns(round.at - reading.at) / count;
+    mean_y += to_ns((round.value - reading.value) - (round.at - reading.at)) / count;
   }
   double xx = 0;
   double xy = 0;
   for (const RemoteReading& round : rounds_) {
-    const double x = as_ns(round.at - reading.at) - mean_x;
-    const double y = as_ns((round.value - reading.value) - (round.at - reading.at)) - mean_y;
+    const double x = to_ns(round.at - reading.at) - mean_x;
+    const double y = to_ns((round.value - reading.value) - (round.at - reading.at)) - mean_y;
     xx += x * x;
     xy += x * y;
   }

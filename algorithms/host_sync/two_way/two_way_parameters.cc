@@ -8,18 +8,18 @@
 namespace simbench {
 namespace {
 
-const char* const kAssumption = "assumption";
+const char* const kAssumed = "assumption";
 
 }  // namespace
 
 std::vector<ParameterSpec> two_way_parameters() {
   std::vector<ParameterSpec> specs = {
       number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
-                       kAssumption),
+                       kAssumed),
       number_parameter("exchanges", 16, 1, 1e5,
                        "exchanges of the first burst, and of each round that a minimum is taken of",
-                       kAssumption),
-      number_parameter("burst_interval_ms", 20, 0.1, 1e5, "pace of the first burst", kAssumption),
+                       kAssumed),
+      number_parameter("burst_interval_ms", 20, 0.1, 1e5, "pace of the first burst", kAssumed),
       number_parameter("interval_ms", 250, 0.1, 1e6, "pace after it, also during the capture",
                        "assumption: 240 exchanges in the window"),
       number_parameter("window_s", 60, 1, 1e5, "span of the hulls and of the estimate of the rate",

@@ -12,7 +12,7 @@
 namespace simbench {
 namespace {
 
-struct Session {
+struct MasterSession {
   const Yoon2021Settings& settings;
   Host& host;
   MessageChannel& channel;
@@ -25,7 +25,7 @@ struct PassResult {
 };
 
 // The next message of this kind, pass and index; whatever else comes is late, doubled or foreign.
-Task<std::optional<SessionMessage>> receive_answer(Session session, MessageKind kind,
+Task<std::optional<SessionMessage>> receive_answer(MasterSession session, MessageKind kind,
                                                    std::uint32_t pass, std::uint32_t index) {
   const SteadyTime deadline = session.host.steady_clock().now() + silence_limit(session.settings);
   while (true) {
@@ -39,7 +39,7 @@ Task<std::optional<SessionMessage>> receive_answer(Session session, MessageKind 
 }
 
 // The master's clock, n_d times. False if the slave stopped asking.
-Task<bool> send_stamps(Session session, std::uint32_t pass) {
+Task<bool> send_stamps(MasterSession session, std::uint32_t pass) {
   const Yoon2021Settings& settings = session.settings;
   const SteadyTime begin = session.host.steady_clock().now();
   for (std::uint32_t i = 0; i < settings.stamps; ++i) {
@@ -60,7 +60,7 @@ Task<bool> send_stamps(Session session, std::uint32_t pass) {
 }
 
 // One turn of the loop of Algorithm 1; nothing if the slave fell silent.
-Task<std::optional<PassResult>> run_pass(Session session, std::uint32_t pass) {
+Task<std::optional<PassResult>> run_master_pass(MasterSession session, std::uint32_t pass) {
   Bytes ready = encode({MessageKind::kReady, pass, 0, HostTime{}});
   co_await session.channel.send(std::move(ready));
   const bool stamps_sent = co_await send_stamps(session, pass);
@@ -119,7 +119,7 @@ std::string limit_message(PeerId slave, const Yoon2021Settings& settings,
 }
 
 // Passes until one is within the threshold, or a limit is reached. The slave is not told yet.
-Task<SyncOutcome> run_passes(Session session) {
+Task<SyncOutcome> run_passes(MasterSession session) {
   const Yoon2021Settings& settings = session.settings;
   SyncOutcome outcome;
   outcome.slave = session.slave;
@@ -127,7 +127,7 @@ Task<SyncOutcome> run_passes(Session session) {
   std::uint32_t silent = 0;
   while (outcome.passes < settings.pass_limit) {
     ++outcome.passes;
-    const std::optional<PassResult> result = co_await run_pass(session, outcome.passes);
+    const std::optional<PassResult> result = co_await run_master_pass(session, outcome.passes);
     if (!result) {
       if (++silent < Yoon2021::kSilentPassLimit) continue;
       outcome.message = silence_message(session.slave, settings);
@@ -146,7 +146,7 @@ Task<SyncOutcome> run_passes(Session session) {
   co_return outcome;
 }
 
-Task<void> run_session(Session session) {
+Task<void> run_session(MasterSession session) {
   const SyncOutcome outcome = co_await run_passes(session);
   const MessageKind kind = outcome.synchronised ? MessageKind::kSuccess : MessageKind::kGiveUp;
   Bytes end = encode({kind, outcome.passes, 0, HostTime{}});
@@ -160,7 +160,8 @@ Task<void> run_sessions_in_turn(const Yoon2021Settings& settings, Host& host,
   for (const PeerId slave : slaves) {
     if (!first) co_await host.sleep_for(settings.session_gap);
     first = false;
-    const Session session{settings, host, host.open_channel(slave, settings.transport), slave};
+    const MasterSession session{settings, host, host.open_channel(slave, settings.transport),
+                                slave};
     co_await run_session(session);
   }
 }

@@ -8,7 +8,7 @@
 namespace simbench {
 namespace {
 
-struct Session {
+struct SlaveSession {
   const Yoon2021Settings& settings;
   Host& host;
   MessageChannel& channel;
@@ -31,7 +31,7 @@ bool ends_pass(const SessionMessage& message, std::uint32_t pass) {
 
 // What the master sends next that matters in this pass: a message of `kind` (with `index`, if one
 // is given), or one that ends the pass. Nothing if the master is silent for too long.
-Task<MaybeMessage> receive_next(Session session, MessageKind kind, std::uint32_t pass,
+Task<MaybeMessage> receive_next(SlaveSession session, MessageKind kind, std::uint32_t pass,
                                 std::optional<std::uint32_t> index) {
   const Nanoseconds patience = Yoon2021::kSlavePatience * silence_limit(session.settings);
   const SteadyTime deadline = session.host.steady_clock().now() + patience;
@@ -47,7 +47,7 @@ Task<MaybeMessage> receive_next(Session session, MessageKind kind, std::uint32_t
 }
 
 // The first READY, or nothing if this slave's turn does not come.
-Task<MaybeMessage> wait_for_turn(Session session) {
+Task<MaybeMessage> wait_for_turn(SlaveSession session) {
   const SteadyTime deadline = session.host.steady_clock().now() + session.settings.turn_timeout;
   while (true) {
     std::optional<ReceivedMessage> received = co_await session.channel.receive(deadline);
@@ -64,7 +64,7 @@ struct NetworkDelay {
   MaybeMessage interruption;
 };
 
-Task<NetworkDelay> measure_network_delay(Session session, std::uint32_t pass) {
+Task<NetworkDelay> measure_network_delay(SlaveSession session, std::uint32_t pass) {
   const Yoon2021Settings& settings = session.settings;
   const SteadyClock& steady = session.host.steady_clock();
   NetworkDelay result;
@@ -95,7 +95,7 @@ Task<NetworkDelay> measure_network_delay(Session session, std::uint32_t pass) {
 }
 
 // The time synchronisation delay t_t. Each call really sets the clock, to a reading that has aged.
-Task<Nanoseconds> measure_time_delay(Session session) {
+Task<Nanoseconds> measure_time_delay(SlaveSession session) {
   const SteadyClock& steady = session.host.steady_clock();
   HostClock& clock = session.host.clock();
   Nanoseconds sum{0};
@@ -110,7 +110,7 @@ Task<Nanoseconds> measure_time_delay(Session session) {
 }
 
 // One turn of the loop of Algorithm 2. Returns the message that the next turn begins with.
-Task<MaybeMessage> run_pass(Session session, std::uint32_t pass) {
+Task<MaybeMessage> run_slave_pass(SlaveSession session, std::uint32_t pass) {
   const Yoon2021Settings& settings = session.settings;
   const NetworkDelay network = co_await measure_network_delay(session, pass);
   if (!network.complete) co_return network.interruption;
@@ -138,11 +138,11 @@ Task<MaybeMessage> run_pass(Session session, std::uint32_t pass) {
 }  // namespace
 
 Task<void> Yoon2021::run_slave(Host& host, PeerId master) {
-  const Session session{settings_, host, host.open_channel(master, settings_.transport)};
+  const SlaveSession session{settings_, host, host.open_channel(master, settings_.transport)};
   MaybeMessage message = co_await wait_for_turn(session);
   while (message && message->kind == MessageKind::kReady) {
     const std::uint32_t pass = message->pass;
-    message = co_await run_pass(session, pass);
+    message = co_await run_slave_pass(session, pass);
   }
 }
 
