@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/nonempty.h"
 #include "tests/sim/host/sim_world.h"
 
 namespace simbench::sim {
@@ -88,7 +89,7 @@ TEST(NicClock, ReadingsHaveTheirNoiseAndResolution) {
   EXPECT_NEAR(std::sqrt(squares / 2000 - mean * mean), 100, 8) << "seed 3";
   s.hosts.nic.stamp_jitter_sigma_ns = 0;
   s.hosts.nic.stamp_resolution_ns = 8;
-  for (const CrossStamp& stamp : stamps_of(s, 10)) {
+  for (const CrossStamp& stamp : nonempty(stamps_of(s, 10))) {
     EXPECT_EQ(stamp.hardware.time_since_epoch().count() % 8, 0);
   }
 }

@@ -203,18 +203,6 @@ TEST(NetworkTest, ALostSegmentHoldsUpWhatFollowsIt) {
   EXPECT_GT(delayed_by_one_timeout, 3);
 }
 
-TEST(NetworkTest, AStreamOnADeadLinkBreaks) {
-  scenarios::Network network = plain_network();
-  network.loss_probability = 1;
-  World world(network);
-  Probe& a = world.probe(0, 1);
-  Probe& b = world.probe(1, 0);
-  world.send_at(0, a, 1);
-  world.send_at(1, a, 2);
-  world.run();
-  EXPECT_TRUE(b.arrived.empty());
-}
-
 TEST(NetworkTest, DatagramsAreLostDuplicatedAndReorderedAtTheirRates) {
   scenarios::Network network = plain_network();
   network.loss_probability = 0.1;

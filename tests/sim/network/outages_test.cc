@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -104,6 +105,32 @@ TEST(Outages, StreamsRetransmit) {
     last_ms = std::max(last_ms, sent_ms + 1);
     EXPECT_EQ(talk.ids[i], i);
     EXPECT_NEAR(talk.arrived_ms[i], last_ms, 1e-6) << i;
+  }
+}
+
+// Its 15 retransmissions, after 80 ms doubled each time, span 80 ms * (2^15 - 1) = 2621.36 s.
+TEST(Outages, AStreamBreaksOnALinkThatStaysDeadBeyondItsRetransmissions) {
+  constexpr double kSpanMs = 80 * 32767;
+  for (const auto& [transport, dead_ms, first, last] :
+       {std::tuple{Transport::kStream, kSpanMs - 1, true, true},
+        {Transport::kStream, kSpanMs + 1, false, false},
+        {Transport::kDatagram, kSpanMs + 1, false, true}}) {
+    scenarios::Network parameters{};
+    parameters.retransmit_timeout_ms = 80;
+    Engine engine;
+    Outages outages({stop("link_stops", 1, 0, dead_ms)});
+    outages.start(TrueTime{});
+    const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
+    Network network(engine, parameters, 1, 2, load, outages);
+    End here(network, 0, 1, transport);
+    End there(network, 1, 0, transport);
+    // One while the link is dead, one long after it came back.
+    for (const double ms : {0.0, 2 * kSpanMs}) {
+      engine.call_at(at_ms(ms), [&] { network.send(here.path, here.next++, Bytes(1)); });
+    }
+    engine.run();
+    EXPECT_EQ(std::count(there.ids.begin(), there.ids.end(), 0u), first) << dead_ms;
+    EXPECT_EQ(std::count(there.ids.begin(), there.ids.end(), 1u), last) << dead_ms;
   }
 }
 

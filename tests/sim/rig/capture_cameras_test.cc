@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/nonempty.h"
 #include "tests/sim/rig/captured_frames.h"
 #include "tests/sim/rig/ideal_scenario.h"
 
@@ -33,7 +34,7 @@ TEST(CaptureCameras, ExposuresAreUnsteadyAfterTheStartOnly) {
   s.cameras.unstable_start_ms = 500;
   s.cameras.unstable_start_jitter_sigma_ms = 1;
   double largest_before = 0;
-  for (const auto& [record, truth] : capture(s).frames) {
+  for (const auto& [record, truth] : nonempty(capture(s).frames)) {
     const double pulse_ms = static_cast<double>(truth.pulse) * 1e3 / 45;
     const double late_ms = to_ms(truth.exposure_start.time_since_epoch()) - pulse_ms;
     if (pulse_ms < 500) {
@@ -50,7 +51,7 @@ TEST(CaptureCameras, ARollingShutterLastsLongerThanItsExposure) {
   scenarios::Scenario s = ideal_scenario();
   s.cameras.streams[0].shutter = "rolling";
   s.cameras.streams[0].readout_ms = 6;
-  for (const auto& [record, truth] : capture(s).frames) {
+  for (const auto& [record, truth] : nonempty(capture(s).frames)) {
     const double pulse_us = static_cast<double>(truth.pulse) * 1e6 / 45;
     // Rows begin between 0 and 6 ms after the pulse and last 4 ms each.
     EXPECT_EQ(truth.exposure_end - truth.exposure_start, from_ms(10));
@@ -88,7 +89,7 @@ TEST(CaptureCameras, LatencyOfACameraIsItsOwnAndConstant) {
   s.cameras.latency_camera_max_ms = 5;
   const CapturedFrames result = capture(s);
   double first_ms[2] = {};
-  for (const auto& [record, truth] : result.frames) {
+  for (const auto& [record, truth] : nonempty(result.frames)) {
     const double extra_ms =
         host_ms_of(record.arrival) - static_cast<double>(truth.pulse) * 1e3 / 45 - 14;
     if (truth.pulse == 0) first_ms[record.camera] = extra_ms;
