@@ -6,20 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <string>
 
 #include "evaluation/replay/replay.h"
+#include "tests/data/test_data.h"
 
 namespace simbench::app {
 namespace {
 
 using testing::HasSubstr;
 
-// The recordings are not part of the project: they lie beside it, or the tests on them do not run.
-const std::string kData = SIMBENCH_SOURCE_DIR "/../shared/data/ibl/";
-const std::string kBody = kData + "_iblrig_bodyCamera.timestamps.ssv";
-const std::string kLeft = kData + "_iblrig_leftCamera.frameData.bin";
+const std::string kBody = test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv");
+const std::string kLeft = test_data_path("ibl/_iblrig_leftCamera.frameData.bin");
 
 std::uint32_t cycle_clock(unsigned seconds, unsigned cycles, unsigned offsets) {
   return seconds << 25 | cycles << 12 | offsets;
@@ -87,7 +85,6 @@ std::vector<CameraStream> through_csv(const std::string& path) {
 }
 
 TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
-  if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "not run: data absent";
   const evaluation::Replay replay = evaluation::run_replay(through_csv(kBody));
   ASSERT_EQ(replay.cameras.size(), 1U);
   const evaluation::CameraStatistics& found = replay.cameras[0].statistics;
@@ -116,7 +113,6 @@ TEST(IblRecording, TheRealBodyCameraGivesItsCheckValues) {
 }
 
 TEST(IblRecording, TheRealLeftCameraIsRead) {
-  if (!std::filesystem::exists(kLeft)) GTEST_SKIP() << "not run: data absent";
   const auto frames = read_ibl_recording(kLeft);
   ASSERT_EQ(frames.size(), 135U);
   EXPECT_EQ(frames.front().counter, 389918212U);

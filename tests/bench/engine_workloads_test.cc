@@ -1,4 +1,4 @@
-// The engine workloads against the checksums of docs/reference/event_engine.md, section 1.
+// The engine workloads against the checksums of docs/reference/event_engine.md section 1.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

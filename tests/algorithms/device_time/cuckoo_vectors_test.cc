@@ -1,4 +1,4 @@
-// The vectors of cuckoo_time_translator, read in place (reference vectors/README.md).
+// The vectors of cuckoo_time_translator (tests/data/README.md).
 //
 // Not applicable: unwrapper case 2, whose wrap number grows with the readings (a camera's register
 // has a known size, and a reading above it cannot be); the unwrapping within the translator cases,
@@ -9,8 +9,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -18,6 +16,7 @@
 #include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/switching_hull.h"
 #include "algorithms/device_time/unwrap.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
@@ -34,14 +33,7 @@ double at(const SupportLine& line, double x) { return line.at(std::llround(x * k
 
 class CuckooVectors : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const std::string path = SIMBENCH_SOURCE_DIR "/../shared/vectors/cuckoo.json";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "not run: there is no " << path;
-    std::ifstream file(path);
-    vectors_ = Json::parse(file);
-  }
-
-  Json vectors_;
+  Json vectors_ = test_data_json("vectors/cuckoo.json");
 };
 
 TEST_F(CuckooVectors, ConvexHull) {

@@ -1,10 +1,9 @@
-// The estimators on 198 s of a real camera with a drift of -215 ppm (reference data/ibl, read in
-// place): the check values that come with it, and how far the estimators agree among themselves.
+// The estimators on 198 s of a real camera with a drift of -215 ppm (tests/data/README.md): the
+// check values that come with it, and how far the estimators agree among themselves.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 #include "algorithms/device_time/sliding_minimum.h"
 #include "algorithms/device_time/unwrap.h"
 #include "tests/algorithms/device_time/streams.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
@@ -44,10 +44,7 @@ std::vector<DeviceSample> read(const std::string& path) {
 class RealRecording : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string path =
-        SIMBENCH_SOURCE_DIR "/../shared/data/ibl/_iblrig_bodyCamera.timestamps.ssv";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "not run: there is no " << path;
-    samples_ = read(path);
+    samples_ = read(test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv"));
     ASSERT_EQ(samples_.size(), 6001U);
   }
 

@@ -1,13 +1,11 @@
-// The vectors of ROS, ROS 2, the Azure Kinect and librealsense, read in place where they are
-// present.
+// The policies against the vectors of ROS, ROS 2, the Azure Kinect and librealsense
+// (tests/data/README.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,19 +15,13 @@
 #include "algorithms/gathering/librealsense_syncer.h"
 #include "algorithms/gathering/yoon2021.h"
 #include "tests/algorithms/gathering/collected_sets.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
 
 using Json = nlohmann::json;
 using Sets = std::vector<std::vector<double>>;
-
-// Nothing if the file is absent.
-std::optional<Json> vectors_of(const std::string& name) {
-  std::ifstream file(SIMBENCH_SOURCE_DIR "/../shared/vectors/" + name);
-  if (!file) return std::nullopt;
-  return Json::parse(file);
-}
 
 // The stamps in seconds of the sets of messages [stamp_s, topic].
 Sets gathered(Gatherer& gatherer, const Json& input) {
@@ -49,10 +41,9 @@ Sets gathered(Gatherer& gatherer, const Json& input) {
 }
 
 TEST(GatheringVectors, RosApproximateTimeAllFourteen) {
-  const std::optional<Json> vectors = vectors_of("ros_approximate_time.json");
-  if (!vectors) GTEST_SKIP() << "not run: the file is absent";
-  ASSERT_EQ(vectors->at("cases").size(), 14U);
-  for (const Json& entry : vectors->at("cases")) {
+  const Json vectors = test_data_json("vectors/ros_approximate_time.json");
+  ASSERT_EQ(vectors.at("cases").size(), 14U);
+  for (const Json& entry : vectors.at("cases")) {
     ApproximateTimeOptions options;
     options.age_penalty = entry.at("age_penalty");
     options.queue = entry.at("queue_size");
@@ -75,11 +66,10 @@ TEST(GatheringVectors, RosApproximateTimeAllFourteen) {
 // Another policy, so not all sets agree; docs/reference/gathering.md section 2 lists in which they
 // do.
 TEST(GatheringVectors, AlgorithmThreeAgreesWithRosInFiveOfFourteen) {
-  const std::optional<Json> vectors = vectors_of("ros_approximate_time.json");
-  if (!vectors) GTEST_SKIP() << "not run: the file is absent";
+  const Json vectors = test_data_json("vectors/ros_approximate_time.json");
   const std::vector<std::string> agreeing = {"ExactMatch", "ImperfectMatch", "DoublePublish",
                                              "RateBound_2", "RateBoundAll_2"};
-  for (const Json& entry : vectors->at("cases")) {
+  for (const Json& entry : vectors.at("cases")) {
     const std::string name = entry.at("name");
     const auto gatherer = make_yoon2021_gatherer(
         {.sources = entry.at("topics"), .period = from_ms(3000), .interval = from_ms(1500)});
@@ -90,29 +80,27 @@ TEST(GatheringVectors, AlgorithmThreeAgreesWithRosInFiveOfFourteen) {
 }
 
 TEST(GatheringVectors, Ros2EpsilonAllThree) {
-  const std::optional<Json> vectors = vectors_of("ros2_approximate_epsilon_time.json");
-  if (!vectors) GTEST_SKIP() << "not run: the file is absent";
-  ASSERT_EQ(vectors->at("cases").size(), 3U);
-  for (const Json& entry : vectors->at("cases")) {
+  const Json vectors = test_data_json("vectors/ros2_approximate_epsilon_time.json");
+  ASSERT_EQ(vectors.at("cases").size(), 3U);
+  for (const Json& entry : vectors.at("cases")) {
     const auto gatherer =
         make_epsilon_gatherer({.sources = 2,
                                .interval = from_ms(entry.at("epsilon").get<double>() * 1000),
-                               .queue_limit = vectors->at("queue_size")});
+                               .queue_limit = vectors.at("queue_size")});
     EXPECT_EQ(gathered(*gatherer, entry.at("input")), entry.at("expected").get<Sets>())
         << entry.at("name");
   }
 }
 
 TEST(GatheringVectors, AzureKinectAllNine) {
-  const std::optional<Json> vectors = vectors_of("k4a_capturesync.json");
-  if (!vectors) GTEST_SKIP() << "not run: the file is absent";
-  ASSERT_EQ(vectors->at("cases").size(), 9U);
-  for (const Json& entry : vectors->at("cases")) {
+  const Json vectors = test_data_json("vectors/k4a_capturesync.json");
+  ASSERT_EQ(vectors.at("cases").size(), 9U);
+  for (const Json& entry : vectors.at("cases")) {
     const auto gatherer =
         make_k4a_gatherer({.sources = 2,
-                           .period = Microseconds(vectors->at("period_us").get<int>()),
-                           .queue_limit = vectors->at("queue_default_size")},
-                          Microseconds(vectors->at("depth_delay_off_color_usec").get<int>()));
+                           .period = Microseconds(vectors.at("period_us").get<int>()),
+                           .queue_limit = vectors.at("queue_default_size")},
+                          Microseconds(vectors.at("depth_delay_off_color_usec").get<int>()));
     CollectedSets out;
     for (const Json& sample : entry.at("input_us")) {
       const std::int64_t at_us = sample[0];
@@ -131,10 +119,9 @@ TEST(GatheringVectors, AzureKinectAllNine) {
 // Two of four scripts apply: diff_fps_100_10 needs a rate per stream, and desync_2 one per frame
 // (ACTUAL_FPS metadata); GatheringSetup has one period for all.
 TEST(GatheringVectors, LibrealsenseScriptsOfOneRate) {
-  const std::optional<Json> vectors = vectors_of("librealsense_syncer.json");
-  if (!vectors) GTEST_SKIP() << "not run: the file is absent";
+  const Json vectors = test_data_json("vectors/librealsense_syncer.json");
   int applied = 0;
-  for (const Json& entry : vectors->at("cases")) {
+  for (const Json& entry : vectors.at("cases")) {
     const std::string name = entry.at("name");
     if (name != "same_fps_60" && name != "desync") continue;
     ++applied;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/cli/program.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
@@ -17,8 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
-const std::string kBody =
-    SIMBENCH_SOURCE_DIR "/../shared/data/ibl/_iblrig_bodyCamera.timestamps.ssv";
+const std::string kBody = test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv");
 
 class FitCommand : public ProgramTest {
  protected:
@@ -64,7 +64,6 @@ TEST_F(FitCommand, JsonHasBothChecks) {
 }
 
 TEST_F(FitCommand, ARealRecordingAgreesWithItsSimulatedModel) {
-  if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "no recorded data here";
   file("body.csv", run({"convert-ibl", kBody}).out);
   const ProgramResult fitted = run({"fit", "body.csv", "-o", "body.json", "--format", "json"});
   ASSERT_EQ(fitted.status, 0) << fitted.err;

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include "tests/cli/program.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
@@ -18,8 +18,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
-const std::string kBody =
-    SIMBENCH_SOURCE_DIR "/../shared/data/ibl/_iblrig_bodyCamera.timestamps.ssv";
+const std::string kBody = test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv");
 
 class ReplayCommand : public ProgramTest {
  protected:
@@ -91,7 +90,6 @@ TEST_F(ReplayCommand, WhatOnlyAFolderTakesIsRefusedForFiles) {
 }
 
 TEST_F(ReplayCommand, ARealRecordingIsConvertedAndReplayed) {
-  if (!std::filesystem::exists(kBody)) GTEST_SKIP() << "not run: data absent";
   const ProgramResult converted = run({"convert-ibl", kBody});
   ASSERT_EQ(converted.status, 0) << converted.err;
   const ProgramResult result = run({"replay", file("body.csv", converted.out), "--format", "json"});

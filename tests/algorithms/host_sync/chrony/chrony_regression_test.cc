@@ -6,11 +6,11 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
@@ -22,11 +22,7 @@ void expect_near(double actual, double expected, const std::string& what) {
 }
 
 TEST(ChronyRegressionVectors, AllFortyAgree) {
-  const std::filesystem::path path =
-      std::filesystem::path(SIMBENCH_SOURCE_DIR) / "../shared/vectors/chrony_regress_golden.json";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "not run: no " << path;
-  std::ifstream file(path);
-  const nlohmann::json sets = nlohmann::json::parse(file);
+  const nlohmann::json sets = test_data_json("vectors/chrony_regress_golden.json");
   ASSERT_EQ(sets.size(), 40U);
   for (std::size_t index = 0; index < sets.size(); ++index) {
     const nlohmann::json& set = sets[index];

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -12,20 +10,13 @@
 #include <string>
 
 #include "algorithms/host_sync/ptp/moving_median.h"
+#include "tests/data/test_data.h"
 
 namespace simbench {
 namespace {
 
-const char* const kVectors = SIMBENCH_SOURCE_DIR "/../shared/vectors/linuxptp_golden.json";
-
 class PtpVectorTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(kVectors)) GTEST_SKIP() << "not run: no " << kVectors;
-    std::ifstream file(kVectors);
-    vectors_ = nlohmann::json::parse(file);
-  }
-
   void expect_agreement(Servo& servo, const char* key) {
     const nlohmann::json& rows = vectors_.at(key);
     ASSERT_EQ(rows.size(), 120u);
@@ -40,7 +31,7 @@ class PtpVectorTest : public testing::Test {
     }
   }
 
-  nlohmann::json vectors_;
+  const nlohmann::json vectors_ = test_data_json("vectors/linuxptp_golden.json");
 };
 
 TEST_F(PtpVectorTest, PiServoWithHardwareStamps) {

@@ -144,7 +144,7 @@ TEST(Yoon2021, AThresholdOfExactlyTheDelayIsMet) {
 }
 
 // A stream, 0.15 ms long, on which 30 % of the messages (and those behind them) are late by up to
-// 10 ms: the world "spiky LAN" of calibration.md section 4.
+// 10 ms: the world "spiky LAN" of docs/reference/calibration.md section 4.
 LinkScript spiky_stream(const ScriptWorld& world, std::mt19937_64& random) {
   return [&world, &random, last = Nanoseconds{0}](std::size_t, const Bytes&) mutable {
     const Nanoseconds spike{static_cast<std::int64_t>(random() % 10'000'000)};
