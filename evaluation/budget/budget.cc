@@ -40,17 +40,6 @@ bool all_exist(const std::vector<std::vector<double>>& values) {
   });
 }
 
-double mean_of_existing(const std::vector<double>& values) {
-  double sum = 0;
-  double count = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++count;
-  }
-  return sum / count;
-}
-
 void finish(BudgetPart& part) {
   part.mean = mean_of_existing(part.values);
   part.p05 = quantile(part.values, 0.05);

@@ -10,7 +10,7 @@
 
 #include "algorithms/gathering/genlock_order.h"
 #include "algorithms/registry.h"
-#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 

@@ -2,61 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/scoring/results.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kMsPerNs = 1e-6;
+std::vector<Metric>& registered() {
+  static std::vector<Metric> all(std::begin(kMetrics), std::end(kMetrics));
+  return all;
+}
 
-// The median as a difference from `base`.
-double median_above(std::int64_t base, MedianKind kind, std::vector<std::int64_t>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const auto upper = static_cast<double>(*middle - base);
-  if (kind == MedianKind::kUpperMiddle || values.size() % 2 == 1) return upper;
-  const auto lower = static_cast<double>(*std::max_element(values.begin(), middle) - base);
-  return (lower + upper) / 2;
+// The count in a row, const or not.
+template <class AnyRow>
+auto& count_in(AnyRow& row, const Place& place) {
+  if (const auto* set = std::get_if<std::int64_t SetCounts::*>(&place)) return row.sets.**set;
+  if (const auto* frame = std::get_if<std::int64_t FrameCounts::*>(&place)) {
+    return row.frames.**frame;
+  }
+  return row.*std::get<std::int64_t RunCounts::*>(place);
 }
 
 }  // namespace
 
-MedianKind median_kind(std::string_view name) {
-  SIMBENCH_ASSERT(name == "upper_middle" || name == "mean_of_middle_two",
-                  "the schema allows no other median");
-  return name == "upper_middle" ? MedianKind::kUpperMiddle : MedianKind::kMeanOfMiddleTwo;
+const Series& Metric::series(const Row& row) const { return row.*std::get<SeriesPlace>(place).row; }
+Series& Metric::series(Row& row) const { return row.*std::get<SeriesPlace>(place).row; }
+
+double Metric::number(const Row& row) const { return row.*std::get<double PooledValues::*>(place); }
+double& Metric::number(Row& row) const { return row.*std::get<double PooledValues::*>(place); }
+
+std::int64_t Metric::count(const Row& row) const { return count_in(row, place); }
+std::int64_t& Metric::count(Row& row) const { return count_in(row, place); }
+
+bool Metric::is_known(const Row& row) const {
+  return !is_count() || needs == Needs::kNothing || row.verified();
 }
 
-double spread_ms(std::span<const std::int64_t> stamps_ns) {
-  const auto [least, greatest] = std::minmax_element(stamps_ns.begin(), stamps_ns.end());
-  return static_cast<double>(*greatest - *least) * kMsPerNs;
+double Metric::value(const Row& row) const {
+  if (is_series()) return series(row).median;
+  if (!is_count()) return number(row);
+  return is_known(row) ? static_cast<double>(count(row)) : kNan;
 }
 
-double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                    std::vector<std::int64_t>& workspace) {
-  workspace.assign(stamps_ns.begin(), stamps_ns.end());
-  const std::int64_t base = stamps_ns.front();
-  const double median = median_above(base, kind, workspace);
-  // Summed in the order given, which no choice of the selection algorithm can change.
-  double squares = 0;
-  for (const std::int64_t stamp : stamps_ns) {
-    const double difference = static_cast<double>(stamp - base) - median;
-    squares += difference * difference;
+double Metric::table_value(const std::vector<double>& values) const {
+  return is_share() ? mean_of_existing(values) : median(values);
+}
+
+std::span<const Metric> metrics() { return registered(); }
+
+const Metric& metric(std::string_view id) {
+  const auto all = metrics();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Metric& each) { return each.id == id; });
+  SIMBENCH_ASSERT(found != all.end(), "a metric that there is");
+  return *found;
+}
+
+std::vector<const Metric*> judged_metrics() {
+  std::vector<const Metric*> judged;
+  for (const Metric& each : metrics()) {
+    if (each.judged) judged.push_back(&each);
   }
-  return std::sqrt(squares / static_cast<double>(stamps_ns.size())) * kMsPerNs;
+  return judged;
 }
 
-// The sum of squares is convex in the sorted stamps, so its maximum over all stamps of a given
-// range is at a step: k of them at one end, n - k at the other, the median at either end or, for
-// the mean of the middle two with k = n/2, halfway between.
-double rmdv_bound(std::size_t n, MedianKind kind) {
-  if (n < 2) return 0;
-  const std::size_t lower_half = n / 2;
-  const auto count = static_cast<double>(n);
-  const auto half = static_cast<double>(lower_half);
-  if (kind == MedianKind::kUpperMiddle || n % 2 == 1) return std::sqrt(half / count);
-  return std::sqrt(std::max(half - 1, count / 4) / count);
+std::vector<const Metric*> sweep_metrics() {
+  std::vector<const Metric*> columns;
+  for (const Metric& each : metrics()) {
+    if (each.sweep != nullptr) columns.push_back(&each);
+  }
+  std::stable_partition(columns.begin(), columns.end(),
+                        [](const Metric* each) { return !each->is_count(); });
+  return columns;
 }
+
+std::vector<const Metric*> table_metrics(int TablePlaces::*table) {
+  std::vector<const Metric*> columns;
+  for (const Metric& each : metrics()) {
+    if (each.tables.*table > 0) columns.push_back(&each);
+  }
+  std::stable_sort(columns.begin(), columns.end(), [table](const Metric* a, const Metric* b) {
+    return a->tables.*table < b->tables.*table;
+  });
+  return columns;
+}
+
+ScopedMetric::ScopedMetric(const Metric& metric) { registered().push_back(metric); }
+ScopedMetric::~ScopedMetric() { registered().pop_back(); }
 
 }  // namespace simbench::evaluation

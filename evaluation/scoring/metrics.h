@@ -1,50 +1,482 @@
-// The paper's two metrics for the frames of one pulse: their terms of AMD and RMDV.
+// The metrics: what each is, where a score keeps it, and where results show it.
 //
-//   AMD  = mean over pulses of spread_ms      (eq. 3)
-//   RMDV = mean over pulses of deviation_ms   (eq. 4, with the square that is missing in print)
+// This is the only list. Rows over the seeds, sweeps, comparisons, gates, baselines, JSON, CSV, the
+// archive reader and the tables of terminal, Markdown and page go through metrics(). To add one:
+// a member of MetricValues and an entry of kMetrics (both here), the line that computes it
+// (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
 //
-// Stamps go in as integer nanoseconds, results come out in milliseconds. Differences are taken
-// before anything becomes floating-point, so stamps of any epoch are exact; they must differ by
-// less than 2^63 ns.
+// A metric has one of three forms: a value for each seed, of which a row has the median and the
+// 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
 //
-// For any stamps deviation_ms <= rmdv_bound() * spread_ms, and so RMDV <= bound * AMD: a published
-// pair that breaks it cannot come from eq. (4). Source: docs/reference/paper.md sections 6 and 7.
-//
-//   const std::vector<std::int64_t> stamps = {0, 1'000'000, 3'000'000};
-//   spread_ms(stamps);                                            // 3
-//   deviation_ms(stamps, MedianKind::kUpperMiddle, workspace);    // sqrt((1 + 0 + 4) / 3)
+//   for (const Metric& metric : metrics()) {
+//     if (metric.is_series()) use(metric.id, metric.series(row).median);
+//   }
 #ifndef SIMBENCH_EVALUATION_SCORING_METRICS_H_
 #define SIMBENCH_EVALUATION_SCORING_METRICS_H_
 
-#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace simbench::evaluation {
 
-// The median of an even number of values is not defined in the paper; of an odd number, both are
-// the middle one.
-enum class MedianKind : std::uint8_t {
-  kUpperMiddle,      // sorted[n / 2]
-  kMeanOfMiddleTwo,  // (sorted[n / 2 - 1] + sorted[n / 2]) / 2
+struct Row;
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();  // does not exist
+
+// Values in seed order, with the median and the 5-95 % band of those that exist.
+struct Series {
+  std::vector<double> values;
+  double median = 0;
+  double p05 = 0;
+  double p95 = 0;
 };
 
-// From a scenario's /evaluation/rmdv_median: "upper_middle" or "mean_of_middle_two".
-MedianKind median_kind(std::string_view name);
+// What a seed has before anything is computed: no value, which is NaN; a row has an empty series.
+template <class Value>
+constexpr Value no_value() {
+  if constexpr (std::is_same_v<Value, double>) {
+    return kNan;
+  } else {
+    return {};
+  }
+}
 
-// Largest minus smallest. `stamps_ns` must not be empty. O(n).
-double spread_ms(std::span<const std::int64_t> stamps_ns);
+// What is measured once in each seed: of one seed (double) or over the seeds (Series).
+template <class Value>
+struct MetricValues {
+  Value amd_ms = no_value<Value>();
+  Value rmdv_ms = no_value<Value>();
+  Value absolute_error_ms = no_value<Value>();
+  Value bias_ms = no_value<Value>();
+  Value host_error_ms = no_value<Value>();
+  Value exposure_spread_ms = no_value<Value>();
+  Value seed_precision = no_value<Value>();  // of the seed's own sets
+  Value seed_recall = no_value<Value>();
+  // Over the complete sets that gathering emitted; none if it emitted none (or there is no truth).
+  Value set_amd_ms = no_value<Value>();  // mean range of a set's stamps
+  Value set_absolute_error_ms = no_value<Value>();
+  // From the last member's arrival to that of the frame which made the gatherer emit.
+  Value emission_latency_ms = no_value<Value>();  // mean over these sets
+  // Without an entry below: claims of the paper rest on these, results do not show them.
+  Value offline_amd_ms = no_value<Value>();     // AMD of regression_offline over the same recording
+  Value spread_in_host_ms = no_value<Value>();  // mean over pulses and hosts of the range in a host
+  Value spread_between_hosts_ms = no_value<Value>();  // mean over pulses: range of hosts' means
+  Value trend_ms = no_value<Value>();  // change of the spread over the recording, by least squares
+  Value share_below_half_period = no_value<Value>();  // of pulses: spread under half a period
+};
 
-// Root mean square of the differences from the median. `stamps_ns` must not be empty. `workspace`
-// is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
-double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
-                    std::vector<std::int64_t>& workspace);
+// Numbers over all seeds together; rows.cc makes them.
+struct PooledValues {
+  double precision = 0;
+  double recall = 0;
+  double margin_ms = 0;
+  double emission_latency_max_ms = kNan;
+};
 
-// The largest possible deviation_ms / spread_ms of n stamps: 1/sqrt(2) for the upper-middle median
-// of an even number, 2/3 for the mean of the middle two of 18.
-double rmdv_bound(std::size_t n, MedianKind kind);
+struct FrameCounts {
+  std::int64_t expected = 0;  // evaluated pulses x sources; unverified: by the cameras' counters
+  std::int64_t delivered = 0;
+  std::int64_t dropped = 0;
+};
+
+// Sets count if one of their members is among the evaluated pulses.
+struct SetCounts {
+  std::int64_t emitted = 0;          // complete sets
+  std::int64_t pure = 0;             // of those, all members from one pulse
+  std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
+  std::int64_t discarded_frames = 0;
+  std::int64_t partial = 0;       // sets that lack a source
+  std::int64_t index_errors = 0;  // members of emitted sets that are not of most members' pulse
+};
+
+struct RunCounts {
+  std::int64_t evaluated_pulses = 0;      // that the scores rest on; unverified: sets
+  std::int64_t unsynchronised_hosts = 0;  // over all seeds
+};
+
+enum class Better : std::uint8_t { kLower, kHigher, kNearestZero, kNeither };
+
+// Without it a metric does not exist: NaN, null in JSON, an empty cell in CSV, "-" in tables.
+enum class Needs : std::uint8_t {
+  kNothing,
+  kVerifiedSets,  // it is known which frames belong together
+  kTruth,         // only a simulation (or an experiment that shares a clock) knows it
+};
+
+// Of a line in results.csv.
+enum class CsvColumns : std::uint8_t {
+  kNone,
+  kBand,        // ID, ID_p05, ID_p95
+  kValue,       // a series: its median
+  kValueAtEnd,  // likewise, behind the published values
+};
+
+// Its place, from 1, among the columns of each table of results; 0: it is not there.
+struct TablePlaces {
+  int paper = 0;  // the paper's metrics
+  int truth = 0;  // what needs true time
+  int sets = 0;   // what gathering made of the stamps
+};
+
+// How much worse a metric may become: by the larger of a share of what it was and a step.
+struct GateMargin {
+  double relative = 0;
+  double absolute = 0;  // in the metric's unit
+};
+
+// Of a metric that comparisons and gates are about.
+struct Judged {
+  double smallest_step = 0;  // a smaller change means nothing, whatever its share
+  GateMargin margin;         // unless a baseline says otherwise
+};
+
+// Where the values are, of a seed and of a row.
+struct SeriesPlace {
+  double MetricValues<double>::*seed = nullptr;
+  Series MetricValues<Series>::*row = nullptr;
+};
+using Place = std::variant<SeriesPlace, double PooledValues::*, std::int64_t SetCounts::*,
+                           std::int64_t FrameCounts::*, std::int64_t RunCounts::*>;
+
+struct Metric {
+  const char* id = "";     // its name in JSON and CSV, with the unit last
+  const char* title = "";  // in a sentence
+  const char* unit = "";   // "ms", "share", or "" of a count
+  Better better = Better::kLower;
+  Needs needs = Needs::kNothing;
+  Place place;
+
+  // In tables: "\n" breaks a heading where a column is narrow. Without a heading for the band, the
+  // median stands alone.
+  TablePlaces tables{};
+  const char* heading = "";
+  const char* band_heading = nullptr;
+  const char* legend = "";
+  bool legend_continues = false;  // the line of the metric before it
+
+  // In files. JSON: a member of the row's object `json_in` ("": of the row), named `json_name`
+  // (null: id). Sweeps: the name of its column in sweep.csv (null: none).
+  const char* json_in = "";
+  const char* json_name = nullptr;
+  CsvColumns csv = CsvColumns::kNone;
+  const char* sweep = nullptr;
+
+  std::optional<Judged> judged{};
+
+  bool is_series() const { return std::holds_alternative<SeriesPlace>(place); }
+  bool is_count() const {
+    return !is_series() && !std::holds_alternative<double PooledValues::*>(place);
+  }
+  bool is_share() const { return std::string_view(unit) == "share"; }
+  const char* member() const { return json_name != nullptr ? json_name : id; }  // in JSON
+
+  // Of the form it has; programming errors otherwise.
+  const Series& series(const Row& row) const;
+  Series& series(Row& row) const;
+  double number(const Row& row) const;
+  double& number(Row& row) const;
+  std::int64_t count(const Row& row) const;
+  std::int64_t& count(Row& row) const;
+
+  // Whether the row can know it. A series or a number that it cannot know is NaN; a count is not.
+  bool is_known(const Row& row) const;
+  // What stands for all seeds: median, number or count; NaN if the row cannot know it.
+  double value(const Row& row) const;
+
+  // What comparisons and gates reduce a series to: its median. A share is the exception: gathering
+  // mostly finds all sets of a seed or none, so a median stays at 100 % until half of the seeds are
+  // lost; the mean of those that exist stands in its place. NaN: no seed has a value.
+  double table_value(const std::vector<double>& values) const;
+};
+
+// All metrics, in the order of the results' files.
+std::span<const Metric> metrics();
+// One of them, which must exist.
+const Metric& metric(std::string_view id);
+
+// Those with `judged`, in order: what comparisons and gates are about.
+std::vector<const Metric*> judged_metrics();
+// The columns of a sweep, in their order: series and numbers, then counts.
+std::vector<const Metric*> sweep_metrics();
+// The columns of a table, in their order: table_metrics(&TablePlaces::truth).
+std::vector<const Metric*> table_metrics(int TablePlaces::*table);
+
+// While it lives there is one more metric, at the end. For tests; not while others work with
+// metrics(), whose addresses it moves.
+class ScopedMetric {
+ public:
+  explicit ScopedMetric(const Metric& metric);
+  ~ScopedMetric();
+  ScopedMetric(const ScopedMetric&) = delete;
+  ScopedMetric& operator=(const ScopedMetric&) = delete;
+};
+
+inline constexpr const char* kInGathering = "gathering_score";
+inline constexpr const char* kInFrames = "frames";
+inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit of the tables
+                                     .margin = {.relative = 0.02, .absolute = 0.001}};
+inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
+                                        .margin = {.relative = 0.01, .absolute = 0.005}};
+
+inline constexpr Metric kMetrics[] = {
+    {.id = "amd_ms",
+     .title = "AMD",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::amd_ms, &MetricValues<Series>::amd_ms},
+     .tables = {.paper = 1},
+     .heading = "AMD\nmedian ms",
+     .band_heading = "AMD\n5-95 %",
+     .legend = "AMD: mean range of the global stamps of a pulse over all cameras;",
+     .csv = CsvColumns::kBand,
+     .sweep = "amd_ms",
+     .judged = kJudgedMs},
+    {.id = "rmdv_ms",
+     .title = "RMDV",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::rmdv_ms, &MetricValues<Series>::rmdv_ms},
+     .tables = {.paper = 2},
+     .heading = "RMDV\nmedian ms",
+     .band_heading = "RMDV\n5-95 %",
+     .legend = "RMDV: mean RMS deviation of these from their median.",
+     .legend_continues = true,
+     .csv = CsvColumns::kBand,
+     .sweep = "rmdv_ms",
+     .judged = kJudgedMs},
+    {.id = "absolute_error_ms",
+     .title = "absolute error",
+     .unit = "ms",
+     .needs = Needs::kTruth,
+     .place = SeriesPlace{&MetricValues<double>::absolute_error_ms,
+                          &MetricValues<Series>::absolute_error_ms},
+     .tables = {.truth = 1},
+     .heading = "absolute error\nmedian ms",
+     .band_heading = "absolute error\n5-95 %",
+     .legend = "absolute error: mean |global stamp - true mid-exposure on the master's clock|;",
+     .csv = CsvColumns::kBand,
+     .sweep = "absolute_error_ms",
+     .judged = kJudgedMs},
+    {.id = "bias_ms",
+     .title = "bias",
+     .unit = "ms",
+     .better = Better::kNearestZero,
+     .needs = Needs::kTruth,
+     .place = SeriesPlace{&MetricValues<double>::bias_ms, &MetricValues<Series>::bias_ms},
+     .tables = {.truth = 2},
+     .heading = "bias\nms",
+     .legend = "bias: with its sign. AMD is blind to what all share.",
+     .legend_continues = true,
+     .csv = CsvColumns::kBand,
+     .sweep = "bias_ms"},
+    {.id = "host_error_ms",
+     .title = "host clock error",
+     .unit = "ms",
+     .needs = Needs::kTruth,
+     .place =
+         SeriesPlace{&MetricValues<double>::host_error_ms, &MetricValues<Series>::host_error_ms},
+     .tables = {.truth = 3},
+     .heading = "host clock error\nmedian ms",
+     .band_heading = "host clock error\n5-95 %",
+     .legend = "host clock error: mean |slave - master|.",
+     .csv = CsvColumns::kBand,
+     .sweep = "host_error_ms"},
+    {.id = "exposure_spread_ms",
+     .title = "exposure spread",
+     .unit = "ms",
+     .better = Better::kNeither,
+     .needs = Needs::kTruth,
+     .place = SeriesPlace{&MetricValues<double>::exposure_spread_ms,
+                          &MetricValues<Series>::exposure_spread_ms},
+     .tables = {.truth = 4},
+     .heading = "exposure\nspread ms",
+     .legend = "exposure spread: how far apart the exposures really were, a limit for AMD.",
+     .legend_continues = true,
+     .csv = CsvColumns::kBand,
+     .sweep = "exposure_spread_ms"},
+    {.id = "precision",
+     .title = "precision",
+     .unit = "share",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place = &PooledValues::precision,
+     .tables = {.truth = 5, .sets = 2},
+     .heading = "sets:\nprecision",
+     .legend = "precision: gathered sets that hold one pulse only;",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValue,
+     .sweep = "precision"},
+    {.id = "recall",
+     .title = "recall",
+     .unit = "share",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place = &PooledValues::recall,
+     .tables = {.truth = 6, .sets = 3},
+     .heading = "sets:\nrecall",
+     .legend = "recall: complete pulses found whole;",
+     .legend_continues = true,
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValue,
+     .sweep = "recall"},
+    {.id = "margin_ms",
+     .title = "margin",
+     .unit = "ms",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place = &PooledValues::margin_ms,
+     .tables = {.truth = 7},
+     .heading = "margin\nms",
+     .legend = "margin: from the range to the limit of a set.",
+     .legend_continues = true,
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValue,
+     .sweep = "margin_ms"},
+    {.id = "seed_precision",
+     .title = "precision",
+     .unit = "share",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place =
+         SeriesPlace{&MetricValues<double>::seed_precision, &MetricValues<Series>::seed_precision},
+     .json_in = kInGathering},
+    {.id = "seed_recall",
+     .title = "recall",
+     .unit = "share",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place = SeriesPlace{&MetricValues<double>::seed_recall, &MetricValues<Series>::seed_recall},
+     .json_in = kInGathering,
+     .judged = kJudgedShare},
+    {.id = "sets",
+     .title = "complete sets",
+     .better = Better::kHigher,
+     .place = &SetCounts::emitted,
+     .tables = {.sets = 1},
+     .heading = "complete\nsets",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd,
+     .sweep = "emitted_sets"},
+    {.id = "pure_sets",
+     .title = "pure sets",
+     .better = Better::kHigher,
+     .needs = Needs::kVerifiedSets,
+     .place = &SetCounts::pure,
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd,
+     .sweep = "pure_sets"},
+    {.id = "complete_pulses",
+     .title = "complete pulses",
+     .better = Better::kNeither,
+     .needs = Needs::kVerifiedSets,
+     .place = &SetCounts::complete_pulses,
+     .json_in = kInGathering,
+     .sweep = "complete_pulses"},
+    {.id = "partial_sets",
+     .title = "partial sets",
+     .place = &SetCounts::partial,
+     .tables = {.sets = 5},
+     .heading = "partial\nsets",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd},
+    {.id = "index_errors",
+     .title = "index errors",
+     .needs = Needs::kVerifiedSets,
+     .place = &SetCounts::index_errors,
+     .tables = {.sets = 4},
+     .heading = "index\nerrors",
+     .legend =
+         "index errors: frames of complete sets that are not of the pulse of most others there.",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd},
+    {.id = "discarded_frames",
+     .title = "discarded frames",
+     .place = &SetCounts::discarded_frames,
+     .tables = {.sets = 6},
+     .heading = "frames\ndiscarded",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd},
+    {.id = "set_amd_ms",
+     .title = "AMD of sets",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::set_amd_ms, &MetricValues<Series>::set_amd_ms},
+     .tables = {.sets = 7},
+     .heading = "AMD of\nsets ms",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd,
+     .sweep = "set_amd_ms"},
+    {.id = "set_absolute_error_ms",
+     .title = "absolute error of sets",
+     .unit = "ms",
+     .needs = Needs::kTruth,
+     .place = SeriesPlace{&MetricValues<double>::set_absolute_error_ms,
+                          &MetricValues<Series>::set_absolute_error_ms},
+     .tables = {.sets = 8},
+     .heading = "abs. error\nof sets ms",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd,
+     .sweep = "set_absolute_error_ms"},
+    {.id = "emission_latency_ms",
+     .title = "emission latency",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::emission_latency_ms,
+                          &MetricValues<Series>::emission_latency_ms},
+     .tables = {.sets = 9},
+     .heading = "emitted after\nmean ms",
+     .legend = "emitted after: from the last member's arrival. AMD of sets is small where sets "
+               "were given up: see recall.",
+     .legend_continues = true,
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd,
+     .sweep = "emission_latency_ms"},
+    {.id = "emission_latency_max_ms",
+     .title = "largest emission latency",
+     .unit = "ms",
+     .place = &PooledValues::emission_latency_max_ms,
+     .tables = {.sets = 10},
+     .heading = "emitted after\nlargest ms",
+     .json_in = kInGathering,
+     .csv = CsvColumns::kValueAtEnd},
+    {.id = "frames_expected",
+     .title = "frames expected",
+     .better = Better::kNeither,
+     .place = &FrameCounts::expected,
+     .json_in = kInFrames,
+     .json_name = "expected",
+     .csv = CsvColumns::kValue},
+    {.id = "frames_delivered",
+     .title = "frames delivered",
+     .better = Better::kHigher,
+     .place = &FrameCounts::delivered,
+     .json_in = kInFrames,
+     .json_name = "delivered",
+     .csv = CsvColumns::kValue},
+    {.id = "frames_dropped",
+     .title = "frames dropped",
+     .place = &FrameCounts::dropped,
+     .tables = {.truth = 8},
+     .heading = "frames\ndropped",
+     .json_in = kInFrames,
+     .json_name = "dropped",
+     .csv = CsvColumns::kValue,
+     .sweep = "frames_dropped"},
+    {.id = "evaluated_pulses",
+     .title = "pulses scored",
+     .better = Better::kNeither,
+     .place = &RunCounts::evaluated_pulses,
+     .tables = {.truth = 9},
+     .heading = "pulses\nscored",
+     .csv = CsvColumns::kValue},
+    {.id = "unsynchronised_hosts",
+     .title = "unsynchronised hosts",
+     .place = &RunCounts::unsynchronised_hosts,
+     .csv = CsvColumns::kValue,
+     .sweep = "unsynchronised_hosts"},
+};
 
 }  // namespace simbench::evaluation
 

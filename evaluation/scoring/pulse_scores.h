@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "algorithms/ports/time.h"
-#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/pulse_table.h"
 #include "evaluation/scoring/results.h"
 

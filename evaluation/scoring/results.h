@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "evaluation/scoring/asymmetry_floor.h"
+#include "evaluation/scoring/metrics.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
-
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // How it is known which frames belong together.
 enum class GroundTruth : std::uint8_t {
@@ -33,46 +32,13 @@ struct PulseScore {
   double deviation_ms = 0;  // this pulse's term of RMDV
 };
 
-struct FrameCounts {
-  std::int64_t expected = 0;  // evaluated pulses x sources; unverified: by the cameras' counters
-  std::int64_t delivered = 0;
-  std::int64_t dropped = 0;
-};
-
-// Sets count if one of their members is among the evaluated pulses.
-struct SetCounts {
-  std::int64_t emitted = 0;          // complete sets
-  std::int64_t pure = 0;             // of those, all members from one pulse
-  std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
-  std::int64_t discarded_frames = 0;
-  std::int64_t partial = 0;       // sets that lack a source
-  std::int64_t index_errors = 0;  // members of emitted sets that are not of most members' pulse
-};
-
 // One pipeline, one seed (on a real rig: one repetition).
-struct SeedScore {
+struct SeedScore : MetricValues<double> {
   std::uint64_t seed = 0;
   // False: no capture could be made (cost.notes says why), and there is no score at all.
   bool recorded = true;
   GroundTruth ground_truth = GroundTruth::kSimulation;
-  double amd_ms = 0;
-  double rmdv_ms = 0;
-  double absolute_error_ms = 0;
-  double bias_ms = 0;
-  double host_error_ms = 0;
-  double exposure_spread_ms = 0;
-  // Over the complete sets that gathering emitted; NaN: it emitted none (or there is no truth).
-  double set_amd_ms = kNan;  // mean range of a set's stamps
-  double set_absolute_error_ms = kNan;
-  // From the last member's arrival to that of the frame which made the gatherer emit.
-  double emission_latency_ms = kNan;  // mean over these sets
   double emission_latency_max_ms = kNan;
-  // Beyond the table; the paper's claims rest on these.
-  double offline_amd_ms = 0;  // AMD of regression_offline over the same recording; NaN if not asked
-  double spread_in_host_ms = 0;        // mean over pulses and hosts of the range inside one host
-  double spread_between_hosts_ms = 0;  // mean over pulses of the range of the hosts' means
-  double trend_ms = 0;                 // change of the spread over the recording, by least squares
-  double share_below_half_period = 0;  // of evaluated pulses whose spread is under half a period
   FrameCounts frames;
   SetCounts sets;
   // Frames whose place in GenLock order is not that of the pulse that exposed them; genlock only.
@@ -81,14 +47,6 @@ struct SeedScore {
   std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
   std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   RecordingCost cost;
-};
-
-// Values in seed order, with the median and the 5-95 % band of those that exist.
-struct Series {
-  std::vector<double> values;
-  double median = 0;
-  double p05 = 0;
-  double p95 = 0;
 };
 
 // A fraction of seeds with its 95 % binomial interval (Clopper-Pearson).
@@ -108,8 +66,8 @@ struct PublishedComparison {
   Percentile rmdv_percentile;
 };
 
-// One pipeline over all seeds.
-struct Row {
+// One pipeline over all seeds; what the metrics are: evaluation/scoring/metrics.h.
+struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string pipeline;
   std::string host_sync;
   std::string device_time;
@@ -118,25 +76,8 @@ struct Row {
   // The weakest of the seeds that were recorded; kNone if none was.
   GroundTruth ground_truth = GroundTruth::kSimulation;
   bool verified() const { return ground_truth != GroundTruth::kNone; }
-  Series amd_ms;
-  Series rmdv_ms;
-  Series absolute_error_ms;
-  Series bias_ms;
-  Series host_error_ms;
-  Series exposure_spread_ms;
-  double precision = 0;  // over all seeds
-  double recall = 0;
-  double margin_ms = 0;
-  SetCounts sets;  // over all seeds
-  Series seed_precision;
-  Series seed_recall;
-  Series set_amd_ms;
-  Series set_absolute_error_ms;
-  Series emission_latency_ms;
-  double emission_latency_max_ms = kNan;  // of all seeds
-  FrameCounts frames;
-  std::int64_t evaluated_pulses = 0;      // that the scores rest on; unverified: sets
-  std::int64_t unsynchronised_hosts = 0;  // over all seeds
+  FrameCounts frames;  // these and the sets: over all seeds
+  SetCounts sets;
   std::optional<PublishedComparison> published;
   std::vector<std::string> notes;  // what went wrong, a line each: "repetition 3: ..."
   std::vector<SeedScore> seeds;

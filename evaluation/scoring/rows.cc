@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kMarginQuantile = 0.999;
 
-Series series_of(const std::vector<SeedScore>& seeds, double SeedScore::*score) {
+Series series_of(const std::vector<SeedScore>& seeds, double MetricValues<double>::*value) {
   std::vector<double> values;
   values.reserve(seeds.size());
-  for (const SeedScore& seed : seeds) values.push_back(seed.*score);
+  for (const SeedScore& seed : seeds) values.push_back(seed.*value);
   return make_series(std::move(values));
 }
 
@@ -27,17 +27,30 @@ double ratio(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-bool is_verified(const SeedScore& seed) { return seed.ground_truth != GroundTruth::kNone; }
-
-// A share of each seed's own counts.
-Series share_of(const std::vector<SeedScore>& seeds, std::int64_t SetCounts::*whole) {
-  std::vector<double> values;
-  values.reserve(seeds.size());
-  for (const SeedScore& seed : seeds) {
-    values.push_back(is_verified(seed) ? ratio(seed.sets.pure, seed.sets.*whole) : kNan);
+// Each seed's shares of its own counts.
+void add_shares(std::vector<SeedScore>& seeds) {
+  for (SeedScore& seed : seeds) {
+    if (seed.ground_truth == GroundTruth::kNone) continue;
+    seed.seed_precision = ratio(seed.sets.pure, seed.sets.emitted);
+    seed.seed_recall = ratio(seed.sets.pure, seed.sets.complete_pulses);
   }
-  return make_series(std::move(values));
 }
+
+// What follows from the seeds' own values and counts alone.
+struct Summary {
+  const std::vector<SeedScore>& seeds;
+  Row& row;
+
+  void operator()(const SeriesPlace& place) const { row.*place.row = series_of(seeds, place.seed); }
+  void operator()(std::int64_t SetCounts::*count) const {
+    for (const SeedScore& seed : seeds) row.sets.*count += seed.sets.*count;
+  }
+  void operator()(std::int64_t FrameCounts::*count) const {
+    for (const SeedScore& seed : seeds) row.frames.*count += seed.frames.*count;
+  }
+  void operator()(double PooledValues::*) const {}
+  void operator()(std::int64_t RunCounts::*) const {}
+};
 
 GroundTruth weakest(const std::vector<SeedScore>& seeds) {
   std::optional<GroundTruth> found;
@@ -79,13 +92,6 @@ SeedScore missing_score(std::uint64_t seed, const std::string& reason) {
   score.seed = seed;
   score.recorded = false;
   score.ground_truth = GroundTruth::kNone;
-  for (double SeedScore::*quantity :
-       {&SeedScore::amd_ms, &SeedScore::rmdv_ms, &SeedScore::absolute_error_ms, &SeedScore::bias_ms,
-        &SeedScore::host_error_ms, &SeedScore::exposure_spread_ms, &SeedScore::offline_amd_ms,
-        &SeedScore::spread_in_host_ms, &SeedScore::spread_between_hosts_ms, &SeedScore::trend_ms,
-        &SeedScore::share_below_half_period}) {
-    score.*quantity = kNan;
-  }
   score.cost.notes = {reason};
   return score;
 }
@@ -97,45 +103,23 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   row.host_sync = pipeline.host_sync;
   row.device_time = pipeline.device_time;
   row.gathering = pipeline.gathering;
-  row.amd_ms = series_of(seeds, &SeedScore::amd_ms);
-  row.rmdv_ms = series_of(seeds, &SeedScore::rmdv_ms);
-  row.absolute_error_ms = series_of(seeds, &SeedScore::absolute_error_ms);
-  row.bias_ms = series_of(seeds, &SeedScore::bias_ms);
-  row.host_error_ms = series_of(seeds, &SeedScore::host_error_ms);
-  row.exposure_spread_ms = series_of(seeds, &SeedScore::exposure_spread_ms);
-
-  row.set_amd_ms = series_of(seeds, &SeedScore::set_amd_ms);
-  row.set_absolute_error_ms = series_of(seeds, &SeedScore::set_absolute_error_ms);
-  row.emission_latency_ms = series_of(seeds, &SeedScore::emission_latency_ms);
-
-  row.seed_precision = share_of(seeds, &SetCounts::emitted);
-  row.seed_recall = share_of(seeds, &SetCounts::complete_pulses);
-
-  SetCounts& sets = row.sets;
+  add_shares(seeds);
+  for (const Metric& metric : metrics()) std::visit(Summary{seeds, row}, metric.place);
   for (const SeedScore& seed : seeds) {
-    sets.emitted += seed.sets.emitted;
-    sets.pure += seed.sets.pure;
-    sets.complete_pulses += seed.sets.complete_pulses;
-    sets.discarded_frames += seed.sets.discarded_frames;
-    sets.partial += seed.sets.partial;
-    sets.index_errors += seed.sets.index_errors;
     row.emission_latency_max_ms =
         std::fmax(row.emission_latency_max_ms, seed.emission_latency_max_ms);
-    row.frames.expected += seed.frames.expected;
-    row.frames.delivered += seed.frames.delivered;
-    row.frames.dropped += seed.frames.dropped;
     row.unsynchronised_hosts += static_cast<std::int64_t>(seed.failures.size());
   }
   row.ground_truth = weakest(seeds);
   row.notes = notes_of(seeds);
   if (row.verified()) {
-    row.precision = ratio(sets.pure, sets.emitted);
-    row.recall = ratio(sets.pure, sets.complete_pulses);
-    row.evaluated_pulses = sets.complete_pulses;
+    row.precision = ratio(row.sets.pure, row.sets.emitted);
+    row.recall = ratio(row.sets.pure, row.sets.complete_pulses);
+    row.evaluated_pulses = row.sets.complete_pulses;
     row.margin_ms = margin_ms(seeds, setting.gathering_interval_ms);
   } else {  // the range of a gathered set says nothing of how close it came to failing
     row.precision = row.recall = row.margin_ms = kNan;
-    row.evaluated_pulses = sets.emitted;
+    row.evaluated_pulses = row.sets.emitted;
   }
   row.seeds = std::move(seeds);
   return row;

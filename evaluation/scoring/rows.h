@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "scenarios/scenario.h"
 

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "algorithms/gathering/gathering.h"
-#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
 #include "recording/recording.h"

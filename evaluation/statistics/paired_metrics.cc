@@ -7,17 +7,6 @@
 namespace simbench::evaluation {
 namespace {
 
-double mean_of_existing(const std::vector<double>& values) {
-  double sum = 0;
-  double count = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    count += 1;
-  }
-  return sum / count;  // 0/0 is NaN
-}
-
 constexpr double kMicrosecondMs = 0.001;  // the last digit of the tables
 constexpr double kRecallStep = 0.001;
 

@@ -41,6 +41,17 @@ double quantile(std::vector<double> values, double p) {
   return quantile_of_sorted(values, p);
 }
 
+double mean_of_existing(const std::vector<double>& values) {
+  double sum = 0;
+  double count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    count += 1;
+  }
+  return sum / count;  // 0/0 is NaN
+}
+
 Series make_series(std::vector<double> values) {
   std::vector<double> sorted = values;
   leave_out_nan(sorted);

@@ -20,6 +20,8 @@ double quantile(std::vector<double> values, double p);
 
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
+double mean_of_existing(const std::vector<double>& values);
+
 // The values with their median and 5-95 % band.
 Series make_series(std::vector<double> values);
 

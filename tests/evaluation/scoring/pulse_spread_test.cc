@@ -1,4 +1,4 @@
-#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/pulse_spread.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,51 @@
+// The paper's two metrics for the frames of one pulse: their terms of AMD and RMDV.
+//
+//   AMD  = mean over pulses of spread_ms      (eq. 3)
+//   RMDV = mean over pulses of deviation_ms   (eq. 4, with the square that is missing in print)
+//
+// Stamps go in as integer nanoseconds, results come out in milliseconds. Differences are taken
+// before anything becomes floating-point, so stamps of any epoch are exact; they must differ by
+// less than 2^63 ns.
+//
+// For any stamps deviation_ms <= rmdv_bound() * spread_ms, and so RMDV <= bound * AMD: a published
+// pair that breaks it cannot come from eq. (4). Source: docs/reference/paper.md sections 6 and 7.
+//
+//   const std::vector<std::int64_t> stamps = {0, 1'000'000, 3'000'000};
+//   spread_ms(stamps);                                            // 3
+//   deviation_ms(stamps, MedianKind::kUpperMiddle, workspace);    // sqrt((1 + 0 + 4) / 3)
+#ifndef SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_
+#define SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace simbench::evaluation {
+
+// The median of an even number of values is not defined in the paper; of an odd number, both are
+// the middle one.
+enum class MedianKind : std::uint8_t {
+  kUpperMiddle,      // sorted[n / 2]
+  kMeanOfMiddleTwo,  // (sorted[n / 2 - 1] + sorted[n / 2]) / 2
+};
+
+// From a scenario's /evaluation/rmdv_median: "upper_middle" or "mean_of_middle_two".
+MedianKind median_kind(std::string_view name);
+
+// Largest minus smallest. `stamps_ns` must not be empty. O(n).
+double spread_ms(std::span<const std::int64_t> stamps_ns);
+
+// Root mean square of the differences from the median. `stamps_ns` must not be empty. `workspace`
+// is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
+double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
+                    std::vector<std::int64_t>& workspace);
+
+// The largest possible deviation_ms / spread_ms of n stamps: 1/sqrt(2) for the upper-middle median
+// of an even number, 2/3 for the mean of the middle two of 18.
+double rmdv_bound(std::size_t n, MedianKind kind);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_SCORING_PULSE_SPREAD_H_
