@@ -10,16 +10,6 @@
 namespace simbench::evaluation {
 namespace {
 
-struct Metric {
-  const char* name;
-  Series Row::*series;
-};
-
-constexpr Metric kMetrics[] = {{"host_error_ms", &Row::host_error_ms},
-                               {"amd_ms", &Row::amd_ms},
-                               {"rmdv_ms", &Row::rmdv_ms},
-                               {"absolute_error_ms", &Row::absolute_error_ms}};
-
 GapSide side_of(const Series& series) {
   GapSide side;
   side.series = make_series(series.values);
@@ -31,11 +21,13 @@ GapSide side_of(const Series& series) {
   return side;
 }
 
-ModelGapRow compare(const std::string& pipeline, const char* metric, const Series& measured,
-                    const Series& simulated) {
+ModelGapRow compare(const std::string& pipeline, const Metric& metric, const Row& measured_row,
+                    const Row& simulated_row) {
+  const Series& measured = metric.series(measured_row);
+  const Series& simulated = metric.series(simulated_row);
   ModelGapRow row;
   row.pipeline = pipeline;
-  row.metric = metric;
+  row.metric = metric.id;
   row.measured = side_of(measured);
   row.simulated = side_of(simulated);
   row.ks = ks_distance(measured.values, simulated.values);
@@ -57,9 +49,8 @@ std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simul
         std::find_if(simulated.rows.begin(), simulated.rows.end(),
                      [&](const Row& row) { return row.pipeline == found.pipeline; });
     if (predicted == simulated.rows.end()) continue;
-    for (const Metric& metric : kMetrics) {
-      ModelGapRow row =
-          compare(found.pipeline, metric.name, found.*metric.series, (*predicted).*metric.series);
+    for (const char* id : kGapMetrics) {
+      ModelGapRow row = compare(found.pipeline, metric(id), found, *predicted);
       if (row.measured.count + row.simulated.count > 0) rows.push_back(std::move(row));
     }
   }

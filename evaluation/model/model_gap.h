@@ -21,6 +21,10 @@
 
 namespace simbench::evaluation {
 
+// The metrics that are compared, in this order (evaluation/scoring/metrics.h).
+inline constexpr std::array<const char*, 4> kGapMetrics = {"host_error_ms", "amd_ms", "rmdv_ms",
+                                                           "absolute_error_ms"};
+
 // The quantiles that are compared, as shares.
 inline constexpr std::array<double, 5> kGapQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -36,7 +40,7 @@ struct GapSide {
 
 struct ModelGapRow {
   std::string pipeline;
-  std::string metric;  // "host_error_ms", "amd_ms", "rmdv_ms" or "absolute_error_ms"
+  std::string metric;  // of kGapMetrics
   GapSide measured;
   GapSide simulated;
   double ks = 0;           // NaN: a side has no value

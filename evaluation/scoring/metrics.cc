@@ -12,7 +12,7 @@ namespace simbench::evaluation {
 namespace {
 
 std::vector<Metric>& registered() {
-  static std::vector<Metric> all(std::begin(kMetrics), std::end(kMetrics));
+  static std::vector<Metric> all(std::begin(kMetricTable), std::end(kMetricTable));
   return all;
 }
 

@@ -2,7 +2,7 @@
 //
 // This is the only list. Rows over the seeds, sweeps, comparisons, gates, baselines, JSON, CSV, the
 // archive reader and the tables of terminal, Markdown and page go through metrics(). To add one:
-// a member of MetricValues and an entry of kMetrics (both here), the line that computes it
+// a member of MetricValues and an entry of kMetricTable (both here), the line that computes it
 // (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
@@ -224,7 +224,7 @@ inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit 
 inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
                                         .margin = {.relative = 0.01, .absolute = 0.005}};
 
-inline constexpr Metric kMetrics[] = {
+inline constexpr Metric kMetricTable[] = {
     {.id = "amd_ms",
      .title = "AMD",
      .unit = "ms",

@@ -16,12 +16,6 @@
 
 namespace simbench::evaluation {
 
-// How much worse a metric may become: by the larger of a share of what it was and a step.
-struct GateMargin {
-  double relative = 0;
-  double absolute = 0;  // in the metric's unit
-};
-
 struct PairedMetric {
   const char* name = "";   // of the member in results.json
   const char* title = "";  // for people
