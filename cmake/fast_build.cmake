@@ -11,20 +11,29 @@ option(SIMBENCH_FAST_BUILD "Compile the files of a room together, with precompil
 set(SIMBENCH_PRECOMPILED
   <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <deque> <filesystem> <fstream>
   <functional> <map> <memory> <optional> <set> <span> <stdexcept> <string> <string_view> <utility>
-  <variant> <vector> <fmt/format.h> <fmt/ranges.h>)
+  <variant> <vector> <boost/asio/awaitable.hpp> <fmt/format.h> <fmt/ranges.h>)
 
 # As many files of a room are one translation unit: an edit of one is compiled in seconds, and two
 # cores share a folder.
 set(SIMBENCH_UNIT_FILES 8)
 
-# simbench_fast_build(TARGET SOURCES file... [PRECOMPILE header...])
+# simbench_fast_build(TARGET [SOURCES file...] [PRECOMPILE header...] [OPTIONS option...])
+#
+# SOURCES are compiled room by room. OPTIONS are the target's own compile options: targets that agree
+# in these and in PRECOMPILE share one precompiled file.
 function(simbench_fast_build target)
-  cmake_parse_arguments(arg "" "" "SOURCES;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;PRECOMPILE;OPTIONS" ${ARGN})
+  target_compile_options(${target} PRIVATE ${arg_OPTIONS})
   if(NOT SIMBENCH_FAST_BUILD)
     return()
   endif()
-  target_precompile_headers(${target} PRIVATE ${SIMBENCH_PRECOMPILED} ${arg_PRECOMPILE})
+  simbench_precompiled(shared HEADERS ${arg_PRECOMPILE} OPTIONS ${arg_OPTIONS})
+  target_precompile_headers(${target} REUSE_FROM ${shared})
+  # fmt's definitions are the same where its precompiled headers are used.
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)
+  if(NOT arg_SOURCES)
+    return()
+  endif()
 
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source ${arg_SOURCES})
@@ -39,4 +48,25 @@ function(simbench_fast_build target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
+endfunction()
+
+# The target, made when it is first asked for, that compiles the common headers and these with these
+# options; its name goes to `result`.
+function(simbench_precompiled result)
+  cmake_parse_arguments(arg "" "" "HEADERS;OPTIONS" ${ARGN})
+  string(MAKE_C_IDENTIFIER "precompiled_${arg_HEADERS}${arg_OPTIONS}" name)
+  string(SHA1 name ${name})
+  string(SUBSTRING ${name} 0 8 name)
+  set(name simbench_precompiled_${name})
+  set(${result} ${name} PARENT_SCOPE)
+  if(TARGET ${name})
+    return()
+  endif()
+  set(source ${PROJECT_BINARY_DIR}/generated/precompiled.cc)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// Compiled for its precompiled headers.\n")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE simbench_flags simbench_boost CLI11::CLI11 fmt::fmt
+    nlohmann_json::nlohmann_json $<TARGET_NAME_IF_EXISTS:GTest::gmock>)
+  target_compile_options(${name} PRIVATE ${arg_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${SIMBENCH_PRECOMPILED} ${arg_HEADERS})
 endfunction()
