@@ -6,6 +6,7 @@
   line = $0
   gsub(/^[ \t]*(\/\/|#|"|-|\*)?[ \t]*|"?[ \t]*$/, "", line)
   cite(last, last " " line)
+  if (FILENAME !~ /\.md$/) note_bare(line)
   last = line
   file = FILENAME
   row = FNR
@@ -32,6 +33,16 @@ function cite(line, text,   from, path) {
   }
 }
 
+# A page by its bare name, which nobody finds: "paper.md section 3".
+function note_bare(text,   name) {
+  while (match(text, /(^|[^A-Za-z0-9_.\/-])[a-z][a-z0-9_]*\.md/)) {
+    name = substr(text, RSTART, RLENGTH)
+    sub(/^[^a-z]/, "", name)
+    bare[FILENAME ":" FNR] = name
+    text = substr(text, RSTART + RLENGTH)
+  }
+}
+
 function folder_of(path) { return path ~ /\// ? substr(path, 1, match(path, /[^\/]*$/) - 1) : "" }
 
 function check(where, path, number) {
@@ -40,6 +51,10 @@ function check(where, path, number) {
 
 END {
   cite(last, last)
+  for (where in bare) {
+    if (("docs/reference/" bare[where]) in page)
+      print where ": write docs/reference/" bare[where] " for " bare[where]
+  }
   for (i = 1; i <= citations; ++i) {
     if (!(target[i] in page)) {
       print place[i] ": there is no " target[i]
