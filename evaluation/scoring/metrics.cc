@@ -28,6 +28,13 @@ auto& count_in(AnyRow& row, const Place& place) {
 
 }  // namespace
 
+double Metric::of_seed(const MetricValues<double>& seed) const {
+  return seed.*std::get<SeriesPlace>(place).seed;
+}
+double& Metric::of_seed(MetricValues<double>& seed) const {
+  return seed.*std::get<SeriesPlace>(place).seed;
+}
+
 const Series& Metric::series(const Row& row) const { return row.*std::get<SeriesPlace>(place).row; }
 Series& Metric::series(Row& row) const { return row.*std::get<SeriesPlace>(place).row; }
 

@@ -173,10 +173,13 @@ struct Metric {
   bool is_count() const {
     return !is_series() && !std::holds_alternative<double PooledValues::*>(place);
   }
+  bool higher_is_better() const { return better == Better::kHigher; }
   bool is_share() const { return std::string_view(unit) == "share"; }
   const char* member() const { return json_name != nullptr ? json_name : id; }  // in JSON
 
-  // Of the form it has; programming errors otherwise.
+  // Of the form it has; a programming error otherwise.
+  double of_seed(const MetricValues<double>& seed) const;
+  double& of_seed(MetricValues<double>& seed) const;
   const Series& series(const Row& row) const;
   Series& series(Row& row) const;
   double number(const Row& row) const;

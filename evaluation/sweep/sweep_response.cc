@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -12,16 +13,16 @@
 namespace simbench::evaluation {
 namespace {
 
-Series series_of(std::span<const SweepScore> seeds, double SweepScore::*member) {
+Series series_of(std::span<const SweepScore> seeds, std::size_t column) {
   std::vector<double> values;
   values.reserve(seeds.size());
-  for (const SweepScore& seed : seeds) values.push_back(seed.*member);
+  for (const SweepScore& seed : seeds) values.push_back(seed.values[column]);
   return make_series(std::move(values));
 }
 
-double sum_of(std::span<const SweepScore> seeds, double SweepScore::*member) {
+double sum_of(std::span<const SweepScore> seeds, std::string_view column) {
   double sum = 0;
-  for (const SweepScore& seed : seeds) sum += seed.*member;
+  for (const SweepScore& seed : seeds) sum += seed.at(column);
   return sum;
 }
 
@@ -43,22 +44,28 @@ std::vector<Series> host_series(std::span<const SweepScore> seeds) {
 
 }  // namespace
 
+const Series& ResponseRow::of(std::string_view column) const {
+  const auto columns = sweep_metrics();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i]->sweep == column) return series[i];
+  }
+  SIMBENCH_ASSERT(false, "a column of sweep.csv");
+}
+
 std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
   SIMBENCH_ASSERT(scores.size() == plan.runs(), "a score for every run");
+  const std::size_t columns = sweep_metrics().size();
   std::vector<ResponseRow> rows;
   for (std::size_t first = 0; first < scores.size(); first += plan.seeds) {
     const std::span<const SweepScore> seeds = std::span(scores).subspan(first, plan.seeds);
     const SweepRun run = plan.run(first);
-    const double pure = sum_of(seeds, &SweepScore::pure_sets);
-    rows.push_back({.point = run.point,
-                    .pipeline = run.pipeline,
-                    .amd_ms = series_of(seeds, &SweepScore::amd_ms),
-                    .absolute_error_ms = series_of(seeds, &SweepScore::absolute_error_ms),
-                    .host_error_ms = series_of(seeds, &SweepScore::host_error_ms),
-                    .margin_ms = series_of(seeds, &SweepScore::margin_ms),
-                    .precision = pure / sum_of(seeds, &SweepScore::emitted_sets),
-                    .recall = pure / sum_of(seeds, &SweepScore::complete_pulses),
-                    .hosts = host_series(seeds)});
+    const double pure = sum_of(seeds, "pure_sets");
+    ResponseRow row{.point = run.point, .pipeline = run.pipeline};
+    for (std::size_t i = 0; i < columns; ++i) row.series.push_back(series_of(seeds, i));
+    row.precision = pure / sum_of(seeds, "emitted_sets");
+    row.recall = pure / sum_of(seeds, "complete_pulses");
+    row.hosts = host_series(seeds);
+    rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -3,6 +3,7 @@
 #define SIMBENCH_EVALUATION_SWEEP_SWEEP_RESPONSE_H_
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/scoring/results.h"
@@ -15,13 +16,13 @@ namespace simbench::evaluation {
 struct ResponseRow {
   std::size_t point = 0;
   std::size_t pipeline = 0;
-  Series amd_ms;
-  Series absolute_error_ms;
-  Series host_error_ms;
-  Series margin_ms;             // of each seed's own margin
-  double precision = 0;         // over all seeds
-  double recall = 0;            // over all seeds
+  std::vector<Series> series{};  // of every column of sweep.csv, over the seeds
+  double precision = 0;          // over all seeds, as recall
+  double recall = 0;
   std::vector<Series> hosts{};  // |mean clock error| of each host; the master's is first
+
+  // By the name of the column, which must exist: of("amd_ms").median.
+  const Series& of(std::string_view column) const;
 };
 
 // A row for each point and pipeline, in the order of the plan. `scores`: of all runs of the plan.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -12,28 +13,22 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr ScoreColumn kColumns[] = {
-    {"amd_ms", &SweepScore::amd_ms},
-    {"rmdv_ms", &SweepScore::rmdv_ms},
-    {"absolute_error_ms", &SweepScore::absolute_error_ms},
-    {"bias_ms", &SweepScore::bias_ms},
-    {"host_error_ms", &SweepScore::host_error_ms},
-    {"exposure_spread_ms", &SweepScore::exposure_spread_ms},
-    {"precision", &SweepScore::precision},
-    {"recall", &SweepScore::recall},
-    {"margin_ms", &SweepScore::margin_ms},
-    {"set_amd_ms", &SweepScore::set_amd_ms},
-    {"set_absolute_error_ms", &SweepScore::set_absolute_error_ms},
-    {"emission_latency_ms", &SweepScore::emission_latency_ms},
-    {"emitted_sets", &SweepScore::emitted_sets},
-    {"pure_sets", &SweepScore::pure_sets},
-    {"complete_pulses", &SweepScore::complete_pulses},
-    {"frames_dropped", &SweepScore::frames_dropped},
-    {"unsynchronised_hosts", &SweepScore::unsynchronised_hosts},
-};
+std::size_t place_of(std::string_view column) {
+  const auto columns = sweep_metrics();
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const Metric* metric) { return metric->sweep == column; });
+  SIMBENCH_ASSERT(found != columns.end(), "a column of sweep.csv");
+  return static_cast<std::size_t>(found - columns.begin());
+}
 
-void append(std::string& text, double value) {
-  if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{}", value);
+// With commas; NaN is an empty cell.
+std::string list_of(const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += ',';
+    if (!std::isnan(values[i])) fmt::format_to(std::back_inserter(text), "{}", values[i]);
+  }
+  return text;
 }
 
 // The numbers of a list with commas; an empty cell is NaN.
@@ -55,52 +50,34 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
 
 }  // namespace
 
-std::span<const ScoreColumn> score_columns() { return kColumns; }
+SweepScore::SweepScore() : values(sweep_metrics().size(), 0.0) {}
+
+double SweepScore::at(std::string_view column) const { return values[place_of(column)]; }
+double& SweepScore::at(std::string_view column) { return values[place_of(column)]; }
 
 SweepScore sweep_score(const Row& row) {
   SIMBENCH_ASSERT(row.seeds.size() == 1, "a run has one seed");
-  const SeedScore& seed = row.seeds.front();
-  return {.amd_ms = seed.amd_ms,
-          .rmdv_ms = seed.rmdv_ms,
-          .absolute_error_ms = seed.absolute_error_ms,
-          .bias_ms = seed.bias_ms,
-          .host_error_ms = seed.host_error_ms,
-          .exposure_spread_ms = seed.exposure_spread_ms,
-          .precision = row.precision,
-          .recall = row.recall,
-          .margin_ms = row.margin_ms,
-          .set_amd_ms = seed.set_amd_ms,
-          .set_absolute_error_ms = seed.set_absolute_error_ms,
-          .emission_latency_ms = seed.emission_latency_ms,
-          .emitted_sets = static_cast<double>(seed.sets.emitted),
-          .pure_sets = static_cast<double>(seed.sets.pure),
-          .complete_pulses = static_cast<double>(seed.sets.complete_pulses),
-          .frames_dropped = static_cast<double>(seed.frames.dropped),
-          .unsynchronised_hosts = static_cast<double>(seed.failures.size()),
-          .host_errors_ms = seed.host_errors_ms};
+  SweepScore score;
+  score.values.clear();
+  for (const Metric* metric : sweep_metrics()) {
+    score.values.push_back(metric->is_series() ? metric->series(row).values.front()
+                                               : metric->value(row));
+  }
+  score.host_errors_ms = row.seeds.front().host_errors_ms;
+  return score;
 }
 
 std::string text_of(const SweepScore& score) {
-  std::string text;
-  for (const ScoreColumn& column : kColumns) {
-    if (&column != kColumns) text += ',';
-    append(text, score.*column.member);
-  }
-  text += ';';
-  for (std::size_t host = 0; host < score.host_errors_ms.size(); ++host) {
-    if (host > 0) text += ',';
-    append(text, score.host_errors_ms[host]);
-  }
-  return text;
+  return fmt::format("{};{}", list_of(score.values), list_of(score.host_errors_ms));
 }
 
 std::optional<SweepScore> score_of(std::string_view text) {
   const std::size_t semicolon = text.find(';');
   if (semicolon == std::string_view::npos) return std::nullopt;
   const auto cells = numbers_of(text.substr(0, semicolon));
-  if (!cells || cells->size() != std::size(kColumns)) return std::nullopt;
   SweepScore score;
-  for (std::size_t i = 0; i < cells->size(); ++i) score.*kColumns[i].member = (*cells)[i];
+  if (!cells || cells->size() != score.values.size()) return std::nullopt;
+  score.values = *cells;
   const std::string_view hosts = text.substr(semicolon + 1);
   if (hosts.empty()) return score;
   const auto errors = numbers_of(hosts);

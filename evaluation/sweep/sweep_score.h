@@ -7,7 +7,6 @@
 #define SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_
 
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,34 +15,17 @@
 
 namespace simbench::evaluation {
 
-// Definitions: evaluation/scoring/results.h. NaN is a quantity that does not exist.
+// NaN is a value that does not exist.
 struct SweepScore {
-  double amd_ms = 0;
-  double rmdv_ms = 0;
-  double absolute_error_ms = 0;
-  double bias_ms = 0;
-  double host_error_ms = 0;
-  double exposure_spread_ms = 0;
-  double precision = 0;
-  double recall = 0;
-  double margin_ms = 0;  // T_int less the 99.9 % quantile of this seed's spreads
-  double set_amd_ms = 0;
-  double set_absolute_error_ms = 0;
-  double emission_latency_ms = 0;
-  double emitted_sets = 0;
-  double pure_sets = 0;
-  double complete_pulses = 0;
-  double frames_dropped = 0;
-  double unsynchronised_hosts = 0;
+  std::vector<double> values;            // by sweep_metrics() (evaluation/scoring/metrics.h)
   std::vector<double> host_errors_ms{};  // signed mean, by host
-};
 
-// A number of the score, by the name of its column.
-struct ScoreColumn {
-  const char* name;
-  double SweepScore::*member;
+  SweepScore();  // zero in every column
+
+  // By the name of the column, which must exist: "amd_ms", "emitted_sets".
+  double at(std::string_view column) const;
+  double& at(std::string_view column);
 };
-std::span<const ScoreColumn> score_columns();
 
 // Of a row with this one seed.
 SweepScore sweep_score(const Row& row);

@@ -35,9 +35,6 @@ std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
                                          .rmdv_percentile = percentile(node, "rmdv_percentile")};
 }
 
-// Null where a row is not verified.
-std::int64_t count_or_none(const JsonNode& node) { return node.is_null() ? 0 : node.count(); }
-
 // Archives of simbench 0.1 do not have these members: they are all of simulations.
 void read_ground_truth(const JsonNode& node, Row& row) {
   if (!node.has("ground_truth")) return;
@@ -55,22 +52,17 @@ void read_ground_truth(const JsonNode& node, Row& row) {
   for (const JsonNode& note : node["notes"].elements()) row.notes.push_back(note.text());
 }
 
-void read_gathering(const JsonNode& node, std::size_t seeds, Row& row) {
-  row.precision = node["precision"].number();
-  row.recall = node["recall"].number();
-  row.margin_ms = node["margin_ms"].number();
-  row.seed_precision = node["seed_precision"].series(seeds);
-  row.seed_recall = node["seed_recall"].series(seeds);
-  row.sets = {.emitted = node["sets"].count(),
-              .pure = count_or_none(node["pure_sets"]),
-              .complete_pulses = count_or_none(node["complete_pulses"]),
-              .discarded_frames = node["discarded_frames"].count(),
-              .partial = node["partial_sets"].count(),
-              .index_errors = count_or_none(node["index_errors"])};
-  row.set_amd_ms = node["set_amd_ms"].series(seeds);
-  row.set_absolute_error_ms = node["set_absolute_error_ms"].series(seeds);
-  row.emission_latency_ms = node["emission_latency_ms"].series(seeds);
-  row.emission_latency_max_ms = node["emission_latency_max_ms"].number();
+void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::Metric& metric,
+                 Row& row) {
+  const JsonNode node = *metric.json_in == '\0' ? row_node[metric.member()]
+                                                : row_node[metric.json_in][metric.member()];
+  if (metric.is_series()) {
+    metric.series(row) = node.series(seeds);
+  } else if (!metric.is_count()) {
+    metric.number(row) = node.number();
+  } else if (metric.needs == evaluation::Needs::kNothing || !node.is_null()) {
+    metric.count(row) = node.count();
+  }
 }
 
 Row read_row(const JsonNode& node, std::size_t seeds) {
@@ -80,19 +72,9 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   row.device_time = node["device_time"].text();
   row.gathering = node["gathering"].text();
   row.offline = node["offline"].flag();
-  row.amd_ms = node["amd_ms"].series(seeds);
-  row.rmdv_ms = node["rmdv_ms"].series(seeds);
-  row.absolute_error_ms = node["absolute_error_ms"].series(seeds);
-  row.bias_ms = node["bias_ms"].series(seeds);
-  row.host_error_ms = node["host_error_ms"].series(seeds);
-  row.exposure_spread_ms = node["exposure_spread_ms"].series(seeds);
-  read_gathering(node["gathering_score"], seeds, row);
-  const JsonNode frames = node["frames"];
-  row.frames = {.expected = frames["expected"].count(),
-                .delivered = frames["delivered"].count(),
-                .dropped = frames["dropped"].count()};
-  row.evaluated_pulses = node["evaluated_pulses"].count();
-  row.unsynchronised_hosts = node["unsynchronised_hosts"].count();
+  for (const evaluation::Metric& metric : evaluation::metrics()) {
+    read_metric(node, seeds, metric, row);
+  }
   row.published = published(node["published"]);
   read_ground_truth(node, row);
   return row;

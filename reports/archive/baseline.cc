@@ -14,7 +14,7 @@ namespace simbench::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-using evaluation::paired_metrics;
+using evaluation::judged_metrics;
 
 constexpr const char* kKind = "simbench baseline";
 constexpr const char* kEdited =
@@ -35,7 +35,7 @@ Json pipelines_json(const Baseline& baseline) {
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
     Json entry = {{"pipeline", pipeline.name}};
     for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
-      entry[paired_metrics().at(i).name] = values_json(pipeline.values.at(i));
+      entry[judged_metrics()[i]->id] = values_json(pipeline.values[i]);
     }
     all.push_back(std::move(entry));
   }
@@ -45,9 +45,8 @@ Json pipelines_json(const Baseline& baseline) {
 Json margins_json(const Baseline& baseline) {
   Json all;
   for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
-    const evaluation::GateMargin& margin = baseline.margins.at(i);
-    all[paired_metrics().at(i).name] = {{"relative", margin.relative},
-                                        {"absolute", margin.absolute}};
+    const evaluation::GateMargin& margin = baseline.margins[i];
+    all[judged_metrics()[i]->id] = {{"relative", margin.relative}, {"absolute", margin.absolute}};
   }
   return all;
 }
@@ -71,8 +70,8 @@ evaluation::GateMargin read_margin(const JsonNode& node) {
 
 BaselinePipeline read_pipeline(const JsonNode& node, std::size_t seeds) {
   BaselinePipeline pipeline{.name = node["pipeline"].text(), .values = {}};
-  for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
-    pipeline.values.at(i) = node[paired_metrics().at(i).name].numbers(seeds);
+  for (const evaluation::Metric* metric : judged_metrics()) {
+    pipeline.values.push_back(node[metric->id].numbers(seeds));
   }
   return pipeline;
 }
@@ -99,13 +98,13 @@ Baseline make_baseline(const Archive& archive) {
                     .seeds = seeds_of(archive.results),
                     .margins = {},
                     .pipelines = {}};
-  for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
-    baseline.margins.at(i) = paired_metrics().at(i).margin;
+  for (const evaluation::Metric* metric : judged_metrics()) {
+    baseline.margins.push_back(metric->judged->margin);
   }
   for (const evaluation::Row& row : archive.results.rows) {
     BaselinePipeline pipeline{.name = row.pipeline, .values = {}};
-    for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
-      pipeline.values.at(i) = paired_metrics().at(i).of(row).values;
+    for (const evaluation::Metric* metric : judged_metrics()) {
+      pipeline.values.push_back(metric->series(row).values);
     }
     baseline.pipelines.push_back(std::move(pipeline));
   }
@@ -152,8 +151,8 @@ Baseline read_baseline(const std::string& path) {
   baseline.seeds = {static_cast<std::uint64_t>(root["seeds"]["first"].count()),
                     static_cast<std::uint64_t>(root["seeds"]["count"].count())};
   if (baseline.seeds.count == 0) root["seeds"]["count"].refuse("a whole number from 1");
-  for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
-    baseline.margins.at(i) = read_margin(root["margins"][paired_metrics().at(i).name]);
+  for (const evaluation::Metric* metric : judged_metrics()) {
+    baseline.margins.push_back(read_margin(root["margins"][metric->id]));
   }
   std::set<std::string> names;
   for (const JsonNode& node : root["pipelines"].elements()) {

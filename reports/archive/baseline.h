@@ -21,11 +21,10 @@
 #ifndef SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
 #define SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
 
-#include <array>
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics/paired_metrics.h"
+#include "evaluation/scoring/metrics.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/comparison/comparison_seeds.h"
 
@@ -35,8 +34,7 @@ inline constexpr int kBaselineSchemaVersion = 1;  // written, and the newest tha
 
 struct BaselinePipeline {
   std::string name;
-  // By paired_metrics(); in seed order.
-  std::array<std::vector<double>, evaluation::kPairedMetrics> values;
+  std::vector<std::vector<double>> values;  // by evaluation::judged_metrics(), in seed order
 };
 
 struct Baseline {
@@ -46,7 +44,7 @@ struct Baseline {
   std::string scenario;
   std::string scenario_json;  // resolved
   SeedRange seeds;
-  std::array<evaluation::GateMargin, evaluation::kPairedMetrics> margins;
+  std::vector<evaluation::GateMargin> margins;  // by evaluation::judged_metrics()
   std::vector<BaselinePipeline> pipelines;
 };
 

@@ -36,14 +36,13 @@ const Row& row_of(const Archive& archive, const std::string& name, const char* o
 ComparedPipeline compared(const Row& a, const Row& b, const SeedPairing& pairing,
                           const ComparisonOptions& options) {
   ComparedPipeline result{.pipeline_a = a.pipeline, .pipeline_b = b.pipeline, .metrics = {}};
-  for (std::size_t i = 0; i < result.metrics.size(); ++i) {
-    const evaluation::PairedMetric& metric = evaluation::paired_metrics().at(i);
-    const evaluation::PairedValues values =
-        evaluation::pair_up(pairing.of_a(metric.of(a).values), pairing.of_b(metric.of(b).values));
-    result.metrics.at(i) =
+  for (const evaluation::Metric* metric : evaluation::judged_metrics()) {
+    const evaluation::PairedValues values = evaluation::pair_up(
+        pairing.of_a(metric->series(a).values), pairing.of_b(metric->series(b).values));
+    result.metrics.push_back(
         evaluation::compare(values, {.smallest_effect = options.smallest_effect,
-                                     .smallest_step = metric.smallest_step,
-                                     .higher_is_better = metric.higher_is_better});
+                                     .smallest_step = metric->judged->smallest_step,
+                                     .higher_is_better = metric->higher_is_better()}));
   }
   return result;
 }

@@ -14,13 +14,11 @@
 #ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 #define SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
-#include "evaluation/statistics/paired_metrics.h"
 #include "reports/archive/archive_reader.h"
 
 namespace simbench::reports {
@@ -35,7 +33,7 @@ struct ComparisonOptions {
 struct ComparedPipeline {
   std::string pipeline_a;
   std::string pipeline_b;
-  std::array<evaluation::PairedComparison, evaluation::kPairedMetrics> metrics;  // paired_metrics()
+  std::vector<evaluation::PairedComparison> metrics;  // by evaluation::judged_metrics()
 };
 
 struct Comparison {

@@ -50,10 +50,11 @@ std::string comparison_json(const Comparison& comparison) {
                {"smallest_effect", comparison.smallest_effect},
                {"pipelines", Json::array()},
                {"notes", comparison.notes}};
+  const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     Json row = {{"a", pipeline.pipeline_a}, {"b", pipeline.pipeline_b}};
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      row[evaluation::paired_metrics().at(i).name] = metric_json(pipeline.metrics.at(i));
+      row[judged[i]->id] = metric_json(pipeline.metrics[i]);
     }
     root["pipelines"].push_back(std::move(row));
   }
@@ -64,11 +65,12 @@ std::string comparison_csv(const Comparison& comparison) {
   std::string text =
       "pipeline_a,pipeline_b,metric,pairs,left_out,mean_a,mean_b,median_a,median_b,difference,"
       "difference_low,difference_high,ratio,ratio_low,ratio_high,verdict,seeds_needed\n";
+  const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      const evaluation::PairedComparison& c = pipeline.metrics.at(i);
-      text += fmt::format("{},{},{},{},{}", pipeline.pipeline_a, pipeline.pipeline_b,
-                          evaluation::paired_metrics().at(i).name, c.pairs, c.left_out);
+      const evaluation::PairedComparison& c = pipeline.metrics[i];
+      text += fmt::format("{},{},{},{},{}", pipeline.pipeline_a, pipeline.pipeline_b, judged[i]->id,
+                          c.pairs, c.left_out);
       for (const double value :
            {c.mean_a, c.mean_b, c.median_a, c.median_b, c.difference.value, c.difference.low,
             c.difference.high, c.ratio.value, c.ratio.low, c.ratio.high}) {

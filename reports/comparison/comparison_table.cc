@@ -10,8 +10,8 @@
 namespace simbench::reports {
 namespace {
 
+using evaluation::Metric;
 using evaluation::PairedComparison;
-using evaluation::PairedMetric;
 
 // As the other numbers, but a small ratio keeps its digits.
 std::string ratio_cell(double ratio) {
@@ -19,7 +19,7 @@ std::string ratio_cell(double ratio) {
   return ratio > 0 && ratio < kSmall ? factor_text(ratio) : number_text(ratio);
 }
 
-std::vector<std::string> cells(const std::string& pipeline, const PairedMetric& metric,
+std::vector<std::string> cells(const std::string& pipeline, const Metric& metric,
                                const PairedComparison& c, double smallest_effect) {
   const auto shown = [&](double value) { return number_text(shown_value(metric, value)); };
   return {pipeline,
@@ -43,13 +43,13 @@ TextTable table_of(const Comparison& comparison) {
                    {"B / A\nof means"},
                    {"B / A\n95 % interval"},
                    {"B is", Align::kLeft}});
+  const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
                                  ? pipeline.pipeline_b
                                  : fmt::format("{} / {}", pipeline.pipeline_b, pipeline.pipeline_a);
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      table.add(cells(name, evaluation::paired_metrics().at(i), pipeline.metrics.at(i),
-                      comparison.smallest_effect));
+      table.add(cells(name, *judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
   }
   return table;
@@ -71,12 +71,12 @@ std::string head(const Comparison& comparison) {
 
 std::string words(const Comparison& comparison) {
   if (!comparison.with_baseline) return "";
+  const auto judged = evaluation::judged_metrics();
   std::string text = "\nHow much better\n";
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     std::vector<std::string> effects;
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      effects.push_back(effect_words(evaluation::paired_metrics().at(i), pipeline.metrics.at(i),
-                                     comparison.smallest_effect));
+      effects.push_back(effect_words(*judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
     text += wrapped(fmt::format("{} against {}: {}", pipeline.pipeline_b, pipeline.pipeline_a,
                                 fmt::join(effects, "; ")),

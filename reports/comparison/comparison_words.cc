@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <string_view>
 
 #include "reports/text/number_text.h"
 
@@ -11,11 +10,9 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Estimate;
+using evaluation::Metric;
 using evaluation::PairedComparison;
-using evaluation::PairedMetric;
 using evaluation::Verdict;
-
-bool is_share(const PairedMetric& metric) { return std::string_view(metric.unit).empty(); }
 
 bool is_sure(const PairedComparison& comparison) {
   return comparison.verdict == Verdict::kBetter || comparison.verdict == Verdict::kWorse;
@@ -88,21 +85,21 @@ std::string verdict_text(const PairedComparison& comparison, double smallest_eff
   return text;
 }
 
-double shown_value(const PairedMetric& metric, double value) {
+double shown_value(const Metric& metric, double value) {
   constexpr double kPercent = 100;
-  return is_share(metric) ? kPercent * value : value;
+  return metric.is_share() ? kPercent * value : value;
 }
 
-std::string shown_title(const PairedMetric& metric) {
-  return fmt::format("{} {}", metric.title, is_share(metric) ? "%" : metric.unit);
+std::string shown_title(const Metric& metric) {
+  return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
 }
 
-std::string effect_words(const PairedMetric& metric, const PairedComparison& comparison,
+std::string effect_words(const Metric& metric, const PairedComparison& comparison,
                          double smallest_effect) {
   if (!is_sure(comparison)) {
     return fmt::format("{}: {}", metric.title, verdict_text(comparison, smallest_effect));
   }
-  if (is_share(metric)) {
+  if (metric.is_share()) {
     return fmt::format("{} {} in place of {}", metric.title, share_text(comparison.mean_b),
                        share_text(comparison.mean_a));
   }

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "evaluation/scoring/metrics.h"
 #include "evaluation/statistics/paired.h"
-#include "evaluation/statistics/paired_metrics.h"
 
 namespace simbench::reports {
 
@@ -17,16 +17,16 @@ const char* verdict_name(evaluation::Verdict verdict);
 std::string verdict_text(const evaluation::PairedComparison& comparison, double smallest_effect);
 
 // A metric's value as it is shown: milliseconds as they are, shares in percent.
-double shown_value(const evaluation::PairedMetric& metric, double value);
+double shown_value(const evaluation::Metric& metric, double value);
 // "AMD ms", "recall %".
-std::string shown_title(const evaluation::PairedMetric& metric);
+std::string shown_title(const evaluation::Metric& metric);
 
 // Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
 std::string factor_text(double factor);
 
 // What B is against A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]",
 // "recall 100 % in place of 0 %", "absolute error: no difference seen".
-std::string effect_words(const evaluation::PairedMetric& metric,
+std::string effect_words(const evaluation::Metric& metric,
                          const evaluation::PairedComparison& comparison, double smallest_effect);
 
 }  // namespace simbench::reports

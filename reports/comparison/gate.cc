@@ -13,7 +13,7 @@
 namespace simbench::reports {
 namespace {
 
-using evaluation::PairedMetric;
+using evaluation::Metric;
 using evaluation::Row;
 using scenarios::InputError;
 
@@ -83,8 +83,8 @@ double margin_of(const evaluation::GateMargin& margin, double baseline) {
 }
 
 // By how much the value is worse; negative: better.
-double worse_by(const PairedMetric& metric, double difference) {
-  return metric.higher_is_better ? -difference : difference;
+double worse_by(const Metric& metric, double difference) {
+  return metric.higher_is_better() ? -difference : difference;
 }
 
 bool has_none(const std::vector<double>& values) {
@@ -157,6 +157,7 @@ const Row* find_row(const evaluation::Results& results, const std::string& name)
 
 void make_checks(const Archive& result, const Baseline& baseline, const SeedPairing& pairing,
                  GateReport& report) {
+  const auto judged = evaluation::judged_metrics();
   std::vector<OpenCheck> open;
   std::vector<double> p;
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
@@ -168,16 +169,16 @@ void make_checks(const Archive& result, const Baseline& baseline, const SeedPair
     for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
       GateCheck check;
       check.pipeline = pipeline.name;
-      check.metric = &evaluation::paired_metrics().at(i);
-      const std::vector<double> before = pairing.of_a(pipeline.values.at(i));
-      const std::vector<double> now = pairing.of_b(check.metric->of(*row).values);
+      check.metric = judged[i];
+      const std::vector<double> before = pairing.of_a(pipeline.values[i]);
+      const std::vector<double> now = pairing.of_b(check.metric->series(*row).values);
       count_changes(before, now, check);
       if (report.mode == GateMode::kStatistical) {
         open.push_back(begin_statistically(before, now, report.by_index, check));
         p.push_back(open.back().t.p);
-        check.margin = margin_of(baseline.margins.at(i), check.baseline);
+        check.margin = margin_of(baseline.margins[i], check.baseline);
       } else {
-        check.margin = margin_of(baseline.margins.at(i), check.metric->table_value(before));
+        check.margin = margin_of(baseline.margins[i], check.metric->table_value(before));
         decide_exactly(before, now, check);
       }
       report.checks.push_back(std::move(check));

@@ -2,8 +2,9 @@
 //
 // Exact, for pinned seeds: the seeds and the world of the baseline are demanded. Whatever changed
 // beyond rounding is reported; a check fails if the metric's table value
-// (evaluation::PairedMetric) is worse by more than its margin, the larger of a share and a step, or
-// if a seed that had a value has none now. Nothing is inferred: equal code gives equal numbers.
+// (evaluation::Metric::table_value) is worse by more than its margin, the larger of a share and a
+// step, or if a seed that had a value has none now. Nothing is inferred: equal code gives equal
+// numbers.
 //
 // Statistical, for 32 or more seeds of any numbers: paired by seed if at least 32 are common, else
 // by index, as independent runs. A check fails only if the mean is worse by more than the margin
@@ -30,7 +31,6 @@
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
-#include "evaluation/statistics/paired_metrics.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/archive/baseline.h"
 #include "reports/comparison/comparison_seeds.h"
@@ -54,7 +54,7 @@ enum class GateOutcome : std::uint8_t {
 // One metric of one pipeline.
 struct GateCheck {
   std::string pipeline;
-  const evaluation::PairedMetric* metric = nullptr;
+  const evaluation::Metric* metric = nullptr;
   GateOutcome outcome = GateOutcome::kSame;
   // Table values in exact mode, means of the pairs in statistical mode; NaN: no seed has a value.
   double baseline = std::numeric_limits<double>::quiet_NaN();

@@ -13,7 +13,7 @@ Json seeds_json(const SeedRange& seeds) { return {{"first", seeds.first}, {"coun
 
 Json check_json(const GateReport& report, const GateCheck& check) {
   Json result = {{"pipeline", check.pipeline},
-                 {"metric", check.metric->name},
+                 {"metric", check.metric->id},
                  {"outcome", outcome_name(check.outcome)},
                  {"baseline", check.baseline},
                  {"value", check.value},

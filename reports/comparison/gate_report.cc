@@ -11,14 +11,16 @@
 namespace simbench::reports {
 namespace {
 
-const char* unit_of(const GateCheck& check) { return check.metric->unit[0] == '\0' ? "%" : "ms"; }
+const char* unit_of(const GateCheck& check) {
+  return check.metric->is_share() ? "%" : check.metric->unit;
+}
 
 std::string value_text(const GateCheck& check, double value) {
   return fmt::format("{} {}", number_text(shown_value(*check.metric, value)), unit_of(check));
 }
 
 const char* statistic_name(const GateReport& report, const GateCheck& check) {
-  const bool is_mean = report.mode == GateMode::kStatistical || check.metric->higher_is_better;
+  const bool is_mean = report.mode == GateMode::kStatistical || check.metric->is_share();
   return is_mean ? "mean" : "median";
 }
 
@@ -31,7 +33,7 @@ std::string seeds_words(const GateReport& report) {
 std::string change_text(const GateCheck& check) {
   const double change = check.value - check.baseline;
   std::string text = fmt::format("{}{}", change > 0 ? "+" : "", value_text(check, change));
-  if (check.baseline != 0 && check.metric->unit[0] != '\0') {
+  if (check.baseline != 0 && !check.metric->is_share()) {
     text += fmt::format(" ({:+.3g} %)", 100 * change / std::abs(check.baseline));
   }
   return text;

@@ -12,39 +12,46 @@
 namespace simbench::reports {
 namespace {
 
+using evaluation::CsvColumns;
+using evaluation::Metric;
 using evaluation::Row;
 using evaluation::SeedScore;
-
-struct NamedSeries {
-  const char* name;
-  evaluation::Series Row::*series;
-};
-
-constexpr NamedSeries kSeries[] = {{"amd_ms", &Row::amd_ms},
-                                   {"rmdv_ms", &Row::rmdv_ms},
-                                   {"absolute_error_ms", &Row::absolute_error_ms},
-                                   {"bias_ms", &Row::bias_ms},
-                                   {"host_error_ms", &Row::host_error_ms},
-                                   {"exposure_spread_ms", &Row::exposure_spread_ms}};
 
 std::string line(const std::vector<std::string>& cells) {
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
+void add_names(CsvColumns form, std::vector<std::string>& names) {
+  for (const Metric& metric : evaluation::metrics()) {
+    if (metric.csv == form) names.emplace_back(metric.id);
+    if (metric.csv != form || form != CsvColumns::kBand) continue;
+    names.push_back(fmt::format("{}_p05", metric.id));
+    names.push_back(fmt::format("{}_p95", metric.id));
+  }
+}
+
+void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells) {
+  for (const Metric& metric : evaluation::metrics()) {
+    if (metric.csv != form) continue;
+    if (metric.is_count()) {
+      cells.push_back(metric.is_known(row) ? std::to_string(metric.count(row)) : "");
+    } else {
+      cells.push_back(csv_cell(metric.value(row)));
+    }
+    if (form != CsvColumns::kBand) continue;
+    cells.push_back(csv_cell(metric.series(row).p05));
+    cells.push_back(csv_cell(metric.series(row).p95));
+  }
+}
+
 std::vector<std::string> header() {
   std::vector<std::string> names = {"pipeline", "host_sync", "device_time", "gathering"};
-  for (const NamedSeries& s : kSeries) {
-    names.insert(names.end(),
-                 {s.name, fmt::format("{}_p05", s.name), fmt::format("{}_p95", s.name)});
-  }
+  add_names(CsvColumns::kBand, names);
+  add_names(CsvColumns::kValue, names);
   names.insert(names.end(),
-               {"precision", "recall", "margin_ms", "frames_expected", "frames_delivered",
-                "frames_dropped", "evaluated_pulses", "unsynchronised_hosts", "published_amd_ms",
-                "published_amd_inside", "published_amd_percentile", "published_rmdv_ms",
-                "published_rmdv_inside", "published_rmdv_attainable"});
-  names.insert(names.end(), {"sets", "pure_sets", "partial_sets", "index_errors",
-                             "discarded_frames", "set_amd_ms", "set_absolute_error_ms",
-                             "emission_latency_ms", "emission_latency_max_ms"});
+               {"published_amd_ms", "published_amd_inside", "published_amd_percentile",
+                "published_rmdv_ms", "published_rmdv_inside", "published_rmdv_attainable"});
+  add_names(CsvColumns::kValueAtEnd, names);
   return names;
 }
 
@@ -85,31 +92,11 @@ std::string csv(const evaluation::Results& results) {
   for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                       csv_cell(row.device_time), csv_cell(row.gathering)};
-    for (const NamedSeries& named : kSeries) {
-      const evaluation::Series& series = row.*named.series;
-      for (const double value : {series.median, series.p05, series.p95}) {
-        cells.push_back(csv_cell(value));
-      }
-    }
-    for (const double value : {row.precision, row.recall, row.margin_ms}) {
-      cells.push_back(csv_cell(value));
-    }
-    for (const std::int64_t count : {row.frames.expected, row.frames.delivered, row.frames.dropped,
-                                     row.evaluated_pulses, row.unsynchronised_hosts}) {
-      cells.push_back(std::to_string(count));
-    }
+    add_cells(CsvColumns::kBand, row, cells);
+    add_cells(CsvColumns::kValue, row, cells);
     const std::vector<std::string> published = published_cells(row);
     cells.insert(cells.end(), published.begin(), published.end());
-    const auto if_verified = [&row](std::int64_t count) {
-      return row.verified() ? std::to_string(count) : std::string();
-    };
-    cells.insert(cells.end(), {std::to_string(row.sets.emitted), if_verified(row.sets.pure),
-                               std::to_string(row.sets.partial), if_verified(row.sets.index_errors),
-                               std::to_string(row.sets.discarded_frames)});
-    for (const double value : {row.set_amd_ms.median, row.set_absolute_error_ms.median,
-                               row.emission_latency_ms.median, row.emission_latency_max_ms}) {
-      cells.push_back(csv_cell(value));
-    }
+    add_cells(CsvColumns::kValueAtEnd, row, cells);
     if (real) {
       cells.insert(cells.end(),
                    {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",

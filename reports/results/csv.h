@@ -11,9 +11,10 @@
 
 namespace simbench::reports {
 
-// One line per pipeline: medians and bands, gathering score, frames, published values, scores over
-// the gathered sets (medians). If a row is not of a simulation, three more columns at the end:
-// ground_truth (as in reports/results/json.h), verified ("verified" or "unverified") and notes.
+// One line per pipeline: the metrics (evaluation/scoring/metrics.h says in which columns), and the
+// published values before those of CsvColumns::kValueAtEnd. If a row is not of a simulation, three
+// more columns at the end: ground_truth (as in reports/results/json.h), verified ("verified" or
+// "unverified") and notes.
 std::string csv(const evaluation::Results& results);
 
 // frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.

@@ -32,49 +32,27 @@ Json published_json(const std::optional<evaluation::PublishedComparison>& publis
           {"rmdv_percentile_interval", Json::array({rmdv.low, rmdv.high})}};
 }
 
-// Of what only a verified row can count.
-Json count_json(const evaluation::Row& row, std::int64_t count) {
-  return row.verified() ? Json(count) : Json();
+Json metric_json(const evaluation::Metric& metric, const evaluation::Row& row) {
+  if (metric.is_series()) return series_json(metric.series(row));
+  if (!metric.is_count()) return metric.number(row);
+  return metric.is_known(row) ? Json(metric.count(row)) : Json();
 }
 
 Json row_json(const evaluation::Row& row) {
-  return {{"pipeline", row.pipeline},
-          {"host_sync", row.host_sync},
-          {"device_time", row.device_time},
-          {"gathering", row.gathering},
-          {"offline", row.offline},
-          {"amd_ms", series_json(row.amd_ms)},
-          {"rmdv_ms", series_json(row.rmdv_ms)},
-          {"absolute_error_ms", series_json(row.absolute_error_ms)},
-          {"bias_ms", series_json(row.bias_ms)},
-          {"host_error_ms", series_json(row.host_error_ms)},
-          {"exposure_spread_ms", series_json(row.exposure_spread_ms)},
-          {"gathering_score",
-           {{"precision", row.precision},
-            {"recall", row.recall},
-            {"margin_ms", row.margin_ms},
-            {"seed_precision", series_json(row.seed_precision)},
-            {"seed_recall", series_json(row.seed_recall)},
-            {"sets", row.sets.emitted},
-            {"pure_sets", count_json(row, row.sets.pure)},
-            {"complete_pulses", count_json(row, row.sets.complete_pulses)},
-            {"partial_sets", row.sets.partial},
-            {"index_errors", count_json(row, row.sets.index_errors)},
-            {"discarded_frames", row.sets.discarded_frames},
-            {"set_amd_ms", series_json(row.set_amd_ms)},
-            {"set_absolute_error_ms", series_json(row.set_absolute_error_ms)},
-            {"emission_latency_ms", series_json(row.emission_latency_ms)},
-            {"emission_latency_max_ms", row.emission_latency_max_ms}}},
-          {"frames",
-           {{"expected", row.frames.expected},
-            {"delivered", row.frames.delivered},
-            {"dropped", row.frames.dropped}}},
-          {"evaluated_pulses", row.evaluated_pulses},
-          {"unsynchronised_hosts", row.unsynchronised_hosts},
-          {"ground_truth", ground_truth_name(row.ground_truth)},
-          {"verified", row.verified()},
-          {"notes", row.notes},
-          {"published", published_json(row.published)}};
+  Json all = {{"pipeline", row.pipeline},
+              {"host_sync", row.host_sync},
+              {"device_time", row.device_time},
+              {"gathering", row.gathering},
+              {"offline", row.offline}};
+  for (const evaluation::Metric& metric : evaluation::metrics()) {
+    Json& object = *metric.json_in == '\0' ? all : all[metric.json_in];
+    object[metric.member()] = metric_json(metric, row);
+  }
+  all["ground_truth"] = ground_truth_name(row.ground_truth);
+  all["verified"] = row.verified();
+  all["notes"] = row.notes;
+  all["published"] = published_json(row.published);
+  return all;
 }
 
 Json floor_json(const std::optional<evaluation::AsymmetryFloor>& floor) {

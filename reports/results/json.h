@@ -8,15 +8,9 @@
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
-//              "amd_ms": {"median", "p05", "p95", "values": [in seed order]},
-//              rmdv_ms, absolute_error_ms, bias_ms, host_error_ms, exposure_spread_ms likewise,
-//              "gathering_score": {"precision", "recall", "margin_ms",
-//                "seed_precision": like amd_ms, seed_recall likewise, "sets", "pure_sets",
-//                "complete_pulses", "partial_sets", "index_errors", "discarded_frames",
-//                "set_amd_ms": like amd_ms, set_absolute_error_ms, emission_latency_ms likewise,
-//                "emission_latency_max_ms"},
-//              "frames": {"expected", "delivered", "dropped"}, "evaluated_pulses": ...,
-//              "unsynchronised_hosts": ...,
+//              each metric under the id and in the object that evaluation/scoring/metrics.h says,
+//              {"median", "p05", "p95", "values": [in seed order]}, a number or a count: "amd_ms",
+//              ..., "gathering_score": {"precision", ...}, "frames": {"expected", ...}, ...,
 //              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
 //                needs pulses is null), "notes": [what went wrong, "repetition 3: ..."],

@@ -61,13 +61,13 @@ std::string sweep_manifest(const SweepPlan& plan, const std::string& study) {
 
 std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
   std::string csv = run_header(plan);
-  for (const auto& column : evaluation::score_columns()) csv.append(",").append(column.name);
+  for (const evaluation::Metric* metric : evaluation::sweep_metrics()) {
+    csv.append(",").append(metric->sweep);
+  }
   csv += '\n';
   for (std::size_t index = 0; index < scores.size(); ++index) {
     csv += run_cells(plan, plan.run(index));
-    for (const auto& column : evaluation::score_columns()) {
-      csv.append(",").append(csv_cell(scores[index].*column.member));
-    }
+    for (const double value : scores[index].values) csv.append(",").append(csv_cell(value));
     csv += '\n';
   }
   return csv;

@@ -128,15 +128,15 @@ Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& ro
   const auto add = [&](const std::string& title, const std::string& y_label, const Metric& metric) {
     figure.panels.push_back(response_panel(plan, rows, x, title, y_label, metric));
   };
-  add("AMD", "median AMD, ms", [](const ResponseRow& row) { return row.amd_ms.median; });
+  add("AMD", "median AMD, ms", [](const ResponseRow& row) { return row.of("amd_ms").median; });
   use_log_scale_if_wide(figure.panels.back());
   add("Absolute error", "median absolute error, ms",
-      [](const ResponseRow& row) { return row.absolute_error_ms.median; });
+      [](const ResponseRow& row) { return row.of("absolute_error_ms").median; });
   use_log_scale_if_wide(figure.panels.back());
   add("Recall of the frame sets", "recall, %",
       [](const ResponseRow& row) { return row.recall * 100; });
   add("Margin of gathering", "median margin, ms",
-      [](const ResponseRow& row) { return row.margin_ms.median; });
+      [](const ResponseRow& row) { return row.of("margin_ms").median; });
   const std::size_t curves = rows.size() / plan.axes.front().steps();
   if (curves > kMostCurves) {
     figure.caption +=
@@ -182,7 +182,7 @@ Figure seeds_needed_figure(const SweepPlan& plan, const std::vector<ResponseRow>
     series.mark = Mark::kLine;
     for (std::size_t seeds = 8; seeds <= plan.seeds; seeds += std::max<std::size_t>(1, seeds / 8)) {
       const auto interval =
-          evaluation::median_interval(row.amd_ms.values, static_cast<std::int64_t>(seeds));
+          evaluation::median_interval(row.of("amd_ms").values, static_cast<std::int64_t>(seeds));
       series.x.push_back(static_cast<double>(seeds));
       series.y.push_back(interval.relative * 100);
     }

@@ -17,7 +17,7 @@ namespace simbench::reports {
 std::string sweep_manifest(const evaluation::SweepPlan& plan, const std::string& study);
 
 // sweep.csv, one line for each point, pipeline and seed: what is swept under its JSON pointers,
-// pipeline, seed, and the columns of evaluation::score_columns(). Numbers are the shortest that
+// pipeline, seed, and the columns of evaluation::sweep_metrics(). Numbers are the shortest that
 // read back as the same double; what does not exist is an empty cell.
 std::string sweep_csv(const evaluation::SweepPlan& plan,
                       const std::vector<evaluation::SweepScore>& scores);

@@ -67,10 +67,10 @@ std::string response_table(const SweepPlan& plan, const std::vector<ResponseRow>
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (std::string& cell :
-         std::array{number_text(row.amd_ms.median), band_text(row.amd_ms),
-                    number_text(row.absolute_error_ms.median),
-                    number_text(row.host_error_ms.median), share_text(row.precision),
-                    share_text(row.recall), number_text(row.margin_ms.median)}) {
+         std::array{number_text(row.of("amd_ms").median), band_text(row.of("amd_ms")),
+                    number_text(row.of("absolute_error_ms").median),
+                    number_text(row.of("host_error_ms").median), share_text(row.precision),
+                    share_text(row.recall), number_text(row.of("margin_ms").median)}) {
       cells.push_back(std::move(cell));
     }
     table.add(std::move(cells));
@@ -115,9 +115,9 @@ std::string seeds_needed_table(const SweepPlan& plan, const std::vector<Response
   }
   TextTable table(std::move(columns));
   for (const ResponseRow& row : rows) {
-    const std::vector<double>& values = row.amd_ms.values;
+    const std::vector<double>& values = row.of("amd_ms").values;
     std::vector<std::string> cells = point_cells(plan, row);
-    cells.push_back(number_text(row.amd_ms.median));
+    cells.push_back(number_text(row.of("amd_ms").median));
     for (const std::int64_t count : counts) {
       cells.push_back(percent_text(evaluation::median_interval(values, count).relative));
     }

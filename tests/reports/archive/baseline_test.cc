@@ -71,7 +71,7 @@ TEST_F(BaselineFile, ReadsWhatItWrote) {
   EXPECT_NEAR(amd[0], third, 1e-12);
   EXPECT_TRUE(std::isnan(amd[1]));
   EXPECT_EQ(amd[2], 0);
-  EXPECT_EQ(read.margins[0].relative, evaluation::paired_metrics()[0].margin.relative);
+  EXPECT_EQ(read.margins[0].relative, evaluation::metric("amd_ms").judged->margin.relative);
   const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   EXPECT_EQ(files, 1) << "a temporary file is left";
 }

@@ -142,7 +142,7 @@ TEST(CompareWithBaseline, SaysHowMuchBetterInPlainWords) {
 }
 
 TEST(EffectWords, ChooseTheFormThatReadsBest) {
-  const evaluation::PairedMetric& amd = evaluation::paired_metrics()[0];
+  const evaluation::Metric& amd = evaluation::metric("amd_ms");
   const auto words = [&](double factor) {
     evaluation::PairedValues values;
     for (int i = 0; i < 32; ++i) values.pairs.push_back({10, 10 * factor});
