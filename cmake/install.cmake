@@ -9,6 +9,7 @@ install(EXPORT simbench NAMESPACE simbench:: FILE simbench-targets.cmake DESTINA
 install(DIRECTORY scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/simbench/scenarios
         FILES_MATCHING PATTERN "*.json")
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES tools/systemd/simbench-node.service DESTINATION lib/systemd/system)
 
 # Man pages and shell completion, which the program itself prints; a foreign one cannot be asked.

@@ -1,5 +1,5 @@
 # The adapter for RealSense cameras (hardware/realsense) and its tests: built where librealsense2 is
-# found, left out elsewhere. Debian has no package of it; the README says how to get it, and
+# found, left out elsewhere. Debian has no package of it; docs/rigs.md says how to get it, and
 # -Drealsense2_DIR=<prefix>/lib/cmake/realsense2 finds one that was installed by hand. Nothing else
 # needs it: recorded cameras stand in.
 #

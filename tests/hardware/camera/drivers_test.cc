@@ -58,7 +58,7 @@ TEST(CameraDrivers, ARealCameraNeedsTheLibrary) {
   EXPECT_THAT([&] { make_camera_driver(rig, 0); },
               ThrowsMessage<CameraError>(
                   AllOf(HasSubstr("camera 018322071234: "), HasSubstr("without librealsense2"),
-                        HasSubstr("README"), HasSubstr("\"recording\" in rig.json"))));
+                        HasSubstr("docs/rigs.md"), HasSubstr("\"recording\" in rig.json"))));
 }
 #endif
 
