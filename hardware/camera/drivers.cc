@@ -59,10 +59,10 @@ std::unique_ptr<CameraDriver> real_driver(const Rig& /*rig*/, const std::string&
 }
 #else
 std::unique_ptr<CameraDriver> real_driver(const Rig& rig, const std::string& serial) {
-  throw CameraError(
-      fmt::format("camera {}: this simbench was built without librealsense2; install it (docs/rigs.md: "
-                  "RealSense cameras) and build again, or give the camera a \"recording\" in {}",
-                  serial, rig.file));
+  throw CameraError(fmt::format(
+      "camera {}: this simbench was built without librealsense2; install it (docs/rigs.md: "
+      "RealSense cameras) and build again, or give the camera a \"recording\" in {}",
+      serial, rig.file));
 }
 #endif
 
