@@ -5,7 +5,7 @@
 // factory can rely on what it gets.
 //
 //   const std::vector<ParameterSpec> specs = {
-//       {.name = "stamps", .fallback = 100.0, .low = 1, .high = 1e6, .meaning = "n_d", ...}};
+//       number_parameter("stamps", 100, 1, 1e6, "n_d", "assumption")};
 //   Parameters parameters = check_parameters(specs, {{"stamps", 10.0}});
 //   parameters.number("stamps");   // 10
 #ifndef SIMBENCH_ALGORITHMS_PARAMETERS_H_
@@ -61,6 +61,24 @@ class Parameters {
 // The declared parameters with `given` over their defaults. Throws ParameterError, whose message
 // says what was found and what is allowed.
 Parameters check_parameters(const std::vector<ParameterSpec>& specs, const ParameterValues& given);
+
+// Short forms for the parameters that an algorithm declares.
+//
+//   entry.info.parameters = {
+//       number_parameter("window_s", 10, 0.1, 1e6, "span of the hull", "TICSync"),
+//       choice_parameter("stamps", {"transmit", "naive"}, "what t1 and t3 are", "NTP")};
+
+// A number from `low` to `high`, both included.
+ParameterSpec number_parameter(std::string name, double fallback, double low, double high,
+                               std::string meaning, std::string source);
+
+// One of `choices`; the first is the default.
+ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
+                               std::string meaning, std::string source);
+
+// Yes or no.
+ParameterSpec flag_parameter(std::string name, bool fallback, std::string meaning,
+                             std::string source);
 
 }  // namespace simbench
 

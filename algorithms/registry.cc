@@ -1,22 +1,61 @@
 #include "algorithms/registry.h"
 
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "algorithms/device_time/registration.h"
-#include "algorithms/gathering/registration.h"
-#include "algorithms/host_sync/registration.h"
+// simbench's own algorithms, in the order in which they are listed: a line for each file that
+// defines some. A line FILE below stands for a function of that file,
+// std::vector<HostSyncEntry> host_sync_FILE() (or device_time_, gathering_).
+#define SIMBENCH_HOST_SYNC(FILE) \
+  FILE(yoon2021)                 \
+  FILE(limits)                   \
+  FILE(two_way)                  \
+  FILE(ptp)                      \
+  FILE(common_view)              \
+  FILE(gnss)                     \
+  FILE(ntp)                      \
+  FILE(w32time)                  \
+  FILE(chrony)
+#define SIMBENCH_DEVICE_TIME(FILE) \
+  FILE(yoon2021)                   \
+  FILE(hull)                       \
+  FILE(two_way_poll)               \
+  FILE(offset_filters)             \
+  FILE(librealsense_global)
+#define SIMBENCH_GATHERING(FILE) \
+  FILE(yoon2021)                 \
+  FILE(genlock)                  \
+  FILE(approximate_time)         \
+  FILE(epsilon)                  \
+  FILE(librealsense)             \
+  FILE(k4a)                      \
+  FILE(phase_binning)            \
+  FILE(oracle)
 
 namespace simbench {
+
+#define SIMBENCH_DECLARE(file) std::vector<HostSyncEntry> host_sync_##file();
+SIMBENCH_HOST_SYNC(SIMBENCH_DECLARE)
+#undef SIMBENCH_DECLARE
+#define SIMBENCH_DECLARE(file) std::vector<DeviceTimeEntry> device_time_##file();
+SIMBENCH_DEVICE_TIME(SIMBENCH_DECLARE)
+#undef SIMBENCH_DECLARE
+#define SIMBENCH_DECLARE(file) std::vector<GatheringEntry> gathering_##file();
+SIMBENCH_GATHERING(SIMBENCH_DECLARE)
+#undef SIMBENCH_DECLARE
+
 namespace {
 
 // The algorithms of one stage, in order of registration.
 template <class Entry>
 class Stage {
  public:
-  Stage(std::string name, std::vector<Entry> builtin) : name_(std::move(name)) {
-    for (Entry& entry : builtin) add(std::move(entry));
+  Stage(std::string name, std::initializer_list<std::vector<Entry>> own) : name_(std::move(name)) {
+    for (const std::vector<Entry>& file : own) {
+      for (const Entry& entry : file) add(entry);
+    }
   }
 
   void add(Entry entry) {
@@ -42,15 +81,21 @@ class Stage {
 };
 
 Stage<HostSyncEntry>& host_sync_stage() {
-  static Stage<HostSyncEntry> stage("host_sync", builtin_host_sync_algorithms());
+#define SIMBENCH_ENTRIES(file) host_sync_##file(),
+  static Stage<HostSyncEntry> stage("host_sync", {SIMBENCH_HOST_SYNC(SIMBENCH_ENTRIES)});
+#undef SIMBENCH_ENTRIES
   return stage;
 }
 Stage<DeviceTimeEntry>& device_time_stage() {
-  static Stage<DeviceTimeEntry> stage("device_time", builtin_device_time_algorithms());
+#define SIMBENCH_ENTRIES(file) device_time_##file(),
+  static Stage<DeviceTimeEntry> stage("device_time", {SIMBENCH_DEVICE_TIME(SIMBENCH_ENTRIES)});
+#undef SIMBENCH_ENTRIES
   return stage;
 }
 Stage<GatheringEntry>& gathering_stage() {
-  static Stage<GatheringEntry> stage("gathering", builtin_gathering_algorithms());
+#define SIMBENCH_ENTRIES(file) gathering_##file(),
+  static Stage<GatheringEntry> stage("gathering", {SIMBENCH_GATHERING(SIMBENCH_ENTRIES)});
+#undef SIMBENCH_ENTRIES
   return stage;
 }
 

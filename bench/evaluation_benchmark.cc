@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "algorithms/device_time/regression.h"
-#include "algorithms/gathering/yoon2021.h"
+#include "algorithms/device_time/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/kept_recording.h"
 

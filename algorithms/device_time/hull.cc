@@ -6,9 +6,8 @@
 #include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/saturate.h"
-#include "algorithms/device_time/switching_hull.h"
-#include "algorithms/device_time/window_hull.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -121,6 +120,52 @@ std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings s
 
 std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm) {
   return std::make_unique<OfflineHullEstimator>(max_skew_ppm);
+}
+
+namespace {
+
+constexpr const char* kMaxSkew = "max_skew_ppm";
+constexpr const char* kHullSource = "docs/reference/device_time.md section 1";
+constexpr const char* kTicSync =
+    "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
+
+AlgorithmInfo info(const char* name, const char* summary, const char* source) {
+  return {.name = name,
+          .family = "hull",
+          .summary = summary,
+          .source = source,
+          .parameters = {max_skew_parameter()}};
+}
+
+DeviceTimeEntry switching(const char* name, double period_s, const char* summary) {
+  return {.info = info(name, summary, kTicSync), .make = [period_s](const Parameters& parameters) {
+            return make_switching_hull(
+                {.period_s = period_s, .max_skew_ppm = parameters.number(kMaxSkew)});
+          }};
+}
+
+}  // namespace
+
+ParameterSpec max_skew_parameter() {
+  return number_parameter(kMaxSkew, kDefaultMaxSkewPpm, 1, 100'000,
+                          "steeper lines are no clock's: twice what NTP slews at", "RFC 5905");
+}
+
+std::vector<DeviceTimeEntry> device_time_hull() {
+  return {
+      {.info = info("hull_300", "lower hull of the last 300 frames", kHullSource),
+       .make =
+           [](const Parameters& parameters) {
+             return make_window_hull({.frames = 300, .max_skew_ppm = parameters.number(kMaxSkew)});
+           }},
+      switching("hull_switch_10s", 10, "two growing lower hulls, 10 s apart: 10 to 20 s of frames"),
+      switching("hull_switch_60s", 60, "two growing lower hulls, 60 s apart: 1 to 2 min of frames"),
+      {.info = info("hull_offline", "lower hull of the whole recording", kHullSource),
+       .make =
+           [](const Parameters& parameters) {
+             return make_offline_hull(parameters.number(kMaxSkew));
+           }},
+  };
 }
 
 }  // namespace simbench

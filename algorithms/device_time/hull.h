@@ -28,6 +28,7 @@
 #include <memory>
 
 #include "algorithms/device_time/device_time.h"
+#include "algorithms/parameters.h"
 
 namespace simbench {
 
@@ -47,6 +48,9 @@ std::unique_ptr<DeviceTimeEstimator> make_window_hull(WindowHullSettings setting
 std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings settings);
 // Must be given the recording with learn() before the first stamp(), and the same frames again.
 std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm = kDefaultMaxSkewPpm);
+
+// The parameter max_skew_ppm, of all that take a line under a hull.
+ParameterSpec max_skew_parameter();
 
 }  // namespace simbench
 

@@ -1,12 +1,11 @@
-#include "algorithms/device_time/librealsense_global.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 #include "algorithms/device_time/line_fit.h"
-#include "algorithms/device_time/poll_stream.h"
+#include "algorithms/device_time/poll_estimators.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -113,6 +112,19 @@ class LibrealsenseGlobal final : public DeviceTimeEstimator {
 
 std::unique_ptr<DeviceTimeEstimator> make_librealsense_global() {
   return std::make_unique<LibrealsenseGlobal>();
+}
+
+std::vector<DeviceTimeEntry> device_time_librealsense_global() {
+  return {
+      {.info =
+           {.name = "librealsense_global",
+            .family = "librealsense_global",
+            .summary = "librealsense's global time over polls of the camera's clock",
+            .source =
+                "librealsense src/global_timestamp_reader.cpp; docs/reference/d455.md section 5",
+            .parameters = {},
+            .needs = {Need::kPolls}},
+       .make = [](const Parameters&) { return make_librealsense_global(); }}};
 }
 
 }  // namespace simbench

@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/line_fit.h"
@@ -68,6 +69,98 @@ inline SupportLine middle_line(std::span<const LinePoint> vertices,
                                double max_slope = std::numeric_limits<double>::infinity()) {
   return support_line(vertices, vertices.front().x + vertices.back().x, max_slope);
 }
+
+// The lower convex hull of the newest points: a queue of points with its hull at any time.
+//
+// The queue is two parts. The newer part has a growing hull. The older part was built from its
+// newest point back to its oldest, and each point remembers what it displaced, so taking the oldest
+// one out restores the hull without it. When the older part is used up, the newer one becomes it.
+// The hull of all is the two joined at their common tangent.
+//
+// Complexity: push and pop amortised O(1) (a rebuild of n points once in n pops), hull() O(number
+// of vertices). Memory: 3 * capacity points, allocated when made. Points and arithmetic as in
+// lower_hull.h, except that no vertex is ever dropped.
+//
+//   WindowHull window(300);
+//   if (window.full()) window.pop();
+//   window.push(point);
+//   middle_line(window.hull());
+class WindowHull {
+ public:
+  // Room for `capacity` points, at least 1.
+  explicit WindowHull(std::size_t capacity);
+
+  // x greater than that of all points within; not if full().
+  void push(LinePoint point);
+  // Takes the oldest point out; not if empty().
+  void pop();
+  void clear();
+
+  std::size_t size() const { return older_.size() + newer_.size(); }
+  bool empty() const { return size() == 0; }
+  bool full() const { return size() == capacity_; }
+  LinePoint oldest() const { return older_.empty() ? newer_.front() : older_.back().point; }
+
+  // Valid until the next change.
+  std::span<const LinePoint> hull();
+
+ private:
+  struct Older {
+    LinePoint point;
+    std::size_t vertices_before = 0;
+    LinePoint displaced;  // the vertex whose place this point took
+  };
+
+  void rebuild_older();
+
+  std::size_t capacity_;
+  std::vector<Older> older_;           // newest first, so the oldest is at the end
+  std::vector<LinePoint> older_hull_;  // newest first; the first older_vertices_ are valid
+  std::size_t older_vertices_ = 0;
+  std::vector<LinePoint> newer_;
+  std::vector<LinePoint> newer_hull_;
+  std::vector<LinePoint> joined_;
+};
+
+// Two lower hulls fed in parallel, so that a growing hull forgets (TICSync; the switching hull of
+// cuckoo_time_translator): once the pending one is `period` old, the next point makes it the
+// current one and begins a new pending one. The current hull then spans one to two periods.
+//
+// Complexity and memory: two of LowerHull.
+//
+//   SwitchingHull hull(10'000'000);   // period in units of x
+//   hull.add(point);
+//   middle_line(hull.current());
+class SwitchingHull {
+ public:
+  explicit SwitchingHull(std::int64_t period) : period_(period) {}
+
+  // As LowerHull::add.
+  void add(LinePoint point) {
+    if (pending_.vertices().empty()) {
+      pending_since_ = point.x;
+    } else if (point.x - pending_since_ >= period_) {
+      std::swap(current_, pending_);
+      pending_.clear();
+      pending_since_ = point.x;
+    }
+    current_.add(point);
+    pending_.add(point);
+  }
+  void clear() {
+    current_.clear();
+    pending_.clear();
+  }
+
+  std::span<const LinePoint> current() const { return current_.vertices(); }
+  std::span<const LinePoint> pending() const { return pending_.vertices(); }
+
+ private:
+  std::int64_t period_;
+  std::int64_t pending_since_ = 0;
+  LowerHull current_;
+  LowerHull pending_;
+};
 
 }  // namespace simbench
 

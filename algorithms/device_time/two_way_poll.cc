@@ -1,9 +1,8 @@
-#include "algorithms/device_time/two_way_poll.h"
-
+#include "algorithms/device_time/hull.h"
 #include "algorithms/device_time/lower_hull.h"
-#include "algorithms/device_time/poll_stream.h"
-#include "algorithms/device_time/window_hull.h"
+#include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -61,5 +60,29 @@ std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settin
   SIMBENCH_ASSERT(settings.window_s > 0, "a window is of some time");
   return std::make_unique<TwoWayPoll>(settings);
 }
+
+namespace {
+
+constexpr const char* kWindowName = "window_s";
+
+DeviceTimeEntry two_way_poll() {
+  return {.info = {.name = "two_way_poll",
+                   .family = "two_way_poll",
+                   .summary = "two-way convex hulls over polls of the camera's clock, no arrivals",
+                   .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
+                   .parameters = {max_skew_parameter(),
+                                  number_parameter(kWindowName, TwoWayPollSettings{}.window_s, 1,
+                                                   3600, "polls of this long are used",
+                                                   "ours: short against wander")},
+                   .needs = {Need::kPolls}},
+          .make = [](const Parameters& parameters) {
+            return make_two_way_poll({.window_s = parameters.number(kWindowName),
+                                      .max_skew_ppm = parameters.number("max_skew_ppm")});
+          }};
+}
+
+}  // namespace
+
+std::vector<DeviceTimeEntry> device_time_two_way_poll() { return {two_way_poll()}; }
 
 }  // namespace simbench

@@ -1,13 +1,12 @@
-#include "algorithms/gathering/approximate_time.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "algorithms/gathering/frame_queues.h"
-#include "algorithms/gathering/front_tournament.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -242,6 +241,69 @@ class ApproximateTimeGatherer final : public Gatherer {
 std::unique_ptr<Gatherer> make_approximate_time_gatherer(const GatheringSetup& setup,
                                                          const ApproximateTimeOptions& options) {
   return std::make_unique<ApproximateTimeGatherer>(setup, options);
+}
+
+namespace {
+
+const char* const kRos = "ros_comm message_filters sync_policies/approximate_time.h";
+
+// `share` of a duration.
+Nanoseconds scaled(Nanoseconds duration, double share) {
+  return Nanoseconds(std::llround(static_cast<double>(duration.count()) * share));
+}
+
+std::vector<ParameterSpec> approximate_time_parameters(double lower_bound_periods) {
+  return {
+      number_parameter("age_penalty", 0.1, 0, 1e3,
+                       "how much narrower a later set must be, as a share of its lateness", kRos),
+      number_parameter("lower_bound_periods", lower_bound_periods, 0, 1,
+                       "least time between two frames of a source, in frame periods; 0: none",
+                       kRos),
+      number_parameter("queue", 10, 1, 1e4, "frames that may wait per source", kRos)};
+}
+
+ApproximateTimeOptions approximate_time_options(const Parameters& parameters,
+                                                const GatheringSetup& setup) {
+  ApproximateTimeOptions options;
+  options.age_penalty = parameters.number("age_penalty");
+  options.lower_bound = scaled(setup.period, parameters.number("lower_bound_periods"));
+  options.queue = static_cast<std::uint32_t>(parameters.number("queue"));
+  return options;
+}
+
+GatheringEntry approximate_time() {
+  std::vector<ParameterSpec> parameters = approximate_time_parameters(0);
+  parameters.push_back(number_parameter("max_interval_periods", 0, 0, 1e3,
+                                        "largest range of a set, in frame periods; 0: any", kRos));
+  return {.info = {.name = "approximate_time",
+                   .family = "approximate_time",
+                   .summary = "the narrowest sets around a pivot, of any width (ROS)",
+                   .source = kRos,
+                   .parameters = std::move(parameters)},
+          .make = [](const Parameters& given, const GatheringSetup& setup) {
+            ApproximateTimeOptions options = approximate_time_options(given, setup);
+            options.max_interval = scaled(setup.period, given.number("max_interval_periods"));
+            return make_approximate_time_gatherer(setup, options);
+          }};
+}
+
+GatheringEntry approximate_time_bounded() {
+  return {.info = {.name = "approximate_time_bounded",
+                   .family = "approximate_time",
+                   .summary = "the same with sets up to T_int and frames half a period apart",
+                   .source = kRos,
+                   .parameters = approximate_time_parameters(0.5)},
+          .make = [](const Parameters& given, const GatheringSetup& setup) {
+            ApproximateTimeOptions options = approximate_time_options(given, setup);
+            options.max_interval = setup.interval;
+            return make_approximate_time_gatherer(setup, options);
+          }};
+}
+
+}  // namespace
+
+std::vector<GatheringEntry> gathering_approximate_time() {
+  return {approximate_time(), approximate_time_bounded()};
 }
 
 }  // namespace simbench

@@ -1,12 +1,11 @@
-#include "algorithms/gathering/epsilon.h"
-
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "algorithms/gathering/frame_queues.h"
-#include "algorithms/gathering/front_tournament.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -80,6 +79,18 @@ class EpsilonGatherer final : public Gatherer {
 
 std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup) {
   return std::make_unique<EpsilonGatherer>(setup);
+}
+
+std::vector<GatheringEntry> gathering_epsilon() {
+  return {
+      {.info = {.name = "epsilon",
+                .family = "epsilon",
+                .summary = "fronts within T_int are a set, else all near the earliest are given up",
+                .source = "ros2/message_filters sync_policies/approximate_epsilon_time",
+                .parameters = {}},
+       .make = [](const Parameters&, const GatheringSetup& setup) {
+         return make_epsilon_gatherer(setup);
+       }}};
 }
 
 }  // namespace simbench

@@ -1,9 +1,9 @@
-#include "algorithms/gathering/genlock.h"
-
 #include <vector>
 
-#include "algorithms/gathering/front_matcher.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -31,6 +31,29 @@ class GenlockGatherer final : public Gatherer {
 std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
                                                 GenlockOrder::Variant variant) {
   return std::make_unique<GenlockGatherer>(setup, variant);
+}
+
+namespace {
+
+GatheringEntry genlock(const char* name, GenlockOrder::Variant variant, const char* summary) {
+  return {.info = {.name = name,
+                   .family = "genlock",
+                   .summary = summary,
+                   .source = "Yoon et al. 2021, GenLock; docs/reference/paper.md section 8",
+                   .parameters = {}},
+          .make = [variant](const Parameters&, const GatheringSetup& setup) {
+            return make_genlock_gatherer(setup, variant);
+          }};
+}
+
+}  // namespace
+
+std::vector<GatheringEntry> gathering_genlock() {
+  return {
+      genlock("genlock", GenlockOrder::Variant::kReanchored,
+              "frames of one trigger pulse, counted from frame to frame"),
+      genlock("genlock_printed", GenlockOrder::Variant::kFirstStamp,
+              "frames of one trigger pulse, counted from the first stamp: drifts (as printed)")};
 }
 
 }  // namespace simbench

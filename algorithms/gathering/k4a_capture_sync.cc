@@ -1,11 +1,11 @@
-#include "algorithms/gathering/k4a_capture_sync.h"
-
 #include <algorithm>
 #include <cstdint>
 
 #include "algorithms/device_time/saturate.h"
-#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -72,5 +72,25 @@ class K4aGatherer final : public Gatherer {
 std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup, Nanoseconds delay) {
   return std::make_unique<K4aGatherer>(setup, delay);
 }
+
+namespace {
+
+GatheringEntry k4a() {
+  const char* const source = "Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c";
+  return {.info = {.name = "k4a",
+                   .family = "k4a",
+                   .summary = "windows of one period around the frames of the first camera",
+                   .source = source,
+                   .parameters = {number_parameter(
+                       "delay_us", 0, -1e6, 1e6,
+                       "how much later the others are exposed than the first camera", source)}},
+          .make = [](const Parameters& parameters, const GatheringSetup& setup) {
+            return make_k4a_gatherer(setup, from_ms(parameters.number("delay_us") * 1e-3));
+          }};
+}
+
+}  // namespace
+
+std::vector<GatheringEntry> gathering_k4a() { return {k4a()}; }
 
 }  // namespace simbench

@@ -1,12 +1,12 @@
-#include "algorithms/gathering/librealsense_syncer.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -113,6 +113,17 @@ class LibrealsenseGatherer final : public Gatherer {
 
 std::unique_ptr<Gatherer> make_librealsense_gatherer(const GatheringSetup& setup) {
   return std::make_unique<LibrealsenseGatherer>(setup);
+}
+
+std::vector<GatheringEntry> gathering_librealsense() {
+  return {{.info = {.name = "librealsense",
+                    .family = "librealsense",
+                    .summary = "half a period around the earliest front; emits partial sets",
+                    .source = "librealsense src/sync.cpp; docs/reference/d455.md section 6",
+                    .parameters = {}},
+           .make = [](const Parameters&, const GatheringSetup& setup) {
+             return make_librealsense_gatherer(setup);
+           }}};
 }
 
 }  // namespace simbench

@@ -1,6 +1,6 @@
-#include "algorithms/gathering/oracle.h"
-
-#include "algorithms/gathering/front_matcher.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -28,6 +28,18 @@ class OracleGatherer final : public Gatherer {
 
 std::unique_ptr<Gatherer> make_oracle_gatherer(const GatheringSetup& setup) {
   return std::make_unique<OracleGatherer>(setup);
+}
+
+std::vector<GatheringEntry> gathering_oracle() {
+  return {{.info = {.name = "oracle",
+                    .family = "oracle",
+                    .summary = "frames of one true pulse",
+                    .source = "limit: no policy can find more sets",
+                    .parameters = {},
+                    .needs = {Need::kTruth}},
+           .make = [](const Parameters&, const GatheringSetup& setup) {
+             return make_oracle_gatherer(setup);
+           }}};
 }
 
 }  // namespace simbench

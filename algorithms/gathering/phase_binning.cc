@@ -1,5 +1,3 @@
-#include "algorithms/gathering/phase_binning.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,8 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/gathering/frame_queues.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
 #include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -162,5 +162,27 @@ class PhaseBinningGatherer final : public Gatherer {
 std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setup, double decay) {
   return std::make_unique<PhaseBinningGatherer>(setup, decay);
 }
+
+namespace {
+
+GatheringEntry phase_binning() {
+  const char* const source = "practice of genlock rigs; docs/reference/gathering.md";
+  return {
+      .info = {.name = "phase_binning",
+               .family = "phase_binning",
+               .summary = "the nearest point of the common period's grid, which follows the stamps",
+               .source = source,
+               .parameters = {number_parameter("decay", 0.98, 0, 0.999999,
+                                               "weight of a frame in the phase, against its "
+                                               "successor's",
+                                               source)}},
+      .make = [](const Parameters& parameters, const GatheringSetup& setup) {
+        return make_phase_binning_gatherer(setup, parameters.number("decay"));
+      }};
+}
+
+}  // namespace
+
+std::vector<GatheringEntry> gathering_phase_binning() { return {phase_binning()}; }
 
 }  // namespace simbench

@@ -1,6 +1,6 @@
-#include "algorithms/gathering/yoon2021.h"
-
-#include "algorithms/gathering/front_matcher.h"
+#include "algorithms/gathering/fronts.h"
+#include "algorithms/gathering/gatherers.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -23,6 +23,17 @@ class Yoon2021Gatherer final : public Gatherer {
 
 std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup) {
   return std::make_unique<Yoon2021Gatherer>(setup);
+}
+
+std::vector<GatheringEntry> gathering_yoon2021() {
+  return {{.info = {.name = "yoon2021",
+                    .family = "yoon2021",
+                    .summary = "fronts within T_int are a set, else the earliest front is given up",
+                    .source = "Yoon et al. 2021, Algorithm 3; docs/reference/paper.md section 5",
+                    .parameters = {}},
+           .make = [](const Parameters&, const GatheringSetup& setup) {
+             return make_yoon2021_gatherer(setup);
+           }}};
 }
 
 }  // namespace simbench

@@ -25,11 +25,39 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_CLOCK_STEERING_H_
 
 #include <algorithm>
+#include <vector>
 
-#include "algorithms/host_sync/clock_line.h"
+#include "algorithms/parameters.h"
 #include "algorithms/ports/host.h"
+#include "algorithms/ports/time.h"
 
 namespace simbench {
+
+// Where another clock is, as a straight line over one's own steady clock.
+//
+// What an estimator of a remote clock gives and what the steering of a system clock takes: neither
+// end depends on how the own system clock was set or slewed meanwhile.
+//
+//   ClockLine line{.at = s, .value = m, .rate_ppb = 12'000};   // at s it read m, and gains 12 ppm
+//   HostTime then = line.read(s + from_ms(1000));              // m + 1.000012 s
+struct ClockLine {
+  SteadyTime at{};
+  HostTime value{};
+  double rate_ppb = 0;  // against the steady clock
+
+  HostTime read(SteadyTime when) const {
+    const Nanoseconds since = when - at;
+    const double gained_ns = static_cast<double>(since.count()) * rate_ppb * 1e-9;
+    return value + since + Nanoseconds(std::llround(gained_ns));
+  }
+  // The instant at which it reads `reading`, to the nanosecond.
+  SteadyTime when(HostTime reading) const {
+    SteadyTime guess = at + (reading - value);
+    // Each pass multiplies the error by the rate, which is far below 1e-2.
+    for (int pass = 0; pass < 4; ++pass) guess += reading - read(guess);
+    return guess;
+  }
+};
 
 struct SteeringSettings {
   Nanoseconds step_threshold = from_ms(5);
@@ -97,6 +125,11 @@ class SteeredClock {
   // From the beginning of a set call to the instant at which it takes effect.
   Nanoseconds set_delay_{0};
 };
+
+// The parameters of clock_steering.h, as every algorithm that steers a clock by it declares them.
+
+std::vector<ParameterSpec> steering_parameters();
+SteeringSettings steering_settings(const Parameters& parameters);
 
 }  // namespace simbench
 

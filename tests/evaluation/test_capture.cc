@@ -1,7 +1,7 @@
 #include "tests/evaluation/test_capture.h"
 
-#include "algorithms/device_time/raw_arrival.h"
-#include "algorithms/gathering/yoon2021.h"
+#include "algorithms/device_time/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 
 namespace simbench::evaluation {
 namespace {

@@ -36,6 +36,7 @@
 
 #include "algorithms/host_sync/ntp/ntp_association.h"
 #include "algorithms/host_sync/ntp/ntp_discipline.h"
+#include "algorithms/parameters.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -63,6 +64,11 @@ class NtpService : public HostSync {
  private:
   NtpSettings settings_;
 };
+
+// Of all that poll as NTP does: the parameters min_poll and max_poll must be in order (else throws
+// ParameterError), and the parameter stamps is "application" or "kernel".
+void check_poll_bounds(int low, int high);
+NtpStamps stamps_of(const Parameters& parameters);
 
 }  // namespace simbench
 

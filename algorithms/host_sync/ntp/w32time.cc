@@ -1,5 +1,6 @@
 #include "algorithms/host_sync/ntp/w32time.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,9 +8,27 @@
 #include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
 #include "algorithms/host_sync/ntp/ntp_packet.h"
-#include "algorithms/host_sync/ntp/w32time_spikes.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
+
+bool W32TimeSpikes::accept(Nanoseconds offset, SteadyTime at) {
+  const bool is_large = offset >= kLargePhaseOffset || offset <= -kLargePhaseOffset;
+  if (held_ < kHoldPeriod) {
+    ++held_;
+    return true;
+  }
+  if (!is_large) {
+    suspicion_.reset();
+    return true;
+  }
+  if (!suspicion_) suspicion_ = at;
+  if (at - *suspicion_ < kSpikeWatchPeriod) return false;
+  suspicion_.reset();
+  held_ = 0;
+  return true;
+}
+
 namespace {
 
 constexpr double kUnitNs = 100;             // unit of the adjustment
@@ -110,6 +129,60 @@ Task<void> W32Time::run_slave(Host& host, PeerId master) {
     reported = true;
     co_await host.sleep_for(settings_.poll_interval);
   }
+}
+
+namespace {
+
+// w32time_domain is a family of its own: what a scenario sets for a stand-alone machine's W32Time
+// is not meant for it.
+HostSyncEntry w32time(const std::string& name, std::string summary,
+                      const W32TimeSettings& defaults) {
+  const std::string documentation =
+      "Microsoft documentation of W32Time (docs/reference/host_sync.md section 2)";
+  HostSyncEntry entry;
+  entry.info.name = name;
+  entry.info.family = name;
+  entry.info.summary = std::move(summary);
+  entry.info.source = documentation + "; RFC 4330";
+  entry.info.parameters = {
+      number_parameter("poll_interval_s", to_seconds(defaults.poll_interval), 16, 604800,
+                       "time between polls: SpecialPollInterval (MinPollInterval in a domain)",
+                       documentation),
+      number_parameter("phase_correct_rate", defaults.phase_correct_rate, 1, 1e3,
+                       "PhaseCorrectRate, divides the slew rate", documentation),
+      number_parameter("max_allowed_phase_offset_s", to_seconds(defaults.max_allowed_phase_offset),
+                       0, 1e6, "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
+                       documentation),
+      number_parameter("service_hours", to_seconds(defaults.service_time) / 3600, 0, 1e4,
+                       "how long the service has run when the capture starts",
+                       "assumption: at least two polls"),
+      number_parameter("start_spread_s", to_seconds(defaults.start_spread), 0, 1e6,
+                       "the services start at random times within this span",
+                       "assumption: one poll interval, so that the hosts' polls are spread evenly"),
+  };
+  entry.make = [defaults](const Parameters& parameters) {
+    W32TimeSettings settings = defaults;
+    settings.poll_interval = from_ms(parameters.number("poll_interval_s") * 1e3);
+    settings.phase_correct_rate = parameters.number("phase_correct_rate");
+    settings.max_allowed_phase_offset =
+        from_ms(parameters.number("max_allowed_phase_offset_s") * 1e3);
+    settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
+    settings.start_spread = from_ms(parameters.number("start_spread_s") * 1e3);
+    return std::make_unique<W32Time>(settings);
+  };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<HostSyncEntry> host_sync_w32time() {
+  return {
+      w32time("w32time", "SNTP in the manner of stand-alone Windows Time, as documented",
+              W32TimeSettings{}),
+      w32time("w32time_domain",
+              "SNTP in the manner of Windows Time on a member of a domain, as documented",
+              w32time_domain_settings()),
+  };
 }
 
 }  // namespace simbench

@@ -23,7 +23,7 @@
 // takes 16 * PhaseCorrectRate * poll ticks. Example: 0.54 s at a poll of 1024 s and
 // PhaseCorrectRate 7 gives 47 units a tick, 301 ppm, for 1792 s.
 //
-// Spikes are ignored (w32time_spikes.h), and offsets above max_phase_correction refused.
+// Spikes are ignored (W32timeSpikes), and offsets above max_phase_correction refused.
 //
 // A service: it never ends by itself. warm_up() is how long it has run when the capture starts.
 // A slave reports how its first poll ended, and every exchange (t1 to t4).
@@ -36,8 +36,36 @@
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "algorithms/ports/time.h"
 
 namespace simbench {
+
+// W32Time's protection against single wrong samples, as documented.
+//
+//  - Hold: the first kHoldPeriod samples, and as many after each accepted large offset, are taken
+//    as they come, "to bring the local clock into synchronization quickly".
+//  - Then an offset of kLargePhaseOffset or more is a spike: ignored, until such offsets have
+//    persisted for kSpikeWatchPeriod. A smaller offset ends the suspicion.
+//
+// The documentation gives HoldPeriod without a unit; samples is an assumption.
+// Source: docs/reference/host_sync.md section 2 (LargePhaseOffset, HoldPeriod, SpikeWatchPeriod);
+// Microsoft, "Windows Time service tools and settings".
+//
+//   W32TimeSpikes spikes;
+//   if (spikes.accept(offset, host.steady_clock().now())) ...correct the clock
+class W32TimeSpikes {
+ public:
+  static constexpr Nanoseconds kLargePhaseOffset{5'000'000'000};
+  static constexpr Nanoseconds kSpikeWatchPeriod{900'000'000'000};
+  static constexpr int kHoldPeriod = 5;
+
+  // Whether the clock may be corrected by a sample of this offset, taken at `at`.
+  bool accept(Nanoseconds offset, SteadyTime at);
+
+ private:
+  int held_ = 0;                         // samples taken since the hold began
+  std::optional<SteadyTime> suspicion_;  // when the first large offset of the present ones came
+};
 
 struct W32TimeSettings {
   Nanoseconds poll_interval = from_ms(32768e3);

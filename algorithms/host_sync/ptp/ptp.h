@@ -3,7 +3,7 @@
 // The master sends each slave a Sync every sync_interval and tells its departure in a Follow_Up.
 // The slave measures the delay, end to end (Delay_Req, Delay_Resp; at random times, on average
 // every delay_interval) or by peer delay (Pdelay_*, every delay_interval), filters it
-// (ptp_offset.h), and a servo (ptp_servo.h) steers the clock that made the stamps:
+// (ptp_port.h), and a servo (ptp_servo.h) steers the clock that made the stamps:
 //
 //   software stamps  the system clock. Departure: the host's transmit stamp if it has one, else the
 //                    clock right after the send call; arrival: the host's receive stamp.

@@ -1,15 +1,64 @@
 #include "algorithms/host_sync/pulses/common_view.h"
 
+#include <boost/endian/conversion.hpp>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
-#include "algorithms/host_sync/pulses/common_view_message.h"
-#include "algorithms/host_sync/two_way/two_way_slave.h"
+#include "algorithms/host_sync/two_way/two_way.h"
+#include "algorithms/registry.h"
 
 namespace simbench {
+namespace {
+
+constexpr std::size_t kBytes = 28;
+constexpr std::uint16_t kMagic = 0x5643;
+constexpr std::uint8_t kVersion = 1;
+// Times this far from zero can still be subtracted in 64 bits.
+constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
+constexpr std::uint8_t kRequest = 1;
+constexpr std::uint8_t kAnswer = 2;
+
+}  // namespace
+
+Bytes encode(const CommonViewMessage& message) {
+  Bytes bytes(kBytes);
+  auto* at = reinterpret_cast<unsigned char*>(bytes.data());
+  boost::endian::store_little_u16(at, kMagic);
+  at[2] = kVersion;
+  at[3] = message.is_answer ? kAnswer : kRequest;
+  boost::endian::store_little_u32(at + 4, message.index);
+  if (!message.pulse) return bytes;
+  boost::endian::store_little_s64(at + 8, nanoseconds_of(message.pulse->at));
+  boost::endian::store_little_s64(at + 16, message.pulse->sigma_ns);
+  boost::endian::store_little_u32(at + 24, 1);
+  return bytes;
+}
+
+std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes) {
+  if (bytes.size() != kBytes) return std::nullopt;
+  const auto* at = reinterpret_cast<const unsigned char*>(bytes.data());
+  if (boost::endian::load_little_u16(at) != kMagic || at[2] != kVersion) return std::nullopt;
+  if (at[3] != kRequest && at[3] != kAnswer) return std::nullopt;
+  CommonViewMessage message;
+  message.is_answer = at[3] == kAnswer;
+  message.index = boost::endian::load_little_u32(at + 4);
+  const std::int64_t pulse_ns = boost::endian::load_little_s64(at + 8);
+  const std::int64_t sigma_ns = boost::endian::load_little_s64(at + 16);
+  const std::uint32_t pulses = boost::endian::load_little_u32(at + 24);
+  if (message.index == 0 || sigma_ns < 0) return std::nullopt;
+  if (pulse_ns > kMostNs || pulse_ns < -kMostNs) return std::nullopt;
+  if (pulses == 0) {
+    if (pulse_ns != 0 || sigma_ns != 0) return std::nullopt;
+    return message;
+  }
+  if (pulses != 1 || !message.is_answer) return std::nullopt;
+  message.pulse = CommonViewMessage::Pulse{HostTime(Nanoseconds(pulse_ns)), sigma_ns};
+  return message;
+}
+
 namespace {
 
 constexpr Nanoseconds kIdle{3'600'000'000'000};
@@ -120,6 +169,56 @@ Task<void> CommonView::run_slave(Host& host, PeerId master) {
   }
   CommonViewSlave slave(host, master, settings_, std::move(observer));
   co_await slave.run();
+}
+
+namespace {
+
+const char* const kAssumption = "assumption";
+
+HostSyncEntry common_view(std::string name, std::string summary, std::string source,
+                          PulseSource pulses, Need need) {
+  HostSyncEntry entry;
+  entry.info.name = std::move(name);
+  entry.info.family = "common_view";
+  entry.info.summary = std::move(summary);
+  entry.info.source = std::move(source);
+  entry.info.needs = {need};
+  entry.info.parameters = two_way_parameters();
+  entry.info.parameters.push_back(number_parameter(
+      "pulse_window_s", 60, 1, 1e5, "span of the pulses that are compared", kAssumption));
+  entry.info.parameters.push_back(number_parameter(
+      "settle_s", 5, 0, 1e5, "frames of a camera's first seconds that are left out",
+      "docs/reference/paper.md section 8: the first 5 s are unsteady"));
+  entry.info.parameters.push_back(number_parameter(
+      "asymmetry_sigma_us", 10, 0, 1e6,
+      "asymmetry to expect of a link; a correction less certain than half of it counts less",
+      "network of the *_lan scenarios"));
+  entry.make = [pulses](const Parameters& parameters) {
+    CommonViewSettings settings;
+    settings.two_way = two_way_settings(parameters);
+    settings.hull = two_way_hull_settings(parameters);
+    settings.pulses.source = pulses;
+    settings.pulses.window = from_ms(parameters.number("pulse_window_s") * 1e3);
+    settings.pulses.settle = from_ms(parameters.number("settle_s") * 1e3);
+    settings.asymmetry_sigma_us = parameters.number("asymmetry_sigma_us");
+    return std::make_unique<CommonView>(settings);
+  };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<HostSyncEntry> host_sync_common_view() {
+  return {
+      common_view("common_view",
+                  "two-way hull, its offset corrected by the pulses that all hosts see as frames",
+                  "after TriggerSync; two_way_hull", PulseSource::kFrames, Need::kFrames),
+      common_view("trigger_wired",
+                  "two-way hull, its offset corrected by trigger pulses wired into each host",
+                  "theory; two_way_hull", PulseSource::kTrigger, Need::kTriggerLine),
+      common_view("pps", "two-way hull, its offset corrected by a PPS wired into each host",
+                  "theory; two_way_hull", PulseSource::kPps, Need::kPps),
+  };
 }
 
 }  // namespace simbench

@@ -10,8 +10,8 @@
 //
 // is the error of the two-way hull: the half asymmetry of the link. It is a constant, taken off the
 // hull's line. So the rate and everything before the first pulse come from the network
-// (two_way_hull.h), which also tells which pulse is which (wrong if its error ever exceeds half a
-// period), and the pulses correct its offset, during the capture too.
+// (two_way_estimators.h), which also tells which pulse is which (wrong if its error ever exceeds
+// half a period), and the pulses correct its offset, during the capture too.
 //
 // c is known with a standard deviation s (split halves of both hosts' pulses). Before there are
 // many pulses it is worse than the network, so only w c is taken off, with
@@ -28,14 +28,46 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_COMMON_VIEW_H_
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "algorithms/host_sync/pulses/pulse_observer.h"
 #include "algorithms/host_sync/two_way/two_way.h"
-#include "algorithms/host_sync/two_way/two_way_hull.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
+#include "algorithms/ports/host.h"
 
 namespace simbench {
+
+// The messages in which the master tells its slaves when it saw a pulse.
+//
+// 28 bytes, little-endian, request and answer alike:
+//
+//   offset  size  field
+//   0       2     magic 0x5643 ("CV")
+//   2       1     version, 1
+//   3       1     kind: 1 request, 2 answer
+//   4       4     index of the request, from 1
+//   8       8     answer: the pulse, on the master's system clock, ns; else 0
+//   16      8     answer: its standard deviation, ns; else 0
+//   24      4     answer: 1 if there is a pulse; else 0
+struct CommonViewMessage {
+  // What the master saw.
+  struct Pulse {
+    HostTime at{};
+    std::int64_t sigma_ns = 0;  // not negative
+    friend bool operator==(const Pulse&, const Pulse&) = default;
+  };
+  bool is_answer = false;
+  std::uint32_t index = 0;
+  std::optional<Pulse> pulse{};  // in answers
+  friend bool operator==(const CommonViewMessage&, const CommonViewMessage&) = default;
+};
+
+Bytes encode(const CommonViewMessage& message);
+
+// Nothing, if the bytes are not what encode() makes of some message with times within +-4e18 ns.
+std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes);
 
 struct CommonViewSettings {
   TwoWaySettings two_way;

@@ -1,7 +1,11 @@
 #include "algorithms/host_sync/pulses/gnss.h"
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
+
+#include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
@@ -104,5 +108,37 @@ Task<void> Gnss::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
 Task<void> Gnss::run_slave(Host& host, PeerId /*master*/) {
   co_await follow(host, settings_, true);
 }
+
+namespace {
+
+HostSyncEntry gnss() {
+  HostSyncEntry entry;
+  entry.info.name = "gnss";
+  entry.info.family = "gnss";
+  entry.info.summary = "every host, the master too, follows a GNSS receiver of its own";
+  entry.info.source = "PPS and time of day of a receiver; theory";
+  entry.info.needs = {Need::kPps, Need::kGnss};
+  entry.info.parameters = {
+      number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
+                       "assumption"),
+      number_parameter("window_s", 60, 4, 1e5, "span of the pulses that the line is fitted to",
+                       "assumption: short against the wander of a quartz"),
+  };
+  for (ParameterSpec& spec : steering_parameters()) {
+    entry.info.parameters.push_back(std::move(spec));
+  }
+  entry.make = [](const Parameters& parameters) {
+    GnssSettings settings;
+    settings.service_time = from_ms(parameters.number("warm_up_s") * 1e3);
+    settings.window = from_ms(parameters.number("window_s") * 1e3);
+    settings.steering = steering_settings(parameters);
+    return std::make_unique<Gnss>(settings);
+  };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<HostSyncEntry> host_sync_gnss() { return {gnss()}; }
 
 }  // namespace simbench

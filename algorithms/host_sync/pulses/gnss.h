@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "algorithms/host_sync/clock_steering.h"
-#include "algorithms/host_sync/two_way/envelope.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {

@@ -14,7 +14,7 @@
 // The uncertainty is measured by splitting the pulses: the envelopes of the even and the odd ones
 // differ by chance alone; sigma = |difference| / 2.
 //
-// Complexity: O(1) amortised a pulse. Memory bounded (envelope.h).
+// Complexity: O(1) amortised a pulse. Memory bounded (two_way_estimators.h).
 //
 //   PulseTrain train({.window = from_ms(30e3)});
 //   train.add(step, seen);
@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/host_sync/two_way/envelope.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench {

@@ -2,9 +2,10 @@
 //
 // A service. Each slave sends requests over datagrams, first `exchanges` of them burst_interval
 // apart, then one every `interval` (each interval varied by +-10 %, so that no periodic load can
-// stay in step), for ever: before, during and after the capture. An estimator (two_way_hull.h,
-// two_way_minimum.h) turns the exchanges into a line of the master's clock over the slave's steady
-// clock, and every steer_interval the slave's system clock is steered along it (clock_steering.h).
+// stay in step), for ever: before, during and after the capture. An estimator
+// (two_way_estimators.h, two_way_estimators.h) turns the exchanges into a line of the master's
+// clock over the slave's steady clock, and every steer_interval the slave's system clock is steered
+// along it (clock_steering.h).
 //
 // Where the departure is stamped decides how much of the sender's occupancy is in the path:
 //   transmit-stamped  t1 and t3 are when the message left: the host's transmit stamp if it has one,
@@ -30,7 +31,9 @@
 #include <vector>
 
 #include "algorithms/host_sync/clock_steering.h"
-#include "algorithms/host_sync/two_way/two_way_estimator.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
+#include "algorithms/host_sync/two_way/two_way_probe.h"
+#include "algorithms/parameters.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -64,6 +67,46 @@ class TwoWay : public HostSync {
   TwoWaySettings settings_;
   MakeEstimator make_estimator_;
 };
+
+// The slave's side of every algorithm that learns the master's clock from two-way exchanges: asks,
+// estimates, steers, for ever. See two_way.h.
+//
+// refine() is where more than the network can be brought in: it is asked for the line to steer by
+// each time, given the line that the exchanges say.
+class TwoWaySlave {
+ public:
+  TwoWaySlave(Host& host, PeerId master, TwoWaySettings settings,
+              std::unique_ptr<TwoWayEstimator> estimator);
+  virtual ~TwoWaySlave() = default;
+
+  // Never ends.
+  Task<void> run();
+
+ protected:
+  virtual Task<ClockLine> refine(ClockLine line);
+  Host& host() { return host_; }
+  MessageChannel& channel() { return host_.open_channel(master_, Transport::kDatagram); }
+
+ private:
+  // One exchange and what follows from it. Returns how long after it the next one is due.
+  Task<Nanoseconds> turn();
+  void report_outcome(bool is_steered);
+
+  Host& host_;
+  PeerId master_;
+  TwoWaySettings settings_;
+  std::shared_ptr<SteeredClock> clock_;
+  TwoWayClient client_;
+  std::unique_ptr<TwoWayEstimator> estimator_;
+  SteadyTime steer_at_{};
+  bool is_reported_ = false;
+};
+
+// The parameters of two_way.h with the hull, as every algorithm on top of it declares them.
+
+std::vector<ParameterSpec> two_way_parameters();
+TwoWaySettings two_way_settings(const Parameters& parameters);
+TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters);
 
 }  // namespace simbench
 

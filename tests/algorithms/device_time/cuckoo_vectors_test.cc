@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "algorithms/device_time/lower_hull.h"
-#include "algorithms/device_time/switching_hull.h"
 #include "algorithms/device_time/unwrap.h"
 #include "tests/data/test_data.h"
 

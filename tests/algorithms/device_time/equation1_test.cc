@@ -1,5 +1,3 @@
-#include "algorithms/device_time/equation1.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/exponential_distribution.hpp>
@@ -9,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

@@ -1,7 +1,5 @@
 // librealsense's global time against the figures of its own class bodies in a harness
 // (docs/reference/d455.md section 5), and by hand.
-#include "algorithms/device_time/librealsense_global.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/device_time/unwrap.h"
 #include "tests/algorithms/device_time/polls.h"
 

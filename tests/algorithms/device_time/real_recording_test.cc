@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "algorithms/device_time/hull.h"
-#include "algorithms/device_time/regression.h"
-#include "algorithms/device_time/sliding_minimum.h"
+#include "algorithms/device_time/offset_filters.h"
 #include "algorithms/device_time/unwrap.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/algorithms/device_time/streams.h"
 #include "tests/data/test_data.h"
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/device_time/regression.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

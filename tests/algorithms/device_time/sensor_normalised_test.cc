@@ -1,8 +1,6 @@
-#include "algorithms/device_time/sensor_normalised.h"
-
 #include <gtest/gtest.h>
 
-#include "algorithms/device_time/raw_arrival.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

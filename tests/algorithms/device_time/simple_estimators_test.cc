@@ -6,11 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "algorithms/device_time/kalman.h"
-#include "algorithms/device_time/olson.h"
-#include "algorithms/device_time/regression.h"
-#include "algorithms/device_time/sliding_minimum.h"
-#include "algorithms/device_time/theil_sen.h"
+#include "algorithms/device_time/offset_filters.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "bench/device_time_worlds.h"
 #include "tests/algorithms/device_time/streams.h"
 

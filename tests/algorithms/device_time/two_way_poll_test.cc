@@ -1,5 +1,3 @@
-#include "algorithms/device_time/two_way_poll.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/exponential_distribution.hpp>
@@ -8,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/device_time/poll_estimators.h"
 #include "algorithms/device_time/variants.h"
 #include "tests/algorithms/device_time/polls.h"
 

@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "algorithms/device_time/hull.h"
-#include "algorithms/device_time/raw_arrival.h"
-#include "algorithms/device_time/regression.h"
-#include "algorithms/device_time/sensor_normalised.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {

@@ -1,5 +1,3 @@
-#include "algorithms/device_time/window_hull.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>

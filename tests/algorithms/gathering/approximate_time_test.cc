@@ -1,6 +1,4 @@
 // ApproximateTime by example, and against an implementation without any thought of speed.
-#include "algorithms/gathering/approximate_time.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/algorithms/gathering/gathering_world.h"
 

@@ -1,5 +1,3 @@
-#include "algorithms/gathering/genlock.h"
-
 #include <gmock/gmock.h>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -9,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 
 namespace simbench {

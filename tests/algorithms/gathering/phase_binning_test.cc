@@ -1,10 +1,9 @@
-#include "algorithms/gathering/phase_binning.h"
-
 #include <gmock/gmock.h>
 
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/algorithms/gathering/gathering_world.h"
 

@@ -9,11 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/gathering/approximate_time.h"
-#include "algorithms/gathering/epsilon.h"
-#include "algorithms/gathering/k4a_capture_sync.h"
-#include "algorithms/gathering/librealsense_syncer.h"
-#include "algorithms/gathering/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/data/test_data.h"
 

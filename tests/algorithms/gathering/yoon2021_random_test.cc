@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/gathering/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 
 namespace simbench {

@@ -1,11 +1,10 @@
 // Algorithm 3 by example: what it emits, what it gives up, and its documented defects.
-#include "algorithms/gathering/yoon2021.h"
-
 #include <gmock/gmock.h>
 
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 
 namespace simbench {

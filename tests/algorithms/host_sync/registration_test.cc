@@ -1,5 +1,3 @@
-#include "algorithms/host_sync/registration.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,17 +7,16 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
 
 namespace simbench {
 namespace {
 
 const HostSyncEntry& entry(const std::string& name) {
-  static const std::vector<HostSyncEntry> entries = builtin_host_sync_algorithms();
-  for (const HostSyncEntry& candidate : entries) {
-    if (candidate.info.name == name) return candidate;
-  }
-  throw std::out_of_range(name);
+  const HostSyncEntry* found = find_host_sync(name);
+  if (found == nullptr) throw std::out_of_range(name);
+  return *found;
 }
 
 std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& given = {}) {
@@ -27,7 +24,7 @@ std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& g
 }
 
 TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
-  for (const HostSyncEntry& each : builtin_host_sync_algorithms()) {
+  for (const HostSyncEntry& each : host_sync_algorithms()) {
     EXPECT_FALSE(each.info.summary.empty()) << each.info.name;
     EXPECT_FALSE(each.info.source.empty()) << each.info.name;
     for (const ParameterSpec& spec : each.info.parameters) {
@@ -40,7 +37,7 @@ TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
 
 TEST(HostSyncRegistration, TheNamesAreTheFixedOnes) {
   std::vector<std::string> names;
-  for (const HostSyncEntry& each : builtin_host_sync_algorithms()) names.push_back(each.info.name);
+  for (const HostSyncEntry& each : host_sync_algorithms()) names.push_back(each.info.name);
   EXPECT_THAT(names, testing::IsSupersetOf({"yoon2021_network", "yoon2021_time", "yoon2021_both",
                                             "yoon2021_neither", "w32time", "free_running",
                                             "ntp_last_set", "oracle", "ntp", "ntp_broadcast_volley",

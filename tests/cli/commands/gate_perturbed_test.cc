@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/device_time/regression.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "algorithms/registry.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/device_time/raw_arrival.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 #include "tests/evaluation/test_scenario.h"

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "algorithms/device_time/sensor_normalised.h"
-#include "algorithms/gathering/genlock.h"
+#include "algorithms/device_time/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "tests/evaluation/test_capture.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/device_time/regression.h"
+#include "algorithms/device_time/yoon2021.h"
 #include "tests/evaluation/test_capture.h"
 
 namespace simbench::evaluation {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "algorithms/device_time/sensor_normalised.h"
-#include "algorithms/gathering/genlock.h"
+#include "algorithms/device_time/yoon2021.h"
+#include "algorithms/gathering/gatherers.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/forwarding_sink.h"
 #include "tests/evaluation/test_capture.h"

@@ -1,11 +1,10 @@
-#include "algorithms/host_sync/chrony/chrony_service.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "algorithms/host_sync/chrony/chrony.h"
 #include "tests/sim/host/service_world.h"
 
 namespace simbench::sim {

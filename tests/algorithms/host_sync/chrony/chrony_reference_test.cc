@@ -1,11 +1,8 @@
-#include "algorithms/host_sync/chrony/chrony_reference.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "algorithms/host_sync/chrony/chrony_client.h"
-#include "algorithms/host_sync/chrony/chrony_poll.h"
+#include "algorithms/host_sync/chrony/chrony.h"
 
 namespace simbench {
 namespace {

@@ -10,11 +10,20 @@
 #include <vector>
 
 #include "algorithms/host_sync/ntp/ntp_packet.h"
-#include "algorithms/host_sync/ntp/registration_ntp.h"
+#include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
 
 namespace simbench {
 namespace {
+
+std::vector<HostSyncEntry> ntp_host_syncs() {
+  std::vector<HostSyncEntry> entries;
+  for (const char* name : {"ntp", "ntp_broadcast_volley", "ntp_broadcast_fixed", "w32time",
+                           "w32time_domain", "chrony"}) {
+    entries.push_back(*find_host_sync(name));
+  }
+  return entries;
+}
 
 std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& given = {}) {
   for (const HostSyncEntry& entry : ntp_host_syncs()) {

@@ -1,5 +1,3 @@
-#include "algorithms/host_sync/ntp/w32time_spikes.h"
-
 #include <gtest/gtest.h>
 
 #include "algorithms/host_sync/ntp/w32time.h"

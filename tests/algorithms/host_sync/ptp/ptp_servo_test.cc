@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "algorithms/host_sync/ptp/moving_median.h"
+#include "algorithms/host_sync/ptp/ptp_port.h"
 #include "tests/data/test_data.h"
 
 namespace simbench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "algorithms/host_sync/ptp/ptp_message.h"
-#include "algorithms/host_sync/ptp/ptp_offset.h"
+#include "algorithms/host_sync/ptp/ptp_port.h"
 #include "tests/algorithms/host_sync/script_host.h"
 
 namespace simbench {

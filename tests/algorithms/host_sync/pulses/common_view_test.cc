@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/host_sync/pulses/common_view_message.h"
 #include "algorithms/host_sync/pulses/gnss.h"
 #include "tests/algorithms/host_sync/script_host.h"
 

@@ -1,11 +1,11 @@
-#include "algorithms/host_sync/two_way/envelope.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <vector>
+
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 
 namespace simbench {
 namespace {

@@ -2,7 +2,7 @@
 #ifndef SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_
 #define SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_
 
-#include "algorithms/host_sync/two_way/two_way_estimator.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 
 namespace simbench {
 

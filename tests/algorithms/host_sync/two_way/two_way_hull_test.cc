@@ -1,5 +1,3 @@
-#include "algorithms/host_sync/two_way/two_way_hull.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "tests/algorithms/host_sync/two_way/two_way_exchanges.h"
 
 namespace simbench {

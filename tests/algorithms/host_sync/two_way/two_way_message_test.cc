@@ -1,8 +1,8 @@
-#include "algorithms/host_sync/two_way/two_way_message.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
+
+#include "algorithms/host_sync/two_way/two_way_probe.h"
 
 namespace simbench {
 namespace {

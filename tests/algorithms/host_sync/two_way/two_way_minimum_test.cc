@@ -1,5 +1,3 @@
-#include "algorithms/host_sync/two_way/two_way_minimum.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/exponential_distribution.hpp>
@@ -8,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "tests/algorithms/host_sync/two_way/two_way_exchanges.h"
 
 namespace simbench {

@@ -5,8 +5,7 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <memory>
 
-#include "algorithms/host_sync/two_way/two_way_hull.h"
-#include "algorithms/host_sync/two_way/two_way_minimum.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "tests/algorithms/host_sync/script_host.h"
 
 namespace simbench {

@@ -1,0 +1,318 @@
+#include "algorithms/device_time/offset_filters.h"
+
+#include <algorithm>
+#include <deque>
+#include <vector>
+
+#include "algorithms/device_time/lower_hull.h"
+#include "algorithms/device_time/offset_stream.h"
+#include "algorithms/ports/assert.h"
+#include "algorithms/registry.h"
+
+namespace simbench {
+namespace {
+
+class Olson final : public DeviceTimeEstimator {
+ public:
+  explicit Olson(OlsonSettings settings)
+      : leak_({.touches = {}, .slope = settings.alpha_ppm * 1e-3}) {}
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const OffsetStream::Sample kind = stream_.push(sample);
+    const LinePoint point = stream_.point();
+    if (kind == OffsetStream::Sample::kFirst ||
+        (kind == OffsetStream::Sample::kNext &&
+         leak_.at(point.x) >= static_cast<double>(point.y))) {
+      leak_.touches = point;
+    }
+    return stream_.stamp(leak_.at(point.x));
+  }
+
+ private:
+  OffsetStream stream_;
+  SupportLine leak_;  // from (p, q) on
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceTimeEstimator> make_olson(OlsonSettings settings) {
+  return std::make_unique<Olson>(settings);
+}
+
+namespace {
+
+constexpr std::size_t kMaxQueued = 4096;
+
+class SlidingMinimum final : public DeviceTimeEstimator {
+ public:
+  explicit SlidingMinimum(SlidingMinimumSettings settings)
+      : window_us_(saturate_round(settings.window_s * 1e6)) {}
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const OffsetStream::Sample kind = stream_.push(sample);
+    if (kind == OffsetStream::Sample::kFirst) queue_.clear();
+    if (kind != OffsetStream::Sample::kLate) add(stream_.point());
+    return stream_.stamp(static_cast<double>(queue_.front().y));
+  }
+
+ private:
+  void add(LinePoint point) {
+    while (!queue_.empty() && queue_.back().y >= point.y) queue_.pop_back();
+    if (queue_.size() == kMaxQueued) queue_.pop_back();
+    queue_.push_back(point);
+    while (queue_.front().x <= point.x - window_us_) queue_.pop_front();
+  }
+
+  std::int64_t window_us_;
+  OffsetStream stream_;
+  std::deque<LinePoint> queue_;  // x and y increase
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings settings) {
+  return std::make_unique<SlidingMinimum>(settings);
+}
+
+namespace {
+
+// Reorders the values, of which there is one at least; the mean of the middle two if even.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
+
+class TheilSen final : public DeviceTimeEstimator {
+ public:
+  explicit TheilSen(TheilSenWindow window) : frames_(window.frames) {
+    points_.reserve(frames_);
+    values_.reserve(frames_ * (frames_ + 1) / 2);
+  }
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const OffsetStream::Sample kind = stream_.push(sample);
+    if (kind == OffsetStream::Sample::kFirst) {
+      points_.clear();
+      oldest_ = 0;
+    }
+    if (kind != OffsetStream::Sample::kLate) add(stream_.point());
+    return stream_.stamp(level_ + slope_ * from_origin(stream_.point().x));
+  }
+
+ private:
+  void add(LinePoint point) {
+    if (points_.size() < frames_) {
+      points_.push_back(point);
+    } else {
+      points_[oldest_] = point;
+      oldest_ = (oldest_ + 1) % frames_;
+    }
+    if (points_.size() == 1 || ++since_refit_ >= points_.size() / 20) refit(point.x);
+  }
+
+  // The line through the points, with its level at `origin`.
+  void refit(std::int64_t origin) {
+    since_refit_ = 0;
+    origin_ = origin;
+    slope_ = 0;
+    if (points_.size() > 1) {
+      values_.clear();
+      for (std::size_t i = 1; i < points_.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+          values_.push_back(static_cast<double>(points_[i].y - points_[j].y) /
+                            static_cast<double>(points_[i].x - points_[j].x));
+        }
+      }
+      slope_ = median(values_);
+    }
+    values_.clear();
+    for (const LinePoint& point : points_) {
+      values_.push_back(static_cast<double>(point.y) - slope_ * from_origin(point.x));
+    }
+    level_ = median(values_);
+  }
+
+  double from_origin(std::int64_t x) const { return static_cast<double>(x - origin_); }
+
+  std::size_t frames_;
+  OffsetStream stream_;
+  std::vector<LinePoint> points_;  // a ring once it is full; all x differ
+  std::size_t oldest_ = 0;
+  std::size_t since_refit_ = 0;
+  std::vector<double> values_;
+  std::int64_t origin_ = 0;
+  double slope_ = 0;
+  double level_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceTimeEstimator> make_theil_sen(TheilSenWindow window) {
+  SIMBENCH_ASSERT(window.frames >= 1 && window.frames <= 10'000, "a window of a few frames");
+  return std::make_unique<TheilSen>(window);
+}
+
+namespace {
+
+double squared(double value) { return value * value; }
+
+// Offset in us, time in s, so skew in ppm.
+class Filter {
+ public:
+  explicit Filter(const KalmanSettings& settings) : settings_(settings) {}
+
+  void start(double time_s, double offset_us) {
+    time_s_ = time_s;
+    offset_us_ = offset_us;
+    skew_ppm_ = 0;
+    offset_variance_ = squared(1e3 * settings_.initial_offset_sigma_ms);
+    covariance_ = 0;
+    skew_variance_ = squared(settings_.initial_skew_sigma_ppm);
+  }
+
+  double predicted_us(double time_s) const { return offset_us_ + skew_ppm_ * (time_s - time_s_); }
+
+  void advance(double time_s) {
+    const double dt = time_s - time_s_;
+    offset_us_ = predicted_us(time_s);
+    time_s_ = time_s;
+    offset_variance_ += dt * (2 * covariance_ + dt * skew_variance_);
+    covariance_ += dt * skew_variance_;
+    skew_variance_ += dt * squared(settings_.skew_sigma_ppm);
+  }
+
+  // False, and nothing learned, if the gate rejects the measurement.
+  bool update(double offset_us) {
+    const double noise = squared(1e3 * settings_.offset_sigma_ms);
+    const double innovation = offset_variance_ + noise;
+    const double residual = offset_us - offset_us_;
+    if (squared(residual) > squared(settings_.gate) * innovation) return false;
+    offset_us_ += offset_variance_ / innovation * residual;
+    skew_ppm_ += covariance_ / innovation * residual;
+    skew_variance_ = std::max(0.0, skew_variance_ - covariance_ / innovation * covariance_);
+    covariance_ *= noise / innovation;
+    offset_variance_ *= noise / innovation;
+    return true;
+  }
+
+ private:
+  KalmanSettings settings_;
+  double time_s_ = 0;
+  double offset_us_ = 0;
+  double skew_ppm_ = 0;
+  double offset_variance_ = 0;
+  double covariance_ = 0;
+  double skew_variance_ = 0;
+};
+
+class Kalman final : public DeviceTimeEstimator {
+ public:
+  explicit Kalman(const KalmanSettings& settings)
+      : filter_(settings), rejections_to_restart_(settings.rejections_to_restart) {}
+
+  GlobalTime stamp(const DeviceSample& sample) override {
+    const OffsetStream::Sample kind = stream_.push(sample);
+    const double time_s = static_cast<double>(stream_.point().x) * 1e-6;
+    const double offset_us = static_cast<double>(stream_.point().y) * 1e-3;
+    if (kind == OffsetStream::Sample::kFirst) {
+      start(time_s, offset_us);
+    } else if (kind == OffsetStream::Sample::kNext) {
+      filter_.advance(time_s);
+      if (filter_.update(offset_us)) {
+        rejections_ = 0;
+      } else if (++rejections_ >= rejections_to_restart_) {
+        start(time_s, offset_us);
+      }
+    }
+    return stream_.stamp(1e3 * filter_.predicted_us(time_s));
+  }
+
+ private:
+  void start(double time_s, double offset_us) {
+    filter_.start(time_s, offset_us);
+    rejections_ = 0;
+  }
+
+  OffsetStream stream_;
+  Filter filter_;
+  int rejections_to_restart_;
+  int rejections_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceTimeEstimator> make_kalman(KalmanSettings settings) {
+  return std::make_unique<Kalman>(settings);
+}
+
+namespace {
+
+constexpr const char* kSource = "docs/reference/device_time.md section 1";
+
+AlgorithmInfo clock_model_info(const char* name, const char* family, const char* summary,
+                               const char* source) {
+  return {.name = name, .family = family, .summary = summary, .source = source, .parameters = {}};
+}
+
+DeviceTimeEntry olson() {
+  AlgorithmInfo olson = clock_model_info(
+      "olson_50ppm", "olson", "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+      "Olson, IROS 2010; docs/reference/device_time.md section 1");
+  olson.parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
+                                       "forgetting; must exceed the skew", kSource)};
+  return {.info = olson, .make = [](const Parameters& parameters) {
+            return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
+          }};
+}
+
+DeviceTimeEntry kalman() {
+  const KalmanSettings defaults;
+  AlgorithmInfo kalman = clock_model_info(
+      "kalman", "kalman", "Kalman filter of offset and skew; its gate cannot lock itself out",
+      "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1");
+  kalman.parameters = {
+      number_parameter("initial_offset_sigma_ms", defaults.initial_offset_sigma_ms, 1e-3, 1e6,
+                       "uncertainty of the first frame's offset", kSource),
+      number_parameter("initial_skew_sigma_ppm", defaults.initial_skew_sigma_ppm, 1e-3, 1e5,
+                       "uncertainty of the skew at first", kSource),
+      number_parameter("offset_sigma_ms", defaults.offset_sigma_ms, 1e-4, 1e4,
+                       "standard deviation of one arrival", kSource),
+      number_parameter("skew_sigma_ppm", defaults.skew_sigma_ppm, 0, 1e4,
+                       "random walk of the skew, per square root of a second", kSource),
+      number_parameter("gate", defaults.gate, 0.1, 1e6,
+                       "frames further off, in standard deviations, are rejected", kSource),
+      number_parameter("rejections_to_restart", defaults.rejections_to_restart, 1, 1e6,
+                       "so many in a row and the filter begins anew", "ours"),
+  };
+  return {
+      .info = kalman, .make = [](const Parameters& parameters) {
+        return make_kalman({.initial_offset_sigma_ms = parameters.number("initial_offset_sigma_ms"),
+                            .initial_skew_sigma_ppm = parameters.number("initial_skew_sigma_ppm"),
+                            .offset_sigma_ms = parameters.number("offset_sigma_ms"),
+                            .skew_sigma_ppm = parameters.number("skew_sigma_ppm"),
+                            .gate = parameters.number("gate"),
+                            .rejections_to_restart =
+                                static_cast<int>(parameters.number("rejections_to_restart"))});
+      }};
+}
+
+}  // namespace
+
+std::vector<DeviceTimeEntry> device_time_offset_filters() {
+  return {
+      olson(),
+      {.info = clock_model_info("minimum_1s", "minimum",
+                                "least offset of the last second: the best of the simple ones",
+                                kSource),
+       .make = [](const Parameters&) { return make_sliding_minimum({.window_s = 1}); }},
+      {.info = clock_model_info("theil_sen_300", "theil_sen",
+                                "median of slopes over the last 300 frames, a refit every 15",
+                                "Sen 1968; docs/reference/device_time.md section 1"),
+       .make = [](const Parameters&) { return make_theil_sen({.frames = 300}); }},
+      kalman(),
+  };
+}
+
+}  // namespace simbench

@@ -1,0 +1,249 @@
+#include "algorithms/host_sync/ptp/ptp_port.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace simbench {
+
+Task<void> PtpMaster::run() {
+  const double part = host_.random_uniform();
+  SteadyTime next_sync =
+      host_.steady_clock().now() + from_ms(part * to_ms(settings_.sync_interval));
+  while (true) {
+    std::optional<ReceivedMessage> received = co_await channel().receive(next_sync);
+    if (received) co_await answer(std::move(*received));
+    if (host_.steady_clock().now() < next_sync) continue;
+    next_sync += settings_.sync_interval;
+    if (*is_ready_) co_await send_sync();
+  }
+}
+
+Task<void> PtpMaster::send_sync() {
+  PtpMessage message{.type = PtpType::kSync, .sender = host_.id(), .sequence = ++sequence_};
+  Bytes sync = encode(message);
+  const MessageId id = co_await channel().send(std::move(sync));
+  const std::optional<std::int64_t> departure =
+      co_await departure_stamp(host_, channel(), id, clock());
+  if (!departure) co_return;
+  message.type = PtpType::kFollowUp;
+  message.time_ns = *departure;
+  Bytes follow_up = encode(message);
+  co_await channel().send(std::move(follow_up));
+}
+
+Task<void> PtpMaster::answer(ReceivedMessage received) {
+  const std::optional<PtpMessage> request = decode_ptp_message(received.bytes);
+  if (!request) co_return;
+  const std::optional<std::int64_t> arrival = arrival_stamp(received, clock());
+  if (!arrival) co_return;
+  if (request->type == PtpType::kPeerDelayRequest) {
+    co_await answer_peer_delay(*request, *arrival);
+    co_return;
+  }
+  if (request->type != PtpType::kDelayRequest) co_return;
+  // The request's correction goes back to the slave, which takes it out.
+  Bytes response = encode({.type = PtpType::kDelayResponse,
+                           .sender = host_.id(),
+                           .sequence = request->sequence,
+                           .correction = request->correction,
+                           .time_ns = *arrival,
+                           .asked_by = request->sender});
+  co_await channel().send(std::move(response));
+}
+
+Task<void> PtpMaster::answer_peer_delay(PtpMessage request, std::int64_t arrival) {
+  PtpMessage message{.type = PtpType::kPeerDelayResponse,
+                     .sender = host_.id(),
+                     .sequence = request.sequence,
+                     .correction = 0,
+                     .time_ns = arrival,
+                     .asked_by = request.sender};
+  Bytes response = encode(message);
+  const MessageId id = co_await channel().send(std::move(response));
+  const std::optional<std::int64_t> departure =
+      co_await departure_stamp(host_, channel(), id, clock());
+  if (!departure) co_return;
+  message.type = PtpType::kPeerDelayFollowUp;
+  message.correction = request.correction;
+  message.time_ns = *departure;
+  Bytes follow_up = encode(message);
+  co_await channel().send(std::move(follow_up));
+}
+
+namespace {
+
+// A Sync this much older than the last one is no late copy: the master has started again.
+constexpr int kLateSyncs = 64;
+
+}  // namespace
+
+PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
+    : host_(host),
+      master_(master),
+      settings_(settings),
+      servo_(make_port_servo(settings)),
+      offset_(settings.median_length) {
+  if (settings.has_hardware_stamps && host.hardware_clock() != nullptr) {
+    coupling_.emplace(host, ClockKind::kSystem, settings);
+  }
+}
+
+Task<void> PtpSlave::run() {
+  if (settings_.has_hardware_stamps && !coupling_) {
+    host_.report_outcome({.slave = host_.id(),
+                          .synchronised = false,
+                          .passes = 0,
+                          .message = "slave " + std::to_string(host_.id()) +
+                                     ": the host has no hardware clock (Host::hardware_clock); use "
+                                     "software stamps"});
+    co_return;
+  }
+  begin_ = host_.steady_clock().now();
+  const double part = host_.random_uniform();
+  SteadyTime next_request = begin_ + from_ms(part * to_ms(settings_.delay_interval));
+  SteadyTime next_coupling = SteadyTime::max();
+  while (true) {
+    std::optional<ReceivedMessage> received =
+        co_await channel().receive(std::min(next_request, next_coupling));
+    if (received) co_await take(std::move(*received));
+    const SteadyTime now = host_.steady_clock().now();
+    if (now >= next_request) {
+      // End to end: at random times (IEEE 1588 9.5.11.2), so that the slaves do not ask together.
+      const double factor = settings_.is_peer_delay ? 1 : 2 * host_.random_uniform();
+      next_request = now + from_ms(factor * to_ms(settings_.delay_interval));
+      co_await ask();
+    }
+    if (coupling_ && is_locked_ && next_coupling == SteadyTime::max()) next_coupling = now;
+    if (now >= next_coupling) {
+      next_coupling = now + ClockCoupling::kInterval;
+      co_await coupling_->update();
+    }
+    report_outcome_if_due();
+  }
+}
+
+Task<void> PtpSlave::ask() {
+  const PtpType type =
+      settings_.is_peer_delay ? PtpType::kPeerDelayRequest : PtpType::kDelayRequest;
+  const PtpMessage message{.type = type, .sender = host_.id(), .sequence = ++sequence_};
+  request_.reset();
+  peer_response_.reset();
+  peer_follow_up_.reset();
+  Bytes bytes = encode(message);
+  const MessageId id = co_await channel().send(std::move(bytes));
+  const std::optional<std::int64_t> departure =
+      co_await departure_stamp(host_, channel(), id, clock());
+  if (departure) request_ = Half{message, *departure};
+}
+
+Task<void> PtpSlave::take(ReceivedMessage received) {
+  const std::optional<PtpMessage> message = decode_ptp_message(received.bytes);
+  if (!message) co_return;
+  const std::optional<std::int64_t> arrival = arrival_stamp(received, clock());
+  const bool is_answer = request_ && message->sequence == request_->message.sequence &&
+                         message->asked_by == host_.id();
+  switch (message->type) {
+    case PtpType::kSync:
+      if (arrival && !is_late(message->sequence)) sync_ = Half{*message, *arrival};
+      break;
+    case PtpType::kFollowUp:
+      sync_follow_up_ = *message;
+      break;
+    case PtpType::kDelayResponse:
+      if (is_answer && !settings_.is_peer_delay) take_delay_response(*message);
+      break;
+    case PtpType::kPeerDelayResponse:
+      if (is_answer && arrival) peer_response_ = Half{*message, *arrival};
+      break;
+    case PtpType::kPeerDelayFollowUp:
+      if (is_answer) peer_follow_up_ = *message;
+      break;
+    default:
+      co_return;
+  }
+  if (peer_response_ && peer_follow_up_) take_peer_delay();
+  if (sync_ && sync_follow_up_ && sync_->message.sequence == sync_follow_up_->sequence) {
+    co_await take_sync();
+  }
+}
+
+bool PtpSlave::is_late(std::uint16_t sequence) const {
+  if (!last_sync_) return false;
+  const auto older_by = static_cast<std::int16_t>(*last_sync_ - sequence);
+  return older_by >= 0 && older_by < kLateSyncs;
+}
+
+void PtpSlave::take_delay_response(const PtpMessage& response) {
+  const std::int64_t arrived = response.time_ns - correction_of(response).count();
+  offset_.add_request(request_->stamp, arrived);
+  if (offset_.sync()) report(request_->stamp, arrived, offset_.sync()->t1, offset_.sync()->t2);
+  request_.reset();
+}
+
+void PtpSlave::take_peer_delay() {
+  const Nanoseconds correction =
+      correction_of(peer_response_->message) + correction_of(*peer_follow_up_);
+  const std::int64_t t4 = peer_response_->stamp - correction.count();
+  offset_.add_peer_delay(request_->stamp, peer_response_->message.time_ns, peer_follow_up_->time_ns,
+                         t4);
+  report(request_->stamp, peer_response_->message.time_ns, peer_follow_up_->time_ns, t4);
+  request_.reset();
+  peer_response_.reset();
+  peer_follow_up_.reset();
+}
+
+Task<void> PtpSlave::take_sync() {
+  const Nanoseconds correction = correction_of(sync_->message) + correction_of(*sync_follow_up_);
+  offset_.add_sync(sync_follow_up_->time_ns + correction.count(), sync_->stamp);
+  last_sync_ = sync_->message.sequence;
+  sync_.reset();
+  sync_follow_up_.reset();
+  co_await correct();
+}
+
+Task<void> PtpSlave::correct() {
+  const std::optional<Nanoseconds> offset = offset_.offset();
+  if (!offset) co_return;
+  ++corrections_;
+  const ServoAnswer answer =
+      servo_->sample(static_cast<double>(offset->count()), offset_.sync()->t2, 1);
+  co_await apply_answer(host_, clock(), answer, *offset);
+  if (answer.state == ServoState::kUnlocked) co_return;
+  is_locked_ = true;
+  if (answer.state != ServoState::kJump) co_return;
+  // Stamps from before the step are of another clock.
+  offset_.forget_sync();
+  request_.reset();
+  sync_.reset();
+}
+
+void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::int64_t t4) {
+  if (settings_.has_hardware_stamps) return;
+  host_.report_exchange({.peer = master_,
+                         .t1 = HostTime(Nanoseconds(t1)),
+                         .t2 = HostTime(Nanoseconds(t2)),
+                         .t3 = HostTime(Nanoseconds(t3)),
+                         .t4 = HostTime(Nanoseconds(t4))});
+}
+
+void PtpSlave::report_outcome_if_due() {
+  if (is_reported_) return;
+  const bool is_done = coupling_ ? coupling_->is_locked() : is_locked_;
+  if (!is_done && host_.steady_clock().now() - begin_ < settings_.patience) return;
+  SyncOutcome outcome;
+  outcome.slave = host_.id();
+  outcome.synchronised = is_done;
+  outcome.passes = corrections_;
+  if (!is_done) {
+    outcome.message = "slave " + std::to_string(host_.id()) + ": the servo has not locked after " +
+                      std::to_string(static_cast<int>(to_seconds(settings_.patience))) + " s and " +
+                      std::to_string(corrections_) + " measured offsets; is host " +
+                      std::to_string(master_) + " running and reachable" +
+                      (coupling_ ? ", and do both network cards stamp messages" : "") + "?";
+  }
+  host_.report_outcome(outcome);
+  is_reported_ = true;
+}
+
+}  // namespace simbench
