@@ -5,13 +5,119 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
-#include "hardware/clock/os_clock_dry_run.h"
 #include "hardware/clock/paired_reading.h"
+#include "hardware/clock/software_clock.h"
 
 namespace simbench::hardware {
+namespace {
+
+class KernelClockCalls final : public ClockCalls {
+ public:
+  MonotonicTime monotonic() override { return monotonic_now(); }
+  HostTime system() override { return read_system_clock(); }
+  int set_system(HostTime value) override {
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(value.time_since_epoch());
+    timespec time{};
+    time.tv_sec = static_cast<std::time_t>(seconds.count());
+    time.tv_nsec = static_cast<long>((value.time_since_epoch() - seconds).count());
+    return clock_settime(CLOCK_REALTIME, &time) == 0 ? 0 : errno;
+  }
+  int adjust(timex& request) override {
+    return clock_adjtime(CLOCK_REALTIME, &request) >= 0 ? 0 : errno;
+  }
+};
+
+}  // namespace
+
+ClockCalls& kernel_clock_calls() {
+  static KernelClockCalls calls;
+  return calls;
+}
+
+namespace {
+
+constexpr double kMaxPpm = 500;
+constexpr double kUnitsPerPpm = 65536;
+
+double fraction(long kernel_frequency) {
+  return static_cast<double>(kernel_frequency) / kUnitsPerPpm * 1e-6;
+}
+
+}  // namespace
+
+Nanoseconds OsClockLimits::check_step(HostTime from, HostTime to) const {
+  // As a number that cannot overflow, whatever somebody wants the clock set to.
+  const double step_s =
+      (static_cast<double>(nanoseconds_of(to)) - static_cast<double>(nanoseconds_of(from))) * 1e-9;
+  constexpr double kCenturies = 9e9;
+  if (std::abs(step_s) < kCenturies) {
+    const Nanoseconds step = to - from;
+    if (step <= max_step_ && step >= -max_step_) return step;
+  }
+  throw ClockError(
+      fmt::format("system clock: found a step of {:+.6f} s, allowed at most {:.6f} s "
+                  "(--max-step-ms); set the clock roughly by hand, or allow more",
+                  step_s, to_seconds(max_step_)));
+}
+
+long OsClockLimits::kernel_frequency(double ppb) const {
+  const double original = fraction(original_frequency_);
+  const double ppm = (original + ppb * 1e-9 * (1 + original)) * 1e6;
+  if (std::isfinite(ppm) && std::abs(ppm) <= kMaxPpm) return std::lround(ppm * kUnitsPerPpm);
+  throw ClockError(fmt::format(
+      "system clock: found a rate of {:+.3f} ppm, allowed {:+.3f} to {:+.3f} ppm: the kernel has "
+      "{:.0f} ppm in either direction, and was found at {:+.3f} ppm",
+      ppb * 1e-3, -kMaxPpm - original * 1e6, kMaxPpm - original * 1e6, kMaxPpm, original * 1e6));
+}
+
+double OsClockLimits::rate_ppb(long kernel_frequency) const {
+  const double original = fraction(original_frequency_);
+  return (fraction(kernel_frequency) - original) / (1 + original) * 1e9;
+}
+
+double OsClockLimits::slew_rate_ppb(Nanoseconds offset, double max_rate_ppb,
+                                    double frequency_ppb) const {
+  if (!(max_rate_ppb > 0)) {
+    throw ClockError(
+        fmt::format("system clock: found a slew at {} ppb, allowed a rate above 0", max_rate_ppb));
+  }
+  const double sign = offset.count() < 0 ? -1 : 1;
+  const double furthest_ppb = rate_ppb(static_cast<long>(sign * kMaxPpm * kUnitsPerPpm));
+  const double left_ppb = sign * (furthest_ppb - frequency_ppb);
+  constexpr double kLeast = 1;  // ppb
+  if (left_ppb < kLeast) {
+    throw ClockError(fmt::format(
+        "system clock: found a slew of {:+.6f} s at a rate of {:+.3f} ppm, which leaves "
+        "nothing of the kernel's {:.0f} ppm to slew with",
+        to_seconds(offset), frequency_ppb * 1e-3, kMaxPpm));
+  }
+  return std::min(max_rate_ppb, left_ppb);
+}
+
+timex read_kernel_clock(ClockCalls& calls) {
+  timex kernel{};
+  if (const int error = calls.adjust(kernel); error != 0) {
+    throw ClockError(
+        fmt::format("system clock: its state cannot be read: {}", std::strerror(error)));
+  }
+  return kernel;
+}
+
+std::string other_keeper(const timex& kernel) {
+  const bool has_loop = (kernel.status & (STA_PLL | STA_FLL | STA_PPSFREQ | STA_PPSTIME)) != 0;
+  const bool is_synchronised = (kernel.status & STA_UNSYNC) == 0;
+  if (!has_loop && !is_synchronised) return "";
+  return fmt::format(
+      "system clock: another program seems to keep it ({}); two keepers fight: stop that one while "
+      "the rig runs (systemctl stop systemd-timesyncd chronyd ntpd)",
+      has_loop ? "the kernel's own control loop is on" : "it is marked as synchronised");
+}
+
 namespace {
 
 // Closer than this, two readings of how far the clocks are apart are the same number.
@@ -26,6 +132,69 @@ constexpr Nanoseconds kSame = std::chrono::microseconds(20);
       "AmbientCapabilities=CAP_SYS_TIME in the systemd unit, or setcap cap_sys_time+ep on the "
       "program",
       what));
+}
+
+// What an OsClock would do, without doing it: all is checked against the same limits and told, and
+// the node goes by a software clock.
+class DryRunClock final : public NodeClock {
+ public:
+  DryRunClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSettings settings);
+
+  Task<HostTime> now() override { return clock_.now(); }
+  Task<void> set(HostTime value) override;
+  Task<void> adjust_frequency(double ppb) override;
+  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+
+  const NodeOscillator& oscillator() const override { return clock_.oscillator(); }
+  HostTime system_at(MonotonicTime at) const override { return clock_.system_at(at); }
+  MonotonicTime when(HostTime at, MonotonicTime now) const override { return clock_.when(at, now); }
+  ClockAdjustment present(MonotonicTime now) const override { return clock_.present(now); }
+  void observe(Observer observer) override { clock_.observe(std::move(observer)); }
+  // As of the operating system's clock: nothing, what would have been set stays.
+  void restart() override {}
+
+ private:
+  OsClockSettings options_;
+  OsClockLimits limits_;
+  double frequency_ppb_ = 0;
+  SoftwareClock clock_;
+};
+
+DryRunClock::DryRunClock(boost::asio::io_context& context, ClockCalls& calls,
+                         OsClockSettings settings)
+    : options_(std::move(settings)),
+      limits_(options_.max_step, read_kernel_clock(calls).freq),
+      clock_(context,
+             {.host = options_.host, .oscillator = {}, .offset = {}, .system_clock = [&calls] {
+                return calls.system();
+              }}) {
+  if (!options_.log) options_.log = [](const std::string&) {};
+  if (const std::string line = other_keeper(read_kernel_clock(calls)); !line.empty()) {
+    options_.log(line);
+  }
+}
+
+Task<void> DryRunClock::set(HostTime value) {
+  const Nanoseconds step = limits_.check_step(clock_.system_at(monotonic_now()), value);
+  options_.log(fmt::format("dry run: would step the system clock by {:+.6f} s", to_seconds(step)));
+  co_await clock_.set(value);
+}
+
+Task<void> DryRunClock::adjust_frequency(double ppb) {
+  limits_.kernel_frequency(ppb);
+  options_.log(fmt::format("dry run: would run the system clock at {:+.3f} ppm", ppb * 1e-3));
+  frequency_ppb_ = ppb;
+  co_await clock_.adjust_frequency(ppb);
+}
+
+Task<void> DryRunClock::slew(Nanoseconds offset, double max_rate_ppb) {
+  double rate_ppb = 0;
+  if (offset.count() != 0) {
+    rate_ppb = limits_.slew_rate_ppb(offset, max_rate_ppb, frequency_ppb_);
+    options_.log(fmt::format("dry run: would slew the system clock by {:+.6f} s at {:.3f} ppm",
+                             to_seconds(offset), rate_ppb * 1e-3));
+  }
+  co_await clock_.slew(offset, rate_ppb);
 }
 
 }  // namespace

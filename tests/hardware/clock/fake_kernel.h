@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "hardware/clock/os_clock_calls.h"
+#include "hardware/clock/os_clock.h"
 
 namespace simbench::hardware {
 
