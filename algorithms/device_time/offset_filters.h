@@ -24,11 +24,10 @@ namespace simbench {
 // alpha must exceed the skew, or the estimate cannot follow; what exceeds it leaks into the stamps.
 // Two numbers of state, O(1). A downward step of the host is followed at once, an upward one at
 // alpha. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned..
+// arrival; a frame not later than the newest is stamped and not learned.
 //
 // Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010;
 // docs/reference/device_time.md section 1.
-
 struct OlsonSettings {
   double alpha_ppm = 50;
 };
@@ -40,14 +39,13 @@ std::unique_ptr<DeviceTimeEstimator> make_olson(OlsonSettings settings);
 //
 // A skew of r leaves up to r * W; a downward step of the host is followed at once, an upward one
 // after W. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned..
+// arrival; a frame not later than the newest is stamped and not learned.
 //
 // Complexity: amortised O(1) with a queue of increasing offsets. It holds at most kMaxQueued; if
 // offsets keep increasing for longer than that within W, the newest takes the place of the one
 // before, which can only matter W later, by what lies between two frames.
 //
 // Source: docs/reference/device_time.md section 1.
-
 struct SlidingMinimumSettings {
   double window_s = 1;  // positive
 };
@@ -63,7 +61,7 @@ std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings
 // Memory: n frames and n^2/2 slopes.
 //
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
-// frame not later than the newest is stamped and not learned..
+// frame not later than the newest is stamped and not learned.
 // Source: Sen 1968; docs/reference/device_time.md section 1 (refit every 15 of 300 frames there
 // too).
 struct TheilSenWindow {
@@ -88,7 +86,6 @@ std::unique_ptr<DeviceTimeEstimator> make_theil_sen(TheilSenWindow window);
 // First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
 // frame not later than the newest is stamped from the state and not learned. O(1).
 // Source: docs/reference/device_time.md section 1.
-
 struct KalmanSettings {
   double initial_offset_sigma_ms = 2;
   double initial_skew_sigma_ppm = 1000;

@@ -88,7 +88,6 @@ class PollStream {
 // Memory: the polls of the window, at most kMaxPolls.
 // Source: docs/reference/host_sync.md section 1 (two-way convex hull); Harrison, Newman: TICSync,
 // 2011.
-
 struct TwoWayPollSettings {
   static constexpr std::size_t kMaxPolls = 4096;
 
@@ -120,7 +119,6 @@ std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settin
 //
 // Needs polls (Need::kPolls). Given the warm-up. Complexity: a poll O(16), a frame O(1).
 // Source: librealsense src/global_timestamp_reader.{h,cpp}; docs/reference/d455.md section 5.
-
 std::unique_ptr<DeviceTimeEstimator> make_librealsense_global();
 
 }  // namespace simbench

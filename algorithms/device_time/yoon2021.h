@@ -59,7 +59,6 @@ std::unique_ptr<DeviceTimeEstimator> make_offline_regression();
 //
 // Arrivals are those on the system clock. O(1) and no allocation per frame.
 // Source: docs/reference/paper.md section 3.
-
 enum class Equation1Reading : std::uint8_t {
   kPrinted,           // R0
   kIntervalPrevious,  // R1
@@ -74,7 +73,6 @@ std::unique_ptr<DeviceTimeEstimator> make_equation1(Equation1Reading reading,
 //
 // The baseline that every estimator must beat: it keeps the full jitter and latency of delivery.
 // Source: docs/reference/paper.md section 3 (R4).
-
 std::unique_ptr<DeviceTimeEstimator> make_raw_arrival();
 
 // device_time of the GenLock ground truth: the sensor stamp minus the camera's first sensor stamp.
@@ -83,7 +81,6 @@ std::unique_ptr<DeviceTimeEstimator> make_raw_arrival();
 // relative() and know nothing of any host. Each still runs at its own camera's rate: 20 ppm of
 // difference is 20 us per second. A camera that loses its first frame is off by a period.
 // Source: docs/reference/paper.md sections 5 and 8.
-
 std::unique_ptr<DeviceTimeEstimator> make_sensor_normalised();
 
 }  // namespace simbench

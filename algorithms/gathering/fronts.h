@@ -26,7 +26,6 @@ namespace simbench {
 //   if (queues.size(frame.source) == capacity) queues.pop(frame.source);
 //   queues.push(frame);
 //   if (queues.all_waiting()) sink.on_set(queues.take_fronts());
-
 inline constexpr std::int64_t kFarthestKey = (std::int64_t{1} << 62) - 1;
 
 inline std::int64_t gather_key(const GatherFrame& frame) {

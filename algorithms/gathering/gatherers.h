@@ -26,7 +26,6 @@ namespace simbench {
 // wrong sets silently: T_int of half a period or less, and stamps better than that.
 //
 // Complexity and memory: gathering/fronts.h. Source: docs/reference/paper.md section 5.
-
 std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup);
 
 // Gathering by GenLock order: a set is the frames of one trigger pulse, known by counting.
@@ -38,7 +37,6 @@ std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup);
 //
 // GatheringSetup::period is the nominal frame period. Complexity and memory:
 // gathering/fronts.h. Source: docs/reference/paper.md sections 5 and 8.
-
 std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
                                                 GenlockOrder::Variant variant);
 
@@ -92,7 +90,6 @@ std::unique_ptr<Gatherer> make_approximate_time_gatherer(const GatheringSetup& s
 //
 // Complexity: O(log n) per frame given up, O(n) per set. Memory: n * queue_limit frames.
 // Source: ros2/message_filters sync_policies/approximate_epsilon_time; docs/reference/gathering.md.
-
 std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup);
 
 // Gathering like the default matcher of librealsense's syncer, here for any number of sources.
@@ -175,7 +172,6 @@ std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setu
 // its recall is 1 unless a queue overflows.
 //
 // Complexity and memory: gathering/fronts.h.
-
 std::unique_ptr<Gatherer> make_oracle_gatherer(const GatheringSetup& setup);
 
 }  // namespace simbench

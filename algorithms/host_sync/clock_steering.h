@@ -127,7 +127,6 @@ class SteeredClock {
 };
 
 // The parameters of clock_steering.h, as every algorithm that steers a clock by it declares them.
-
 std::vector<ParameterSpec> steering_parameters();
 SteeringSettings steering_settings(const Parameters& parameters);
 

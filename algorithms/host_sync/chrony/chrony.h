@@ -88,7 +88,6 @@ class ChronyPoll {
 //
 //   ChronyReference reference({});
 //   const ChronyCorrection correction = reference.update(*stats.estimate(), now_s, left_s);
-
 struct ChronyReferenceSettings {
   double correction_ratio = 3;       // corrtimeratio
   double max_slew_rate = 83333e-6;   // as a fraction

@@ -103,7 +103,6 @@ class TwoWaySlave {
 };
 
 // The parameters of two_way.h with the hull, as every algorithm on top of it declares them.
-
 std::vector<ParameterSpec> two_way_parameters();
 TwoWaySettings two_way_settings(const Parameters& parameters);
 TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters);
