@@ -65,7 +65,7 @@ void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink
   while (!heads.empty()) {
     const std::size_t host = heads.top().second;
     heads.pop();
-    tell(journals[host].events()[next[host]++], sink);
+    notify(journals[host].events()[next[host]++], sink);
     push(host);
   }
 }

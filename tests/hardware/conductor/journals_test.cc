@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hardware/node/journal.h"
+#include "recording/event.h"
 #include "recording/event_text.h"
-#include "recording/kept_recording.h"
 
 namespace simbench::hardware {
 namespace {

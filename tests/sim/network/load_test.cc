@@ -1,4 +1,4 @@
-#include "sim/network/burst_process.h"
+#include "sim/network/load.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

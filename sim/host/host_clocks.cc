@@ -1,9 +1,32 @@
-#include "sim/host/clock_port.h"
+#include "sim/host/host_clocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "sim/clock/clock_interface.h"
+#include "sim/host/sim_host.h"
+
 namespace simbench::sim {
+namespace {
+
+constexpr double kEpochMaxMs = 3.6e6;
+
+const scenarios::Nic& nic_of(const SimHost& host) { return host.world().hosts.nic; }
+
+Nanoseconds from_ns(double ns) { return Nanoseconds(std::llround(ns)); }
+
+OscillatorModel oscillator_of(const SimHost& host) {
+  RandomStream draw(host.world().run_seed, host.name("network card's oscillator"));
+  return OscillatorModel(draw.normal(nic_of(host).skew_sigma_ppm * 1e-6));
+}
+
+Nanoseconds epoch_of(const SimHost& host) {
+  RandomStream draw(host.world().run_seed, host.name("network card's epoch"));
+  return from_ms(draw.uniform(0, kEpochMaxMs));
+}
+
+}  // namespace
 
 ClockPort::ClockPort(const Parts& parts, const ClockInterface& interface, double set_cost_factor,
                      RandomStream draws, const std::string& host_name)
@@ -62,6 +85,52 @@ void ClockPort::settle_in_time() {
   if (!end) return;
   Engine& engine = parts_.context.engine();
   engine.call_at(*end, [&engine, &clock = parts_.clock] { clock.settle(engine.now()); });
+}
+
+NicClock::NicClock(SimHost& host)
+    : host_(host),
+      clock_(host.id(), oscillator_of(host), epoch_of(host)),
+      read_noise_(host.world().run_seed, host.name("network card's readings")),
+      label_(host.name("network card's clock")) {}
+
+NicClock::Call NicClock::begin_call() {
+  const Cpu::Turn turn = host_.cpu().reserve(from_ms(nic_of(host_).cross_stamp_cost_ms));
+  return {turn, turn.start + (turn.end - turn.start) / 2};
+}
+
+Task<void> NicClock::wait_until(TrueTime at) {
+  if (at > host_.true_now()) co_await sleep_until(host_.world().context, at, label_);
+}
+
+Task<CrossStamp> NicClock::cross_stamp() {
+  const Call call = begin_call();
+  co_await wait_until(call.turn.end);
+  const SystemClock& system = host_.system_clock();
+  const ClockInterface& interface = host_.clock_interface();
+  co_return CrossStamp{.before = interface.tick_of(system.read(call.turn.start)),
+                       .hardware = stamp(call.touch, read_noise_),
+                       .after = interface.tick_of(system.read(call.turn.end))};
+}
+
+Task<void> NicClock::step(Nanoseconds offset) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.set(host_.true_now(), clock_.read(host_.true_now()) + offset);
+  co_await wait_until(call.turn.end);
+}
+
+Task<void> NicClock::adjust_frequency(double ppb) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.adjust_frequency(host_.true_now(), ppb);
+  co_await wait_until(call.turn.end);
+}
+
+HardwareTime NicClock::stamp(TrueTime at, RandomStream& draw) const {
+  const scenarios::Nic& nic = nic_of(host_);
+  const HardwareTime exact(clock_.read(at).time_since_epoch());
+  return round_down(exact + from_ns(draw.normal(nic.stamp_jitter_sigma_ns)),
+                    from_ns(nic.stamp_resolution_ns));
 }
 
 }  // namespace simbench::sim

@@ -1,4 +1,4 @@
-#include "sim/network/outages.h"
+#include "sim/faults/faults.h"
 
 #include <gtest/gtest.h>
 

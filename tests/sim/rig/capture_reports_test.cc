@@ -1,4 +1,4 @@
-#include "sim/rig/frame_feeds.h"
+#include "sim/rig/capture_reports.h"
 
 #include <gtest/gtest.h>
 
