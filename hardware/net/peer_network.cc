@@ -9,7 +9,6 @@
 #include "algorithms/ports/assert.h"
 #include "hardware/net/connect.h"
 #include "hardware/net/peer_network_state.h"
-#include "hardware/net/secure_stream_state.h"
 
 namespace simbench::hardware {
 namespace {

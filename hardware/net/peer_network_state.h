@@ -19,12 +19,10 @@
 #include <vector>
 
 #include "hardware/net/datagram.h"
-#include "hardware/net/inbox.h"
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/net/notice.h"
 #include "hardware/net/peer_network.h"
 #include "hardware/net/token_bucket.h"
-#include "hardware/net/transmit_log.h"
 
 namespace simbench::hardware {
 

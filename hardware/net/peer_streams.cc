@@ -9,7 +9,7 @@
 #include <exception>
 
 #include "hardware/net/peer_network_state.h"
-#include "hardware/net/wire_numbers.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {

@@ -1,11 +1,10 @@
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 
 #include <algorithm>
 #include <cstring>
 #include <string_view>
 
 #include "hardware/net/sealing.h"
-#include "hardware/net/wire_numbers.h"
 
 namespace simbench::hardware {
 namespace {
