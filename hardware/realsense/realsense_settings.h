@@ -1,6 +1,7 @@
 // What a capture asks for, as profiles and options of a RealSense device.
 //
-//  - Profiles: kind, size and mode rate as the scenario has them; depth as Z16, colour as YUYV where
+//  - Profiles: kind, size and mode rate as the scenario has them; depth as Z16, colour as YUYV
+//  where
 //    the device has that.
 //  - Inter Cam Sync Mode: default 0, master 1, slave 2, full_slave 3, genlock 4. A trigger faster
 //    than half the mode rate (2 % more is allowed, as scenarios are) is refused in genlock.
