@@ -11,7 +11,6 @@ namespace simbench::hardware {
 namespace {
 
 constexpr std::size_t kMostNewcomers = 64;
-constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
 // From one source.
 constexpr double kConnectionsPerSecond = 100;
 constexpr double kConnectionsAtOnce = 256;

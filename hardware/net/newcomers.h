@@ -17,11 +17,15 @@
 #include <list>
 #include <memory>
 
+#include "hardware/clock/monotonic_time.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/net/secure_stream.h"
 #include "hardware/net/token_bucket.h"
 
 namespace simbench::hardware {
+
+// Within this a newcomer has proved the key, or it is refused.
+inline constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
 
 class Newcomers {
  public:

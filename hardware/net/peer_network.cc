@@ -40,7 +40,6 @@ constexpr double kStrangersAtOnce = 64;
 // What is read before others get their turn.
 constexpr int kDatagramsAtOnce = 64;
 
-constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
 constexpr Nanoseconds kFirstRetry = std::chrono::milliseconds(100);
 constexpr Nanoseconds kLastRetry = std::chrono::seconds(1);
 constexpr Nanoseconds kSendPatience = std::chrono::seconds(1);

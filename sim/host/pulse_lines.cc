@@ -21,7 +21,7 @@ PpsReceiver::PpsReceiver(const scenarios::PulseLines& lines, std::uint64_t run_s
     : run_seed_(run_seed),
       host_(host),
       jitter_sigma_us_(lines.pps_jitter_sigma_us),
-      tells_time_(lines.gnss) {}
+      announces_time_(lines.gnss) {}
 
 std::optional<std::int64_t> PpsReceiver::first_from(TrueTime at) const {
   const Nanoseconds gnss = at.time_since_epoch() + kGnssTimeAtTrueZero;
@@ -34,8 +34,8 @@ std::optional<TrueTime> PpsReceiver::pulse(std::int64_t number) const {
          from_ms(draw.normal(jitter_sigma_us_) * 1e-3);
 }
 
-std::optional<Nanoseconds> PpsReceiver::told_time(std::int64_t number) const {
-  if (!tells_time_) return std::nullopt;
+std::optional<Nanoseconds> PpsReceiver::announced_time(std::int64_t number) const {
+  if (!announces_time_) return std::nullopt;
   return number * kSecond;
 }
 
@@ -94,7 +94,7 @@ PulseStamp SimPulseInput::stamp(std::int64_t number, TrueTime interrupt) const {
   const SystemClock& clock = host_.system_clock();
   return {.system = host_.clock_interface().tick_of(clock.read(interrupt)),
           .steady = clock.steady(interrupt),
-          .gnss = source_.told_time(number)};
+          .gnss = source_.announced_time(number)};
 }
 
 }  // namespace simbench::sim

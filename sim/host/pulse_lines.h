@@ -43,8 +43,8 @@ class PulseSource {
   virtual std::int64_t last() const { return std::numeric_limits<std::int64_t>::max(); }
   // When the pulse reaches the host; nothing if it is missing.
   virtual std::optional<TrueTime> pulse(std::int64_t number) const = 0;
-  // What the time was at the pulse, if the source tells.
-  virtual std::optional<Nanoseconds> told_time(std::int64_t /*number*/) const {
+  // What the time was at the pulse, if the source announces it.
+  virtual std::optional<Nanoseconds> announced_time(std::int64_t /*number*/) const {
     return std::nullopt;
   }
 };
@@ -61,13 +61,13 @@ class PpsReceiver final : public PulseSource {
 
   std::optional<std::int64_t> first_from(TrueTime at) const override;
   std::optional<TrueTime> pulse(std::int64_t number) const override;
-  std::optional<Nanoseconds> told_time(std::int64_t number) const override;
+  std::optional<Nanoseconds> announced_time(std::int64_t number) const override;
 
  private:
   std::uint64_t run_seed_;
   PeerId host_;
   double jitter_sigma_us_;
-  bool tells_time_;
+  bool announces_time_;
 };
 
 // The main trigger's pulses, during a capture; numbers are slots, and empty slots have none. The

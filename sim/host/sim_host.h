@@ -13,9 +13,18 @@
 //
 // Source: docs/design.md section 4; docs/reference/calibration.md section 2.
 //
-//   SystemClock clock(3, oscillator, offset);
-//   SimHost host({context, scenario.hosts, scenario.network, network, load, sink, seed}, 3, clock);
-//   co_spawn(context, host_sync.run_slave(host, 0), detached);
+//   SystemClock clock(3, OscillatorModel(20e-6), from_ms(150));
+//   const HostWorld world{.context = context,
+//                         .hosts = scenario.hosts,
+//                         .network_parameters = scenario.network,
+//                         .network = network,
+//                         .load = load,
+//                         .outages = outages,
+//                         .trigger_line = trigger_line,
+//                         .sink = sink,
+//                         .run_seed = 1};
+//   SimHost host(world, 3, clock, true);
+//   boost::asio::co_spawn(context, host_sync.run_slave(host, 0), boost::asio::detached);
 #ifndef SIMBENCH_SIM_HOST_SIM_HOST_H_
 #define SIMBENCH_SIM_HOST_SIM_HOST_H_
 
