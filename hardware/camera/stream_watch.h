@@ -1,7 +1,7 @@
 // Watches a camera's streams for what no driver says: that frames stopped, that some were lost.
 //
-// A pure class: it is given frames and instants and answers with the events to pass on. One for each
-// camera, for all its streams; used by one thread at a time.
+// A pure class: it is given frames and instants and answers with the events to pass on. One for
+// each camera, for all its streams; used by one thread at a time.
 //
 //  - A stream without a frame for more than max(10 periods, 1 s): kStalled, once; a kNote when
 //    frames come again. The first frame may take 4 s, as a camera takes time to start; in a mode
