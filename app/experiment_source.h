@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "hardware/experiment/temporary_folder.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
 

@@ -93,9 +93,9 @@ class Clocks {
   std::vector<ClockMap> maps_;
 };
 
-class Teller {
+class Notifier {
  public:
-  Teller(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink)
+  Notifier(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink)
       : played_(truth.played),
         zero_(truth.zero),
         layout_(truth.played.layout()),
@@ -113,7 +113,7 @@ class Teller {
       if (const auto* frame = std::get_if<FrameEvent>(&event)) {
         tell_frame(frame->record);
       } else {
-        tell(event, sink_);
+        notify(event, sink_);
       }
     }
     tell_pulses(MonotonicTime::max());
@@ -164,7 +164,7 @@ class Teller {
 }  // namespace
 
 void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink) {
-  Teller(truth, captured, sink).tell_all(captured);
+  Notifier(truth, captured, sink).tell_all(captured);
 }
 
 }  // namespace simbench::app

@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "hardware/clock/node_clock.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 
 namespace simbench::app {
 

@@ -9,7 +9,7 @@
 #include "algorithms/device_time/yoon2021.h"
 #include "algorithms/gathering/gatherers.h"
 #include "evaluation/scoring/pipeline_scorer.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 
 namespace {
 

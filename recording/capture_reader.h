@@ -4,21 +4,57 @@
 // of one without an end, what is there is given: order may then have gaps where the writer died
 // between its two files, and a torn last line is no line.
 //
-// Errors: RecordingFolderError, after all events that come before the damage.
+// Memory does not grow with the files. Errors: RecordingFolderError, after all events that come
+// before the damage: "FILE: ..." where a file cannot be read, "FILE:LINE: ..." where a line is
+// damaged or longer than kLongestLine.
 //
 //   CaptureReader reader(folder, capture);
-//   while (reader.next()) tell(reader.event(), sink);
+//   while (reader.next()) notify(reader.event(), sink);
 #ifndef SIMBENCH_RECORDING_CAPTURE_READER_H_
 #define SIMBENCH_RECORDING_CAPTURE_READER_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "recording/event.h"
-#include "recording/line_reader.h"
 #include "recording/recording_folder.h"
 
 namespace simbench {
+
+// Clock errors of a million hosts fit.
+inline constexpr std::size_t kLongestLine = 32U << 20U;
+
+// A file line by line. A last line without its line end is no line: it is what a writer had not
+// finished (torn()).
+class LineReader {
+ public:
+  explicit LineReader(std::string path);
+  ~LineReader();
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+
+  // Valid until the next call; nothing at the end.
+  std::optional<std::string_view> next();
+  // After the last line: whether bytes without a line end follow.
+  bool torn() const { return at_end_ && begin_ < end_; }
+  // "FILE:LINE" of the line that was read last, or of the torn one.
+  std::string place() const;
+
+ private:
+  // False at the end of the file.
+  bool read_more();
+
+  std::string path_;
+  std::string buffer_;
+  std::size_t begin_ = 0;  // of what is not taken yet
+  std::size_t end_ = 0;
+  std::size_t line_ = 0;
+  int file_ = -1;
+  bool at_end_ = false;
+};
 
 // One of the two files. `capture` must outlive it.
 class CaptureFile {

@@ -3,7 +3,7 @@
 namespace simbench {
 namespace {
 
-struct Teller {
+struct Notifier {
   RecordingSink& sink;
   void operator()(const FrameEvent& frame) const {
     sink.on_frame(frame.record, frame.truth ? &*frame.truth : nullptr);
@@ -21,6 +21,38 @@ struct Teller {
 
 }  // namespace
 
-void tell(const RecordingEvent& event, RecordingSink& sink) { std::visit(Teller{sink}, event); }
+void notify(const RecordingEvent& event, RecordingSink& sink) { std::visit(Notifier{sink}, event); }
+
+void KeptRecording::on_start(const RigLayout& layout) {
+  layout_ = layout;
+  events_.clear();
+}
+
+void KeptRecording::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
+  events_.emplace_back(
+      FrameEvent{frame, truth != nullptr ? std::optional<FrameTruth>(*truth) : std::nullopt});
+}
+
+void KeptRecording::on_pulse(const PulseTruth& truth) {
+  events_.emplace_back(
+      PulseEvent{truth.pulse, truth.at, {truth.host_errors.begin(), truth.host_errors.end()}});
+}
+
+void KeptRecording::on_adjustment(const ClockAdjustment& adjustment) {
+  events_.emplace_back(adjustment);
+}
+
+void KeptRecording::on_poll(const DevicePoll& poll) { events_.emplace_back(poll); }
+
+void KeptRecording::on_exchange(std::uint32_t host, const Exchange& exchange) {
+  events_.emplace_back(ExchangeEvent{host, exchange});
+}
+
+void KeptRecording::on_outcome(const SyncOutcome& outcome) { events_.emplace_back(outcome); }
+
+void KeptRecording::play(RecordingSink& sink) const {
+  sink.on_start(layout_);
+  for (const RecordingEvent& event : events_) notify(event, sink);
+}
 
 }  // namespace simbench

@@ -1,12 +1,20 @@
-// The events of a recording as values: what a RecordingSink is told, one type each.
+// The events of a recording as values: what a RecordingSink is notified of, a type each.
 //
 // A frame or a pulse has truth only if it was simulated (or measured where truth is known).
 //
 //   RecordingEvent event = FrameEvent{record, truth};
-//   tell(event, sink);
+//   notify(event, sink);
+//
+// A KeptRecording holds all of them in memory, to be played as often as needed.
+//
+//   KeptRecording kept;
+//   source.record(request, kept);
+//   kept.play(first_scorer);
+//   kept.play(second_scorer);
 #ifndef SIMBENCH_RECORDING_EVENT_H_
 #define SIMBENCH_RECORDING_EVENT_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <variant>
@@ -36,7 +44,32 @@ using RecordingEvent =
     std::variant<FrameEvent, PulseEvent, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome>;
 
 // Calls the member of `sink` that is for this event.
-void tell(const RecordingEvent& event, RecordingSink& sink);
+void notify(const RecordingEvent& event, RecordingSink& sink);
+
+// Keeps everything that a backend hands over and gives it back in the same order, across all kinds
+// of events, with truth where there was truth. About 110 bytes a frame: for captures of many
+// cameras, score the stream itself instead of keeping it.
+class KeptRecording final : public RecordingSink {
+ public:
+  // Begins anew: what was kept before is forgotten.
+  void on_start(const RigLayout& layout) override;
+  void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
+  void on_pulse(const PulseTruth& truth) override;
+  void on_adjustment(const ClockAdjustment& adjustment) override;
+  void on_poll(const DevicePoll& poll) override;
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override;
+  void on_outcome(const SyncOutcome& outcome) override;
+
+  // The same calls with the same values in the same order, on_start first.
+  void play(RecordingSink& sink) const;
+
+  const RigLayout& layout() const { return layout_; }
+  const std::vector<RecordingEvent>& events() const { return events_; }
+
+ private:
+  RigLayout layout_;
+  std::vector<RecordingEvent> events_;
+};
 
 }  // namespace simbench
 

@@ -17,6 +17,18 @@
 //
 // Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
 // does not write. Any bytes are safe to give to it. Complexity: linear in the line.
+//
+// The files of a recording folder begin their lines with a field of their own: they append an
+// event's fields to it and read them behind it, so that a message names the column of the file.
+//
+//   const std::string line = to_line(event);      // "poll,3,..."
+//   const RecordingEvent same = from_line(line);
+//
+//   std::string numbered = "17,";
+//   append_event(numbered, event);
+//   FieldReader fields(numbered);
+//   const auto order = fields.whole<std::uint64_t>("order");
+//   const RecordingEvent again = read_event(fields);  // TextFieldError
 #ifndef SIMBENCH_RECORDING_EVENT_TEXT_H_
 #define SIMBENCH_RECORDING_EVENT_TEXT_H_
 
@@ -25,6 +37,7 @@
 #include <string_view>
 
 #include "recording/event.h"
+#include "recording/text_fields.h"
 
 namespace simbench {
 
@@ -36,6 +49,24 @@ class EventTextError : public std::runtime_error {
 // Without an end of line.
 std::string to_line(const RecordingEvent& event);
 RecordingEvent from_line(std::string_view line);
+
+// The columns of a frame after its kind, without and with truth.
+inline constexpr std::string_view kFrameColumns =
+    "camera,stream,domain,counter,exposure_us,sensor_us,frame_us,backend_ns,arrival_ns,"
+    "arrival_steady_ns";
+inline constexpr std::string_view kFrameTruthColumns =
+    "pulse,exposure_start_ns,exposure_end_ns,reference_ns,own_host_ns,own_steady_ns,delivered_ns";
+inline constexpr std::size_t kFrameTruthColumnCount = 7;
+
+// The kind, then the members.
+void append_event(std::string& line, const RecordingEvent& event);
+RecordingEvent read_event(FieldReader& fields);
+
+// The members of a frame, without the kind, and those of its truth.
+void append_frame(std::string& line, const FrameRecord& record);
+void append_truth(std::string& line, const FrameTruth& truth);
+FrameRecord read_frame(FieldReader& fields);
+FrameTruth read_truth(FieldReader& fields);
 
 }  // namespace simbench
 

@@ -61,18 +61,18 @@ void StreamWatch::start(MonotonicTime now) {
     stream.seen = stream.stalled = false;
     stream.last = now;
   }
-  told_metadata_ = false;
+  reported_metadata_ = false;
   lost_ = 0;
   losses_ = restarts_ = {};
 }
 
-void StreamWatch::on_frame(const CameraFrame& frame, const CameraEventHandler& tell) {
+void StreamWatch::on_frame(const CameraFrame& frame, const CameraEventHandler& report) {
   Stream& stream = streams_[static_cast<std::size_t>(frame.stream)];
-  if (stream.seen) compare(stream, frame, tell);
+  if (stream.seen) compare(stream, frame, report);
   if (stream.stalled) {
-    tell({CameraEvent::Kind::kNote,
-          fmt::format("{}: frames come again, after {:.1f} s", name_of(frame.stream),
-                      to_seconds(frame.arrived - stream.last))});
+    report({CameraEvent::Kind::kNote,
+            fmt::format("{}: frames come again, after {:.1f} s", name_of(frame.stream),
+                        to_seconds(frame.arrived - stream.last))});
   }
   stream.seen = true;
   stream.stalled = false;
@@ -82,26 +82,26 @@ void StreamWatch::on_frame(const CameraFrame& frame, const CameraEventHandler& t
 }
 
 void StreamWatch::compare(const Stream& before, const CameraFrame& frame,
-                          const CameraEventHandler& tell) {
+                          const CameraEventHandler& report) {
   const std::uint32_t forward = frame.counter - before.counter;
   const bool counts_anew = forward == 0 || forward >= kLargestGap;
   if (counts_anew ||
       clock_jumped(frame.frame.us - before.stamp_us, frame.arrived - before.last, frame.domain)) {
     if (!restarts_.permits(frame.arrived)) return;
-    tell({CameraEvent::Kind::kNote,
-          fmt::format("{}: the camera's {} jumped between frames {} and {}: did it restart?",
-                      name_of(frame.stream), counts_anew ? "frame counter" : "clock",
-                      before.counter, frame.counter)});
+    report({CameraEvent::Kind::kNote,
+            fmt::format("{}: the camera's {} jumped between frames {} and {}: did it restart?",
+                        name_of(frame.stream), counts_anew ? "frame counter" : "clock",
+                        before.counter, frame.counter)});
   } else if (forward > 1) {
     lost_ += forward - 1;
     if (!losses_.permits(frame.arrived)) return;
-    tell({CameraEvent::Kind::kNote,
-          fmt::format("{}: the frame counter went from {} to {}: {} frames lost since the start",
-                      name_of(frame.stream), before.counter, frame.counter, lost_)});
+    report({CameraEvent::Kind::kNote,
+            fmt::format("{}: the frame counter went from {} to {}: {} frames lost since the start",
+                        name_of(frame.stream), before.counter, frame.counter, lost_)});
   }
 }
 
-void StreamWatch::check(MonotonicTime now, const CameraEventHandler& tell) {
+void StreamWatch::check(MonotonicTime now, const CameraEventHandler& report) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     Stream& stream = streams_[i];
     const bool awaited = stream.seen || (stream.expected && !waits_);
@@ -109,21 +109,22 @@ void StreamWatch::check(MonotonicTime now, const CameraEventHandler& tell) {
         stream.seen ? stream.patience : std::max(stream.patience, kStartPatience);
     if (!awaited || stream.stalled || now - stream.last <= patience) continue;
     stream.stalled = true;
-    tell({CameraEvent::Kind::kStalled,
-          fmt::format("{}: no frame for {:.1f} s{}", name_of(static_cast<StreamKind>(i)),
-                      to_seconds(now - stream.last),
-                      stream.seen ? fmt::format(", the last was {}", stream.counter) : "")});
+    report({CameraEvent::Kind::kStalled,
+            fmt::format("{}: no frame for {:.1f} s{}", name_of(static_cast<StreamKind>(i)),
+                        to_seconds(now - stream.last),
+                        stream.seen ? fmt::format(", the last was {}", stream.counter) : "")});
   }
 }
 
-void StreamWatch::missing_metadata(std::string_view what, const CameraEventHandler& tell) {
-  if (told_metadata_) return;
-  told_metadata_ = true;
-  tell({CameraEvent::Kind::kMissingMetadata,
-        fmt::format("frames lack {}, their stamps are less exact: on Linux, install librealsense's "
-                    "kernel patches (its DKMS package or scripts/patch-realsense-*.sh), or build "
-                    "librealsense with -DFORCE_RSUSB_BACKEND=ON",
-                    what)});
+void StreamWatch::missing_metadata(std::string_view what, const CameraEventHandler& report) {
+  if (reported_metadata_) return;
+  reported_metadata_ = true;
+  report(
+      {CameraEvent::Kind::kMissingMetadata,
+       fmt::format("frames lack {}, their stamps are less exact: on Linux, install librealsense's "
+                   "kernel patches (its DKMS package or scripts/patch-realsense-*.sh), or build "
+                   "librealsense with -DFORCE_RSUSB_BACKEND=ON",
+                   what)});
 }
 
 }  // namespace simbench::hardware

@@ -1,7 +1,7 @@
 // Watches a camera's streams for what no driver says: that frames stopped, that some were lost.
 //
-// A pure class: it is told frames and instants and answers with the events to pass on. One for each
-// camera, for all its streams; used by one thread at a time.
+// A pure class: it is given frames and instants and answers with the events to pass on. One for
+// each camera, for all its streams; used by one thread at a time.
 //
 //  - A stream without a frame for more than max(10 periods, 1 s): kStalled, once; a kNote when
 //    frames come again. The first frame may take 4 s, as a camera takes time to start; in a mode
@@ -11,14 +11,14 @@
 //  - A counter that starts again, and a device clock that leaves the host's by more than a second
 //    between two frames, modulo its wrap of 2^32 us: a kNote, at most one every 10 s. Both mean
 //    that the camera restarted.
-//  - missing_metadata() is told once, with how to get it: kMissingMetadata.
+//  - missing_metadata() is reported once, with how to get it: kMissingMetadata.
 //
 // Source: docs/reference/d455.md sections 1 and 4.
 //
 //   StreamWatch watch(settings);
 //   watch.start(monotonic_now());
-//   watch.on_frame(frame, tell);       // every frame
-//   watch.check(monotonic_now(), tell);  // now and then, at least twice a second
+//   watch.on_frame(frame, report);       // every frame
+//   watch.check(monotonic_now(), report);  // now and then, at least twice a second
 #ifndef SIMBENCH_HARDWARE_CAMERA_STREAM_WATCH_H_
 #define SIMBENCH_HARDWARE_CAMERA_STREAM_WATCH_H_
 
@@ -37,10 +37,10 @@ class StreamWatch {
 
   // The camera was started: forgets what was before.
   void start(MonotonicTime now);
-  void on_frame(const CameraFrame& frame, const CameraEventHandler& tell);
-  void check(MonotonicTime now, const CameraEventHandler& tell);
+  void on_frame(const CameraFrame& frame, const CameraEventHandler& report);
+  void check(MonotonicTime now, const CameraEventHandler& report);
   // `what` the frames lack: "SENSOR_TIMESTAMP".
-  void missing_metadata(std::string_view what, const CameraEventHandler& tell);
+  void missing_metadata(std::string_view what, const CameraEventHandler& report);
 
   std::uint64_t lost_frames() const { return lost_; }
 
@@ -62,11 +62,11 @@ class StreamWatch {
     bool permits(MonotonicTime now);
   };
 
-  void compare(const Stream& before, const CameraFrame& frame, const CameraEventHandler& tell);
+  void compare(const Stream& before, const CameraFrame& frame, const CameraEventHandler& report);
 
   std::array<Stream, 2> streams_;  // by StreamKind
   bool waits_;
-  bool told_metadata_ = false;
+  bool reported_metadata_ = false;
   std::uint64_t lost_ = 0;
   Limit losses_;
   Limit restarts_;

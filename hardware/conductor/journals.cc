@@ -50,7 +50,7 @@ std::int64_t HostJournal::covered(std::uint32_t camera, StreamKind stream) const
   return static_cast<std::int64_t>(found->second.last - found->second.first) + 1;
 }
 
-void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink) {
+void play_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink) {
   // The next event of each host; one that is no frame goes before all frames.
   using Head = std::pair<HostTime, std::size_t>;
   std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
@@ -65,7 +65,7 @@ void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink
   while (!heads.empty()) {
     const std::size_t host = heads.top().second;
     heads.pop();
-    tell(journals[host].events()[next[host]++], sink);
+    notify(journals[host].events()[next[host]++], sink);
     push(host);
   }
 }

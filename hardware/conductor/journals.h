@@ -1,7 +1,7 @@
 // What the nodes' journals say, joined to one recording.
 //
 // A HostJournal takes a journal's text as it is fetched, in pieces that may end anywhere, and turns
-// whole lines into events. tell_in_order() hands the events of all hosts to a sink: frames in order
+// whole lines into events. play_in_order() hands the events of all hosts to a sink: frames in order
 // of arrival on their hosts' system clocks, which synchronisation has made one scale; the order of
 // each host is kept whatever its clock does, and what is no frame comes as soon as its turn does.
 //
@@ -51,7 +51,7 @@ class HostJournal {
   std::map<std::pair<std::uint32_t, StreamKind>, Counters> counters_;
 };
 
-void tell_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink);
+void play_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink);
 
 }  // namespace simbench::hardware
 

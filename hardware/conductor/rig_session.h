@@ -78,7 +78,7 @@ class RigSession {
   void on_notice(std::size_t host, const Answer& notice);
   void give_up(std::size_t host, const std::string& why);
   void note(std::string line);
-  void tell(const std::string& line) const;
+  void progress(const std::string& line) const;
   void note_missing_frames();
   bool all_covered() const;
   bool all_fetched() const;

@@ -40,7 +40,7 @@ RecordingCost RigSource::record(const RecordingRequest& request, RecordingSink& 
     cost.notes = session.notes();
     journals = session.take_journals();
   }
-  tell_in_order(journals, sink);
+  play_in_order(journals, sink);
   return cost;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hardware/net/notice.h"
-#include "hardware/net/secure_stream_state.h"
+#include "hardware/net/secure_stream.h"
 
 namespace simbench::hardware {
 namespace {
@@ -83,6 +83,11 @@ Task<std::vector<tcp::endpoint>> resolve(Shared attempt, std::string address, st
 }
 
 }  // namespace
+
+std::string address_text(const std::string& address, std::uint16_t port) {
+  const bool ip6 = address.find(':') != std::string::npos;
+  return ip6 ? fmt::format("[{}]:{}", address, port) : fmt::format("{}:{}", address, port);
+}
 
 Task<tcp::socket> connect_socket(boost::asio::any_io_executor executor, std::string address,
                                  std::uint16_t port, MonotonicTime deadline) {

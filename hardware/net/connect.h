@@ -1,4 +1,7 @@
-// A TCP connection by a deadline: names are resolved, and each of a name's addresses is tried.
+// Addresses, and a TCP connection by a deadline: names are resolved, and each of a name's addresses
+// is tried.
+//
+//   auto socket = co_await connect_socket(context.get_executor(), "host3", 47110, deadline);
 #ifndef SIMBENCH_HARDWARE_NET_CONNECT_H_
 #define SIMBENCH_HARDWARE_NET_CONNECT_H_
 
@@ -10,6 +13,9 @@
 #include "hardware/clock/monotonic_time.h"
 
 namespace simbench::hardware {
+
+// "10.0.0.3:47110", "[::1]:47110".
+std::string address_text(const std::string& address, std::uint16_t port);
 
 // Throws StreamError(kUnreachable), also for a name that nobody knows and at the deadline.
 Task<boost::asio::ip::tcp::socket> connect_socket(boost::asio::any_io_executor executor,

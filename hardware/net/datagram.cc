@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "hardware/net/wire_numbers.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {

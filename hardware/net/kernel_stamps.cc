@@ -74,10 +74,18 @@ ControlMessages control_messages(msghdr& header) {
 
 using ControlBuffer = std::array<std::byte, 512>;
 
+// What converting a stamp may be wrong by.
+constexpr Nanoseconds kStampError = std::chrono::milliseconds(1);
+
 }  // namespace
 
 bool request_kernel_stamps(int socket) {
   return set_flags(socket, kWithoutNumbers | SOF_TIMESTAMPING_OPT_ID);
+}
+
+bool request_receive_stamps(int socket) {
+  const unsigned flags = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
+  return setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPING, &flags, sizeof flags) == 0;
 }
 
 void restart_stamp_numbers(int socket) {
@@ -139,6 +147,30 @@ std::optional<TransmitStamp> next_transmit_stamp(int socket) {
       return TransmitStamp{.number = found.error->ee_data, .at = *at};
     }
   }
+}
+
+void TransmitLog::sent(MessageId id, std::uint32_t number, MonotonicTime called) {
+  if (entries_.size() == kKept) entries_.pop_front();
+  entries_.push_back({.id = id, .number = number, .called = called, .left = std::nullopt});
+}
+
+void TransmitLog::stamped(std::uint32_t number, MonotonicTime at) {
+  // The newest first: stamps are of what was sent just now, and numbers wrap.
+  const auto entry = std::find_if(entries_.rbegin(), entries_.rend(),
+                                  [number](const Entry& e) { return e.number == number; });
+  if (entry == entries_.rend() || entry->left || at < entry->called - kStampError) return;
+  entry->left = std::max(at, entry->called);
+}
+
+void TransmitLog::forget_numbers() {
+  for (Entry& entry : entries_) entry.number.reset();
+}
+
+const TransmitLog::Entry* TransmitLog::find(MessageId id) const {
+  const auto entry =
+      std::lower_bound(entries_.begin(), entries_.end(), id,
+                       [](const Entry& e, MessageId wanted) { return e.id < wanted; });
+  return entry == entries_.end() || entry->id != id ? nullptr : &*entry;
 }
 
 }  // namespace simbench::hardware

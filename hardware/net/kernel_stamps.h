@@ -21,9 +21,11 @@
 
 #include <cstdint>
 #include <ctime>
+#include <deque>
 #include <optional>
 #include <span>
 
+#include "algorithms/ports/host.h"
 #include "hardware/clock/monotonic_time.h"
 
 namespace simbench::hardware {
@@ -32,6 +34,8 @@ inline constexpr Nanoseconds kOldestStamp = std::chrono::seconds(10);
 
 // Asks for stamps of everything from now on. False if the kernel has none.
 bool request_kernel_stamps(int socket);
+// The same of what is received only: nothing has to take stamps from the error queue.
+bool request_receive_stamps(int socket);
 // Starts the numbers of datagrams at 0 again: a send that failed may or may not have taken one.
 void restart_stamp_numbers(int socket);
 
@@ -56,6 +60,33 @@ std::optional<TransmitStamp> next_transmit_stamp(int socket);
 
 // A CLOCK_REALTIME instant of the recent past; nothing if it cannot be of the recent past.
 std::optional<MonotonicTime> monotonic_of(const timespec& realtime);
+
+// Which of the last messages of a socket left when: joins what was sent with the stamps that the
+// kernel gives later. Pure; bounded to the last kKept messages.
+class TransmitLog {
+ public:
+  static constexpr std::size_t kKept = 1024;
+
+  // Message `id` (they ascend) was handed to the kernel by a call that began at `called`; the
+  // kernel names its stamp `number`.
+  void sent(MessageId id, std::uint32_t number, MonotonicTime called);
+  // Unknown numbers, second stamps, and stamps from before the call are left out.
+  void stamped(std::uint32_t number, MonotonicTime at);
+  // No stamp that is still missing will come.
+  void forget_numbers();
+
+  struct Entry {
+    MessageId id = 0;
+    std::optional<std::uint32_t> number;
+    MonotonicTime called{};
+    std::optional<MonotonicTime> left;
+  };
+  // Null if it was not sent, or long ago.
+  const Entry* find(MessageId id) const;
+
+ private:
+  std::deque<Entry> entries_;
+};
 
 }  // namespace simbench::hardware
 

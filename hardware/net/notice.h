@@ -1,7 +1,10 @@
-// Something that coroutines wait for: any number of them, each with its own deadline.
+// What coroutines wait for: a notice that something has changed, and an inbox of messages.
 //
-// A waiter looks at what it waits for, waits, and looks again; notify() wakes all that wait.
-// One thread. It must outlive its waiters, so it lives in the shared state that they hold.
+// Notice: any number of coroutines wait, each with its own deadline. A waiter looks at what it
+// waits for, waits, and looks again; notify() wakes all that wait. Inbox: the messages that wait in
+// a channel, bounded in number and in bytes; the oldest goes first.
+//
+// One thread. Both must outlive their waiters, so they live in the shared state that those hold.
 //
 //   while (queue.empty()) {
 //     if (!co_await notice.wait(deadline)) co_return std::nullopt;
@@ -11,6 +14,8 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "algorithms/ports/host.h"
@@ -31,6 +36,29 @@ class Notice {
  private:
   boost::asio::any_io_executor executor_;
   std::vector<boost::asio::steady_timer*> waiters_;
+};
+
+class Inbox {
+ public:
+  static constexpr std::size_t kMaxMessages = 1024;
+  static constexpr std::size_t kMaxBytes = 4u << 20;
+
+  explicit Inbox(boost::asio::any_io_executor executor) : arrived_(std::move(executor)) {}
+
+  // How many messages had to go for it.
+  std::size_t push(ReceivedMessage message);
+  // The next one; nothing at the deadline or when it was closed. The caller keeps this alive.
+  Task<std::optional<ReceivedMessage>> next(MonotonicTime deadline);
+  void clear();
+  void close();
+
+ private:
+  ReceivedMessage pop();
+
+  std::deque<ReceivedMessage> messages_;
+  std::size_t bytes_ = 0;
+  bool closed_ = false;
+  Notice arrived_;
 };
 
 }  // namespace simbench::hardware

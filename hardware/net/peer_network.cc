@@ -2,14 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/socket_base.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "algorithms/ports/assert.h"
 #include "hardware/net/connect.h"
-#include "hardware/net/peer_network_state.h"
-#include "hardware/net/secure_stream_state.h"
+#include "hardware/net/datagram.h"
+#include "hardware/net/datagram_socket.h"
+#include "hardware/net/newcomers.h"
+#include "hardware/net/notice.h"
+#include "hardware/net/token_bucket.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {
@@ -18,16 +34,130 @@ using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
 using boost::system::error_code;
 
-// Connections and datagrams of who has not proved the key, from one source.
-constexpr double kConnectionsPerSecond = 100;
-constexpr double kConnectionsAtOnce = 256;
+// Datagrams of who has not proved the key, from one source.
 constexpr double kStrangersPerSecond = 200;
 constexpr double kStrangersAtOnce = 64;
+// What is read before others get their turn.
+constexpr int kDatagramsAtOnce = 64;
 
-// A flood must not crowd out what is waiting to be read.
-constexpr int kDatagramBufferBytes = 1 << 20;
+constexpr Nanoseconds kFirstRetry = std::chrono::milliseconds(100);
+constexpr Nanoseconds kLastRetry = std::chrono::seconds(1);
+constexpr Nanoseconds kSendPatience = std::chrono::seconds(1);
+constexpr std::size_t kMaxPeerMessage = 64u << 10;
+
+constexpr std::byte kPort{0};
+constexpr std::byte kMessage{1};
+
+// A stream's messages are named by the stream and by their number in it.
+constexpr unsigned kNumberBits = 40;
+constexpr MessageId kNeverSent = ~MessageId{0};
+
+Bytes port_message(std::uint16_t port) {
+  Bytes message(3, kPort);
+  put_number(std::span(message).last(2), port);
+  return message;
+}
+
+// "10.0.0.3" of "10.0.0.3:47110", "::1" of "[::1]:47110".
+std::string without_port(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (!text.starts_with('[')) return text.substr(0, colon);
+  return text.substr(1, colon - 2);
+}
 
 }  // namespace
+
+// The inside of a PeerNetwork. Held by it and by every operation that is under way; stop() ends
+// those, and from then on the node's clock is not touched.
+//
+// A stream between hosts carries messages of one tag byte and their content: kPort, two bytes, once
+// at the start (where the sender takes datagrams, for who does not know it from the rig file), and
+// kMessage, one of the stream channel's.
+class PeerNetwork::State : public std::enable_shared_from_this<State> {
+ public:
+  using Self = std::shared_ptr<State>;
+  using ConductorHandler = std::function<void(std::unique_ptr<SecureStream>)>;
+
+  State(boost::asio::io_context& context, PeerNetworkSettings settings, NodeClock& clock);
+
+  void start();
+  void stop();
+  void on_conductor(ConductorHandler handler) { on_conductor_ = std::move(handler); }
+  std::uint16_t port() const { return port_; }
+  MessageChannel& channel(PeerId peer, Transport transport);
+  void clear();
+  bool connected(PeerId peer) const;
+  const NetworkStatistics& statistics() const { return statistics_; }
+
+  // What the channels do.
+  static Task<MessageId> send_by_stream(Self self, PeerId peer, Bytes message);
+  MessageId send_datagram(PeerId peer, const Bytes& message);
+  static Task<std::optional<ReceivedMessage>> receive(Self self, PeerId peer, Transport transport,
+                                                      SteadyTime deadline);
+  static Task<std::optional<HostTime>> stream_stamp(Self self, PeerId peer, MessageId id,
+                                                    SteadyTime deadline);
+  static Task<std::optional<HostTime>> datagram_stamp(Self self, MessageId id, SteadyTime deadline);
+
+ private:
+  class Channel;
+
+  // All there is about one other host.
+  struct Link {
+    Link(State& state, PeerId of);
+    Inbox& inbox(Transport transport) {
+      return transport == Transport::kStream ? stream_inbox : datagram_inbox;
+    }
+
+    PeerId peer;
+    std::shared_ptr<SecureStream> stream;  // null while the link is down
+    std::uint64_t streams = 0;             // how many there were
+    std::optional<DatagramSession> session;
+    boost::asio::ip::udp::endpoint datagrams_to;
+    // Where its last authentic datagram came from.
+    std::optional<boost::asio::ip::udp::endpoint> proven_source;
+    Inbox stream_inbox;
+    Inbox datagram_inbox;
+    Notice connected;
+    std::unique_ptr<Channel> stream_channel;
+    std::unique_ptr<Channel> datagram_channel;
+  };
+
+  void bind_sockets();
+  Link& link(PeerId peer);
+  MonotonicTime deadline_of(SteadyTime deadline) const;
+  void deliver(Link& link, Transport transport, Bytes message, MonotonicTime received);
+
+  // Streams: who connects, who is let in, what they carry.
+  static Task<void> accept_connections(Self self);
+  void admit(std::unique_ptr<SecureStream> stream);
+  static Task<void> keep_connected(Self self, PeerId peer);
+  static Task<std::unique_ptr<SecureStream>> connect_to(Self self, PeerId peer);
+  static Task<void> serve(Self self, PeerId peer, std::shared_ptr<SecureStream> stream);
+  static Task<std::optional<StreamMessage>> next_of(std::shared_ptr<SecureStream> stream);
+  void take_over(Link& link, const std::shared_ptr<SecureStream>& stream);
+  bool route(Link& link, StreamMessage message);
+
+  static Task<void> receive_datagrams(Self self);
+  void judge_datagram(const DatagramSocket::Received& datagram);
+  boost::asio::ip::udp::endpoint destination(const Link& link, const SecureStream& stream) const;
+
+  boost::asio::io_context& context_;
+  PeerNetworkSettings settings_;
+  NodeClock& clock_;
+  ConductorHandler on_conductor_;
+  bool stopped_ = false;
+  Notice stopping_;
+  NetworkStatistics statistics_;
+  std::vector<std::unique_ptr<Link>> links_;  // by host; null for this one
+
+  std::uint16_t port_ = 0;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  Newcomers newcomers_;
+
+  DatagramSocket datagrams_;
+  SourceBuckets strangers_allowed_;
+  MessageId next_datagram_ = 0;
+};
 
 class PeerNetwork::State::Channel final : public MessageChannel {
  public:
@@ -79,10 +209,9 @@ PeerNetwork::State::State(boost::asio::io_context& context, PeerNetworkSettings 
       clock_(clock),
       stopping_(context.get_executor()),
       acceptor_(context),
-      connections_allowed_(kConnectionsPerSecond, kConnectionsAtOnce),
+      newcomers_(context, settings_.key, PeerName{settings_.me}),
       datagrams_(context),
-      strangers_allowed_(kStrangersPerSecond, kStrangersAtOnce),
-      stamped_(context.get_executor()) {
+      strangers_allowed_(kStrangersPerSecond, kStrangersAtOnce) {
   links_.resize(settings_.peers.size());
   for (PeerId peer = 0; peer < links_.size(); ++peer) {
     if (peer != settings_.me) links_[peer] = std::make_unique<Link>(*this, peer);
@@ -104,16 +233,13 @@ void PeerNetwork::State::bind_sockets() {
   // Another program may have the datagram port of the number that is free for connections.
   for (int attempt = 0; attempt < 16; ++attempt) {
     acceptor_ = tcp::acceptor(context_);
-    datagrams_ = udp::socket(context_);
     const tcp::endpoint wanted(address, settings_.listen.port);
     acceptor_.open(wanted.protocol(), error);
     if (!error) acceptor_.set_option(boost::asio::socket_base::reuse_address(true), error);
     if (!error) acceptor_.bind(wanted, error);
     if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
     if (!error) port_ = acceptor_.local_endpoint(error).port();
-    const udp::endpoint beside(address, port_);
-    if (!error) datagrams_.open(beside.protocol(), error);
-    if (!error) datagrams_.bind(beside, error);
+    if (!error) datagrams_.bind({address, port_}, error);
     if (!error || settings_.listen.port != 0) break;
   }
   if (error) {
@@ -123,9 +249,6 @@ void PeerNetwork::State::bind_sockets() {
                     "that no other program (another simbench node?) has",
                     where, error.message()));
   }
-  datagrams_.native_non_blocking(true, error);
-  datagrams_.set_option(boost::asio::socket_base::receive_buffer_size(kDatagramBufferBytes), error);
-  stamps_ = request_kernel_stamps(datagrams_.native_handle());
 }
 
 void PeerNetwork::State::start() {
@@ -141,10 +264,8 @@ void PeerNetwork::State::stop() {
   stopped_ = true;
   error_code ignored;
   acceptor_.close(ignored);
-  datagrams_.close(ignored);
-  for (Newcomer& newcomer : newcomers_) {
-    newcomer.refuse.emit(boost::asio::cancellation_type::terminal);
-  }
+  datagrams_.close();
+  newcomers_.refuse_all();
   for (const auto& link : links_) {
     if (!link) continue;
     if (link->stream) link->stream->close();
@@ -152,7 +273,6 @@ void PeerNetwork::State::stop() {
     link->datagram_inbox.close();
     link->connected.notify();
   }
-  stamped_.notify();
   stopping_.notify();
   on_conductor_ = nullptr;
 }
@@ -200,6 +320,236 @@ Task<std::optional<ReceivedMessage>> PeerNetwork::State::receive(Self self, Peer
                                                                  SteadyTime deadline) {
   if (self->stopped_) co_return std::nullopt;
   co_return co_await self->link(peer).inbox(transport).next(self->deadline_of(deadline));
+}
+
+Task<void> PeerNetwork::State::accept_connections(Self self) {
+  while (!self->stopped_) {
+    tcp::socket socket(self->context_);
+    error_code error;
+    co_await self->acceptor_.async_accept(
+        socket, boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (self->stopped_) co_return;
+    if (error) {
+      // Such as no file numbers left: the connections wait in the kernel meanwhile.
+      co_await self->stopping_.wait(monotonic_now() + kFirstRetry);
+      continue;
+    }
+    self->newcomers_.greet(std::move(socket), [self](std::unique_ptr<SecureStream> stream) {
+      if (!stream) ++self->statistics_.refused_connections;
+      if (stream && !self->stopped_) self->admit(std::move(stream));
+    });
+  }
+}
+
+void PeerNetwork::State::admit(std::unique_ptr<SecureStream> stream) {
+  const std::uint32_t host = stream->peer().host;
+  if (host == PeerName::kConductor && on_conductor_) return on_conductor_(std::move(stream));
+  // Hosts of lower number are connected to from here.
+  if (host <= settings_.me || host >= links_.size()) {
+    ++statistics_.refused_connections;
+    return;
+  }
+  boost::asio::co_spawn(context_, serve(shared_from_this(), host, std::move(stream)),
+                        boost::asio::detached);
+}
+
+Task<void> PeerNetwork::State::keep_connected(Self self, PeerId peer) {
+  Nanoseconds pause = kFirstRetry;
+  while (!self->stopped_) {
+    std::shared_ptr<SecureStream> stream = co_await connect_to(self, peer);
+    if (stream && !self->stopped_) {
+      pause = kFirstRetry;
+      co_await serve(self, peer, std::move(stream));
+    }
+    if (self->stopped_) co_return;
+    co_await self->stopping_.wait(monotonic_now() + pause);
+    pause = std::min(2 * pause, kLastRetry);
+  }
+}
+
+// Nothing if there is no connection now, or another than that host at its address.
+Task<std::unique_ptr<SecureStream>> PeerNetwork::State::connect_to(Self self, PeerId peer) {
+  const PeerAddress at = self->settings_.peers[peer];
+  std::unique_ptr<SecureStream> stream;
+  try {
+    stream = co_await SecureStream::connect(self->context_, at.address, at.port,
+                                            self->settings_.key, PeerName{self->settings_.me},
+                                            monotonic_now() + kHandshakeTime);
+  } catch (const StreamError& error) {
+    if (error.kind() != StreamError::Kind::kUnreachable) ++self->statistics_.refused_connections;
+  }
+  if (stream && stream->peer() != PeerName{peer}) {
+    ++self->statistics_.refused_connections;
+    stream.reset();
+  }
+  co_return stream;
+}
+
+// Until the stream has ended.
+Task<void> PeerNetwork::State::serve(Self self, PeerId peer, std::shared_ptr<SecureStream> stream) {
+  Link& link = self->link(peer);
+  self->take_over(link, stream);
+  for (;;) {
+    auto message = co_await next_of(stream);
+    if (!message || self->stopped_ || !self->route(link, std::move(*message))) break;
+  }
+  stream->close();
+  if (link.stream == stream) link.stream.reset();
+}
+
+Task<std::optional<StreamMessage>> PeerNetwork::State::next_of(
+    std::shared_ptr<SecureStream> stream) {
+  try {
+    co_return co_await stream->receive(MonotonicTime::max());
+  } catch (const StreamError&) {
+    co_return std::nullopt;
+  }
+}
+
+void PeerNetwork::State::take_over(Link& link, const std::shared_ptr<SecureStream>& stream) {
+  if (link.stream) link.stream->close();
+  link.stream = stream;
+  if (++link.streams > 1) ++statistics_.reconnections;
+  link.session.emplace(*stream, static_cast<std::uint16_t>(settings_.me),
+                       static_cast<std::uint16_t>(link.peer));
+  link.datagrams_to = destination(link, *stream);
+  link.proven_source.reset();
+  boost::asio::co_spawn(context_, stream->send(port_message(port_)), boost::asio::detached);
+  link.connected.notify();
+}
+
+// False if the peer sent what is not allowed.
+bool PeerNetwork::State::route(Link& link, StreamMessage message) {
+  const std::size_t size = message.bytes.size();
+  if (size == 3 && message.bytes[0] == kPort) {
+    if (link.datagrams_to.port() == 0) {
+      const std::span<const std::byte> all(message.bytes);
+      link.datagrams_to.port(static_cast<std::uint16_t>(number_in(all.last(2))));
+    }
+    return true;
+  }
+  if (size == 0 || size > kMaxPeerMessage + 1 || message.bytes[0] != kMessage) {
+    ++statistics_.refused_malformed;
+    return false;
+  }
+  message.bytes.erase(message.bytes.begin());
+  deliver(link, Transport::kStream, std::move(message.bytes), message.received);
+  return true;
+}
+
+Task<MessageId> PeerNetwork::State::send_by_stream(Self self, PeerId peer, Bytes message) {
+  if (message.size() > kMaxPeerMessage) {
+    throw StreamError(StreamError::Kind::kNotUnderstood,
+                      "found a message to a host that is too long, allowed: 65536 bytes");
+  }
+  Link& link = self->link(peer);
+  const MonotonicTime patience = monotonic_now() + kSendPatience;
+  while (!link.stream && !self->stopped_) {
+    const bool in_time = co_await link.connected.wait(patience);
+    if (!in_time) break;
+  }
+  const std::shared_ptr<SecureStream> stream = link.stream;
+  if (!stream || self->stopped_) co_return kNeverSent;
+  const std::uint64_t which = link.streams;
+  message.insert(message.begin(), kMessage);
+  try {
+    const MessageId number = co_await stream->send(std::move(message));
+    co_return which << kNumberBits | number;
+  } catch (const StreamError&) {
+    co_return kNeverSent;
+  }
+}
+
+Task<std::optional<HostTime>> PeerNetwork::State::stream_stamp(Self self, PeerId peer, MessageId id,
+                                                               SteadyTime deadline) {
+  if (self->stopped_) co_return std::nullopt;
+  const Link& link = self->link(peer);
+  const std::shared_ptr<SecureStream> stream = link.stream;
+  if (!stream || id >> kNumberBits != link.streams) co_return std::nullopt;
+  const MessageId number = id & ((MessageId{1} << kNumberBits) - 1);
+  const auto left = co_await stream->transmit_stamp(number, self->deadline_of(deadline));
+  if (!left || self->stopped_) co_return std::nullopt;
+  co_return self->clock_.system_at(*left);
+}
+
+// The address of the rig file where it is a number, else where the stream comes from; the port of
+// the rig file, or the one that the host itself tells.
+udp::endpoint PeerNetwork::State::destination(const Link& link, const SecureStream& stream) const {
+  const PeerAddress& configured = settings_.peers[link.peer];
+  error_code no_number;
+  auto address = boost::asio::ip::make_address(configured.address, no_number);
+  if (no_number) {
+    address = boost::asio::ip::make_address(without_port(stream.peer_address()), no_number);
+  }
+  if (address.is_v4() && datagrams_.is_ip6()) {
+    address = boost::asio::ip::make_address_v6(boost::asio::ip::v4_mapped, address.to_v4());
+  }
+  return {address, configured.port};
+}
+
+Task<void> PeerNetwork::State::receive_datagrams(Self self) {
+  while (!self->stopped_) {
+    const bool open = co_await self->datagrams_.readable();
+    if (!open || self->stopped_) co_return;
+    for (int i = 0; i < kDatagramsAtOnce; ++i) {
+      const auto datagram = self->datagrams_.receive();
+      if (!datagram) break;
+      self->judge_datagram(*datagram);
+    }
+  }
+}
+
+void PeerNetwork::State::judge_datagram(const DatagramSocket::Received& datagram) {
+  ++statistics_.datagrams_received;
+  const auto header = datagram.truncated ? std::nullopt : parse_datagram(datagram.bytes);
+  if (!header || header->from >= links_.size() || !links_[header->from]) {
+    ++statistics_.refused_malformed;
+    return;
+  }
+  Link& link = *links_[header->from];
+  if (!link.session) {
+    ++statistics_.refused_forged;
+    return;
+  }
+  const DatagramSocket::Endpoint& from = datagram.from;
+  if (link.proven_source != from && from != link.datagrams_to &&
+      !strangers_allowed_.take(from.address(), from.port(), monotonic_now())) {
+    ++statistics_.refused_rate;
+    return;
+  }
+  Bytes message;
+  switch (link.session->open(*header, datagram.bytes, message)) {
+    case DatagramVerdict::kForged:
+      ++statistics_.refused_forged;
+      return;
+    case DatagramVerdict::kReplayed:
+      ++statistics_.refused_replayed;
+      return;
+    case DatagramVerdict::kAccepted:
+      break;
+  }
+  link.proven_source = from;
+  deliver(link, Transport::kDatagram, std::move(message), datagram.at);
+}
+
+MessageId PeerNetwork::State::send_datagram(PeerId peer, const Bytes& message) {
+  if (message.size() > kMaxDatagramMessage) {
+    throw StreamError(StreamError::Kind::kNotUnderstood,
+                      "found a datagram to a host that is too long, allowed: 65479 bytes");
+  }
+  const MessageId id = next_datagram_++;
+  Link& to = link(peer);
+  if (stopped_ || !to.session || to.datagrams_to.port() == 0) return id;
+  datagrams_.send(id, to.session->seal_next(message), to.datagrams_to);
+  return id;
+}
+
+Task<std::optional<HostTime>> PeerNetwork::State::datagram_stamp(Self self, MessageId id,
+                                                                 SteadyTime deadline) {
+  if (self->stopped_) co_return std::nullopt;
+  const auto left = co_await self->datagrams_.left(id, self->deadline_of(deadline));
+  if (!left || self->stopped_) co_return std::nullopt;
+  co_return self->clock_.system_at(*left);
 }
 
 PeerNetwork::PeerNetwork(boost::asio::io_context& context, PeerNetworkSettings settings,

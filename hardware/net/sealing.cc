@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "hardware/net/wire_numbers.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {

@@ -101,7 +101,7 @@ Task<void> ConductorConnection::send(Self self, Answer answer) {
   }
 }
 
-void ConductorConnection::tell(const std::string& notice, const nlohmann::json& details) {
+void ConductorConnection::notify(const std::string& notice, const nlohmann::json& details) {
   Answer answer;
   answer.notice = notice;
   answer.details = details;

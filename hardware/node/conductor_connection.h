@@ -41,7 +41,7 @@ class ConductorConnection : public std::enable_shared_from_this<ConductorConnect
                       Handler handler);
 
   Task<std::string> serve();
-  void tell(const std::string& notice, const nlohmann::json& details);
+  void notify(const std::string& notice, const nlohmann::json& details);
   void close() { stream_->close(); }
 
   std::string address() const { return stream_->peer_address(); }

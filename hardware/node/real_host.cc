@@ -5,13 +5,14 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/circular_buffer.hpp>
 #include <boost/intrusive/list.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
+#include <cstddef>
+#include <optional>
 #include <random>
 #include <utility>
-
-#include "hardware/node/kept_frames.h"
 
 namespace simbench::hardware {
 namespace {
@@ -32,6 +33,44 @@ struct Sleeper : AutoUnlink {
   explicit Sleeper(boost::asio::io_context& context) : timer(context) {}
   boost::asio::steady_timer timer;
 };
+
+// The feed of the host's own frames: what its cameras delivered, the last 1024 of it. One coroutine
+// waits at a time (algorithms/ports/host.h).
+class KeptFrames final : public FrameFeed {
+ public:
+  static constexpr std::size_t kKept = 1024;
+
+  KeptFrames(boost::asio::io_context& context, const NodeClock& clock);
+
+  Task<std::optional<FrameArrival>> next(SteadyTime deadline) override;
+  void deliver(const FrameArrival& frame);
+
+ private:
+  const NodeClock& clock_;
+  boost::asio::steady_timer waiting_;
+  boost::circular_buffer<FrameArrival> frames_{kKept};
+};
+
+KeptFrames::KeptFrames(boost::asio::io_context& context, const NodeClock& clock)
+    : clock_(clock), waiting_(context) {}
+
+Task<std::optional<FrameArrival>> KeptFrames::next(SteadyTime deadline) {
+  while (frames_.empty()) {
+    if (clock_.steady_at(monotonic_now()) >= deadline) co_return std::nullopt;
+    waiting_.expires_at(for_timer(clock_.oscillator().when(deadline)));
+    boost::system::error_code delivered;
+    co_await waiting_.async_wait(
+        boost::asio::redirect_error(boost::asio::use_awaitable, delivered));
+  }
+  const FrameArrival frame = frames_.front();
+  frames_.pop_front();
+  co_return frame;
+}
+
+void KeptFrames::deliver(const FrameArrival& frame) {
+  frames_.push_back(frame);
+  waiting_.cancel();
+}
 
 // Timers of this thread fire when they are due, not up to 50 us later.
 void ask_for_exact_timers() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }

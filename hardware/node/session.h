@@ -14,9 +14,9 @@
 // One thread, the context's. Always held by a shared_ptr: the coroutine of host_sync keeps its
 // session alive until it has ended, so that its host outlives it.
 //
-//   auto session = std::make_shared<Session>(lent, std::move(plan));
+//   const auto session = std::make_shared<Session>(world, std::move(plan));
 //   session->synchronise("slave");
-//   co_await session->end();
+//   co_await session->end("its conductor has what it came for");
 #ifndef SIMBENCH_HARDWARE_NODE_SESSION_H_
 #define SIMBENCH_HARDWARE_NODE_SESSION_H_
 

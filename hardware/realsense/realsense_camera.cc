@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "hardware/camera/stream_watch.h"
-#include "hardware/realsense/realsense_error.h"
 #include "hardware/realsense/realsense_frame.h"
+#include "hardware/realsense/realsense_settings.h"
 
 namespace simbench::hardware {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "hardware/realsense/realsense_camera.h"
-#include "hardware/realsense/realsense_error.h"
+#include "hardware/realsense/realsense_settings.h"
 
 namespace simbench::hardware {
 namespace {

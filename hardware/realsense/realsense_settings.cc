@@ -9,8 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "hardware/realsense/realsense_error.h"
-
 namespace simbench::hardware {
 namespace {
 

@@ -15,8 +15,11 @@
 //
 //   auto sensors = choose_sensors(device, serial, settings);
 //   apply_settings(device, sensors, info, settings);
+//   guarded(serial, "starting the depth sensor", [&] { sensor.start(callback); });
 #ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_SETTINGS_H_
 #define SIMBENCH_HARDWARE_REALSENSE_REALSENSE_SETTINGS_H_
+
+#include <fmt/format.h>
 
 #include <librealsense2/rs.hpp>
 #include <string>
@@ -38,6 +41,17 @@ std::vector<ChosenSensor> choose_sensors(const rs2::device& device, const std::s
 
 void apply_settings(const rs2::device& device, const std::vector<ChosenSensor>& sensors,
                     const CameraInfo& info, const CameraSettings& settings);
+
+// Calls librealsense2. Its errors become CameraError: rs2::error never leaves this folder.
+template <class Call>
+auto guarded(const std::string& serial, const std::string& doing, Call call) {
+  try {
+    return call();
+  } catch (const rs2::error& error) {
+    throw CameraError(fmt::format("camera {}: {}: librealsense2 says: {} ({})", serial, doing,
+                                  error.what(), error.get_failed_function()));
+  }
+}
 
 }  // namespace simbench::hardware
 

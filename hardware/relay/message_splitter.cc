@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hardware/net/frame.h"
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 

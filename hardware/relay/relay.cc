@@ -17,7 +17,6 @@
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/net/token_bucket.h"
 #include "hardware/relay/delay_queue.h"
-#include "hardware/relay/receive_stamps.h"
 #include "hardware/relay/relayed_stream.h"
 
 namespace simbench::hardware {

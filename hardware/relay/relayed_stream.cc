@@ -14,7 +14,6 @@
 
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/relay/message_splitter.h"
-#include "hardware/relay/receive_stamps.h"
 
 namespace simbench::hardware {
 namespace {

@@ -1,8 +1,8 @@
-# Writes OUTPUT: the text of SCHEMA as the C++ source behind hardware/rig/rig_schema.h. Run by the
+# Writes OUTPUT: the text of SCHEMA as the C++ source behind rig_schema_text() of hardware/rig/rig.h. Run by the
 # build whenever the schema has changed.
 file(READ ${SCHEMA} schema)
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "hardware/rig/rig_schema.h"
+#include "hardware/rig/rig.h"
 
 namespace simbench::hardware {
 

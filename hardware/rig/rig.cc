@@ -5,12 +5,20 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
-#include "hardware/rig/rig_document.h"
 #include "scenarios/document.h"
+#include "scenarios/json_schema.h"
+#include "scenarios/places.h"
+#include "scenarios/schema.h"
 
 namespace simbench::hardware {
 namespace {
@@ -18,7 +26,64 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using scenarios::InputError;
+using scenarios::Scenario;
 using scenarios::shown_text;
+
+// Far above a rig of a thousand hosts, and small enough to be read before it is refused.
+constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
+
+[[noreturn]] void fail_to_read(const std::string& path, const std::string& reason) {
+  throw InputError(fmt::format("{}: cannot be read: {}", shown_text(path), reason));
+}
+
+// A rig file as checked JSON: what the schema says, and nothing of what the members mean together.
+struct RigDocument {
+  json root;
+  scenarios::Places places;
+};
+
+std::string read_rig_text(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) fail_to_read(path, "it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    fail_to_read(path, "it is no regular file");
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_to_read(path, std::strerror(errno == 0 ? EIO : errno));
+  std::string text(kMaximumBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) fail_to_read(path, std::strerror(errno == 0 ? EIO : errno));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMaximumBytes) {
+    fail_to_read(path, fmt::format("found more than {} bytes, which no rig needs", kMaximumBytes));
+  }
+  return text;
+}
+
+RigDocument parse_rig_document(const std::string& text, const std::string& path) {
+  static const scenarios::JsonSchema schema(json::parse(rig_schema_text()));
+  const std::string label = shown_text(path);
+  RigDocument document;
+  try {
+    scenarios::Document parsed = scenarios::parse_document(text);
+    document.root = std::move(parsed.root);
+    for (const auto& [pointer, line] : parsed.lines) {
+      document.places.set(pointer, {.label = fmt::format("{}:{}", label, line),
+                                    .set_pointer = "",
+                                    .is_set = false,
+                                    .is_builtin = false,
+                                    .level = 0,
+                                    .line = line});
+    }
+  } catch (const scenarios::DocumentError& error) {
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", label, error.line(), error.column(), error.what()));
+  }
+  scenarios::validate(document.root, schema, document.places);
+  return document;
+}
 
 std::optional<boost::asio::ip::address> numeric(const std::string& address) {
   boost::system::error_code error;
@@ -191,6 +256,48 @@ bool is_loopback(const std::string& address) {
   return parsed && parsed->is_loopback();
 }
 
+[[noreturn]] void fail(const Rig& rig, const std::string& pointer, const std::string& problem) {
+  throw InputError(fmt::format("{}: {}: {}", scenarios::shown_text(rig.file), pointer, problem));
+}
+
+std::string counted(std::size_t count, const std::string& thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+std::vector<std::size_t> cameras_by_host(const Scenario& scenario) {
+  std::vector<std::size_t> counts(static_cast<std::size_t>(scenario.hosts.count));
+  for (std::int64_t camera = 0; camera < scenario.cameras.count; ++camera) {
+    ++counts[static_cast<std::size_t>(scenario.host_of(camera))];
+  }
+  return counts;
+}
+
+void check_cameras(const Rig& rig, const Scenario& scenario) {
+  const std::vector<std::size_t> wanted = cameras_by_host(scenario);
+  for (std::size_t i = 0; i < rig.hosts.size(); ++i) {
+    const std::size_t found = rig.hosts[i].cameras.size();
+    if (found == wanted[i]) continue;
+    fail(rig, fmt::format("/hosts/{}/cameras", i),
+         fmt::format("found {} on {}, allowed {}: as many as scenario {} has there",
+                     counted(found, "camera"), rig.hosts[i].name, wanted[i], scenario.name));
+  }
+  std::int64_t camera = 0;
+  for (std::size_t i = 0; i < rig.hosts.size(); ++i) {
+    for (std::size_t j = 0; j < rig.hosts[i].cameras.size(); ++j, ++camera) {
+      if (scenario.host_of(camera) == static_cast<std::int64_t>(i)) continue;
+      fail(rig, fmt::format("/hosts/{}/cameras/{}", i, j),
+           fmt::format("found camera {} on host {}, allowed only on host {}, where scenario {} has "
+                       "it: a rig's cameras are numbered host by host",
+                       camera, i, scenario.host_of(camera), scenario.name));
+    }
+  }
+}
+
+bool needs_trigger(const Scenario& scenario) {
+  const std::string& mode = scenario.cameras.sync_mode;
+  return mode == "genlock" || mode == "slave" || mode == "full_slave";
+}
+
 }  // namespace
 
 std::size_t Rig::cameras() const {
@@ -238,6 +345,21 @@ void check_rig_is_guarded(const Rig& rig, bool has_key) {
         "(127.0.0.1 or ::1); a rig without a key may not leave it: simbench keygen rig.key, then "
         "--key-file rig.key",
         shown_text(rig.file), i, shown_text(host.address), host.name));
+  }
+}
+
+void check_rig_fits(const Rig& rig, const Scenario& scenario) {
+  if (static_cast<std::int64_t>(rig.hosts.size()) != scenario.hosts.count) {
+    fail(rig, "/hosts",
+         fmt::format("found {}, allowed {}: as many as scenario {} has",
+                     counted(rig.hosts.size(), "host"), scenario.hosts.count, scenario.name));
+  }
+  check_cameras(rig, scenario);
+  if (needs_trigger(scenario) && !rig.trigger) {
+    fail(rig, "/trigger",
+         fmt::format("found nothing, allowed \"manual\" or {{\"on_command\": ..., \"off_command\": "
+                     "...}}: scenario {} has sync mode {}, whose cameras wait for a trigger",
+                     scenario.name, scenario.cameras.sync_mode));
   }
 }
 

@@ -31,6 +31,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/ports/exchange.h"
@@ -84,6 +85,9 @@ PeerId host_named(const Rig& rig, const std::string& name);
 // What must agree before anything is started: as many hosts as the scenario has, and on each as
 // many cameras; a trigger where the scenario's sync mode needs one. Throws InputError.
 void check_rig_fits(const Rig& rig, const scenarios::Scenario& scenario);
+// The JSON schema of rig files, hardware/rig/schema.json, which is built into the program.
+std::string_view rig_schema_text();
+
 // Without a key all addresses must be loopback. Throws InputError.
 void check_rig_is_guarded(const Rig& rig, bool has_key);
 

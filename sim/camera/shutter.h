@@ -58,6 +58,8 @@ class Shutter {
   // The stream is started at `start`, and knows nothing of pulses before that.
   Shutter(const ShutterSettings& settings, TrueTime start);
 
+  ShutterMode mode() const { return settings_.mode; }
+
   // The exposure time from the next exposure on, as auto-exposure changes it.
   void set_exposure(Nanoseconds exposure) { settings_.exposure = exposure; }
 

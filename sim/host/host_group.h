@@ -33,11 +33,11 @@
 #include "scenarios/scenario.h"
 #include "sim/clock/system_clock.h"
 #include "sim/engine/virtual_executor.h"
-#include "sim/host/pulse_sources.h"
+#include "sim/faults/faults.h"
+#include "sim/host/pulse_lines.h"
 #include "sim/host/sim_host.h"
+#include "sim/network/load.h"
 #include "sim/network/network.h"
-#include "sim/network/outages.h"
-#include "sim/network/run_load.h"
 #include "sim/trigger/trigger_tree.h"
 
 namespace simbench::sim {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
-#include "sim/host/nic_clock.h"
+#include "sim/host/host_clocks.h"
 #include "sim/host/sim_host.h"
 
 namespace simbench::sim {

@@ -17,8 +17,8 @@
 // when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
 // resolution. Stamps of the last 4096 messages are kept.
 //
-// Hardware stamps, where the host's card takes them, are of sim/host/nic_clock.h. A burst of load
-// (sim/host/host_load.h) makes the wake-up longer.
+// Hardware stamps, where the host's card takes them, are of sim/host/host_clocks.h. A burst of load
+// (sim/network/load.h) makes the wake-up longer.
 //
 // Source: docs/reference/calibration.md section 2 (steps 1, 2 and 4); docs/design.md section 4.
 #ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_

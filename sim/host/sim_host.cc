@@ -1,9 +1,9 @@
 #include "sim/host/sim_host.h"
 
-#include "sim/host/nic_clock.h"
+#include "sim/host/host_clocks.h"
+#include "sim/host/pulse_lines.h"
 #include "sim/host/sim_channel.h"
 #include "sim/host/sim_frame_feed.h"
-#include "sim/host/sim_pulse_input.h"
 
 namespace simbench::sim {
 namespace {

@@ -1,21 +1,30 @@
 // A simulated host: what algorithms/ports/host.h promises, in virtual time.
 //
-// Calls of the clock cost CPU time (sim/host/clock_port.h), sends the sender's occupancy
+// Calls of the clock cost CPU time (sim/host/host_clocks.h), sends the sender's occupancy
 // (sim/host/sim_channel.h). All waits are on the engine: intervals and deadlines follow the host's
 // oscillator, sleep_until follows its system clock and is re-armed whenever that is adjusted, by
 // whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen.
 //
 // What else it has is made when the scenario or somebody asks for it: the card's clock
-// (sim/host/nic_clock.h), pulse lines (sim/host/sim_pulse_input.h), the feed of its cameras' frames
+// (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h), the feed of its cameras' frames
 // (sim/host/sim_frame_feed.h). None costs an event while nobody waits.
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //
 // Source: docs/design.md section 4; docs/reference/calibration.md section 2.
 //
-//   SystemClock clock(3, oscillator, offset);
-//   SimHost host({context, scenario.hosts, scenario.network, network, load, sink, seed}, 3, clock);
-//   co_spawn(context, host_sync.run_slave(host, 0), detached);
+//   SystemClock clock(3, OscillatorModel(20e-6), from_ms(150));
+//   const HostWorld world{.context = context,
+//                         .hosts = scenario.hosts,
+//                         .network_parameters = scenario.network,
+//                         .network = network,
+//                         .load = load,
+//                         .outages = outages,
+//                         .trigger_line = trigger_line,
+//                         .sink = sink,
+//                         .run_seed = 1};
+//   SimHost host(world, 3, clock, true);
+//   boost::asio::co_spawn(context, host_sync.run_slave(host, 0), boost::asio::detached);
 #ifndef SIMBENCH_SIM_HOST_SIM_HOST_H_
 #define SIMBENCH_SIM_HOST_SIM_HOST_H_
 
@@ -35,13 +44,11 @@
 #include "sim/clock/system_clock.h"
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
-#include "sim/host/clock_port.h"
-#include "sim/host/cpu.h"
-#include "sim/host/host_load.h"
-#include "sim/host/pulse_sources.h"
+#include "sim/faults/faults.h"
+#include "sim/host/host_clocks.h"
+#include "sim/host/pulse_lines.h"
+#include "sim/network/load.h"
 #include "sim/network/network.h"
-#include "sim/network/outages.h"
-#include "sim/network/run_load.h"
 
 namespace simbench::sim {
 

@@ -21,7 +21,7 @@
 #include "scenarios/scenario.h"
 #include "sim/engine/quantile_table.h"
 #include "sim/engine/random.h"
-#include "sim/network/burst_process.h"
+#include "sim/network/load.h"
 
 namespace simbench::sim {
 

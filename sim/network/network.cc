@@ -11,9 +11,8 @@ namespace {
 
 constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
+constexpr ComponentKey kAckDraws("network: acknowledgement");
 
-// Ethernet's 1500 bytes less the headers of IP and TCP.
-constexpr double kFullSegmentBytes = 1460;
 // The sending program's patience and buffers end somewhere.
 constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
@@ -26,7 +25,7 @@ Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Tr
       latency(network.parameters_, network.run_seed_, from, to,
               network.load_.session(from, to).latency_ms) {
   if (network.parameters_.nagle && transport == Transport::kStream) {
-    nagle = std::make_unique<NagleState>();
+    nagle.emplace(from_ms(network.parameters_.delayed_ack_ms));
   }
 }
 
@@ -61,22 +60,14 @@ PathId Network::open(PeerId from, PeerId to, Transport transport, Endpoint& endp
 
 void Network::send(PathId path_id, MessageId id, Bytes message) {
   Path& path = paths_[path_id];
-  const auto bytes = static_cast<double>(message.size());
-  if (path.nagle == nullptr) {
-    Segment segment{.path = path_id, .first = id, .bytes = bytes};
-    segment.messages.push_back(std::move(message));
-    send_segment(std::move(segment));
+  if (path.nagle) {
+    std::optional<Segment> segment = path.nagle->add(path_id, id, std::move(message));
+    if (segment) send_segment(*std::move(segment));
     return;
   }
-  NagleState& nagle = *path.nagle;
-  if (nagle.waiting.messages.empty()) {
-    nagle.waiting = {.path = path_id, .first = id};
-  }
-  nagle.waiting.bytes += bytes;
-  nagle.waiting.messages.push_back(std::move(message));
-  if (nagle.acknowledged == nagle.sent || nagle.waiting.bytes >= kFullSegmentBytes) {
-    send_segment(std::exchange(nagle.waiting, {}));
-  }
+  Segment segment{.path = path_id, .first = id, .bytes = static_cast<double>(message.size())};
+  segment.messages.push_back(std::move(message));
+  send_segment(std::move(segment));
 }
 
 void Network::send_segment(Segment segment) {
@@ -90,10 +81,10 @@ void Network::send_segment(Segment segment) {
   const MessageId first = segment.first;
   const std::size_t count = segment.messages.size();
   const SegmentId id = keep(std::move(segment));
-  if (path.nagle != nullptr) {
-    ++path.nagle->sent;
+  if (path.nagle) {
+    path.nagle->on_left();
     // What the sender owes for the way back travels with its data.
-    if (paths_[path_id ^ 1].nagle->owes_ack) acknowledge(path_id ^ 1);
+    if (paths_[path_id ^ 1].nagle->owes_ack()) acknowledge(path_id ^ 1);
   }
   if (rate_.is_infinite()) {
     travel(id, passed);
@@ -121,14 +112,14 @@ void Network::handle(const Event& event) {
     case kArrival:
       arrive(event.subject);
       break;
-    case kAckDue: {
-      const NagleState& nagle = *paths_[event.subject].nagle;
-      if (nagle.owes_ack && nagle.ack_due == event.time) acknowledge(event.subject);
+    case kAckDue:
+      if (paths_[event.subject].nagle->is_ack_due(event.time)) acknowledge(event.subject);
+      break;
+    case kAckArrival: {
+      std::optional<Segment> segment = paths_[event.subject].nagle->on_ack();
+      if (segment) send_segment(*std::move(segment));
       break;
     }
-    case kAckArrival:
-      on_ack(event.subject);
-      break;
   }
 }
 
@@ -151,16 +142,16 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   const bool is_reordered = draw.chance(parameters_.reorder_probability);
   const double detour_ms = draw.uniform(0, parameters_.reorder_max_ms);
   if (is_lost || outages_.unreachable(path.from, segment.left)) {
-    tell(segment, std::nullopt);
+    report(segment, std::nullopt);
     release(id);
     return;
   }
   const TrueTime in_order = std::max(arrival, path.last_arrival);
-  // Before the message itself is corrected.
-  const SegmentId duplicate = is_duplicated ? keep(segment) : id;
   if (!is_reordered) path.last_arrival = in_order;
   const TrueTime arrives = is_reordered ? in_order + from_ms(detour_ms) : in_order;
-  tell(segment, outages_.unreachable(path.to, arrives) ? std::nullopt : std::optional(arrives));
+  report(segment, outages_.unreachable(path.to, arrives) ? std::nullopt : std::optional(arrives));
+  // Before the message itself is corrected.
+  const SegmentId duplicate = is_duplicated ? keep(segment) : id;
   deliver(id, arrives, 0);
   if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
 }
@@ -194,12 +185,12 @@ void Network::travel_on_stream(SegmentId id, TrueTime at) {
     arrival += from_ms(timeout_ms);
   }
   if (path.is_broken) {
-    tell(segment, std::nullopt);
+    report(segment, std::nullopt);
     release(id);
     return;
   }
   path.last_arrival = std::max(path.last_arrival, arrival);
-  tell(segment, path.last_arrival);
+  report(segment, path.last_arrival);
   engine_.schedule(path.last_arrival, handler_id_, kArrival, id);
 }
 
@@ -213,7 +204,14 @@ void Network::arrive(SegmentId id) {
   for (Bytes& message : segment.messages) {
     path.inbox.push_back({std::move(message), engine_.now(), message_id++});
   }
-  if (path.nagle != nullptr) on_segment_delivered(segment.path);
+  if (path.nagle) {
+    const std::optional<TrueTime> due = path.nagle->on_arrival(engine_.now());
+    if (due) {
+      engine_.schedule(*due, handler_id_, kAckDue, segment.path);
+    } else {
+      acknowledge(segment.path);
+    }
+  }
   if (path.receiver != nullptr) path.receiver->on_arrival();
 }
 
@@ -222,19 +220,46 @@ RandomStream Network::draws_of(const Path& path, MessageId id) const {
   return RandomStream(run_seed_, key, direction_of(path.from, path.to), id);
 }
 
-Network::SegmentId Network::keep(Segment segment) {
-  if (free_segments_.empty()) {
-    segments_.push_back(std::move(segment));
-    return static_cast<SegmentId>(segments_.size() - 1);
+void Network::acknowledge(PathId path_id) {
+  Nagle& nagle = *paths_[path_id].nagle;
+  Path& way_back = paths_[path_id ^ 1];
+  RandomStream draw(run_seed_, kAckDraws, direction_of(way_back.from, way_back.to),
+                    nagle.acknowledge());
+  TrueTime left = engine_.now();
+  TrueTime arrival = left + way_back.latency.draw(draw, left);
+  double timeout_ms = parameters_.retransmit_timeout_ms;
+  for (int losses = 0; losses < kMaxRetransmissions && is_cut(way_back, left, arrival);
+       ++losses, timeout_ms *= 2) {
+    left += from_ms(timeout_ms);
+    arrival += from_ms(timeout_ms);
   }
-  const SegmentId id = free_segments_.back();
-  free_segments_.pop_back();
+  engine_.schedule(nagle.ack_in_order(arrival), handler_id_, kAckArrival, path_id);
+}
+
+void Network::report(const Segment& segment, std::optional<TrueTime> arrival) const {
+  if (observer_ == nullptr) return;
+  const Path& path = paths_[segment.path];
+  MessageId id = segment.first;
+  for (const Bytes& message : segment.messages) {
+    observer_->on_message({.from = path.from,
+                           .to = path.to,
+                           .stream = path.transport == Transport::kStream,
+                           .id = id++,
+                           .bytes = message.size(),
+                           .left = segment.left,
+                           .arrived = arrival.value_or(TrueTime{}),
+                           .lost = !arrival});
+  }
+}
+
+Network::SegmentId Network::keep(Segment segment) {
+  const SegmentId id = segments_.add();
   segments_[id] = std::move(segment);
   return id;
 }
 
-Network::Segment Network::release(SegmentId id) {
-  free_segments_.push_back(id);
+Segment Network::release(SegmentId id) {
+  segments_.release(id);
   return std::exchange(segments_[id], {});
 }
 

@@ -10,14 +10,11 @@
 // complete: a lost segment arrives a retransmission timeout later, doubled each time, and holds up
 // what follows it. After 15 retransmissions the stream is broken and nothing arrives any more.
 //
-// Nagle's algorithm (streams, RFC 896 and RFC 1122 4.2.3.4): while a segment is unacknowledged,
-// smaller messages wait and leave together when the acknowledgement comes or a full segment is
-// reached; they arrive together, as separate messages. The receiver acknowledges a second segment,
-// or together with its own data, at once, a single one only after the delay. Acknowledgements have
-// the latency of their direction and no size; without Nagle they change nothing and are not
-// simulated.
+// Under Nagle's algorithm (sim/network/nagle.h) small messages of a stream arrive together, as
+// separate messages. Acknowledgements have the latency of their direction and no size; without
+// Nagle they change nothing and are not simulated.
 //
-// Hosts and links may stop (sim/network/outages.h): datagrams to or from them are lost, streams
+// Hosts and links may stop (sim/faults/faults.h): datagrams to or from them are lost, streams
 // retransmit. A switch may know PTP (sim/network/switch_clock.h): it corrects datagrams that are
 // event messages for the time they spent in it.
 //
@@ -36,11 +33,11 @@
 #ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
 #define SIMBENCH_SIM_NETWORK_NETWORK_H_
 
-#include <boost/container/small_vector.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -49,16 +46,43 @@
 #include "recording/world_observer.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
+#include "sim/engine/slots.h"
+#include "sim/faults/faults.h"
 #include "sim/network/link_latency.h"
-#include "sim/network/outages.h"
-#include "sim/network/port.h"
-#include "sim/network/run_load.h"
+#include "sim/network/load.h"
+#include "sim/network/nagle.h"
 #include "sim/network/switch_clock.h"
 
 namespace simbench::sim {
 
-// Numbers the paths: one per transport and direction of a link.
-using PathId = std::uint32_t;
+class LineRate {
+ public:
+  // 0: infinite, nothing waits.
+  explicit LineRate(double mbit_per_s) : ns_per_byte_(mbit_per_s == 0 ? 0 : 8'000 / mbit_per_s) {}
+  bool is_infinite() const { return ns_per_byte_ == 0; }
+  Nanoseconds duration(double bytes) const {
+    return Nanoseconds(std::llround(bytes * ns_per_byte_));
+  }
+
+ private:
+  double ns_per_byte_;
+};
+
+// A port of the switch, or a host's towards it: messages pass one after the other, in order of
+// arrival.
+class Port {
+ public:
+  // How long what arrives at `at` would have to wait.
+  Nanoseconds backlog(TrueTime at) const { return free_at_ > at ? free_at_ - at : Nanoseconds(0); }
+  // When a message has passed that arrives at `at`, not before the one before it.
+  TrueTime pass(TrueTime at, Nanoseconds duration) {
+    free_at_ = std::max(free_at_, at) + duration;
+    return free_at_;
+  }
+
+ private:
+  TrueTime free_at_ = TrueTime::min();
+};
 
 // A message that has arrived and waits to be received.
 struct ArrivedMessage {
@@ -68,7 +92,7 @@ struct ArrivedMessage {
 };
 using Inbox = std::deque<ArrivedMessage>;
 
-// One end of a channel, told what happens, at the virtual time when it happens.
+// One end of a channel, notified of what happens, at the virtual time when it happens.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
@@ -89,16 +113,17 @@ class Network : private EventHandler {
   ~Network() override = default;
 
   // The path from `from` to `to`, both of whose ends at `from` are `endpoint` from now on: it is
-  // told what leaves on this path and what arrives on the way back. It must outlive the network's
-  // events. Messages that arrive before the receiver has opened its end wait in the inbox.
+  // notified of what leaves on this path and of what arrives on the way back. It must outlive the
+  // network's events. Messages that arrive before the receiver has opened its end wait in the
+  // inbox.
   PathId open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint);
 
   // Message `id` leaves the host now; ids count from 0 on each path.
   void send(PathId path, MessageId id, Bytes message);
 
-  // From now on `observer`, which must outlive the network's events, is told of every message when
-  // its way is known: as it leaves the sender or, with a bandwidth, the sender's port. A duplicate
-  // is no message of its own, and capture traffic none at all.
+  // From now on `observer`, which must outlive the network's events, is notified of every message
+  // when its way is known: as it leaves the sender or, with a bandwidth, the sender's port. A
+  // duplicate is no message of its own, and capture traffic none at all.
   void observe(WorldObserver& observer) { observer_ = &observer; }
 
   // `from` sends this much capture traffic now.
@@ -109,26 +134,6 @@ class Network : private EventHandler {
 
  private:
   using SegmentId = std::uint32_t;
-  struct Segment {
-    PathId path = 0;
-    MessageId first = 0;  // number of the first message
-    TrueTime left{};
-    TrueTime at_switch{};
-    double bytes = 0;  // of the messages, without headers
-    boost::container::small_vector<Bytes, 1> messages{};
-  };
-  // The state of a stream under Nagle's algorithm.
-  struct NagleState {
-    Segment waiting;              // for an acknowledgement
-    std::uint64_t sent = 0;       // segments
-    std::uint64_t delivered = 0;  // segments
-    std::uint64_t acknowledged = 0;
-    bool owes_ack = false;                      // the receiver, for one segment
-    TrueTime ack_due{};                         // then, if nothing happens before
-    std::uint64_t acks = 0;                     // sent
-    TrueTime last_ack{};                        // when it arrives
-    std::deque<std::uint64_t> acks_on_the_way;  // each covers the segments up to this count
-  };
   // The two paths of a link and transport have numbers 2n and 2n + 1.
   struct Path {
     Path(const Network& network, PeerId from_host, PeerId to_host, Transport kind);
@@ -142,7 +147,7 @@ class Network : private EventHandler {
     Endpoint* sender = nullptr;
     Endpoint* receiver = nullptr;
     Inbox inbox;
-    std::unique_ptr<NagleState> nagle;  // streams under Nagle's algorithm only
+    std::optional<Nagle> nagle;  // streams under Nagle's algorithm only
   };
   // As Linux' tcp_retries2.
   static constexpr int kMaxRetransmissions = 15;
@@ -160,7 +165,8 @@ class Network : private EventHandler {
     return outages_.unreachable(path.from, left) || outages_.unreachable(path.to, arrival);
   }
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
-  void tell(const Segment& segment, std::optional<TrueTime> arrival) const;
+  // To the observer: the segment's messages arrive then, or never.
+  void report(const Segment& segment, std::optional<TrueTime> arrival) const;
 
   SegmentId keep(Segment segment);
   Segment release(SegmentId id);
@@ -171,9 +177,7 @@ class Network : private EventHandler {
   void travel_as_datagram(SegmentId id, TrueTime at);
   void travel_on_stream(SegmentId id, TrueTime at);
   void arrive(SegmentId id);
-  void on_segment_delivered(PathId path);
   void acknowledge(PathId path);
-  void on_ack(PathId path);
 
   Engine& engine_;
   const scenarios::Network& parameters_;
@@ -188,8 +192,7 @@ class Network : private EventHandler {
   std::vector<Port> switch_ports_;
   std::deque<Path> paths_;
   std::unordered_map<std::uint64_t, PathId> path_ids_[2];  // by transport, then direction
-  std::deque<Segment> segments_;
-  std::vector<SegmentId> free_segments_;
+  Slots<Segment> segments_;
 };
 
 }  // namespace simbench::sim

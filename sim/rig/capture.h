@@ -14,7 +14,7 @@
 // docs/reference/d455.md. Cost: three events per frame and one per pulse; no allocation per event
 // once frames in flight have found their slots.
 //
-//   Capture capture(scenario, seed, engine, clocks, sink);
+//   Capture capture(scenario, seed, engine, clocks, CaptureReports(sink));
 //   sink.on_start(capture.layout());
 //   capture.start(capture_start, [&] { engine.stop(); });
 //   engine.run();
@@ -26,17 +26,14 @@
 #include <vector>
 
 #include "recording/recording.h"
-#include "recording/world_observer.h"
 #include "scenarios/scenario.h"
-#include "sim/camera/auto_exposure.h"
-#include "sim/camera/device_clock.h"
-#include "sim/camera/shutter.h"
 #include "sim/clock/system_clock.h"
 #include "sim/engine/engine.h"
-#include "sim/engine/random.h"
-#include "sim/host/host_load.h"
-#include "sim/network/outages.h"
-#include "sim/rig/frame_observer.h"
+#include "sim/engine/slots.h"
+#include "sim/faults/faults.h"
+#include "sim/network/load.h"
+#include "sim/rig/cameras.h"
+#include "sim/rig/capture_reports.h"
 #include "sim/trigger/trigger_tree.h"
 #include "sim/usb/host_stack.h"
 #include "sim/usb/usb_controller.h"
@@ -47,17 +44,10 @@ class Capture final : public EventHandler {
  public:
   // `clocks` holds the system clock of every host; all references outlive the capture.
   Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-          std::vector<SystemClock*> clocks, RecordingSink& sink);
+          std::vector<SystemClock*> clocks, const CaptureReports& reports);
 
   // What will be captured; known from the beginning.
   RigLayout layout() const;
-
-  // From now on `observer`, which must outlive the capture's run, is told of every delivered frame,
-  // after the recording.
-  void observe_frames(FrameObserver& observer) { frame_observer_ = &observer; }
-  // Likewise of the start, of every pulse and of every frame that was exposed; those that reach a
-  // stopped host end there untold.
-  void observe(WorldObserver& observer) { observer_ = &observer; }
 
   // The cameras are started at `at`, not before the engine's present. `on_end` is called when the
   // last frame has been delivered.
@@ -67,9 +57,8 @@ class Capture final : public EventHandler {
   const TriggerTree& trigger() const { return trigger_; }
   std::int64_t last_slot() const { return last_slot_; }
   TrueTime end() const { return end_; }
-  TrueTime camera_start(std::size_t camera) const { return camera_start(camera, start_); }
-  DeviceClock& device_clock(std::size_t camera) { return device_clocks_[camera]; }
-  bool vanished(std::uint32_t camera, TrueTime at) const;
+  Cameras& cameras() { return cameras_; }
+  const CameraFaults& camera_faults() const { return camera_faults_; }
 
   void handle(const Event& event) override;
 
@@ -84,65 +73,31 @@ class Capture final : public EventHandler {
     kEnd,
   };
 
-  // One stream of one camera.
-  struct Stream {
-    std::uint32_t camera;
-    std::uint32_t host;
-    std::uint32_t controller;
-    std::uint32_t index_on_controller;
-    StreamKind kind;
-    double bytes;
-    double transfer_ns;  // alone on the bus
-    Nanoseconds latency;
-    Nanoseconds readout;  // of a rolling shutter
-    TrueTime started;
-    Shutter shutter;
-    FrameDelays delays;
-    RandomStream stamp_noise;
-    RandomStream loss;
-    RandomStream unsteadiness;
-    TrueTime last_arrival;
-    std::uint32_t counter = 0;
-  };
-  struct Controller {
-    UsbController bus;
-    TrueTime wake_up = TrueTime::max();  // of the event that counts; others are out of date
-  };
   struct FrameInFlight {
-    FrameRecord record;
-    FrameTruth truth;
+    CapturedFrame frame;
     std::uint32_t stream = 0;
     double kernel_copy_ns = 0;
     double delivery_ns = 0;
-    TrueTime offered;
-    TrueTime transferred;
-    TrueTime copied;
   };
-
-  void build_clocks(TrueTime at);
-  void build_controllers();
-  void build_streams(TrueTime at);
-  Stream make_stream(std::size_t camera, std::size_t which, TrueTime at);
-  Nanoseconds exposure_of(std::size_t camera) const;
-  ShutterMode shutter_mode(const scenarios::Stream& stream) const;
-  TrueTime camera_start(std::size_t camera, TrueTime at) const;
+  // What a host does to all of its frames.
+  struct HostSide {
+    HostJitter jitter;
+    HostLoad load;
+  };
 
   void schedule_pulse(std::int64_t slot);
   void on_pulse(std::int64_t slot);
-  void report_pulse(std::int64_t slot);
+  void record_pulse(std::int64_t slot);
   void on_shutter_timer(std::uint32_t stream_id);
-  void expose(std::uint32_t stream_id, const Exposure& exposure);
-  double late_first_frame_ns(std::uint32_t camera, TrueTime at);
+  Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
+  void expose(std::uint32_t stream_id, const Exposure& planned);
   void on_readout(std::uint32_t frame_id);
   void on_transfer_done(std::uint32_t controller_id);
   void wake_controller(std::uint32_t controller_id);
   void deliver_later(std::uint32_t frame_id);
   void on_delivery(std::uint32_t frame_id);
-  void tell_lost(const Stream& stream, std::uint32_t counter, const Exposure& exposure) const;
-  void tell(const FrameInFlight& frame, FrameFate fate) const;
+  void stamp(CapturedFrame& frame);
   void on_fault(const scenarios::Fault& fault);
-  std::uint32_t new_frame();
-  void release_frame(std::uint32_t frame_id);
   void end_if_done();
 
   const scenarios::Scenario& scenario_;
@@ -150,23 +105,15 @@ class Capture final : public EventHandler {
   Engine& engine_;
   HandlerId id_;
   std::vector<SystemClock*> clocks_;
-  RecordingSink& sink_;
-  FrameObserver* frame_observer_ = nullptr;
-  WorldObserver* observer_ = nullptr;
+  CaptureReports reports_;
   TriggerTree trigger_;
-  std::vector<DeviceClock> device_clocks_;
-  std::vector<AutoExposure> exposures_;  // of the cameras
-  std::vector<Stream> streams_;
-  std::vector<std::uint32_t> triggered_streams_;
-  std::vector<Controller> controllers_;
-  std::vector<HostJitter> host_jitter_;
-  std::vector<HostLoad> host_loads_;
+  Cameras cameras_;
+  std::vector<UsbController> controllers_;
+  std::vector<HostSide> host_sides_;
   Outages outages_;
-  std::vector<FrameInFlight> frames_;
-  std::vector<std::uint32_t> free_frames_;
-  std::vector<bool> late_frame_seen_;  // per fault
+  CameraFaults camera_faults_;
+  Slots<FrameInFlight> frames_;
   std::vector<Nanoseconds> host_errors_;
-  TrueTime start_{};
   std::int64_t first_slot_ = 0;
   std::int64_t last_slot_ = 0;
   TrueTime end_{};  // no exposure begins after this

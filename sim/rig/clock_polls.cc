@@ -29,7 +29,7 @@ void ClockPolls::start() {
   polls_.resize(cameras);
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
     RandomStream draw(seed_, kPhase, camera);
-    polls_[camera].first = capture_.camera_start(camera) +
+    polls_[camera].first = capture_.cameras().start_of(camera) +
                            from_ms(draw.uniform(0, scenario_.cameras.clock_poll.interval_ms));
     send(camera, 0);
   }
@@ -62,12 +62,12 @@ void ClockPolls::handle(const Event& event) {
 void ClockPolls::report(std::uint32_t camera) {
   const Poll& poll = polls_[camera];
   const SimHost& host = hosts_.host(static_cast<std::size_t>(scenario_.host_of(camera)));
-  if (capture_.vanished(camera, poll.read)) return;
+  if (capture_.camera_faults().vanished(camera, poll.read)) return;
   if (hosts_.outages().host_stopped(host.id(), engine_.now())) return;
   const SystemClock& clock = host.system_clock();
   const ClockInterface& interface = host.clock_interface();
   sink_.on_poll({.camera = camera,
-                 .device = capture_.device_clock(camera).stamp(poll.read, 0),
+                 .device = capture_.cameras().clock(camera).stamp(poll.read, 0),
                  .t0 = interface.read(clock.read(poll.begin)),
                  .t1 = interface.read(clock.read(engine_.now())),
                  .t0_steady = clock.steady(poll.begin),

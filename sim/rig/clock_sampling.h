@@ -2,21 +2,21 @@
 // errors of the hosts' clocks, at the observer's interval.
 //
 // Samples cost no events. A clock can be read at any past instant, so what is due is read just
-// before the next thing is told, and the rest at the end: with an observer the engine does exactly
-// what it does without. A sample at an instant t is read when t is over, after all that is done to
-// the clocks then.
+// before the next thing is reported, and the rest at the end: with an observer the engine does
+// exactly what it does without. A sample at an instant t is read when t is over, after all that is
+// done to the clocks then.
 //
 // Samples are at the start of the world, then every interval from true zero on to the end. A
 // service's warm-up may be hours of nothing: before zero the interval is at least a thousandth of
 // that time.
 //
-// Cost: a comparison for everything told, and one reading of every clock per sample.
+// Cost: a comparison for everything reported, and one reading of every clock per sample.
 //
-//   ClockSampling told(observer, clocks, engine);
-//   told.on_world(start);
-//   capture.observe(told);
+//   ClockSampling sampling(observer, clocks, engine);
+//   sampling.on_world(start);
+//   Capture capture(scenario, seed, engine, clocks, CaptureReports(sink, nullptr, &sampling));
 //   engine.run();
-//   told.finish();
+//   sampling.finish();
 #ifndef SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_
 #define SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_
 
@@ -44,7 +44,7 @@ class ClockSampling final : public WorldObserver {
   void finish();
 
  private:
-  // Tells the samples due before `end`.
+  // Reports the samples due before `end`.
   void sample_until(TrueTime end);
   void sample();
 

@@ -12,9 +12,9 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
 #include "sim/rig/capture.h"
+#include "sim/rig/capture_reports.h"
 #include "sim/rig/clock_polls.h"
 #include "sim/rig/clock_sampling.h"
-#include "sim/rig/frame_feeds.h"
 
 namespace simbench::sim {
 namespace {
@@ -30,14 +30,14 @@ class Run {
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
-        capture_(scenario, request.seed, engine_, hosts_.clocks(), sink),
+        sampling_(request.observer == nullptr ? std::nullopt
+                                              : std::make_optional<ClockSampling>(
+                                                    *request.observer, hosts_.clocks(), engine_)),
         frame_feeds_(scenario, hosts_),
+        capture_(scenario, request.seed, engine_, hosts_.clocks(),
+                 CaptureReports(sink, &frame_feeds_, sampling_ ? &*sampling_ : nullptr)),
         clock_polls_(scenario, request.seed, engine_, hosts_, capture_, sink) {
-    capture_.observe_frames(frame_feeds_);
-    if (request.observer == nullptr) return;
-    told_.emplace(*request.observer, hosts_.clocks(), engine_);
-    capture_.observe(*told_);
-    hosts_.network().observe(*told_);
+    if (sampling_) hosts_.network().observe(*sampling_);
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -46,14 +46,14 @@ class Run {
 
   RecordingCost run(RecordingSink& sink) {
     sink.on_start(capture_.layout());
-    if (told_) told_->on_world(start_);
+    if (sampling_) sampling_->on_world(start_);
     hosts_.report_clocks();
     start_host_sync();
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     engine_.run();
     if (failure_) std::rethrow_exception(failure_);
     if (!captured_) throw SimulationError(standstill());
-    if (told_) told_->finish();
+    if (sampling_) sampling_->finish();
     return {.events = engine_.events(),
             .simulated_seconds = to_seconds(engine_.now() - start_),
             .trace_hash = engine_.trace_hash()};
@@ -116,10 +116,10 @@ class Run {
   Engine engine_;
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;
-  Capture capture_;
+  std::optional<ClockSampling> sampling_;  // if somebody observes
   FrameFeeds frame_feeds_;
+  Capture capture_;
   ClockPolls clock_polls_;
-  std::optional<ClockSampling> told_;  // if somebody observes
   std::exception_ptr failure_;
   bool captured_ = false;
 };

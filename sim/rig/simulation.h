@@ -14,10 +14,10 @@
 // capture (naming what every coroutine waits for), EngineLimitReached when it does not end, and
 // whatever an algorithm throws.
 //
-//   auto source = make_simulation(scenario);
-//   Recording recording;
+//   const auto source = make_simulation(scenario);
+//   KeptRecording recording;
 //   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = host_sync.get()},
-//   recording);
+//                  recording);
 #ifndef SIMBENCH_SIM_RIG_SIMULATION_H_
 #define SIMBENCH_SIM_RIG_SIMULATION_H_
 

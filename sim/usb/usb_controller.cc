@@ -79,6 +79,19 @@ TrueTime UsbController::next_completion() const {
          Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
 }
 
+std::optional<TrueTime> UsbController::take_wake_up() {
+  const TrueTime next = next_completion();
+  if (next >= wake_up_) return std::nullopt;
+  wake_up_ = next;
+  return next;
+}
+
+bool UsbController::is_woken(TrueTime now) {
+  if (wake_up_ != now) return false;
+  wake_up_ = TrueTime::max();
+  return true;
+}
+
 std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
   if (pending_.empty()) return std::nullopt;
   double reached = as_ns(now);

@@ -9,9 +9,17 @@
 // A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
 // an incomplete frame is on a bus that more bytes are asked of than it carries.
 //
-// The controller is a passive model on true time. Whoever owns it submits frames, and comes back at
-// next_completion() to collect what is done. For dedicated and fifo the completion is known at
-// submission; fair sharing revises it as frames come and go.
+// The controller is a passive model on true time. Its owner submits frames, asks take_wake_up()
+// when to come back, and then collects what is done. For dedicated and fifo the completion is known
+// at submission; fair sharing revises it as frames come and go.
+//
+//   if (bus.submit(now, stream, bytes, frame)) {
+//     if (const auto at = bus.take_wake_up()) schedule(*at);
+//   }
+//   // and at that time:
+//   if (!bus.is_woken(now)) return;
+//   while (const auto frame = bus.take_completed(now)) deliver(*frame);
+//   if (const auto at = bus.take_wake_up()) schedule(*at);
 //
 // Complexity: O(log n) per frame, n frames pending on the controller. Source:
 // docs/reference/d455.md section 3, docs/design.md section 7.
@@ -46,6 +54,12 @@ class UsbController {
   // pending.
   TrueTime next_completion() const;
 
+  // When the owner has to come back, if it has no date that is early enough; nothing otherwise.
+  // Under fair sharing a new frame puts completions off: a visit may find nothing done.
+  std::optional<TrueTime> take_wake_up();
+  // Whether the owner, who comes back now, has been given this date last; others are out of date.
+  bool is_woken(TrueTime now);
+
   // The ticket of a transfer that is complete at `now`, in order of completion; nothing if none is.
   std::optional<std::uint32_t> take_completed(TrueTime now);
 
@@ -69,6 +83,7 @@ class UsbController {
   std::vector<double> lane_free_at_ns_;  // fifo: one lane; dedicated: one per camera
   double served_bytes_ = 0;              // fair: to each pending transfer
   TrueTime served_until_{};              // fair
+  TrueTime wake_up_ = TrueTime::max();   // given last, and not yet come
 };
 
 }  // namespace simbench::sim

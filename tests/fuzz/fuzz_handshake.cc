@@ -7,8 +7,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "hardware/net/frame.h"
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "algorithms/ports/assert.h"
+#include "recording/event.h"
 #include "recording/event_text.h"
-#include "recording/kept_recording.h"
 #include "recording/recording_folder.h"
 #include "recording/recording_manifest.h"
 

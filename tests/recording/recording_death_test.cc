@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "recording/recording_folder.h"
 #include "tests/recording/random_events.h"
 #include "tests/recording/scratch_folder.h"
@@ -69,7 +69,7 @@ class RecordingDeathTest : public testing::Test {
     RecordingWriter writer(path(name), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) tell(event, sink);
+    for (const RecordingEvent& event : events) notify(event, sink);
   }
 
   // All that was played is among what was recorded, in its order.
@@ -114,7 +114,7 @@ TEST_F(RecordingDeathTest, ACompleteCaptureCutAtAnyByteIsDamagedNotCrashed) {
     RecordingWriter writer(path("r"), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) tell(event, sink);
+    for (const RecordingEvent& event : events) notify(event, sink);
     writer.end({});
   }
   for (const std::string name : {"frames.csv", "events.csv"}) {
@@ -156,7 +156,7 @@ TEST_F(RecordingDeathTest, AKilledWriterLosesAtMostItsLastThousand) {
     RecordingWriter writer(path("r"), {.backend = "sim"});
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
-    for (const RecordingEvent& event : events) tell(event, sink);
+    for (const RecordingEvent& event : events) notify(event, sink);
     raise(SIGKILL);
   }
   int status = 0;
@@ -218,7 +218,7 @@ TEST_F(RecordingDeathTest, AFullDiskIsReportedAndTheRestIsReadable) {
     RecordingSink& sink = writer.begin("p", 1);
     sink.on_start(layout());
     try {
-      for (const RecordingEvent& event : events) tell(event, sink);
+      for (const RecordingEvent& event : events) notify(event, sink);
     } catch (const RecordingFolderError& thrown) {
       error = thrown.what();
     }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "tests/recording/random_events.h"
 #include "tests/recording/scratch_folder.h"
 
@@ -45,7 +45,7 @@ void write_events(const std::string& folder, const std::vector<RecordingEvent>& 
   RecordingWriter writer(folder, description());
   RecordingSink& sink = writer.begin("p", 1);
   sink.on_start(kLayout);
-  for (const RecordingEvent& event : events) tell(event, sink);
+  for (const RecordingEvent& event : events) notify(event, sink);
   writer.end({.events = 5, .simulated_seconds = 16.5, .trace_hash = ~std::uint64_t{0}});
 }
 

@@ -8,7 +8,7 @@
 
 #include "evaluation/fit/fit_check.h"
 #include "evaluation/fit/fit_evidence.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
 

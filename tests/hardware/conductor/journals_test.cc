@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hardware/node/journal.h"
+#include "recording/event.h"
 #include "recording/event_text.h"
-#include "recording/kept_recording.h"
 
 namespace simbench::hardware {
 namespace {
@@ -39,7 +39,7 @@ HostJournal journal_of(const std::vector<RecordingEvent>& events) {
 std::vector<std::string> told(const std::vector<HostJournal>& journals) {
   KeptRecording kept;
   kept.on_start({});
-  tell_in_order(journals, kept);
+  play_in_order(journals, kept);
   std::vector<std::string> names;
   for (const RecordingEvent& event : kept.events()) {
     if (const auto* frame = std::get_if<FrameEvent>(&event)) {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "tests/hardware/conductor/cuttable_link.h"
 #include "tests/hardware/conductor/test_rig.h"
 

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "hardware/net/datagram.h"
-#include "hardware/net/frame.h"
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 #include "tests/hardware/net/networks.h"
 
 namespace simbench::hardware {

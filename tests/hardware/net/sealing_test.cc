@@ -9,9 +9,8 @@
 #include <string>
 
 #include "hardware/net/datagram.h"
-#include "hardware/net/replay_window.h"
+#include "hardware/net/kernel_stamps.h"
 #include "hardware/net/token_bucket.h"
-#include "hardware/net/transmit_log.h"
 #include "tests/hardware/net/in_time.h"
 
 namespace simbench::hardware {

@@ -6,8 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "hardware/net/frame.h"
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {

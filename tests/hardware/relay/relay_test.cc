@@ -13,8 +13,7 @@
 #include <set>
 #include <thread>
 
-#include "hardware/net/frame.h"
-#include "hardware/net/hello.h"
+#include "hardware/net/wire.h"
 #include "scenarios/loader.h"
 
 namespace simbench::hardware {

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hardware/rig/rig_schema.h"
-
 namespace simbench::hardware {
 namespace {
 

@@ -1,10 +1,9 @@
-#include "sim/host/nic_clock.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "sim/host/host_clocks.h"
 #include "tests/nonempty.h"
 #include "tests/sim/host/sim_world.h"
 

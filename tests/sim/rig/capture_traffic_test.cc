@@ -1,4 +1,4 @@
-// Frames that their hosts send on delay the hosts' messages (sim/rig/frame_feeds.h,
+// Frames that their hosts send on delay the hosts' messages (sim/rig/capture_reports.h,
 // sim/network/network.h).
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "algorithms/registry.h"
+#include "recording/event.h"
 #include "recording/event_text.h"
-#include "recording/kept_recording.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
 

@@ -1,4 +1,4 @@
-// Hosts under bursts of load (sim/host/host_load.h) and hosts that stop (sim/network/outages.h), in
+// Hosts under bursts of load (sim/network/load.h) and hosts that stop (sim/faults/faults.h), in
 // whole runs.
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/host/host_load.h"
+#include "sim/network/load.h"
 #include "tests/sim/rig/ideal_scenario.h"
 #include "tests/sim/rig/test_world.h"
 

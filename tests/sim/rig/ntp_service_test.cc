@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "algorithms/registry.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "recording/recording.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"

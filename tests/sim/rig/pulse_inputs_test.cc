@@ -1,10 +1,10 @@
-// The pulse lines of hosts in whole runs (sim/host/sim_pulse_input.h).
+// The pulse lines of hosts in whole runs (sim/host/pulse_lines.h).
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "sim/host/pulse_sources.h"
+#include "sim/host/pulse_lines.h"
 #include "sim/trigger/trigger_tree.h"
 #include "tests/nonempty.h"
 #include "tests/sim/rig/ideal_scenario.h"

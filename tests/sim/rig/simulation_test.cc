@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "algorithms/registry.h"
-#include "recording/kept_recording.h"
+#include "recording/event.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/sim/rig/ideal_scenario.h"

@@ -1,0 +1,73 @@
+// A UDP socket that says when datagrams came and left: by the kernel's stamps where it gives them
+// (hardware/net/kernel_stamps.h), else by the times of the calls.
+//
+// Neither sending nor receiving waits. One thread; coroutines that use it keep it alive.
+//
+//   DatagramSocket socket(context);
+//   socket.bind({address, 47110}, error);
+//   socket.send(id, bytes, peer);
+//   const std::optional<MonotonicTime> left = co_await socket.left(id, deadline);
+#ifndef SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_
+#define SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "algorithms/ports/host.h"
+#include "hardware/clock/monotonic_time.h"
+#include "hardware/net/datagram.h"
+#include "hardware/net/kernel_stamps.h"
+#include "hardware/net/notice.h"
+
+namespace simbench::hardware {
+
+class DatagramSocket {
+ public:
+  using Endpoint = boost::asio::ip::udp::endpoint;
+
+  struct Received {
+    std::span<const std::byte> bytes;  // valid until the next receive()
+    bool truncated = false;
+    Endpoint from;
+    MonotonicTime at{};
+  };
+
+  explicit DatagramSocket(boost::asio::io_context& context);
+
+  // Opens it anew.
+  void bind(const Endpoint& at, boost::system::error_code& error);
+  // Ends all waits.
+  void close();
+  bool is_ip6() const;
+
+  // Until there is something to read. False: it is closed.
+  Task<bool> readable();
+  // Nothing if there is none now.
+  std::optional<Received> receive();
+
+  // Ids ascend. What cannot be sent is lost.
+  void send(MessageId id, const Bytes& datagram, const Endpoint& to);
+  // When it left; nothing if it never did, that is forgotten, or not known by the deadline.
+  Task<std::optional<MonotonicTime>> left(MessageId id, MonotonicTime deadline);
+
+ private:
+  bool take_stamps();
+  void restart_numbers();
+
+  boost::asio::io_context& context_;
+  boost::asio::ip::udp::socket socket_;
+  bool closed_ = false;
+  std::array<std::byte, kMaxDatagramBytes + 1> buffer_{};
+  bool stamps_ = false;            // the kernel gives them
+  std::uint32_t next_number_ = 0;  // as the kernel counts
+  TransmitLog transmitted_;
+  Notice stamped_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NET_DATAGRAM_SOCKET_H_

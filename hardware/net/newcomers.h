@@ -1,0 +1,58 @@
+// Connections that have not proved the key yet: at most 64, for 2 s each. Where one more comes, the
+// oldest of the address that has most of them is refused: who floods refuses its own.
+//
+// One thread.
+//
+//   Newcomers newcomers(context, key, PeerName{2});
+//   newcomers.greet(std::move(socket), [self](std::unique_ptr<SecureStream> stream) {
+//     if (stream) self->admit(std::move(stream));
+//   });
+#ifndef SIMBENCH_HARDWARE_NET_NEWCOMERS_H_
+#define SIMBENCH_HARDWARE_NET_NEWCOMERS_H_
+
+#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <functional>
+#include <list>
+#include <memory>
+
+#include "hardware/clock/monotonic_time.h"
+#include "hardware/net/secret_key.h"
+#include "hardware/net/secure_stream.h"
+#include "hardware/net/token_bucket.h"
+
+namespace simbench::hardware {
+
+// Within this a newcomer has proved the key, or it is refused.
+inline constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
+
+class Newcomers {
+ public:
+  // Null: it was refused.
+  using Outcome = std::function<void(std::unique_ptr<SecureStream> stream)>;
+
+  Newcomers(boost::asio::io_context& context, SecretKey key, PeerName me);
+
+  // `outcome` is called once, now or later, and keeps this alive until then.
+  void greet(boost::asio::ip::tcp::socket socket, Outcome outcome);
+  void refuse_all();
+
+ private:
+  struct Newcomer {
+    boost::asio::ip::address from;
+    boost::asio::cancellation_signal refuse;
+  };
+
+  void refuse_one();
+
+  boost::asio::io_context& context_;
+  SecretKey key_;
+  PeerName me_;
+  std::list<Newcomer> waiting_;
+  SourceBuckets allowed_;
+};
+
+}  // namespace simbench::hardware
+
+#endif  // SIMBENCH_HARDWARE_NET_NEWCOMERS_H_

@@ -1,0 +1,50 @@
+// Objects under way, each known by a number that is used again when it is done: frames on their way
+// to the host, segments on the network.
+//
+// Numbers fit into the subject of an event (sim/engine/event.h). A released object stays as it is
+// until its number is given out again, so what it has allocated can be used again too.
+//
+// Cost: O(1); memory for the most objects that were ever under way at once, none allocated beyond
+// that. add() may move the objects: a reference does not outlive it.
+//
+//   Slots<FrameInFlight> frames;
+//   const std::uint32_t id = frames.add();
+//   frames[id].stream = 3;
+//   engine.schedule(at, handler, kReadout, id);
+//   frames.release(id);
+#ifndef SIMBENCH_SIM_ENGINE_SLOTS_H_
+#define SIMBENCH_SIM_ENGINE_SLOTS_H_
+
+#include <cstdint>
+#include <vector>
+
+namespace simbench::sim {
+
+template <class Object>
+class Slots {
+ public:
+  // An object as its predecessor of the same number left it, or a new one.
+  std::uint32_t add() {
+    if (free_.empty()) {
+      objects_.emplace_back();
+      return static_cast<std::uint32_t>(objects_.size() - 1);
+    }
+    const std::uint32_t id = free_.back();
+    free_.pop_back();
+    return id;
+  }
+  void release(std::uint32_t id) { free_.push_back(id); }
+
+  Object& operator[](std::uint32_t id) { return objects_[id]; }
+  const Object& operator[](std::uint32_t id) const { return objects_[id]; }
+
+  bool is_empty() const { return free_.size() == objects_.size(); }
+
+ private:
+  std::vector<Object> objects_;
+  std::vector<std::uint32_t> free_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_ENGINE_SLOTS_H_

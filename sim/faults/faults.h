@@ -1,0 +1,89 @@
+// What a scenario makes go wrong during a capture (/faults), asked by those it happens to.
+//
+//  - Outages: hosts and links that stop for a while. A stopped host gets no frames, no pulses and
+//    no polls, and its messages are neither sent nor received; its clocks go on, and so do its
+//    programs, which talk to nobody. Of a stopped link only the messages are lost.
+//  - CameraFaults: cameras that vanish for a while, and first frames that are delivered late.
+// A fault clock_step is an event of the capture (sim/rig/capture.h).
+//
+// Times count from the start of the capture: before start() nothing goes wrong.
+//
+// Complexity: linear in the number of such faults, a comparison without any.
+//
+//   Outages outages(scenario.faults);
+//   outages.start(engine.now());  // the capture begins
+//   const bool is_lost = outages.unreachable(3, engine.now());
+#ifndef SIMBENCH_SIM_FAULTS_FAULTS_H_
+#define SIMBENCH_SIM_FAULTS_FAULTS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "algorithms/ports/exchange.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::sim {
+
+class Outages {
+ public:
+  explicit Outages(const std::vector<scenarios::Fault>& faults);
+
+  void start(TrueTime capture_start) { start_ = capture_start; }
+
+  bool host_stopped(PeerId host, TrueTime at) const {
+    return !outages_.empty() && stopped(host, at, false);
+  }
+  // The host is stopped or its link is.
+  bool unreachable(PeerId host, TrueTime at) const {
+    return !outages_.empty() && stopped(host, at, true);
+  }
+
+ private:
+  struct Outage {
+    PeerId host;
+    bool of_link;
+    Nanoseconds begin;  // after the start of the capture
+    Nanoseconds end;
+  };
+
+  bool stopped(PeerId host, TrueTime at, bool or_its_link) const;
+
+  std::vector<Outage> outages_;
+  TrueTime start_ = TrueTime::max();
+};
+
+class CameraFaults {
+ public:
+  explicit CameraFaults(const std::vector<scenarios::Fault>& faults);
+
+  void start(TrueTime capture_start) { start_ = capture_start; }
+
+  // The camera takes no frames and answers no polls.
+  bool vanished(std::uint32_t camera, TrueTime at) const;
+
+  // How much later than others a frame is delivered whose exposure begins at `at`. A fault delays
+  // one frame, the first of its camera that is asked about.
+  double take_delay_ns(std::uint32_t camera, TrueTime at);
+
+ private:
+  struct Absence {
+    std::uint32_t camera;
+    double begin_ms;  // after the start of the capture
+    double end_ms;
+  };
+  struct LateFrame {
+    std::uint32_t camera;
+    double from_ms;  // after the start of the capture
+    double delay_ns;
+    bool taken;
+  };
+
+  std::vector<Absence> absences_;
+  std::vector<LateFrame> late_frames_;
+  TrueTime start_ = TrueTime::max();
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_FAULTS_FAULTS_H_

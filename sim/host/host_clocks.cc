@@ -1,0 +1,136 @@
+#include "sim/host/host_clocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/clock/clock_interface.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr double kEpochMaxMs = 3.6e6;
+
+const scenarios::Nic& nic_of(const SimHost& host) { return host.world().hosts.nic; }
+
+Nanoseconds from_ns(double ns) { return Nanoseconds(std::llround(ns)); }
+
+OscillatorModel oscillator_of(const SimHost& host) {
+  RandomStream draw(host.world().run_seed, host.name("network card's oscillator"));
+  return OscillatorModel(draw.normal(nic_of(host).skew_sigma_ppm * 1e-6));
+}
+
+Nanoseconds epoch_of(const SimHost& host) {
+  RandomStream draw(host.world().run_seed, host.name("network card's epoch"));
+  return from_ms(draw.uniform(0, kEpochMaxMs));
+}
+
+}  // namespace
+
+ClockPort::ClockPort(const Parts& parts, const ClockInterface& interface, double set_cost_factor,
+                     RandomStream draws, const std::string& host_name)
+    : parts_(parts),
+      interface_(interface),
+      read_cost_(from_ms(parts.parameters.read_cost_ms)),
+      set_cost_ms_(parts.parameters.set_cost_ms * set_cost_factor),
+      draws_(std::move(draws)),
+      get_label_(host_name + ": get clock"),
+      set_label_(host_name + ": set clock") {}
+
+Task<HostTime> ClockPort::now() {
+  const Cpu::Turn turn = parts_.cpu.reserve(read_cost_);
+  if (turn.end > true_now()) co_await sleep_until(parts_.context, turn.end, get_label_);
+  co_return interface_.read(parts_.clock.read(turn.start));
+}
+
+Task<void> ClockPort::set(HostTime value) {
+  const Change change = begin_change();
+  if (change.effective > true_now()) {
+    co_await sleep_until(parts_.context, change.effective, set_label_);
+  }
+  parts_.clock.set(true_now(), interface_.set_to(value));
+  if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+}
+
+Task<void> ClockPort::adjust_frequency(double ppb) {
+  const Change change = begin_change();
+  if (change.effective > true_now()) {
+    co_await sleep_until(parts_.context, change.effective, set_label_);
+  }
+  parts_.clock.adjust_frequency(true_now(), ppb);
+  settle_in_time();
+  if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+}
+
+Task<void> ClockPort::slew(Nanoseconds offset, double max_rate_ppb) {
+  const Change change = begin_change();
+  if (change.effective > true_now()) {
+    co_await sleep_until(parts_.context, change.effective, set_label_);
+  }
+  parts_.clock.slew(true_now(), offset, max_rate_ppb);
+  settle_in_time();
+  if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+}
+
+ClockPort::Change ClockPort::begin_change() {
+  const double cost_ms = set_cost_ms_ * draws_.lognormal(parts_.parameters.set_cost_call_log_sigma);
+  const Cpu::Turn turn = parts_.cpu.reserve(from_ms(cost_ms));
+  const Nanoseconds until_effective = from_ms(cost_ms * parts_.parameters.set_effective_fraction);
+  return {std::min(turn.start + until_effective, turn.end), turn.end};
+}
+
+void ClockPort::settle_in_time() {
+  const std::optional<TrueTime> end = parts_.clock.settles_at();
+  if (!end) return;
+  Engine& engine = parts_.context.engine();
+  engine.call_at(*end, [&engine, &clock = parts_.clock] { clock.settle(engine.now()); });
+}
+
+NicClock::NicClock(SimHost& host)
+    : host_(host),
+      clock_(host.id(), oscillator_of(host), epoch_of(host)),
+      read_noise_(host.world().run_seed, host.name("network card's readings")),
+      label_(host.name("network card's clock")) {}
+
+NicClock::Call NicClock::begin_call() {
+  const Cpu::Turn turn = host_.cpu().reserve(from_ms(nic_of(host_).cross_stamp_cost_ms));
+  return {turn, turn.start + (turn.end - turn.start) / 2};
+}
+
+Task<void> NicClock::wait_until(TrueTime at) {
+  if (at > host_.true_now()) co_await sleep_until(host_.world().context, at, label_);
+}
+
+Task<CrossStamp> NicClock::cross_stamp() {
+  const Call call = begin_call();
+  co_await wait_until(call.turn.end);
+  const SystemClock& system = host_.system_clock();
+  const ClockInterface& interface = host_.clock_interface();
+  co_return CrossStamp{.before = interface.tick_of(system.read(call.turn.start)),
+                       .hardware = stamp(call.touch, read_noise_),
+                       .after = interface.tick_of(system.read(call.turn.end))};
+}
+
+Task<void> NicClock::step(Nanoseconds offset) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.set(host_.true_now(), clock_.read(host_.true_now()) + offset);
+  co_await wait_until(call.turn.end);
+}
+
+Task<void> NicClock::adjust_frequency(double ppb) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.adjust_frequency(host_.true_now(), ppb);
+  co_await wait_until(call.turn.end);
+}
+
+HardwareTime NicClock::stamp(TrueTime at, RandomStream& draw) const {
+  const scenarios::Nic& nic = nic_of(host_);
+  const HardwareTime exact(clock_.read(at).time_since_epoch());
+  return round_down(exact + from_ns(draw.normal(nic.stamp_jitter_sigma_ns)),
+                    from_ns(nic.stamp_resolution_ns));
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,152 @@
+// A simulated host's clocks as its programs reach them: through calls that take time on its CPU.
+//
+//  - Cpu: whatever costs time is served one after the other.
+//  - ClockPort: the system clock. SteadyPort: the steady clock, read at no cost and exactly.
+//  - NicClock: the network card's own clock, and the stamps that the card takes.
+//
+// Source: docs/reference/calibration.md section 2 (steps 3 and 5); docs/design.md sections 4 and 7;
+// scenario /hosts/clock and /hosts/nic; Linux PTP_SYS_OFFSET_EXTENDED.
+//
+//   const Cpu::Turn turn = cpu.reserve(from_ms(4.5));
+//   co_await sleep_until(context, turn.end, "host3: set clock");
+//
+//   NicClock nic(host);
+//   const CrossStamp stamp = co_await nic.cross_stamp();
+#ifndef SIMBENCH_SIM_HOST_HOST_CLOCKS_H_
+#define SIMBENCH_SIM_HOST_HOST_CLOCKS_H_
+
+#include <algorithm>
+#include <string>
+
+#include "algorithms/ports/host.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/clock/clock_interface.h"
+#include "sim/clock/system_clock.h"
+#include "sim/engine/engine.h"
+#include "sim/engine/random.h"
+#include "sim/engine/virtual_executor.h"
+
+namespace simbench::sim {
+
+class SimHost;
+
+// The one CPU of a host; turns are given in order of asking.
+class Cpu {
+ public:
+  struct Turn {
+    TrueTime start;
+    TrueTime end;
+  };
+
+  explicit Cpu(const Engine& engine) : engine_(engine) {}
+
+  // The next `cost` of CPU time that is free.
+  Turn reserve(Nanoseconds cost) {
+    const TrueTime start = std::max(engine_.now(), free_at_);
+    free_at_ = start + cost;
+    return {start, free_at_};
+  }
+
+ private:
+  const Engine& engine_;
+  TrueTime free_at_ = TrueTime::min();
+};
+
+// The system clock.
+//
+//  - A get takes read_cost_ms and returns the reading of its start.
+//  - A call that changes the clock (set, adjust_frequency, slew) takes set_cost_ms times the host's
+//    factor times exp(N(set_cost_call_log_sigma)); the change counts set_effective_fraction into
+//    the call.
+// Readings and settings pass the clock's granularity (sim/clock/clock_interface.h).
+class ClockPort final : public HostClock {
+ public:
+  struct Parts {
+    VirtualContext& context;
+    SystemClock& clock;
+    Cpu& cpu;
+    const scenarios::HostClock& parameters;
+  };
+
+  // All parts must outlive the port. `draws` gives the factors of the calls; `host_name` labels
+  // waits.
+  ClockPort(const Parts& parts, const ClockInterface& interface, double set_cost_factor,
+            RandomStream draws, const std::string& host_name);
+
+  Task<HostTime> now() override;
+  Task<void> set(HostTime value) override;
+  Task<void> adjust_frequency(double ppb) override;
+  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+
+ private:
+  struct Change {
+    TrueTime effective;
+    TrueTime end;
+  };
+
+  TrueTime true_now() const { return parts_.context.engine().now(); }
+  Change begin_change();
+  // Has the end of a slew reported when it comes.
+  void settle_in_time();
+
+  Parts parts_;
+  ClockInterface interface_;
+  Nanoseconds read_cost_;
+  double set_cost_ms_;
+  RandomStream draws_;
+  std::string get_label_;
+  std::string set_label_;
+};
+
+class SteadyPort final : public SteadyClock {
+ public:
+  SteadyPort(const Engine& engine, const SystemClock& clock) : engine_(engine), clock_(clock) {}
+  SteadyTime now() const override { return clock_.steady(engine_.now()); }
+
+ private:
+  const Engine& engine_;
+  const SystemClock& clock_;
+};
+
+// The clock has an oscillator of its own, N(skew_sigma_ppm) per host, and reads anything within an
+// hour at true zero. Every reading has noise N(stamp_jitter_sigma_ns) and is rounded down to
+// stamp_resolution_ns.
+//
+// A call occupies the host's CPU for cross_stamp_cost_ms and touches the card in the middle of
+// that: there it is read, stepped or adjusted. The system clock of a cross stamp is read at the
+// beginning and at the end, as the kernel does, on its ticks but not rounded to the interface's
+// resolution. Changes of rate must stay below 5e8 ppb.
+//
+// Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
+// what was queued there, and when it reaches the receiver, before anything wakes up.
+class NicClock final : public HardwareClock {
+ public:
+  // `host` must outlive the clock.
+  explicit NicClock(SimHost& host);
+
+  Task<CrossStamp> cross_stamp() override;
+  Task<void> step(Nanoseconds offset) override;
+  Task<void> adjust_frequency(double ppb) override;
+
+  // The stamp of what happened at `at`, with noise from `draw`.
+  HardwareTime stamp(TrueTime at, RandomStream& draw) const;
+
+ private:
+  struct Call {
+    Cpu::Turn turn;
+    TrueTime touch;
+  };
+
+  Call begin_call();
+  Task<void> wait_until(TrueTime at);
+
+  SimHost& host_;
+  SystemClock clock_;
+  RandomStream read_noise_;
+  std::string label_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_HOST_CLOCKS_H_

@@ -1,0 +1,147 @@
+#include "sim/rig/cameras.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+#include "scenarios/rates.h"
+
+namespace simbench::sim {
+namespace {
+
+Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
+
+UsbSharing sharing_of(const scenarios::Usb& usb) {
+  if (usb.sharing == "fifo") return UsbSharing::kFifo;
+  if (usb.sharing == "fair") return UsbSharing::kFair;
+  return UsbSharing::kDedicated;
+}
+
+// 1 MB/s is 1e6 bytes in 1e9 ns.
+double bytes_per_ns(const scenarios::Usb& usb) { return usb.bandwidth_mb_per_s * 1e-3; }
+
+ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Stream& stream) {
+  if (!scenarios::follows_trigger(cameras, stream)) return ShutterMode::kFreeRunning;
+  return cameras.sync_mode == "genlock" ? ShutterMode::kGenlock : ShutterMode::kSlave;
+}
+
+}  // namespace
+
+void Cameras::start(TrueTime at) {
+  start_ = at;
+  const auto count = static_cast<std::size_t>(scenario_.cameras.count);
+  const std::size_t kinds = scenario_.cameras.streams.size();
+  const auto per_controller = static_cast<std::uint32_t>(scenario_.usb.cameras_per_controller);
+  const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
+  std::vector<std::uint32_t> cameras_on_host(hosts, 0);
+  std::vector<std::uint32_t> controller_of_host(hosts, 0);
+  clocks_.reserve(count);
+  for (std::size_t camera = 0; camera < count; ++camera) {
+    const auto host =
+        static_cast<std::size_t>(scenario_.host_of(static_cast<std::int64_t>(camera)));
+    SIMBENCH_ASSERT(host < hosts, "a camera is on a host that does not exist");
+    const std::uint32_t place = cameras_on_host[host]++ % per_controller;
+    if (place == 0) controller_of_host[host] = controllers_++;
+    add_camera(camera);
+    for (std::size_t which = 0; which < kinds; ++which) {
+      CameraStream stream = make_stream(camera, which);
+      stream.host = static_cast<std::uint32_t>(host);
+      stream.controller = controller_of_host[host];
+      stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
+      if (stream.shutter.mode() != ShutterMode::kFreeRunning) {
+        triggered_streams_.push_back(static_cast<std::uint32_t>(streams_.size()));
+      }
+      streams_.push_back(std::move(stream));
+    }
+  }
+}
+
+TrueTime Cameras::start_of(std::size_t camera) const {
+  if (scenario_.cameras.common_start) return start_;
+  RandomStream spread(seed_, "camera/start", camera);
+  return start_ + from_ms(spread.uniform(0, scenario_.cameras.start_spread_ms));
+}
+
+void Cameras::add_camera(std::size_t camera) {
+  const scenarios::Cameras& cameras = scenario_.cameras;
+  RandomStream epoch(seed_, "camera/epoch", camera);
+  const TrueTime started = start_of(camera);
+  OscillatorModel oscillator(cameras.oscillator, seed_,
+                             "camera/oscillator/" + std::to_string(camera), started);
+  if (!cameras.skew_of_camera_ppm.empty()) {
+    oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
+  }
+  clocks_.emplace_back(std::move(oscillator), epoch.uniform(0, cameras.clock_epoch_max_ms), start_);
+  exposures_.emplace_back(cameras.auto_exposure, first_exposure(camera), seed_, camera, started);
+}
+
+CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
+  const scenarios::Stream& profile = scenario_.cameras.streams[which];
+  const ShutterSettings shutter = shutter_settings(camera, profile);
+  const double bytes =
+      static_cast<double>(profile.width * profile.height) * profile.bytes_per_pixel;
+  RandomStream latency(seed_, "camera/latency", camera);
+  TrueTime started = start_of(camera);
+  if (shutter.mode == ShutterMode::kFreeRunning) {
+    // Nothing aligns the frames of a free-running stream: they begin anywhere in a period.
+    RandomStream phase(seed_, "camera/free_running_phase", camera, which);
+    started += Nanoseconds(static_cast<std::int64_t>(phase.uniform(0, shutter.mode_period_ns)));
+  }
+  const std::uint64_t id = camera * scenario_.cameras.streams.size() + which;
+  return {.camera = static_cast<std::uint32_t>(camera),
+          .host = 0,
+          .controller = 0,
+          .index_on_controller = 0,
+          .kind = profile.kind == "colour" ? StreamKind::kColour : StreamKind::kDepth,
+          .bytes = bytes,
+          .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
+          .latency = from_ms(profile.pipeline_latency_ms +
+                             profile.latency_mode_periods * 1e3 / profile.mode_rate_hz +
+                             latency.uniform(0, scenario_.cameras.latency_camera_max_ms)),
+          .readout = shutter.readout,
+          .started = started,
+          .shutter = Shutter(shutter, started),
+          .delays = FrameDelays(scenario_.usb, seed_, id),
+          .stamp_noise = RandomStream(seed_, "camera/stamp_noise", id),
+          .loss = RandomStream(seed_, "camera/loss", id),
+          .unsteadiness = RandomStream(seed_, "camera/unsteadiness", id)};
+}
+
+ShutterSettings Cameras::shutter_settings(std::size_t camera,
+                                          const scenarios::Stream& profile) const {
+  const scenarios::Cameras& cameras = scenario_.cameras;
+  return {.mode = shutter_mode(cameras, profile),
+          .mode_period_ns = 1e9 / profile.mode_rate_hz * clocks_[camera].true_per_device(),
+          .exposure = first_exposure(camera),
+          .readout = from_ms(profile.shutter == "rolling" ? profile.readout_ms : 0),
+          .trigger_to_exposure = from_us(cameras.trigger_to_exposure_us),
+          .guard_fraction = cameras.genlock_guard_fraction,
+          .free_run_after_periods = cameras.slave_free_run_after_periods};
+}
+
+Nanoseconds Cameras::first_exposure(std::size_t camera) const {
+  const scenarios::Cameras& cameras = scenario_.cameras;
+  const auto host =
+      static_cast<std::uint64_t>(scenario_.host_of(static_cast<std::int64_t>(camera)));
+  RandomStream of_camera(seed_, "camera/exposure", camera);
+  RandomStream of_host(seed_, "host/exposure", host);
+  const double periods = cameras.exposure_camera_periods * of_camera.uniform() +
+                         cameras.exposure_host_periods * of_host.uniform();
+  const double trigger_period_ms = 1e3 / scenario_.trigger.rate_hz;
+  return from_ms(cameras.exposure_ms + periods * trigger_period_ms);
+}
+
+std::vector<UsbController> Cameras::make_controllers() const {
+  const scenarios::Usb& usb = scenario_.usb;
+  const std::size_t kinds = scenario_.cameras.streams.size();
+  const UsbSettings settings{.sharing = sharing_of(usb),
+                             .bytes_per_ns = bytes_per_ns(usb),
+                             .buffered_frames = static_cast<std::uint32_t>(usb.buffered_frames),
+                             .streams_per_camera = static_cast<std::uint32_t>(kinds)};
+  return std::vector<UsbController>(
+      controllers_,
+      UsbController(settings, static_cast<std::size_t>(usb.cameras_per_controller) * kinds));
+}
+
+}  // namespace simbench::sim

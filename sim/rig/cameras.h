@@ -1,0 +1,96 @@
+// The cameras of a rig, each with its clock, its exposure time and its image streams, and where
+// their streams are plugged in: at which host, on which USB controller.
+//
+// Cameras are numbered host by host (Scenario::host_of); usb/cameras_per_controller neighbours on a
+// host share a controller. What a stream has of its own is drawn from random streams named after
+// its camera and kind, so neither hosts nor pipelines change it.
+//
+// Source: docs/design.md section 7, docs/reference/calibration.md section 2 ("Cameras"),
+// docs/reference/d455.md.
+//
+//   Cameras cameras(scenario, seed);
+//   cameras.start(engine.now());
+//   for (CameraStream& stream : cameras.streams()) timers.push_back(stream.shutter.next_timer());
+#ifndef SIMBENCH_SIM_RIG_CAMERAS_H_
+#define SIMBENCH_SIM_RIG_CAMERAS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "recording/recording.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/camera/auto_exposure.h"
+#include "sim/camera/device_clock.h"
+#include "sim/camera/shutter.h"
+#include "sim/engine/random.h"
+#include "sim/usb/host_stack.h"
+#include "sim/usb/usb_controller.h"
+
+namespace simbench::sim {
+
+// One image stream of one camera.
+struct CameraStream {
+  std::uint32_t camera;
+  std::uint32_t host;
+  std::uint32_t controller;
+  std::uint32_t index_on_controller;
+  StreamKind kind;
+  double bytes;         // of a frame
+  double transfer_ns;   // of a frame that is alone on the bus
+  Nanoseconds latency;  // from the end of the exposure to the offer to the bus
+  Nanoseconds readout;  // of a rolling shutter
+  TrueTime started;
+  Shutter shutter;
+  FrameDelays delays;
+  RandomStream stamp_noise;
+  RandomStream loss;
+  RandomStream unsteadiness;
+  TrueTime last_arrival = TrueTime::min();
+  std::uint32_t counter = 0;  // of the next frame
+};
+
+class Cameras {
+ public:
+  // `scenario` must outlive the cameras.
+  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
+      : scenario_(scenario), seed_(seed) {}
+
+  // The cameras are started at `at`, once. There are no clocks and streams before that.
+  void start(TrueTime at);
+
+  // When this camera starts: with all others, or somewhat later.
+  TrueTime start_of(std::size_t camera) const;
+
+  DeviceClock& clock(std::size_t camera) { return clocks_[camera]; }
+  // The exposure time that a camera begins with at `at`.
+  Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
+
+  CameraStream& stream(std::uint32_t id) { return streams_[id]; }
+  std::vector<CameraStream>& streams() { return streams_; }
+  // The numbers of those that pulses start.
+  const std::vector<std::uint32_t>& triggered_streams() const { return triggered_streams_; }
+
+  // A controller of its own for each group of cameras, as CameraStream::controller counts them.
+  std::vector<UsbController> make_controllers() const;
+
+ private:
+  void add_camera(std::size_t camera);
+  CameraStream make_stream(std::size_t camera, std::size_t which) const;
+  ShutterSettings shutter_settings(std::size_t camera, const scenarios::Stream& profile) const;
+  Nanoseconds first_exposure(std::size_t camera) const;
+
+  const scenarios::Scenario& scenario_;
+  std::uint64_t seed_;
+  TrueTime start_{};
+  std::uint32_t controllers_ = 0;
+  std::vector<DeviceClock> clocks_;
+  std::vector<AutoExposure> exposures_;
+  std::vector<CameraStream> streams_;
+  std::vector<std::uint32_t> triggered_streams_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_RIG_CAMERAS_H_
