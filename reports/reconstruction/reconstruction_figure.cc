@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
-#include "reports/reconstruction/reconstruction_text.h"
+#include "reports/reconstruction/reconstruction_document.h"
 
 namespace simbench::reports {
 namespace {

@@ -10,7 +10,6 @@
 #include "evaluation/statistics/statistics.h"
 #include "reports/results/json.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -74,33 +73,20 @@ std::string metric_text(const Prediction& prediction) {
   return prediction.metric;
 }
 
-TextTable block(const std::vector<Prediction>& rows) {
-  TextTable table({{"pipeline", Align::kLeft},
-                   {"metric", Align::kLeft},
-                   {"measured\nmedian ms"},
-                   {"measured\n5-95 %"},
-                   {"simulated\nmedian ms"},
-                   {"simulated\n5-95 %"},
-                   {"measured\nmedian is", Align::kLeft}},
-                  2);
+Table prediction_table(const std::vector<Prediction>& rows) {
+  Table table({{"pipeline", Align::kLeft},
+               {"metric", Align::kLeft},
+               {"measured\nmedian ms"},
+               {"measured\n5-95 %"},
+               {"simulated\nmedian ms"},
+               {"simulated\n5-95 %"},
+               {"measured\nmedian is", Align::kLeft}},
+              2);
   for (const Prediction& row : rows) {
     table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),
                number_text(row.simulated.median), band_text(row.simulated), inside_text(row)});
   }
   return table;
-}
-
-std::string report(const Results& measured, const Results& simulated, bool markdown) {
-  const std::vector<Prediction> rows = predictions(measured, simulated);
-  const bool one = std::any_of(rows.begin(), rows.end(),
-                               [](const Prediction& row) { return row.measured_count == 1; });
-  const std::string legend = one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition)
-                                 : std::string(kPredictionLegend);
-  const std::string heading =
-      fmt::format("Measured beside predicted ({} simulated seed{})", simulated.seed_count,
-                  simulated.seed_count == 1 ? "" : "s");
-  if (markdown) return fmt::format("### {}\n\n{}\n{}\n", heading, block(rows).markdown(), legend);
-  return fmt::format("{}\n\n{}\n{}", heading, block(rows).plain(), wrapped(legend));
 }
 
 Json band_json(const Series& series) {
@@ -146,12 +132,15 @@ std::vector<Prediction> predictions(const Results& measured, const Results& simu
   return all;
 }
 
-std::string prediction_table(const Results& measured, const Results& simulated) {
-  return fitted(report(measured, simulated, false));
-}
-
-std::string prediction_markdown(const Results& measured, const Results& simulated) {
-  return report(measured, simulated, true);
+Block prediction_block(const Results& measured, const Results& simulated) {
+  const std::vector<Prediction> rows = predictions(measured, simulated);
+  const bool one = std::any_of(rows.begin(), rows.end(),
+                               [](const Prediction& row) { return row.measured_count == 1; });
+  return {
+      .heading = fmt::format("Measured beside predicted ({} simulated seed{})",
+                             simulated.seed_count, simulated.seed_count == 1 ? "" : "s"),
+      .table = prediction_table(rows),
+      .prose = {one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition) : kPredictionLegend}};
 }
 
 std::string json_with_prediction(const Results& measured, const Results& simulated) {

@@ -7,8 +7,9 @@
 
 #include "recording/decimal.h"
 #include "reports/results/csv.h"
+#include "reports/text/block.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -33,21 +34,21 @@ std::string name_of(const Replay& replay, const CameraReplay& camera) {
 }
 
 std::string cameras_text(const Replay& replay) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"host", Align::kLeft},
-                   {"frames"},
-                   {"missing"},
-                   {"span\ns"},
-                   {"sensor period\nms"},
-                   {"\nsd ms"},
-                   {"arrival period\nms"},
-                   {"\nsd ms"},
-                   {"drift\nppm"},
-                   {"by envelope\nppm"},
-                   {"excess ms\n50 %"},
-                   {"\n95 %"},
-                   {"\n99 %"},
-                   {"\nmax"}});
+  Table table({{"camera", Align::kLeft},
+               {"host", Align::kLeft},
+               {"frames"},
+               {"missing"},
+               {"span\ns"},
+               {"sensor period\nms"},
+               {"\nsd ms"},
+               {"arrival period\nms"},
+               {"\nsd ms"},
+               {"drift\nppm"},
+               {"by envelope\nppm"},
+               {"excess ms\n50 %"},
+               {"\n95 %"},
+               {"\n99 %"},
+               {"\nmax"}});
   for (const CameraReplay& camera : replay.cameras) {
     const CameraStatistics& s = camera.statistics;
     table.add({name_of(replay, camera), camera.host, count_text(s.frames),
@@ -58,19 +59,19 @@ std::string cameras_text(const Replay& replay) {
                number_text(s.excess.p50_ms), number_text(s.excess.p95_ms),
                number_text(s.excess.p99_ms), number_text(s.excess.max_ms)});
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string rows_text(const Replay& replay) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"device_time", Align::kLeft},
-                   {"jitter\nms"},
-                   {"residual ms\nsd"},
-                   {"\n95 %"},
-                   {"\n99 %"},
-                   {"\nmax"},
-                   {"drift\nppm"}},
-                  2);
+  Table table({{"camera", Align::kLeft},
+               {"device_time", Align::kLeft},
+               {"jitter\nms"},
+               {"residual ms\nsd"},
+               {"\n95 %"},
+               {"\n99 %"},
+               {"\nmax"},
+               {"drift\nppm"}},
+              2);
   for (const CameraReplay& camera : replay.cameras) {
     for (const DeviceTimeReplay& row : camera.rows) {
       table.add({name_of(replay, camera), row.device_time, number_text(row.jitter_ms),
@@ -79,7 +80,7 @@ std::string rows_text(const Replay& replay) {
                  number_text(row.drift_ppm)});
     }
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string rig_text(const RigReplay& rig) {
@@ -93,13 +94,13 @@ std::string rig_text(const RigReplay& rig) {
       rig.common_start_plausible
           ? "less than half a period, as after a common start."
           : "half a period or more, so without a common start; its AMD and RMDV mean nothing.");
-  TextTable table({{"device_time", Align::kLeft},
-                   {"frames matched by", Align::kLeft},
-                   {"sets"},
-                   {"frames\ndiscarded"},
-                   {"AMD\nms"},
-                   {"RMDV\nms"}},
-                  2);
+  Table table({{"device_time", Align::kLeft},
+               {"frames matched by", Align::kLeft},
+               {"sets"},
+               {"frames\ndiscarded"},
+               {"AMD\nms"},
+               {"RMDV\nms"}},
+              2);
   for (const RigRow& row : rig.rows) {
     table.add({row.device_time, "GenLock order", count_text(rig.complete_pulses), "-",
                number_text(row.amd_ms), number_text(row.rmdv_ms)});
@@ -108,7 +109,7 @@ std::string rig_text(const RigReplay& rig) {
                  number_text(found.amd_ms), number_text(found.rmdv_ms)});
     }
   }
-  return text + table.plain();
+  return text + plain(table);
 }
 
 constexpr const char* kReplayLegend = R"(

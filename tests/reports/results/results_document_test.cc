@@ -1,12 +1,12 @@
 // The whole table, as a newcomer sees it.
-#include "reports/results/table.h"
+#include "reports/results/results_document.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
@@ -14,6 +14,10 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+std::string table(const evaluation::Results& results, const std::string& summary) {
+  return plain(results_document(results, summary));
+}
 
 TEST(Table, PlainText) {
   EXPECT_EQ(table(sample_results(), "A fit, stated as such."), R"(sample: 2 seeds (1-2)
@@ -76,7 +80,8 @@ free_running   epsilon           0          -     0 %       0        0          
 }
 
 TEST(Table, Markdown) {
-  EXPECT_EQ(markdown(sample_results(), "A fit, stated as such."), R"(## sample: 2 seeds (1-2)
+  EXPECT_EQ(markdown(results_document(sample_results(), "A fit, stated as such.")),
+            R"(## sample: 2 seeds (1-2)
 
 A fit, stated as such.
 
