@@ -32,36 +32,28 @@ Table error_table(const Board& board) {
   const auto stamps = [](const Rank& rank) {
     return std::string(rank.row->offline ? "offline" : "online");
   };
-  const auto median = [](const char* header, Series Row::*series) {
-    return Field<Rank>{
-        {header}, [series](const Rank& rank) { return number_text((rank.row->*series).median); }};
-  };
-  const auto band = [](const char* header, Series Row::*series) {
-    return Field<Rank>{{header},
-                       [series](const Rank& rank) { return band_text(rank.row->*series); }};
-  };
-  const auto share = [](const char* header, double Row::*member) {
-    return Field<Rank>{{header},
-                       [member](const Rank& rank) { return share_text(rank.row->*member); }};
-  };
   const auto ratio = [](const char* header, PairedRatios Rank::*to, Series PairedRatios::*of) {
     return Field<Rank>{{header},
                        [to, of](const Rank& rank) { return number_text((rank.*to.*of).median); }};
   };
-  const std::vector<Field<Rank>> fields = {
+  std::vector<Field<Rank>> fields = {
       {{board.name.empty() ? "reference" : board.name, Align::kLeft}, name},
-      {{"stamps", Align::kLeft}, stamps},
-      median("absolute error\nmedian ms", &Row::absolute_error_ms),
-      band("absolute error\n5-95 %", &Row::absolute_error_ms),
-      ratio("error /\noracle's", &Rank::to_oracle, &PairedRatios::error),
-      ratio("error /\npaper's Both", &Rank::to_paper, &PairedRatios::error),
-      median("AMD\nmedian ms", &Row::amd_ms),
-      band("AMD\n5-95 %", &Row::amd_ms),
-      ratio("AMD /\noracle's", &Rank::to_oracle, &PairedRatios::amd),
-      ratio("AMD /\npaper's Both", &Rank::to_paper, &PairedRatios::amd),
-      median("host clock error\nmedian ms", &Row::host_error_ms),
-      share("sets:\nprecision", &Row::precision),
-      share("sets:\nrecall", &Row::recall)};
+      {{"stamps", Align::kLeft}, stamps}};
+  const auto add = [&fields](const char* id, bool with_band) {
+    for (const Field<Row>& field : metric_fields(evaluation::metric(id))) {
+      fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});
+      if (!with_band) break;
+    }
+  };
+  add("absolute_error_ms", true);
+  fields.push_back(ratio("error /\noracle's", &Rank::to_oracle, &PairedRatios::error));
+  fields.push_back(ratio("error /\npaper's Both", &Rank::to_paper, &PairedRatios::error));
+  add("amd_ms", true);
+  fields.push_back(ratio("AMD /\noracle's", &Rank::to_oracle, &PairedRatios::amd));
+  fields.push_back(ratio("AMD /\npaper's Both", &Rank::to_paper, &PairedRatios::amd));
+  add("host_error_ms", false);
+  add("precision", false);
+  add("recall", false);
   std::vector<Rank> ranks = board.online;
   ranks.insert(ranks.end(), board.offline.begin(), board.offline.end());
   return table_of(fields, ranks);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
 
 #include "reports/results/ground_truth_text.h"
 #include "reports/text/number_text.h"
@@ -12,11 +13,12 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Claim;
+using evaluation::Metric;
 using evaluation::PublishedComparison;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::SeedScore;
-using evaluation::Series;
+using evaluation::TablePlaces;
 using RowFields = std::vector<Field<Row>>;
 
 bool any_published(const Results& results) {
@@ -34,16 +36,9 @@ Field<Row> pipeline_field() {
   return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
 }
 
-Field<Row> median_field(const std::string& header, Series Row::*series) {
-  return {{header}, [series](const Row& row) { return number_text((row.*series).median); }};
-}
-
-Field<Row> band_field(const std::string& header, Series Row::*series) {
-  return {{header}, [series](const Row& row) { return band_text(row.*series); }};
-}
-
-Field<Row> share_field(const std::string& header, double Row::*share) {
-  return {{header}, [share](const Row& row) { return share_text(row.*share); }};
+std::string value_text(const Metric& metric, const Row& row) {
+  if (metric.is_count()) return metric.is_known(row) ? count_text(metric.count(row)) : "-";
+  return metric.is_share() ? share_text(metric.value(row)) : number_text(metric.value(row));
 }
 
 Field<Row> published_field(Column column, std::string (*cell)(const PublishedComparison&)) {
@@ -83,31 +78,38 @@ Table paper_table(const Results& results) {
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
-  append(fields,
-         {median_field("AMD\nmedian ms", &Row::amd_ms), band_field("AMD\n5-95 %", &Row::amd_ms)});
-  if (published) append(fields, published_amd_fields());
-  append(fields, {median_field("RMDV\nmedian ms", &Row::rmdv_ms),
-                  band_field("RMDV\n5-95 %", &Row::rmdv_ms)});
-  if (published) append(fields, published_rmdv_fields());
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::paper)) {
+    append(fields, metric_fields(*metric));
+    if (published && metric->id == std::string_view("amd_ms")) {
+      append(fields, published_amd_fields());
+    }
+    if (published && metric->id == std::string_view("rmdv_ms")) {
+      append(fields, published_rmdv_fields());
+    }
+  }
   return table_of(fields, results.rows);
 }
 
 // What a real rig cannot measure about itself.
 Table truth_table(const Results& results) {
-  const RowFields fields = {
-      pipeline_field(),
-      median_field("absolute error\nmedian ms", &Row::absolute_error_ms),
-      band_field("absolute error\n5-95 %", &Row::absolute_error_ms),
-      median_field("bias\nms", &Row::bias_ms),
-      median_field("host clock error\nmedian ms", &Row::host_error_ms),
-      band_field("host clock error\n5-95 %", &Row::host_error_ms),
-      median_field("exposure\nspread ms", &Row::exposure_spread_ms),
-      share_field("sets:\nprecision", &Row::precision),
-      share_field("sets:\nrecall", &Row::recall),
-      {{"margin\nms"}, [](const Row& row) { return number_text(row.margin_ms); }},
-      {{"frames\ndropped"}, [](const Row& row) { return count_text(row.frames.dropped); }},
-      {{"pulses\nscored"}, [](const Row& row) { return count_text(row.evaluated_pulses); }}};
+  RowFields fields = {pipeline_field()};
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
+    append(fields, metric_fields(*metric));
+  }
   return table_of(fields, results.rows);
+}
+
+// What the columns of a table mean, as the metrics say it.
+void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
+  for (const Metric* metric : evaluation::table_metrics(table)) {
+    const bool is_told = table == &TablePlaces::sets && metric->tables.truth > 0;
+    if (is_told || metric->legend[0] == '\0') continue;
+    if (metric->legend_continues && !lines.empty()) {
+      lines.back().append(" ").append(metric->legend);
+    } else {
+      lines.emplace_back(metric->legend);
+    }
+  }
 }
 
 std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
@@ -130,15 +132,9 @@ std::vector<std::string> results_legend(const Results& results) {
           ? "Every repetition of a pipeline is a capture of its own. A value is the median over "
             "the repetitions, [a, b] their band from 5 to 95 %."
           : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
-            "seeds, [a, b] their band from 5 to 95 %.",
-      "AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation "
-      "of these from their median.",
-      "absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with "
-      "its sign. AMD is blind to what all share.",
-      "host clock error: mean |slave - master|. exposure spread: how far apart the exposures "
-      "really were, a limit for AMD.",
-      "precision: gathered sets that hold one pulse only; recall: complete pulses found whole; "
-      "margin: from the range to the limit of a set."};
+            "seeds, [a, b] their band from 5 to 95 %."};
+  append_legends(&TablePlaces::paper, lines);
+  append_legends(&TablePlaces::truth, lines);
   if (const std::string unverified = unverified_legend(results); !unverified.empty()) {
     lines.push_back(unverified);
   }
@@ -213,35 +209,31 @@ Block stages_block(const Results& results) {
 
 }  // namespace
 
+std::vector<Field<Row>> metric_fields(const Metric& metric) {
+  // Copied, since the address of a metric may not last.
+  RowFields fields = {{{metric.heading, Align::kRight, metric.legend},
+                       [metric](const Row& row) { return value_text(metric, row); }}};
+  if (metric.band_heading != nullptr) {
+    fields.push_back({{metric.band_heading, Align::kRight, metric.legend},
+                      [metric](const Row& row) { return band_text(metric.series(row)); }});
+  }
+  return fields;
+}
+
 Table sets_table(const std::vector<const Row*>& rows) {
-  const auto count_field = [](const char* header, std::int64_t evaluation::SetCounts::*count) {
-    return Field<Row>{{header}, [count](const Row& row) { return count_text(row.sets.*count); }};
-  };
-  const RowFields fields = {
-      pipeline_field(),
-      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }},
-      count_field("complete\nsets", &evaluation::SetCounts::emitted),
-      share_field("sets:\nprecision", &Row::precision),
-      share_field("sets:\nrecall", &Row::recall),
-      {{"index\nerrors"},
-       [](const Row& row) { return row.verified() ? count_text(row.sets.index_errors) : "-"; }},
-      count_field("partial\nsets", &evaluation::SetCounts::partial),
-      count_field("frames\ndiscarded", &evaluation::SetCounts::discarded_frames),
-      median_field("AMD of\nsets ms", &Row::set_amd_ms),
-      median_field("abs. error\nof sets ms", &Row::set_absolute_error_ms),
-      median_field("emitted after\nmean ms", &Row::emission_latency_ms),
-      {{"emitted after\nlargest ms"},
-       [](const Row& row) { return number_text(row.emission_latency_max_ms); }}};
+  RowFields fields = {pipeline_field(),
+                      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
+    append(fields, metric_fields(*metric));
+  }
   std::vector<std::reference_wrapper<const Row>> subjects;
   for (const Row* row : rows) subjects.emplace_back(*row);
   return table_of(fields, subjects);
 }
 
 std::vector<std::string> sets_legend(const Results& results) {
-  std::vector<std::string> lines = {
-      "index errors: frames of complete sets that are not of the pulse of most others there. "
-      "emitted after: from the last member's arrival. AMD of sets is small where sets were given "
-      "up: see recall."};
+  std::vector<std::string> lines;
+  append_legends(&TablePlaces::sets, lines);
   if (has_real_rows(results)) {
     lines.emplace_back(
         "Arrivals on a real rig are read from the hosts' own clocks: where these are apart, "

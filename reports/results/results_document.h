@@ -1,5 +1,7 @@
 // Results for people: what `simbench run` prints and what the page of the report shows of a run.
 //
+// The columns are those of evaluation::metrics(): a metric that names its table stands in it.
+//
 // A block each, with a row per pipeline: the paper's metrics beside the published values, and what
 // only a bench with true time can tell; a third about the gathered sets if the pipelines gather in
 // different ways. Rows that are not of a simulation say what ground truth they rest on;
@@ -15,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/results.h"
 #include "reports/text/block.h"
 
@@ -22,6 +25,9 @@ namespace simbench::reports {
 
 // `summary` is the scenario's own line about itself; it says where a scenario is a fit.
 Document results_document(const evaluation::Results& results, const std::string& summary);
+
+// The columns of a metric in a table of rows: its value and, if it has a heading, its band.
+std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 
 // What gathering made of the stamps: a line per pipeline, for policies beside each other.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
