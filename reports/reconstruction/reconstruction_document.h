@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "reconstruction/results.h"
+#include "reports/figures/figure.h"
 #include "reports/reconstruction/reconstruction_limits.h"
 #include "reports/text/block.h"
 
@@ -48,6 +49,16 @@ std::string ratio_sentence(const PublishedRatio& ratio);
 std::string speed_sentence(const reconstruction::SpeedNeeded& needed);
 // What was simulated and assumed, and what the numbers cannot tell; then what the results note.
 std::vector<std::string> honest_notes(const reconstruction::ReconstructionResults& results);
+
+// What a millisecond costs, as a figure (reports/figures/figure.h), which anything that draws
+// figures can draw.
+//
+// One panel: the median mean error over desynchronisation, a curve for each speed of the subject,
+// and the published means as lines. A second one, where it was looked for: the error over the
+// speed, at the desynchronisation of the row with the largest published mean. With neither there is
+// nothing to draw (Figure::absent).
+
+Figure reconstruction_figure(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports
 

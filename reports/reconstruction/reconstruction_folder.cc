@@ -8,7 +8,6 @@
 #include "reports/figures/figure_csv.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/reconstruction/reconstruction_document.h"
-#include "reports/reconstruction/reconstruction_figure.h"
 #include "reports/reconstruction/reconstruction_json.h"
 #include "reports/text/plain_text.h"
 

@@ -7,7 +7,8 @@
 //   results.json            reports/reconstruction/reconstruction_json.h
 //   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; what is not a letter,
 //                           a digit, '.', '_' or '-' in the name of a pipeline becomes '_'
-//   curve.csv, curve.svg    reports/reconstruction/reconstruction_figure.h; the SVG where there is
+//   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG where there
+//   is
 //                           a gnuplot
 //   report.html             reports/reconstruction/reconstruction_html.h
 //

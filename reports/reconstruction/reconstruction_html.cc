@@ -8,11 +8,9 @@
 
 #include "reconstruction/paint.h"
 #include "recording/version.h"
-#include "reports/page/html_columns.h"
 #include "reports/page/html_figures.h"
 #include "reports/page/html_page.h"
 #include "reports/reconstruction/reconstruction_document.h"
-#include "reports/reconstruction/reconstruction_figure.h"
 #include "reports/text/html_text.h"
 
 namespace simbench::reports {

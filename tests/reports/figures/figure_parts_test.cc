@@ -1,5 +1,3 @@
-#include "reports/figures/thin.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+
+#include "reports/figures/figure_parts.h"
 
 namespace simbench::reports {
 namespace {
