@@ -42,6 +42,7 @@ Table comparison_table(const Comparison& comparison) {
                {"B / A\nof means"},
                {"B / A\n95 % interval"},
                {"B is", Align::kLeft}});
+  const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
                                  ? pipeline.pipeline_b
@@ -80,8 +81,8 @@ std::string legend(const Comparison& comparison) {
   return fmt::format(
       "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
       "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
-      "interval "
-      "excludes 0. no difference seen: it includes 0 and any difference is within {:.3g} % of A's "
+      "interval excludes 0. no difference seen: it includes 0 and any difference is within {:.3g} "
+      "% of A's "
       "mean (--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds "
       "needed it is narrower than that, so that one of the others must come out.",
       100 * comparison.smallest_effect);

@@ -1,3 +1,5 @@
+#include "reports/figures/figure_parts.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-
-#include "reports/figures/figure_parts.h"
 
 namespace simbench::reports {
 namespace {

@@ -1,4 +1,6 @@
 // Columns of numbers: read back by a decoder that is written from the description alone.
+#include "reports/page/html_figures.h"
+
 #include <gmock/gmock.h>
 
 #include <array>
@@ -7,8 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-
-#include "reports/page/html_figures.h"
 
 namespace simbench::reports {
 namespace {

@@ -99,7 +99,8 @@ TEST(SweepReport, SeedsNeededUpToThoseThatWereRun) {
   one.pipelines = {"fast"};
   one.seeds = 40;
   std::vector<SweepScore> many(40);
-  for (std::size_t i = 0; i < many.size(); ++i) many[i].at("amd_ms") = 1 + static_cast<double>(i) / 39;
+  for (std::size_t i = 0; i < many.size(); ++i)
+    many[i].at("amd_ms") = 1 + static_cast<double>(i) / 39;
   const std::string table =
       plain({.blocks = {seeds_needed_block(one, evaluation::response(one, many))}});
   EXPECT_THAT(table, HasSubstr("n = 32"));
