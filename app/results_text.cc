@@ -3,22 +3,22 @@
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
-#include "reports/results/table.h"
+#include "reports/results/results_document.h"
 
 namespace simbench::app {
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format) {
-  const std::string& summary = scenario.summary;
-  if (scenario.evaluation.table == "leaderboard") {
-    if (format == "json") return reports::leaderboard_json(results);
-    if (format == "markdown") return reports::leaderboard_markdown(results, summary);
-    if (format == "table") return reports::leaderboard_table(results, summary);
+                         const std::string& format, const std::vector<reports::Block>& more) {
+  const bool leaderboard = scenario.evaluation.table == "leaderboard";
+  if (format == "json") {
+    return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
   }
-  if (format == "json") return reports::json(results);
   if (format == "csv") return reports::csv(results);
-  if (format == "markdown") return reports::markdown(results, summary);
-  return reports::table(results, summary);
+  reports::Document document = leaderboard
+                                   ? reports::leaderboard_document(results, scenario.summary)
+                                   : reports::results_document(results, scenario.summary);
+  document.blocks.insert(document.blocks.end(), more.begin(), more.end());
+  return format == "markdown" ? markdown(document) : plain(document);
 }
 
 }  // namespace simbench::app

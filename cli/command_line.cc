@@ -37,7 +37,7 @@
 #include "recording/rs_csv.h"
 #include "recording/version.h"
 #include "reports/text/output_folder.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 #include "scenarios/loader.h"
 
 namespace simbench {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "reports/text/table_layout.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::cli {
 namespace {

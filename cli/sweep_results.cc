@@ -12,7 +12,7 @@
 #include "reports/sweep/sweep_figure.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_folder.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 #include "scenarios/study.h"
 
 namespace simbench::cli {
@@ -35,28 +35,19 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
 
 std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                     const std::vector<std::string>& tables) {
-  std::string text;
+  reports::Document document;
   for (const std::string& table : tables) {
-    if (!text.empty()) text += '\n';
-    if (table == "host_order") {
-      text += reports::host_order_table(plan, rows);
-    } else if (table == "seeds_needed") {
-      text += reports::seeds_needed_table(plan, rows);
-    } else {
-      text += reports::response_table(plan, rows);
-    }
+    document.blocks.push_back(table == "host_order"     ? reports::host_order_block(plan, rows)
+                              : table == "seeds_needed" ? reports::seeds_needed_block(plan, rows)
+                                                        : reports::response_block(plan, rows));
   }
-  return text;
+  return plain(document);
 }
 
-// For a file the page is as wide as need be, whatever the terminal.
 std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                           const std::vector<std::string>& tables) {
-  const std::optional<std::size_t> width = reports::page_width();
-  reports::set_page_width(std::nullopt);
-  std::string text = text_of(plan, rows, tables);
-  reports::set_page_width(width);
-  return text;
+  const reports::FilePage page;
+  return text_of(plan, rows, tables);
 }
 
 reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
 
 namespace simbench::cli {

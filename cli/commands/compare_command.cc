@@ -65,10 +65,9 @@ int compare(CompareOptions options) {
     print_result(reports::comparison_json(comparison));
   } else if (options.format == "csv") {
     print_result(reports::comparison_csv(comparison));
-  } else if (options.format == "markdown") {
-    print_result(reports::comparison_markdown(comparison));
   } else {
-    print_result(reports::comparison_table(comparison));
+    const reports::Document document = reports::comparison_document(comparison);
+    print_result(options.format == "markdown" ? markdown(document) : plain(document));
   }
   return kOk;
 }

@@ -3,7 +3,8 @@
 #include <memory>
 
 #include "cli/exit_status.h"
-#include "reports/text/text_table.h"
+#include "reports/text/block.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::cli {
 namespace {
@@ -28,15 +29,15 @@ std::string shortened(const std::string& value) {
 
 std::string parameters_text(const scenarios::Scenario& scenario) {
   using reports::Align;
-  reports::TextTable table({{"parameter", Align::kLeft},
-                            {"value"},
-                            {"unit", Align::kLeft},
-                            {"meaning", Align::kLeft},
-                            {"source", Align::kLeft}});
+  reports::Table table({{"parameter", Align::kLeft},
+                        {"value"},
+                        {"unit", Align::kLeft},
+                        {"meaning", Align::kLeft},
+                        {"source", Align::kLeft}});
   for (const scenarios::ParameterLine& line : scenarios::describe(scenario)) {
     table.add({line.pointer, shortened(line.value), line.unit, line.meaning, line.source});
   }
-  return reports::wrapped(scenario.name + ": " + scenario.summary) + "\n" + table.plain();
+  return reports::wrapped(scenario.name + ": " + scenario.summary) + "\n" + plain(table);
 }
 
 int describe(const DescribeOptions& options) {

@@ -18,8 +18,8 @@
 #include "reports/figures/figure_catalogue.h"
 #include "reports/figures/figure_csv.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/text/block.h"
 #include "reports/text/output_file.h"
-#include "reports/text/text_table.h"
 #include "scenarios/loader.h"
 
 namespace simbench::cli {
@@ -59,10 +59,10 @@ struct FigureCommand {
 
 std::string catalogue_text() {
   using reports::Align;
-  reports::TextTable table({{"figure", Align::kLeft},
-                            {"of the paper", Align::kLeft},
-                            {"drawn for", Align::kLeft},
-                            {"what it shows", Align::kLeft}});
+  reports::Table table({{"figure", Align::kLeft},
+                        {"of the paper", Align::kLeft},
+                        {"drawn for", Align::kLeft},
+                        {"what it shows", Align::kLeft}});
   for (const FigureEntry& entry : reports::figure_catalogue()) {
     const char* scope = "";
     switch (entry.scope) {
@@ -81,7 +81,7 @@ std::string catalogue_text() {
     }
     table.add({entry.id, entry.paper, scope, entry.title});
   }
-  return table.plain() + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
+  return plain(table) + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
 }
 
 const FigureEntry& entry_named(const std::string& name) {

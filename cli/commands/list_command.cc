@@ -12,14 +12,15 @@
 #include "cli/commands/camera_list.h"
 #include "cli/exit_status.h"
 #include "cli/sweep_results.h"
-#include "reports/text/text_table.h"
+#include "reports/text/block.h"
+#include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
 
 namespace simbench::cli {
 namespace {
 
 using reports::Align;
-using reports::TextTable;
+using reports::Table;
 
 constexpr const char* kListExamples = R"(
 Examples:
@@ -97,9 +98,9 @@ std::string bare_names(const ListOptions& options) {
 
 template <class Entries>
 std::string names_text(const char* stage, const Entries& entries) {
-  TextTable table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
+  Table table({{stage, Align::kLeft}, {"what it is", Align::kLeft}});
   for (const auto& entry : entries) table.add({entry.info.name, entry.info.summary});
-  return table.plain();
+  return plain(table);
 }
 
 std::string algorithm_text(const AlgorithmInfo& info) {
@@ -121,14 +122,14 @@ std::string details_text(const char* stage, const Entries& entries) {
 }
 
 std::string pipelines_text(const std::string& scenario) {
-  TextTable table({{"pipeline", Align::kLeft},
-                   {"host_sync", Align::kLeft},
-                   {"device_time", Align::kLeft},
-                   {"gathering", Align::kLeft}});
+  Table table({{"pipeline", Align::kLeft},
+               {"host_sync", Align::kLeft},
+               {"device_time", Align::kLeft},
+               {"gathering", Align::kLeft}});
   for (const auto& pipeline : scenarios::load_scenario(scenario).pipelines) {
     table.add({pipeline.name, pipeline.host_sync, pipeline.device_time, pipeline.gathering});
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string listing(const ListOptions& options) {

@@ -17,8 +17,9 @@
 #include "cli/watched.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reconstruction/experiment.h"
+#include "reports/reconstruction/reconstruction_document.h"
 #include "reports/reconstruction/reconstruction_folder.h"
-#include "reports/reconstruction/reconstruction_report.h"
+#include "reports/reconstruction/reconstruction_json.h"
 #include "sim/rig/simulation.h"
 
 namespace simbench::cli {
@@ -101,7 +102,7 @@ std::vector<double> in_order(std::vector<double> values) {
 std::string text_of(const ReconstructionResults& results, const std::string& format) {
   if (format == "json") return reports::reconstruction_json(results);
   if (format == "csv") return reports::reconstruction_csv(results);
-  return reports::reconstruction_table(results);
+  return plain(reports::reconstruction_document(results));
 }
 
 std::optional<ReconstructionResults> reconstruct(

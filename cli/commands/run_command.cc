@@ -101,10 +101,9 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
   }
   if (options.format == "json") {
     print_result(reports::budget_json(report));
-  } else if (options.format == "markdown") {
-    print_result(reports::budget_markdown(report));
   } else {
-    print_result(reports::budget_table(report));
+    const reports::Document document = reports::budget_document(report);
+    print_result(options.format == "markdown" ? markdown(document) : plain(document));
   }
   return kOk;
 }
@@ -128,11 +127,8 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                  const evaluation::Results& simulated,
                                  const scenarios::Scenario& scenario, const std::string& format) {
   if (format == "json") return reports::json_with_prediction(measured, simulated);
-  std::string results = app::results_text(measured, scenario, format);
-  if (format == "csv") return results;
-  return results + "\n" +
-         (format == "markdown" ? reports::prediction_markdown(measured, simulated)
-                               : reports::prediction_table(measured, simulated));
+  return app::results_text(measured, scenario, format,
+                           {reports::prediction_block(measured, simulated)});
 }
 
 // A table of dashes is no result.

@@ -163,8 +163,8 @@ std::vector<std::string> pipelines_of(const reports::MeasuredStudy& study,
 
 std::string formatted(const reports::ModelGapReport& report, const std::string& format) {
   if (format == "json") return reports::model_gap_json(report);
-  if (format == "markdown") return reports::model_gap_markdown(report);
-  return reports::model_gap_table(report);
+  const reports::Document document = reports::model_gap_document(report);
+  return format == "markdown" ? markdown(document) : plain(document);
 }
 
 int validate_model(const ValidateModelOptions& options) {

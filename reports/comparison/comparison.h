@@ -10,7 +10,7 @@
 // no common pipeline, an unknown name.
 //
 //   const Archive monday = read_archive("monday");
-//   std::cout << comparison_table(compare_with_baseline(monday, "ntp_last_set", {}));
+//   std::cout << plain(comparison_document(compare_with_baseline(monday, "ntp_last_set", {})));
 #ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 #define SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 
@@ -20,6 +20,7 @@
 
 #include "evaluation/statistics/paired.h"
 #include "reports/archive/archive_reader.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -60,8 +61,7 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
                                  const ComparisonOptions& options);
 
 // A line for each pipeline and metric, verdicts, notes; with a baseline also in words.
-std::string comparison_table(const Comparison& comparison);
-std::string comparison_markdown(const Comparison& comparison);
+Document comparison_document(const Comparison& comparison);
 // schema_version 1; members are only ever added. What does not exist is null.
 std::string comparison_json(const Comparison& comparison);
 std::string comparison_csv(const Comparison& comparison);

@@ -5,7 +5,6 @@
 #include "reports/comparison/comparison_seeds.h"
 #include "reports/comparison/comparison_words.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -33,16 +32,16 @@ std::vector<std::string> cells(const std::string& pipeline, const Metric& metric
           verdict_text(c, smallest_effect)};
 }
 
-TextTable table_of(const Comparison& comparison) {
-  TextTable table({{"pipeline", Align::kLeft},
-                   {"metric", Align::kLeft},
-                   {"A\nmedian"},
-                   {"B\nmedian"},
-                   {"B - A\nmean"},
-                   {"B - A\n95 % interval"},
-                   {"B / A\nof means"},
-                   {"B / A\n95 % interval"},
-                   {"B is", Align::kLeft}});
+Table comparison_table(const Comparison& comparison) {
+  Table table({{"pipeline", Align::kLeft},
+               {"metric", Align::kLeft},
+               {"A\nmedian"},
+               {"B\nmedian"},
+               {"B - A\nmean"},
+               {"B - A\n95 % interval"},
+               {"B / A\nof means"},
+               {"B / A\n95 % interval"},
+               {"B is", Align::kLeft}});
   const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
@@ -64,62 +63,43 @@ std::string pairing_text(const Comparison& comparison) {
   return fmt::format("{} pairs by index: seeds {} with {}", a.count, seeds_text(a), seeds_text(b));
 }
 
-std::string head(const Comparison& comparison) {
-  return wrapped(fmt::format("A: {}", comparison.a)) + wrapped(fmt::format("B: {}", comparison.b)) +
-         wrapped(fmt::format("{}: {}", comparison.scenario, pairing_text(comparison)));
-}
-
-std::string words(const Comparison& comparison) {
-  if (!comparison.with_baseline) return "";
+Block words(const Comparison& comparison) {
   const auto judged = evaluation::judged_metrics();
-  std::string text = "\nHow much better\n";
+  Block block{.heading = "How much better"};
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     std::vector<std::string> effects;
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
       effects.push_back(effect_words(*judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
-    text += wrapped(fmt::format("{} against {}: {}", pipeline.pipeline_b, pipeline.pipeline_a,
-                                fmt::join(effects, "; ")),
-                    2);
+    block.items.push_back(fmt::format("{} against {}: {}", pipeline.pipeline_b, pipeline.pipeline_a,
+                                      fmt::join(effects, "; ")));
   }
-  return text;
-}
-
-std::string notes(const Comparison& comparison) {
-  if (comparison.notes.empty()) return "";
-  std::string text = "\nWhat differs besides\n";
-  for (const std::string& note : comparison.notes) text += wrapped(note, 2);
-  return text;
+  return block;
 }
 
 std::string legend(const Comparison& comparison) {
-  return "\nHow to read it\n" +
-         wrapped(
-             fmt::format(
-                 "Median: over the seeds, as in the table of a run. Mean difference and ratio of "
-                 "means with their 95 % intervals: over pairs of the same seed, by bootstrap. "
-                 "better, worse: the interval excludes 0. no difference seen: it includes 0 and "
-                 "any difference is within {:.3g} % of A's mean (--smallest-effect). too few "
-                 "seeds: it includes 0 and more than that; with the seeds needed it is narrower "
-                 "than that, so that one of the others must come out.",
-                 100 * comparison.smallest_effect),
-             2);
+  return fmt::format(
+      "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
+      "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
+      "interval excludes 0. no difference seen: it includes 0 and any difference is within {:.3g} "
+      "% of A's "
+      "mean (--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds "
+      "needed it is narrower than that, so that one of the others must come out.",
+      100 * comparison.smallest_effect);
 }
 
 }  // namespace
 
-std::string comparison_table(const Comparison& comparison) {
-  return head(comparison) + "\n" + table_of(comparison).plain() + words(comparison) +
-         notes(comparison) + legend(comparison);
-}
-
-std::string comparison_markdown(const Comparison& comparison) {
-  std::string text = fmt::format("- A: {}\n- B: {}\n- {}: {}\n\n", comparison.a, comparison.b,
-                                 comparison.scenario, pairing_text(comparison));
-  text += table_of(comparison).markdown();
-  if (!comparison.notes.empty()) text += "\n";
-  for (const std::string& note : comparison.notes) text += fmt::format("- {}\n", note);
-  return text;
+Document comparison_document(const Comparison& comparison) {
+  Document document{.head = {fmt::format("A: {}", comparison.a), fmt::format("B: {}", comparison.b),
+                             fmt::format("{}: {}", comparison.scenario, pairing_text(comparison))}};
+  document.blocks.push_back({.table = comparison_table(comparison)});
+  if (comparison.with_baseline) document.blocks.push_back(words(comparison));
+  if (!comparison.notes.empty()) {
+    document.blocks.push_back({.heading = "What differs besides", .items = comparison.notes});
+  }
+  document.blocks.push_back({.heading = "How to read it", .items = {legend(comparison)}});
+  return document;
 }
 
 }  // namespace simbench::reports

@@ -5,8 +5,9 @@
 
 #include "reports/comparison/comparison_words.h"
 #include "reports/comparison/gate.h"
+#include "reports/text/block.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -95,14 +96,14 @@ bool is_shown(const GateReport& report, const GateCheck& check) {
 }
 
 std::string changes(const GateReport& report) {
-  TextTable table({{"pipeline", Align::kLeft},
-                   {"metric", Align::kLeft},
-                   {"baseline"},
-                   {"now"},
-                   {"change"},
-                   {"allowed"},
-                   {"seeds\nchanged"},
-                   {"outcome", Align::kLeft}});
+  Table table({{"pipeline", Align::kLeft},
+               {"metric", Align::kLeft},
+               {"baseline"},
+               {"now"},
+               {"change"},
+               {"allowed"},
+               {"seeds\nchanged"},
+               {"outcome", Align::kLeft}});
   bool is_empty = true;
   for (const GateCheck& check : report.checks) {
     if (!is_shown(report, check)) continue;
@@ -111,7 +112,7 @@ std::string changes(const GateReport& report) {
                value_text(check, check.value), change_text(check), value_text(check, check.margin),
                fmt::format("{}", check.changed_seeds), outcome_text(check.outcome)});
   }
-  return is_empty ? "" : "\nWhat changed\n\n" + table.plain();
+  return is_empty ? "" : "\nWhat changed\n\n" + plain(table);
 }
 
 std::string lines(const char* title, const std::vector<std::string>& texts) {

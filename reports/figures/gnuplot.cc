@@ -6,12 +6,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <map>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "reports/text/output_file.h"
 #include "reports/text/output_folder.h"
@@ -21,7 +28,327 @@ extern char** environ;
 namespace simbench::reports {
 namespace {
 
+using SpanColours = std::map<std::string, const char*>;
 namespace fs = std::filesystem;
+
+constexpr int kRowHeight = 130;
+constexpr std::size_t kReadingsInPhotograph = 3;  // more lines do not fit a photograph
+constexpr double kFaintest = 0.35;                // brightness of a reading of no share
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
+  return out;
+}
+
+std::string label(const std::string& text, double x, double y, const std::string& look) {
+  return fmt::format("set label '{}' at {},{} {}\n", escaped(text), x, y, look);
+}
+
+// White text on black, the fainter the smaller its share.
+std::string shade(double share) {
+  const auto level = static_cast<int>(
+      std::lround(255 * (kFaintest + (1 - kFaintest) * std::clamp(share, 0., 1.))));
+  return fmt::format("#{0:02X}{0:02X}{0:02X}", level);
+}
+
+// Column `x` from the left, row `y` from the bottom, each one unit large.
+std::string photograph_script(const Photograph& photograph, double x, double y) {
+  std::string script =
+      fmt::format("set object rect from {},{} to {},{} fc rgb '#14181D' fs solid noborder\n",
+                  x + 0.03, y + 0.18, x + 0.97, y + 0.84);
+  const std::size_t shown = std::min(photograph.readings.size(), kReadingsInPhotograph);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const PhotographedReading& reading = photograph.readings[i];
+    const double line =
+        y + 0.51 + 0.2 * (static_cast<double>(shown - 1) / 2 - static_cast<double>(i));
+    script +=
+        label(reading.text, x + 0.5, line,
+              fmt::format("center front font 'monospace,13' tc rgb '{}'", shade(reading.share)));
+    if (photograph.readings.size() == 1) continue;
+    script += label(fmt::format("{:.0f} %", 100 * reading.share), x + 0.95, line,
+                    "right front font ',7' tc rgb '#9AA4AE'");
+  }
+  if (shown < photograph.readings.size()) {
+    script += label(fmt::format("and {} more", photograph.readings.size() - shown), x + 0.5,
+                    y + 0.22, "center front font ',7' tc rgb '#9AA4AE'");
+  }
+  return script + label(photograph.label, x + 0.5, y + 0.09, "center font ',9' tc rgb '#333333'");
+}
+
+int photographs_height(const Figure& figure) {
+  return kRowHeight * static_cast<int>(figure.photographs.size());
+}
+
+std::string photographs_script(const Figure& figure, const std::string& title) {
+  std::size_t columns = 1;
+  for (const PhotographRow& row : figure.photographs) {
+    columns = std::max(columns, row.photographs.size());
+  }
+  std::string script = fmt::format(
+      "unset border\nunset tics\nunset key\nset lmargin 1\nset rmargin 1\nset bmargin 0\n"
+      "set title {} font ',14'\nset xrange [0:{}]\nset yrange [0:{}]\n",
+      title, columns, figure.photographs.size());
+  for (std::size_t i = 0; i < figure.photographs.size(); ++i) {
+    const PhotographRow& row = figure.photographs[i];
+    const auto y = static_cast<double>(figure.photographs.size() - 1 - i);
+    script += label(row.label, 0.03, y + 0.92, "left font ',11'");
+    for (std::size_t camera = 0; camera < row.photographs.size(); ++camera) {
+      script += photograph_script(row.photographs[camera], static_cast<double>(camera), y);
+    }
+  }
+  return script + "plot NaN notitle\nset output\n";
+}
+
+constexpr std::array<const char*, 8> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                 "#E69F00", "#56B4E9", "#000000", "#8C6D31"};
+constexpr std::array<const char*, 3> kSpanColours = {"#E8E8E8", "#D6E6F2", "#FBEBD3"};
+constexpr std::array<int, 4> kPointTypes = {7, 5, 9, 13};
+
+constexpr int kWidth = 900;  // points of the picture; a PDF has 100 of them to the inch
+constexpr int kPanelHeight = 230;
+constexpr int kAxisHeight = 105;  // of a panel: its title and x axis
+constexpr int kEntryHeight = 15;  // of a legend
+constexpr int kTitleHeight = 40;
+constexpr double kPointsPerInch = 100;
+constexpr double kFewTics = 12;  // of whole numbers, none between them
+
+// A single quote is doubled; a line of gnuplot ends with its line.
+std::string in_quotes(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'') out += '\'';
+    out += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out + '\'';
+}
+
+std::string datablock(std::size_t number, const FigureSeries& series) {
+  std::string text = fmt::format("$data{} << END\n", number);
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
+      fmt::format_to(std::back_inserter(text), "{} {}\n", series.x[i], series.y[i]);
+    } else {
+      text += '\n';  // breaks the line
+    }
+  }
+  return text + "END\n";
+}
+
+// What the labels of the series of one colour have in common.
+std::string common_label(const std::string& a, const std::string& b) {
+  if (a == b || b.starts_with(a + ",")) return a;
+  const auto differ = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
+  const std::string common(a.begin(), differ);
+  const std::size_t comma = common.rfind(',');
+  return comma == std::string::npos ? a + ", ..." : common.substr(0, comma);
+}
+
+std::map<int, std::string> legend_of(const FigurePanel& panel) {
+  std::map<int, std::string> legend;
+  for (const FigureSeries& series : panel.series) {
+    const auto [entry, added] = legend.emplace(series.colour, series.label);
+    if (!added) entry->second = common_label(entry->second, series.label);
+  }
+  return legend;
+}
+
+std::size_t number_of(const FigureSeries& series) {
+  return static_cast<std::size_t>(std::max(series.colour, 0));
+}
+
+std::string colour_of(const FigureSeries& series) {
+  return kColours.at(number_of(series) % kColours.size());
+}
+
+std::string style(const FigureSeries& series) {
+  const std::string colour = colour_of(series);
+  const std::size_t turn = number_of(series) / kColours.size();
+  const std::size_t dash = turn % 5 + 1;
+  switch (series.mark) {
+    case Mark::kPoints:
+      return fmt::format("with points pt {} ps 0.4 lc rgb '{}'",
+                         kPointTypes.at(turn % kPointTypes.size()), colour);
+    case Mark::kLine:
+      return fmt::format("with lines lw 1.4 dt {} lc rgb '{}'", dash, colour);
+    case Mark::kSteps:
+      return fmt::format("with steps lw 1.4 dt {} lc rgb '{}'", dash, colour);
+    case Mark::kBars:
+      return fmt::format("with boxes lc rgb '{}' fs solid 0.75 noborder", colour);
+  }
+  return "";
+}
+
+// By the label of a shaded stretch, for all panels of a figure.
+
+SpanColours span_colours(const Figure& figure) {
+  SpanColours colours;
+  for (const FigurePanel& panel : figure.panels) {
+    for (const FigureSpan& span : panel.spans) {
+      colours.emplace(span.label, kSpanColours.at(colours.size() % kSpanColours.size()));
+    }
+  }
+  return colours;
+}
+
+// Shaded stretches lie behind the data, and stand in the legend.
+std::string spans(const FigurePanel& panel, const SpanColours& colours,
+                  std::vector<std::string>& plots) {
+  std::string text;
+  for (const FigureSpan& span : panel.spans) {
+    const char* colour = colours.at(span.label);
+    fmt::format_to(std::back_inserter(text),
+                   "set object rect from {}, graph 0 to {}, graph 1 behind fc rgb '{}' fs solid "
+                   "noborder\n",
+                   span.from, span.to, colour);
+    plots.push_back(fmt::format("keyentry with boxes fs solid noborder lc rgb '{}' title {}",
+                                colour, in_quotes(span.label)));
+  }
+  return text;
+}
+
+// A line named after a series ("mine, published") has its colour.
+std::string line_colour(const FigurePanel& panel, const FigureLine& line) {
+  for (const FigureSeries& series : panel.series) {
+    if (line.label.starts_with(series.label + ",")) return colour_of(series);
+  }
+  return "#555555";
+}
+
+std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
+  std::string text;
+  for (const FigureLine& line : panel.lines) {
+    const std::string look = fmt::format("lw 1.2 dt 3 lc rgb '{}'", line_colour(panel, line));
+    const std::string ends =
+        line.vertical ? fmt::format("from {0}, graph 0 to {0}, graph 1", line.at)
+                      : fmt::format("from graph 0, first {0} to graph 1, first {0}", line.at);
+    fmt::format_to(std::back_inserter(text), "set arrow {} nohead {}\n", ends, look);
+    plots.push_back(fmt::format("keyentry with lines {} title {}", look, in_quotes(line.label)));
+  }
+  return text;
+}
+
+// The smallest and the largest of what is to lie within an axis.
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void cover(double value) {
+    if (!std::isfinite(value)) return;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  bool empty() const { return least > greatest; }
+};
+
+std::string x_range(const FigurePanel& panel) {
+  Range range;
+  bool all_whole = true;
+  for (const FigureSeries& series : panel.series) {
+    for (const double x : series.x) {
+      range.cover(x);
+      all_whole = all_whole && x == std::round(x);
+    }
+  }
+  for (const FigureSpan& span : panel.spans) {
+    range.cover(span.from);
+    range.cover(span.to);
+  }
+  if (range.empty()) return "set xrange [0:1]\n";
+  const double room = std::max((range.greatest - range.least) * 0.01, 1e-6);
+  return fmt::format("set xrange [{}:{}]\nset xtics norotate {}\n", range.least - room,
+                     range.greatest + room,
+                     all_whole && range.greatest - range.least < kFewTics ? "1" : "autofreq");
+}
+
+std::string y_range(const FigurePanel& panel) {
+  Range range;
+  const auto cover = [&](double y) {
+    if (!panel.log_y || y > 0) range.cover(y);
+  };
+  for (const FigureSeries& series : panel.series) {
+    for (const double y : series.y) cover(y);
+    if (series.mark == Mark::kBars) cover(0);
+  }
+  for (const FigureLine& line : panel.lines) {
+    if (!line.vertical) cover(line.at);
+  }
+  if (range.empty()) return panel.log_y ? "set yrange [0.1:1]\n" : "set yrange [0:1]\n";
+  if (panel.log_y) {
+    return fmt::format("set yrange [{}:{}]\n", range.least / 1.3, range.greatest * 1.3);
+  }
+  // A constant gets a range in which its last digits would not be drawn as a mountain.
+  const double room =
+      std::max({(range.greatest - range.least) * 0.06, std::abs(range.greatest) * 1e-4, 1e-6});
+  return fmt::format("set yrange [{}:{}]\n", range.least - room, range.greatest + room);
+}
+
+std::string categories(const FigurePanel& panel) {
+  if (panel.categories.empty()) return "";
+  std::string tics;
+  for (std::size_t i = 0; i < panel.categories.size(); ++i) {
+    fmt::format_to(std::back_inserter(tics), "{}{} {}", i == 0 ? "" : ", ",
+                   in_quotes(panel.categories[i]), i);
+  }
+  return fmt::format(
+      "set xtics ({}) rotate by -20\nset xrange [-0.6:{}]\nset boxwidth 0.7\nset xzeroaxis lt -1\n",
+      tics, static_cast<double>(panel.categories.size()) - 0.4);
+}
+
+bool has_legend(const FigurePanel& panel) {
+  return panel.series.size() > 1 || !panel.lines.empty() || !panel.spans.empty();
+}
+
+std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
+                         std::size_t& datablocks) {
+  std::string script = "unset object\nunset arrow\n";
+  fmt::format_to(
+      std::back_inserter(script),
+      "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
+      in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
+  script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
+  script += x_range(panel) + y_range(panel) + categories(panel);
+  std::map<int, std::string> legend = legend_of(panel);
+  std::vector<std::string> plots;
+  for (const FigureSeries& series : panel.series) {
+    script += datablock(datablocks, series);
+    const auto entry = legend.extract(series.colour);  // titles its first series alone
+    const std::string title =
+        entry.empty() || !has_legend(panel) ? "notitle" : "title " + in_quotes(entry.mapped());
+    plots.push_back(fmt::format("$data{} using 1:2 {} {}", datablocks, style(series), title));
+    ++datablocks;
+  }
+  if (plots.empty()) plots.emplace_back("NaN notitle");
+  script += lines(panel, plots);
+  script += spans(panel, colours, plots);
+  return script + fmt::format("plot {}\n", fmt::join(plots, ", \\\n     "));
+}
+
+std::string terminal(PlotFormat format, int height) {
+  if (format == PlotFormat::kSvg) {
+    return fmt::format(
+        "set terminal svg noenhanced size {},{} font 'Helvetica,Arial,sans-serif,12' "
+        "background '#ffffff'\n",
+        kWidth, height);
+  }
+  return fmt::format("set terminal pdfcairo noenhanced size {}in,{}in font 'Helvetica,9'\n",
+                     kWidth / kPointsPerInch, height / kPointsPerInch);
+}
+
+// Panels are of one height, which has room for the longest legend.
+int panels_height(const Figure& figure) {
+  std::size_t entries = 0;
+  for (const FigurePanel& panel : figure.panels) {
+    entries = std::max(entries, legend_of(panel).size() + panel.lines.size() + panel.spans.size());
+  }
+  const int panel = std::max(kPanelHeight, kAxisHeight + kEntryHeight * static_cast<int>(entries));
+  return panel * static_cast<int>(figure.panels.size());
+}
+
+// Of all panels, so that their axes stand below each other.
+bool has_legends(const Figure& figure) {
+  return std::any_of(figure.panels.begin(), figure.panels.end(), has_legend);
+}
 
 constexpr const char* kAbsent =
     "SVG and PDF are drawn by gnuplot, which is not installed; run `apt-get install gnuplot-nox`, "
@@ -57,6 +384,34 @@ std::string content(const fs::path& path) {
 }
 
 }  // namespace
+
+std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::string& output) {
+  const bool is_photographs = figure.panels.empty();
+  const int height =
+      kTitleHeight + (is_photographs ? photographs_height(figure) : panels_height(figure));
+  std::string script = "set encoding utf8\n" + terminal(format, height);
+  fmt::format_to(std::back_inserter(script), "set output {}\n", in_quotes(output));
+  const std::string title = figure.paper.empty()
+                                ? figure.title
+                                : fmt::format("{} ({} of the paper)", figure.title, figure.paper);
+  if (is_photographs) return script + photographs_script(figure, in_quotes(title));
+  script +=
+      "set key at screen 0.72, graph 1 left top vertical maxrows 99 Left reverse samplen 1.5 "
+      "font ',10'\n"
+      "set border 3\nset tics nomirror out scale 0.5\nset grid ytics lc rgb '#DDDDDD' lt 1\n"
+      "set xtics offset 0,0.3\n";
+  fmt::format_to(std::back_inserter(script),
+                 "set lmargin at screen 0.115\nset rmargin at screen {}\n",
+                 has_legends(figure) ? 0.7 : 0.97);
+  fmt::format_to(std::back_inserter(script), "set multiplot layout {},1 title {} font ',14'\n",
+                 figure.panels.size(), in_quotes(title));
+  std::size_t datablocks = 0;
+  const SpanColours colours = span_colours(figure);
+  for (const FigurePanel& panel : figure.panels) {
+    script += panel_script(panel, colours, datablocks);
+  }
+  return script + "unset multiplot\nset output\n";
+}
 
 void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
   const OutputFile picture(output.string());

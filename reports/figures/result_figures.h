@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "evaluation/budget/budget.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/figures/figure.h"
 
@@ -29,6 +30,12 @@ std::vector<Figure> distributions(const Archive& archive);
 // one after another. First one of up to 12 pipelines together, then one for each pipeline.
 // Needs read_seed_details().
 std::vector<Figure> host_order(const Archive& archive);
+
+// The error budget of a pipeline as bars: the part of each stage, and what remains.
+
+// A panel each for AMD, the absolute error and the physical spread: means over the seeds as bars,
+// the ends of the band from 5 to 95 % as points.
+Figure budget_figure(const evaluation::Budget& budget);
 
 }  // namespace simbench::reports
 

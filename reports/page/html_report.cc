@@ -2,19 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/ports/assert.h"
 #include "reports/comparison/gate_commands.h"
-#include "reports/page/html_comparison.h"
 #include "reports/page/html_figures.h"
 #include "reports/page/html_page.h"
-#include "reports/page/html_tables.h"
+#include "reports/results/ground_truth_text.h"
+#include "reports/results/leaderboard_report.h"
+#include "reports/results/results_document.h"
 #include "reports/text/html_text.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
 
+using evaluation::Row;
+using evaluation::Series;
 using Json = nlohmann::ordered_json;
 
 std::string seeds_text(const evaluation::Results& results) {
@@ -65,11 +71,26 @@ std::string scenario_details(const Archive& archive) {
       html_escaped(Json::parse(archive.scenario_json).dump(2)));
 }
 
+// The tables of a run or a leaderboard, as `simbench run` prints them, below what it warned of.
+std::vector<Block> blocks_of(const Archive& archive) {
+  std::vector<Block> blocks;
+  const auto append = [&blocks](const std::vector<Block>& more) {
+    blocks.insert(blocks.end(), more.begin(), more.end());
+  };
+  if (!archive.results.warnings.empty()) {
+    append({{.heading = "Warnings", .items = archive.results.warnings, .is_warning = true}});
+  }
+  if (scenario_text(archive, "/evaluation/table") == "leaderboard") {
+    append(board_blocks(archive.results));
+  }
+  append(results_document(archive.results, "").blocks);
+  return blocks;
+}
+
 // The part of the page that changes with the archive: `number` is its place among them.
 std::string archive_part(const ReportedArchive& reported, std::size_t number,
                          const ReportInput& input) {
   const Archive& archive = reported.archive;
-  const bool leaderboard = scenario_text(archive, "/evaluation/table") == "leaderboard";
   return fmt::format(
       "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n{}{}{}{}"
       "<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n"
@@ -78,8 +99,8 @@ std::string archive_part(const ReportedArchive& reported, std::size_t number,
       html_paragraph("summary", scenario_text(archive, "/summary")),
       html_paragraph("provenance", provenance_line(archive)),
       input.archives.size() > 1 ? html_paragraph("provenance", "Archive: " + archive.path) : "",
-      html_tables(archive.results, leaderboard), html_notes(reported.notes),
-      commands_of(reported, input), scenario_details(archive));
+      html(blocks_of(archive)), html_notes(reported.notes), commands_of(reported, input),
+      scenario_details(archive));
 }
 
 std::string title_of(const ReportInput& input) {
@@ -91,21 +112,62 @@ std::string title_of(const ReportInput& input) {
   return title;
 }
 
+std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
+  const std::vector<Row>& rows = archive.results.rows;
+  const auto row = std::find_if(rows.begin(), rows.end(),
+                                [&](const Row& each) { return each.pipeline == pipeline; });
+  if (row == rows.end() || std::isnan(((*row).*series).median)) return "-";
+  return fmt::format("{} {}{}", number_text(((*row).*series).median), band_text((*row).*series),
+                     ground_truth_label(*row) == "unverified" ? " (unverified)" : "");
+}
+
+// Of all archives, in the order in which they come.
+std::vector<std::string> pipelines_of(const std::vector<ReportedArchive>& archives) {
+  std::vector<std::string> pipelines;
+  for (const ReportedArchive& reported : archives) {
+    for (const Row& row : reported.archive.results.rows) {
+      if (std::find(pipelines.begin(), pipelines.end(), row.pipeline) == pipelines.end()) {
+        pipelines.push_back(row.pipeline);
+      }
+    }
+  }
+  return pipelines;
+}
+
+// Nothing of a single archive.
+std::vector<Block> side_by_side(const std::vector<ReportedArchive>& archives) {
+  if (archives.size() < 2) return {};
+  std::vector<Field<std::string>> fields = {
+      {{"pipeline", Align::kLeft}, [](const std::string& pipeline) { return pipeline; }}};
+  const auto add = [&fields](const Archive& archive, const char* what, Series Row::*series) {
+    fields.push_back({{fmt::format("{}: {}", archive.path, what)},
+                      [&archive, series](const std::string& pipeline) {
+                        return cell_of(archive, pipeline, series);
+                      }});
+  };
+  for (const ReportedArchive& reported : archives) {
+    add(reported.archive, "AMD, ms", &Row::amd_ms);
+    add(reported.archive, "absolute error, ms", &Row::absolute_error_ms);
+  }
+  return {{.heading = "The archives side by side",
+           .table = table_of(fields, pipelines_of(archives)),
+           .prose = {"Median over the seeds with the band from 5 to 95 %. Whether a difference is "
+                     "more than chance: simbench compare."}}};
+}
+
 }  // namespace
 
 std::string html_report(const ReportInput& input) {
   SIMBENCH_ASSERT(!input.archives.empty(), "a report is of at least one archive");
-  std::vector<const Archive*> archives;
   std::string parts;
   std::vector<std::string> data;
   for (std::size_t i = 0; i < input.archives.size(); ++i) {
-    archives.push_back(&input.archives[i].archive);
     parts += archive_part(input.archives[i], i, input);
     data.push_back(figures_json(input.archives[i].figures));
   }
   return html_page({.title = title_of(input),
                     .subtitle = "how well are these cameras synchronised, and what limits it",
-                    .main = html_comparison(archives) + parts,
+                    .main = html(side_by_side(input.archives)) + parts,
                     .data = data});
 }
 

@@ -1,7 +1,8 @@
 // One self-contained HTML file of one or more result archives: tables, figures, and how to
 // reproduce them. It opens offline, in light and dark, prints, and asks nothing of any server.
 //
-// The tables stand in the file as HTML. The figures stand in it as data
+// The tables stand in the file as HTML; they are the blocks that `simbench run` prints
+// (reports/results/results_document.h, leaderboard_report.h). The figures stand in it as data
 // (reports/page/html_figures.h) and are drawn by the page's own JavaScript (reports/web/) with
 // uPlot, which is embedded too. Whatever comes from an archive is escaped.
 //

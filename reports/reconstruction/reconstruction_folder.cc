@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <set>
 
 #include "reports/figures/figure_csv.h"
 #include "reports/figures/gnuplot.h"
-#include "reports/reconstruction/reconstruction_figure.h"
-#include "reports/reconstruction/reconstruction_report.h"
-#include "reports/text/text_table.h"
+#include "reports/reconstruction/reconstruction_document.h"
+#include "reports/reconstruction/reconstruction_json.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -38,13 +37,9 @@ std::vector<std::string> own_files(const std::map<std::string, std::string>& nam
   return files;
 }
 
-// For a file the page is as wide as need be, whatever the terminal.
 std::string table_for_file(const ReconstructionResults& results) {
-  const std::optional<std::size_t> width = page_width();
-  set_page_width(std::nullopt);
-  std::string text = reconstruction_table(results);
-  set_page_width(width);
-  return text;
+  const FilePage page;
+  return plain(reconstruction_document(results));
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 //
 //   manifest.json           version, commit, command, start and end
 //   scenario.json           the resolved scenario: repeats the experiment
-//   table.txt, results.json as reports/reconstruction/reconstruction_report.h has them
+//   table.txt               reports/reconstruction/reconstruction_document.h
+//   results.json            reports/reconstruction/reconstruction_json.h
 //   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; what is not a letter,
 //                           a digit, '.', '_' or '-' in the name of a pipeline becomes '_'
-//   curve.csv, curve.svg    reports/reconstruction/reconstruction_figure.h; the SVG where there is
-//   a gnuplot report.html             reports/reconstruction/reconstruction_html.h
+//   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG where there
+//   is
+//                           a gnuplot
+//   report.html             reports/reconstruction/reconstruction_html.h
 //
 //   ReconstructionFolder folder("results/table4", scenario);
 //   run_reconstruction(..., [&](const ShownMesh& mesh) { folder.keep(mesh); }, ...);

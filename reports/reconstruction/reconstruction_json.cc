@@ -1,3 +1,5 @@
+#include "reports/reconstruction/reconstruction_json.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -6,8 +8,7 @@
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
-#include "reports/reconstruction/reconstruction_report.h"
-#include "reports/reconstruction/reconstruction_text.h"
+#include "reports/reconstruction/reconstruction_document.h"
 #include "reports/results/csv.h"
 
 namespace simbench::reports {

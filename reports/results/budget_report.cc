@@ -7,7 +7,6 @@
 
 #include "recording/version.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -26,22 +25,22 @@ std::string share_of(const BudgetPart& part, const ErrorParts& error) {
   return share_text(std::abs(share) < 5e-4 ? 0 : share);
 }
 
-void add_line(TextTable& table, const std::string& name, const Budget& budget,
-              const BudgetPart& amd, const BudgetPart& absolute, const BudgetPart& physical) {
+void add_line(Table& table, const std::string& name, const Budget& budget, const BudgetPart& amd,
+              const BudgetPart& absolute, const BudgetPart& physical) {
   table.add({name, number_text(amd.mean), band(amd), share_of(amd, budget.amd_ms),
              number_text(absolute.mean), band(absolute),
              share_of(absolute, budget.absolute_error_ms), number_text(physical.mean)});
 }
 
-TextTable block(const Budget& budget) {
-  TextTable table({{"stage", Align::kLeft},
-                   {"AMD\nmean ms"},
-                   {"AMD\n5-95 %"},
-                   {"AMD\nshare"},
-                   {"absolute error\nmean ms"},
-                   {"absolute error\n5-95 %"},
-                   {"absolute error\nshare"},
-                   {"of AMD physical\nmean ms"}});
+Table budget_table(const Budget& budget) {
+  Table table({{"stage", Align::kLeft},
+               {"AMD\nmean ms"},
+               {"AMD\n5-95 %"},
+               {"AMD\nshare"},
+               {"absolute error\nmean ms"},
+               {"absolute error\n5-95 %"},
+               {"absolute error\nshare"},
+               {"of AMD physical\nmean ms"}});
   for (std::size_t stage = 0; stage < evaluation::kStageCount; ++stage) {
     add_line(table, std::string(evaluation::kStageNames[stage]), budget,
              budget.amd_ms.stages[stage], budget.absolute_error_ms.stages[stage],
@@ -54,7 +53,7 @@ TextTable block(const Budget& budget) {
   return table;
 }
 
-std::string heading(const BudgetReport& report, const Budget& budget) {
+std::string budget_heading(const BudgetReport& report, const Budget& budget) {
   return fmt::format("Error budget of {} in {}, {} seed{} from {}", budget.pipeline,
                      report.scenario, report.seeds, report.seeds == 1 ? "" : "s",
                      report.first_seed);
@@ -66,11 +65,11 @@ std::string budget_legend(const Budget& budget) {
           ? "Errors are over the sets that gathering emits."
           : "In some of the worlds gathering finds no set, so errors are over the true pulses and "
             "gathering has no part in them.";
-  return wrapped(
-      over +
-      " A stage's part is its Shapley value over all 128 worlds with some stages ideal; parts and "
-      "remainder add up to the total, and a part below zero cancels others. Physical: how far "
-      "apart the exposures of a pulse really were, which no clock can remove.");
+  return over +
+         " A stage's part is its Shapley value over all 128 worlds with some stages ideal; parts "
+         "and "
+         "remainder add up to the total, and a part below zero cancels others. Physical: how far "
+         "apart the exposures of a pulse really were, which no clock can remove.";
 }
 
 Json part_json(const BudgetPart& part) {
@@ -91,22 +90,14 @@ Json error_json(const ErrorParts& error) {
 
 }  // namespace
 
-std::string budget_table(const BudgetReport& report) {
-  std::string text;
+Document budget_document(const BudgetReport& report) {
+  Document document;
   for (const Budget& budget : report.budgets) {
-    text += fmt::format("{}{}\n\n{}\n{}", text.empty() ? "" : "\n", heading(report, budget),
-                        block(budget).plain(), budget_legend(budget));
+    document.blocks.push_back({.heading = budget_heading(report, budget),
+                               .table = budget_table(budget),
+                               .prose = {budget_legend(budget)}});
   }
-  return fitted(text);
-}
-
-std::string budget_markdown(const BudgetReport& report) {
-  std::string text;
-  for (const Budget& budget : report.budgets) {
-    text += fmt::format("{}## {}\n\n{}\n{}", text.empty() ? "" : "\n", heading(report, budget),
-                        block(budget).markdown(), budget_legend(budget));
-  }
-  return text;
+  return document;
 }
 
 std::string budget_json(const BudgetReport& report) {

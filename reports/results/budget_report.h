@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "evaluation/budget/budget.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -21,8 +22,7 @@ struct BudgetReport {
   std::vector<evaluation::Budget> budgets;
 };
 
-std::string budget_table(const BudgetReport& report);
-std::string budget_markdown(const BudgetReport& report);
+Document budget_document(const BudgetReport& report);
 std::string budget_json(const BudgetReport& report);
 
 }  // namespace simbench::reports

@@ -2,70 +2,69 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
-#include "reports/results/sets_block.h"
+#include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
 
 using evaluation::Board;
+using evaluation::PairedRatios;
 using evaluation::Rank;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
-std::string own_name(const Board& board, const Row& row) {
-  return board.name.empty() ? row.pipeline : row.pipeline.substr(board.name.size() + 1);
+Table error_table(const Board& board) {
+  const auto name = [&board](const Rank& rank) {
+    const std::string& pipeline = rank.row->pipeline;
+    const bool unverified = ground_truth_label(*rank.row) == "unverified";
+    return (board.name.empty() ? pipeline : pipeline.substr(board.name.size() + 1)) +
+           (unverified ? " (unverified)" : "");
+  };
+  const auto stamps = [](const Rank& rank) {
+    return std::string(rank.row->offline ? "offline" : "online");
+  };
+  const auto ratio = [](const char* header, PairedRatios Rank::*to, Series PairedRatios::*of) {
+    return Field<Rank>{{header},
+                       [to, of](const Rank& rank) { return number_text((rank.*to.*of).median); }};
+  };
+  std::vector<Field<Rank>> fields = {
+      {{board.name.empty() ? "reference" : board.name, Align::kLeft}, name},
+      {{"stamps", Align::kLeft}, stamps}};
+  const auto add = [&fields](const char* id, bool with_band) {
+    for (const Field<Row>& field : metric_fields(evaluation::metric(id))) {
+      fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});
+      if (!with_band) break;
+    }
+  };
+  add("absolute_error_ms", true);
+  fields.push_back(ratio("error /\noracle's", &Rank::to_oracle, &PairedRatios::error));
+  fields.push_back(ratio("error /\npaper's Both", &Rank::to_paper, &PairedRatios::error));
+  add("amd_ms", true);
+  fields.push_back(ratio("AMD /\noracle's", &Rank::to_oracle, &PairedRatios::amd));
+  fields.push_back(ratio("AMD /\npaper's Both", &Rank::to_paper, &PairedRatios::amd));
+  add("host_error_ms", false);
+  add("precision", false);
+  add("recall", false);
+  std::vector<Rank> ranks = board.online;
+  ranks.insert(ranks.end(), board.offline.begin(), board.offline.end());
+  return table_of(fields, ranks);
 }
 
-void add_ranks(const Board& board, const std::vector<Rank>& ranks, TextTable& table) {
-  for (const Rank& rank : ranks) {
-    const Row& row = *rank.row;
-    const bool unverified = ground_truth_label(row) == "unverified";
-    table.add({own_name(board, row) + (unverified ? " (unverified)" : ""),
-               row.offline ? "offline" : "online", number_text(row.absolute_error_ms.median),
-               band_text(row.absolute_error_ms), number_text(rank.to_oracle.error.median),
-               number_text(rank.to_paper.error.median), number_text(row.amd_ms.median),
-               band_text(row.amd_ms), number_text(rank.to_oracle.amd.median),
-               number_text(rank.to_paper.amd.median), number_text(row.host_error_ms.median),
-               share_text(row.precision), share_text(row.recall)});
-  }
-}
-
-TextTable block(const Board& board) {
-  TextTable table({{board.name.empty() ? "reference" : board.name, Align::kLeft},
-                   {"stamps", Align::kLeft},
-                   {"absolute error\nmedian ms"},
-                   {"absolute error\n5-95 %"},
-                   {"error /\noracle's"},
-                   {"error /\npaper's Both"},
-                   {"AMD\nmedian ms"},
-                   {"AMD\n5-95 %"},
-                   {"AMD /\noracle's"},
-                   {"AMD /\npaper's Both"},
-                   {"host clock error\nmedian ms"},
-                   {"sets:\nprecision"},
-                   {"sets:\nrecall"}});
-  add_ranks(board, board.online, table);
-  add_ranks(board, board.offline, table);
-  return table;
-}
-
-TextTable gathering_block(const Board& board) {
+Table gathering_table(const Board& board) {
   std::vector<const Row*> rows;
   for (const Rank& rank : board.online.empty() ? board.offline : board.online) {
     rows.push_back(rank.row);
   }
-  return sets_block(rows);
+  return sets_table(rows);
 }
 
 // "host = host_sync x hull_300 + yoon2021": which stage the board varies, and what the others are.
@@ -83,39 +82,14 @@ std::string composition(const Board& board) {
                      stage("device_time", &Row::device_time), stage("gathering", &Row::gathering));
 }
 
-bool any_of_gathering(const Results& results) {
-  const std::vector<Board> boards = evaluation::leaderboard(results);
-  return std::any_of(boards.begin(), boards.end(),
-                     [](const Board& board) { return board.of_gathering; });
-}
-
-std::string leaderboard(const Results& results, std::string_view summary, bool as_markdown) {
-  std::string text = fmt::format("{}{}: {} seeds from {}\n", as_markdown ? "## " : "",
-                                 results.scenario, results.seed_count, results.first_seed);
-  if (!summary.empty()) text += fmt::format("{}\n", wrapped(summary));
-  for (const Board& board : evaluation::leaderboard(results)) {
-    const TextTable table = board.of_gathering ? gathering_block(board) : block(board);
-    const std::string heading =
-        board.name.empty() ? "references" : fmt::format("{}: {}", board.name, composition(board));
-    text += fmt::format("\n{}{}\n\n{}", as_markdown ? "### " : "", heading,
-                        as_markdown ? table.markdown() : table.plain());
-  }
-  text += fmt::format(
-      "\n{}",
-      wrapped(
-          "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's "
-          "clock|. "
-          "Ratios are medians over the seeds, each seed against the same seed: to the row of the "
-          "board "
-          "with the oracle in its place, and to the paper's proposal. Every pipeline meets the "
-          "same "
-          "worlds. Online stamps a frame when it arrives; offline has seen the whole recording."));
-  for (const std::string& line : note_lines(results)) text += fmt::format("\n{}", wrapped(line));
-  const std::string unverified = unverified_legend(results);
-  if (!unverified.empty()) text += fmt::format("\n{}", wrapped(unverified));
-  if (any_of_gathering(results)) text += fmt::format("\n{}", wrapped(kSetsLegend));
-  const std::string asymmetry = asymmetry_line(results);
-  return asymmetry.empty() ? text : fmt::format("{}\n{}", text, wrapped(asymmetry));
+std::string order_legend(const Results& results) {
+  return fmt::format(
+      "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's clock|. "
+      "Ratios are medians over the seeds, each seed against the same seed: to the row of the board "
+      "with the oracle in its place, and to the paper's proposal. {} Online stamps a frame when it "
+      "arrives; offline has seen the whole recording.",
+      has_real_rows(results) ? "Every repetition of a pipeline is a capture of its own."
+                             : "Every pipeline meets the same worlds.");
 }
 
 Json ratio_json(const Series& ratio) {
@@ -136,12 +110,37 @@ Json ranks_json(const std::vector<Rank>& ranks) {
 
 }  // namespace
 
-std::string leaderboard_table(const Results& results, std::string_view summary) {
-  return fitted(leaderboard(results, summary, false));
+std::vector<Block> board_blocks(const Results& results) {
+  std::vector<Block> blocks;
+  Block legend{.prose = {order_legend(results)}};
+  for (const Board& board : evaluation::leaderboard(results)) {
+    const std::string heading =
+        board.name.empty() ? "references" : fmt::format("{}: {}", board.name, composition(board));
+    blocks.push_back({.heading = heading,
+                      .table = board.of_gathering ? gathering_table(board) : error_table(board)});
+    if (board.of_gathering && legend.prose.size() == 1) {
+      const std::vector<std::string> sets = sets_legend(results);
+      legend.prose.insert(legend.prose.end(), sets.begin(), sets.end());
+    }
+  }
+  blocks.push_back(std::move(legend));
+  return blocks;
 }
 
-std::string leaderboard_markdown(const Results& results, std::string_view summary) {
-  return leaderboard(results, summary, true);
+Document leaderboard_document(const Results& results, const std::string& summary) {
+  Document document{.title = fmt::format("{}: {} seeds from {}", results.scenario,
+                                         results.seed_count, results.first_seed),
+                    .blocks = board_blocks(results)};
+  if (!summary.empty()) document.head.push_back(summary);
+  if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
+    document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+  }
+  Block more;
+  for (const std::string& text : {unverified_legend(results), asymmetry_line(results)}) {
+    if (!text.empty()) more.prose.push_back(text);
+  }
+  if (!more.prose.empty()) document.blocks.push_back(std::move(more));
+  return document;
 }
 
 std::string leaderboard_json(const Results& results) {
@@ -153,16 +152,6 @@ std::string leaderboard_json(const Results& results) {
                                    {"offline", ranks_json(board.offline)}});
   }
   return root.dump(2) + "\n";
-}
-
-std::string asymmetry_line(const Results& results) {
-  if (!results.asymmetry_floor) return "";
-  const evaluation::AsymmetryFloor& floor = *results.asymmetry_floor;
-  return fmt::format(
-      "Floor: unequal links (sigma {} ms) alone put any host synchronisation that measures over "
-      "them at an AMD of {} ms and a host clock error of {} ms on average; only methods that do "
-      "not measure over the links can be below.",
-      number_text(floor.sigma_ms), number_text(floor.amd_ms), number_text(floor.host_error_ms));
 }
 
 }  // namespace simbench::reports

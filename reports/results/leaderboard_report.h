@@ -9,18 +9,19 @@
 #define SIMBENCH_REPORTS_RESULTS_LEADERBOARD_REPORT_H_
 
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
-std::string leaderboard_table(const evaluation::Results& results, std::string_view summary);
-std::string leaderboard_markdown(const evaluation::Results& results, std::string_view summary);
-std::string leaderboard_json(const evaluation::Results& results);
+// The boards, each a block, and what their columns mean.
+std::vector<Block> board_blocks(const evaluation::Results& results);
 
-// What unequal links cost two-way methods; empty if they are equal.
-std::string asymmetry_line(const evaluation::Results& results);
+// These and whatever else the results have to say. `summary`: the scenario's line about itself.
+Document leaderboard_document(const evaluation::Results& results, const std::string& summary);
+std::string leaderboard_json(const evaluation::Results& results);
 
 }  // namespace simbench::reports
 

@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "recording/version.h"
+#include "reports/text/block.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -84,19 +85,19 @@ std::string verdict_line(const GroupVerdict& verdict) {
 }
 
 std::string cameras_text(const Diagnosis& diagnosis) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"host", Align::kLeft},
-                   {"stream", Align::kLeft},
-                   {"frames"},
-                   {"rate\nHz"},
-                   {"follows", Align::kLeft},
-                   {"against the\nothers ppm"},
-                   {"moves ms\na minute"},
-                   {"phase\nms"},
-                   {"intervals\nsd ms"},
-                   {"lost\nframes"},
-                   {"skipped\npulses"},
-                   {"jumps"}});
+  Table table({{"camera", Align::kLeft},
+               {"host", Align::kLeft},
+               {"stream", Align::kLeft},
+               {"frames"},
+               {"rate\nHz"},
+               {"follows", Align::kLeft},
+               {"against the\nothers ppm"},
+               {"moves ms\na minute"},
+               {"phase\nms"},
+               {"intervals\nsd ms"},
+               {"lost\nframes"},
+               {"skipped\npulses"},
+               {"jumps"}});
   for (const CameraDiagnosis& camera : diagnosis.cameras) {
     const evaluation::StreamFacts& facts = camera.facts;
     const evaluation::Standing& standing = camera.standing;
@@ -107,18 +108,18 @@ std::string cameras_text(const Diagnosis& diagnosis) {
                count_text(facts.lost_frames), count_text(facts.skipped_pulses),
                count_text(static_cast<std::int64_t>(facts.jumps.size()))});
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string pairs_text(const Diagnosis& diagnosis) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"stream", Align::kLeft},
-                   {"against", Align::kLeft},
-                   {"offset\nms"},
-                   {"spread\nms"},
-                   {"moves ms\na minute"},
-                   {"is", Align::kLeft}},
-                  2);
+  Table table({{"camera", Align::kLeft},
+               {"stream", Align::kLeft},
+               {"against", Align::kLeft},
+               {"offset\nms"},
+               {"spread\nms"},
+               {"moves ms\na minute"},
+               {"is", Align::kLeft}},
+              2);
   for (const PairDiagnosis& pair : diagnosis.pairs) {
     const char* const is = std::isnan(pair.offset_ms) ? "unknown"
                            : pair.runs_free           ? "free-running"
@@ -126,7 +127,7 @@ std::string pairs_text(const Diagnosis& diagnosis) {
     table.add({pair.camera, pair.stream, pair.against, number_text(pair.offset_ms),
                number_text(pair.spread_ms), number_text(pair.moves_ms_per_minute), is});
   }
-  return table.plain();
+  return plain(table);
 }
 
 Json verdict_json(const GroupVerdict& verdict) {

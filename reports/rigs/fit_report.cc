@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "recording/version.h"
+#include "reports/text/block.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -37,7 +38,7 @@ std::string lines_text(const std::string& heading, const std::vector<std::string
 
 std::string check_text(const std::string& heading, const FitCheck& check,
                        const std::vector<std::string>& cameras) {
-  TextTable table({{"", Align::kLeft}, {"recorded"}, {"simulated"}});
+  Table table({{"", Align::kLeft}, {"recorded"}, {"simulated"}});
   const FitSide& recorded = check.recorded;
   const FitSide& simulated = check.simulated;
   table.add({"frames", count_text(recorded.frames), count_text(simulated.frames)});
@@ -56,7 +57,7 @@ std::string check_text(const std::string& heading, const FitCheck& check,
   return fmt::format(
       "\n{}\n\n{}\nKolmogorov-Smirnov distance {:.4f}; two samples of one distribution exceed "
       "{:.4f} in 5 % of all cases.\n",
-      heading, table.plain(), check.ks, check.ks_limit);
+      heading, plain(table), check.ks, check.ks_limit);
 }
 
 constexpr const char* kFitLegend = R"(

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "evaluation/model/evidence.h"
 #include "recording/version.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -21,7 +20,7 @@ using evaluation::ModelGapRow;
 using evaluation::StageEvidence;
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
-constexpr const char* kGapLegend[] = {
+constexpr std::array kGapLegend = {
     "A value is in milliseconds: a quantile over the repetitions (measured) or the seeds "
     "(simulated), which are independent of each other.",
     "KS: largest distance between the two distribution functions, 0 (equal) to 1 (no overlap). "
@@ -53,21 +52,21 @@ std::string critical_text(const ModelGapRow& row) {
   return std::isnan(row.ks_critical) ? "none" : number_text(row.ks_critical);
 }
 
-TextTable gap_block(const std::vector<ModelGapRow>& rows) {
-  TextTable block({{"pipeline", Align::kLeft},
-                   {"metric", Align::kLeft},
-                   {"n"},
-                   {"measured\nmedian"},
-                   {"measured\n25-75 %"},
-                   {"measured\n5-95 %"},
-                   {"simulated\nmedian"},
-                   {"simulated\n25-75 %"},
-                   {"simulated\n5-95 %"},
-                   {"gap"},
-                   {"within\n20 %"},
-                   {"KS"},
-                   {"KS\ncritical"}},
-                  2);
+Table gap_table(const std::vector<ModelGapRow>& rows) {
+  Table block({{"pipeline", Align::kLeft},
+               {"metric", Align::kLeft},
+               {"n"},
+               {"measured\nmedian"},
+               {"measured\n25-75 %"},
+               {"measured\n5-95 %"},
+               {"simulated\nmedian"},
+               {"simulated\n25-75 %"},
+               {"simulated\n5-95 %"},
+               {"gap"},
+               {"within\n20 %"},
+               {"KS"},
+               {"KS\ncritical"}},
+              2);
   for (const ModelGapRow& row : rows) {
     block.add({row.pipeline, row.metric,
                fmt::format("{}/{}", row.measured.count, row.simulated.count),
@@ -80,34 +79,25 @@ TextTable gap_block(const std::vector<ModelGapRow>& rows) {
   return block;
 }
 
-// In markdown with the reasons as a column; else they stand below, since they are long.
-TextTable evidence_block(bool with_reasons) {
-  std::vector<Column> columns = {{"stage", Align::kLeft}};
+// The reasons are long: they stand below.
+Block evidence_block() {
+  Table table({{"stage", Align::kLeft}});
   for (const Evidence evidence : evaluation::kAllEvidence) {
     std::string name(evaluation::name_of(evidence));
     std::replace(name.begin(), name.end(), ' ', '\n');
-    columns.push_back({name, Align::kLeft});
+    table.columns.push_back({name, Align::kLeft});
   }
-  if (with_reasons) columns.push_back({"why", Align::kLeft});
-  TextTable block(columns);
+  Block block{.heading = "What each stage of the model rests on"};
   for (const StageEvidence& stage : evaluation::model_evidence()) {
     std::vector<std::string> cells = {std::string(stage.stage)};
     for (const Evidence evidence : evaluation::kAllEvidence) {
       cells.emplace_back(stage.has(evidence) ? "x" : "");
     }
-    if (with_reasons) cells.emplace_back(stage.why);
-    block.add(cells);
+    table.add(std::move(cells));
+    block.items.push_back(fmt::format("{}: {}.", stage.stage, stage.why));
   }
+  block.table = std::move(table);
   return block;
-}
-
-std::string evidence_text(bool markdown) {
-  if (markdown) return evidence_block(true).markdown();
-  std::string out = evidence_block(false).plain() + "\n";
-  for (const StageEvidence& stage : evaluation::model_evidence()) {
-    out += wrapped(fmt::format("{}: {}.", stage.stage, stage.why), 2);
-  }
-  return out;
 }
 
 // The sentence that sums up: how many of the judged rows are within the limit.
@@ -132,35 +122,6 @@ std::vector<std::string> notes_of(const MeasuredStudy& study) {
     for (const std::string& note : row.notes) notes.push_back(row.pipeline + ", " + note);
   }
   return notes;
-}
-
-std::string report_text(const ModelGapReport& report, bool markdown) {
-  const auto heading = [markdown](std::string_view text) {
-    return fmt::format("\n{}{}\n\n", markdown ? "### " : "", text);
-  };
-  const auto line = [markdown](std::string_view text) {
-    return markdown ? fmt::format("- {}\n", text) : wrapped(text, 2);
-  };
-  const auto block = [markdown](const TextTable& table) {
-    return markdown ? table.markdown() : table.plain();
-  };
-  const MeasuredStudy& measured = report.measured;
-  std::string out =
-      fmt::format("{}{}: measured beside simulated\n", markdown ? "## " : "", measured.scenario);
-  const std::string where = fmt::format(
-      "Measured {} on {} (simbench {}); simulated with {} seeds (simbench {}).", measured.date,
-      measured.machine, measured.commit, report.simulated_seeds, commit());
-  out += markdown ? fmt::format("\n{}\n", where) : wrapped(where);
-  out += heading("The gap") + block(gap_block(report.rows));
-  out += fmt::format(
-      "\n{}", markdown ? summary_line(report.rows) + "\n" : wrapped(summary_line(report.rows)));
-  if (const std::vector<std::string> notes = notes_of(measured); !notes.empty()) {
-    out += heading("What went wrong");
-    for (const std::string& note : notes) out += line(note);
-  }
-  out += heading("How to read it");
-  for (const char* text : kGapLegend) out += line(text);
-  return out + heading("What each stage of the model rests on") + evidence_text(markdown);
 }
 
 Json side_json(const GapSide& side) {
@@ -203,11 +164,24 @@ ModelGapReport model_gap_report(const MeasuredStudy& measured,
           .rows = evaluation::model_gap(results_of(measured), simulated)};
 }
 
-std::string model_gap_table(const ModelGapReport& report) {
-  return fitted(report_text(report, false));
+Document model_gap_document(const ModelGapReport& report) {
+  const MeasuredStudy& measured = report.measured;
+  Document document{
+      .title = fmt::format("{}: measured beside simulated", measured.scenario),
+      .head = {fmt::format(
+          "Measured {} on {} (simbench {}); simulated with {} seeds (simbench {}).", measured.date,
+          measured.machine, measured.commit, report.simulated_seeds, commit())}};
+  document.blocks.push_back({.heading = "The gap",
+                             .table = gap_table(report.rows),
+                             .prose = {summary_line(report.rows)}});
+  if (const std::vector<std::string> notes = notes_of(measured); !notes.empty()) {
+    document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+  }
+  document.blocks.push_back(
+      {.heading = "How to read it", .items = {kGapLegend.begin(), kGapLegend.end()}});
+  document.blocks.push_back(evidence_block());
+  return document;
 }
-
-std::string model_gap_markdown(const ModelGapReport& report) { return report_text(report, true); }
 
 std::string model_gap_json(const ModelGapReport& report) {
   const MeasuredStudy& measured = report.measured;

@@ -10,7 +10,7 @@
 //        "notes": [...], "evidence": [{"stage", "rests_on": ["theory", ...], "why"}]}
 //
 //   const MeasuredStudy study = read_measured_study(path, scenario.name);
-//   print(model_gap_table(model_gap_report(study, simulated)));
+//   std::cout << plain(model_gap_document(model_gap_report(study, simulated)));
 #ifndef SIMBENCH_REPORTS_RIGS_MODEL_GAP_REPORT_H_
 #define SIMBENCH_REPORTS_RIGS_MODEL_GAP_REPORT_H_
 
@@ -21,6 +21,7 @@
 #include "evaluation/model/model_gap.h"
 #include "evaluation/scoring/results.h"
 #include "reports/rigs/measured_study.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -34,8 +35,7 @@ struct ModelGapReport {
 ModelGapReport model_gap_report(const MeasuredStudy& measured,
                                 const evaluation::Results& simulated);
 
-std::string model_gap_table(const ModelGapReport& report);
-std::string model_gap_markdown(const ModelGapReport& report);
+Document model_gap_document(const ModelGapReport& report);
 std::string model_gap_json(const ModelGapReport& report);
 
 }  // namespace simbench::reports

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 
+#include "evaluation/scoring/metrics.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/results/json.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -20,17 +21,8 @@ using evaluation::Row;
 using evaluation::Series;
 using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
-struct Metric {
-  const char* name;
-  const char* text;
-  Series Row::*series;
-};
-
-constexpr Metric kOfPulses[] = {{"amd_ms", "AMD", &Row::amd_ms},
-                                {"rmdv_ms", "RMDV", &Row::rmdv_ms},
-                                {"host_error_ms", "host clock error", &Row::host_error_ms},
-                                {"absolute_error_ms", "absolute error", &Row::absolute_error_ms}};
-constexpr Metric kOfSets[] = {{"set_amd_ms", "AMD of sets", &Row::set_amd_ms}};
+constexpr const char* kOfPulses[] = {"amd_ms", "rmdv_ms", "host_error_ms", "absolute_error_ms"};
+constexpr const char* kOfSets[] = {"set_amd_ms"};
 
 constexpr const char* kPredictionLegend =
     "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
@@ -43,14 +35,14 @@ std::size_t count_of(const Series& series) {
                                                 [](double value) { return !std::isnan(value); }));
 }
 
-std::span<const Metric> metrics_of(const Row& measured) {
+std::span<const char* const> metrics_of(const Row& measured) {
   if (measured.verified() || count_of(measured.amd_ms) == 0) return kOfPulses;
   return kOfSets;
 }
 
 // Real rigs cannot measure errors: AMD is always shown, what nobody could measure is not.
-bool is_shown(const Metric& metric, std::size_t measured) {
-  return measured > 0 || metric.series == &Row::amd_ms || metric.series == &Row::set_amd_ms;
+bool is_predicted(std::string_view metric, std::size_t measured) {
+  return measured > 0 || metric == "amd_ms" || metric == "set_amd_ms";
 }
 
 std::string measured_band(const Prediction& prediction) {
@@ -63,44 +55,25 @@ std::string inside_text(const Prediction& prediction) {
 }
 
 std::string metric_text(const Prediction& prediction) {
-  for (const std::span<const Metric> metrics :
-       {std::span<const Metric>(kOfPulses), std::span<const Metric>(kOfSets)}) {
-    for (const Metric& metric : metrics) {
-      if (prediction.metric != metric.name) continue;
-      const bool unverified = !prediction.verified && prediction.measured_count > 0;
-      return unverified ? fmt::format("{} (unverified)", metric.text) : metric.text;
-    }
-  }
-  return prediction.metric;
+  const bool unverified = !prediction.verified && prediction.measured_count > 0;
+  return fmt::format("{}{}", evaluation::metric(prediction.metric).title,
+                     unverified ? " (unverified)" : "");
 }
 
-TextTable block(const std::vector<Prediction>& rows) {
-  TextTable table({{"pipeline", Align::kLeft},
-                   {"metric", Align::kLeft},
-                   {"measured\nmedian ms"},
-                   {"measured\n5-95 %"},
-                   {"simulated\nmedian ms"},
-                   {"simulated\n5-95 %"},
-                   {"measured\nmedian is", Align::kLeft}},
-                  2);
+Table prediction_table(const std::vector<Prediction>& rows) {
+  Table table({{"pipeline", Align::kLeft},
+               {"metric", Align::kLeft},
+               {"measured\nmedian ms"},
+               {"measured\n5-95 %"},
+               {"simulated\nmedian ms"},
+               {"simulated\n5-95 %"},
+               {"measured\nmedian is", Align::kLeft}},
+              2);
   for (const Prediction& row : rows) {
     table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),
                number_text(row.simulated.median), band_text(row.simulated), inside_text(row)});
   }
   return table;
-}
-
-std::string report(const Results& measured, const Results& simulated, bool markdown) {
-  const std::vector<Prediction> rows = predictions(measured, simulated);
-  const bool one = std::any_of(rows.begin(), rows.end(),
-                               [](const Prediction& row) { return row.measured_count == 1; });
-  const std::string legend = one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition)
-                                 : std::string(kPredictionLegend);
-  const std::string heading =
-      fmt::format("Measured beside predicted ({} simulated seed{})", simulated.seed_count,
-                  simulated.seed_count == 1 ? "" : "s");
-  if (markdown) return fmt::format("### {}\n\n{}\n{}\n", heading, block(rows).markdown(), legend);
-  return fmt::format("{}\n\n{}\n{}", heading, block(rows).plain(), wrapped(legend));
 }
 
 Json band_json(const Series& series) {
@@ -128,15 +101,16 @@ std::vector<Prediction> predictions(const Results& measured, const Results& simu
         std::find_if(simulated.rows.begin(), simulated.rows.end(),
                      [&](const Row& row) { return row.pipeline == found.pipeline; });
     if (predicted == simulated.rows.end()) continue;
-    for (const Metric& metric : metrics_of(found)) {
+    for (const char* const id : metrics_of(found)) {
+      const evaluation::Metric& metric = evaluation::metric(id);
       Prediction row{.pipeline = found.pipeline,
-                     .metric = metric.name,
+                     .metric = id,
                      .verified = found.verified(),
-                     .measured = found.*metric.series,
-                     .simulated = (*predicted).*metric.series,
-                     .measured_count = count_of(found.*metric.series),
+                     .measured = metric.series(found),
+                     .simulated = metric.series(*predicted),
+                     .measured_count = count_of(metric.series(found)),
                      .inside = std::nullopt};
-      if (!is_shown(metric, row.measured_count)) continue;
+      if (!is_predicted(id, row.measured_count)) continue;
       if (row.measured_count > 0 && count_of(row.simulated) > 0) {
         row.inside = evaluation::inside(row.measured.median, row.simulated);
       }
@@ -146,12 +120,15 @@ std::vector<Prediction> predictions(const Results& measured, const Results& simu
   return all;
 }
 
-std::string prediction_table(const Results& measured, const Results& simulated) {
-  return fitted(report(measured, simulated, false));
-}
-
-std::string prediction_markdown(const Results& measured, const Results& simulated) {
-  return report(measured, simulated, true);
+Block prediction_block(const Results& measured, const Results& simulated) {
+  const std::vector<Prediction> rows = predictions(measured, simulated);
+  const bool one = std::any_of(rows.begin(), rows.end(),
+                               [](const Prediction& row) { return row.measured_count == 1; });
+  return {
+      .heading = fmt::format("Measured beside predicted ({} simulated seed{})",
+                             simulated.seed_count, simulated.seed_count == 1 ? "" : "s"),
+      .table = prediction_table(rows),
+      .prose = {one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition) : kPredictionLegend}};
 }
 
 std::string json_with_prediction(const Results& measured, const Results& simulated) {

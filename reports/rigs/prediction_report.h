@@ -6,8 +6,8 @@
 // compared by the range of its gathered sets, which simulated rows have too; the others by AMD,
 // RMDV and, where they exist, the errors.
 //
-//   print(table(measured, summary));
-//   print(prediction_table(measured, simulated));
+//   Document document = results_document(measured, summary);
+//   document.blocks.push_back(prediction_block(measured, simulated));
 #ifndef SIMBENCH_REPORTS_RIGS_PREDICTION_REPORT_H_
 #define SIMBENCH_REPORTS_RIGS_PREDICTION_REPORT_H_
 
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -36,10 +37,7 @@ struct Prediction {
 std::vector<Prediction> predictions(const evaluation::Results& measured,
                                     const evaluation::Results& simulated);
 
-std::string prediction_table(const evaluation::Results& measured,
-                             const evaluation::Results& simulated);
-std::string prediction_markdown(const evaluation::Results& measured,
-                                const evaluation::Results& simulated);
+Block prediction_block(const evaluation::Results& measured, const evaluation::Results& simulated);
 
 // results.json of `measured` (reports/results/json.h) with one more member:
 //   "prediction": {"seeds": {"first", "count"},

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "recording/decimal.h"
+#include "recording/version.h"
 #include "reports/results/csv.h"
+#include "reports/text/block.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
+#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -20,6 +23,7 @@ using evaluation::GatheringReplay;
 using evaluation::Replay;
 using evaluation::RigReplay;
 using evaluation::RigRow;
+using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 bool has_other_streams(const Replay& replay, const CameraReplay& camera) {
   return std::any_of(replay.cameras.begin(), replay.cameras.end(), [&](const CameraReplay& other) {
@@ -33,21 +37,21 @@ std::string name_of(const Replay& replay, const CameraReplay& camera) {
 }
 
 std::string cameras_text(const Replay& replay) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"host", Align::kLeft},
-                   {"frames"},
-                   {"missing"},
-                   {"span\ns"},
-                   {"sensor period\nms"},
-                   {"\nsd ms"},
-                   {"arrival period\nms"},
-                   {"\nsd ms"},
-                   {"drift\nppm"},
-                   {"by envelope\nppm"},
-                   {"excess ms\n50 %"},
-                   {"\n95 %"},
-                   {"\n99 %"},
-                   {"\nmax"}});
+  Table table({{"camera", Align::kLeft},
+               {"host", Align::kLeft},
+               {"frames"},
+               {"missing"},
+               {"span\ns"},
+               {"sensor period\nms"},
+               {"\nsd ms"},
+               {"arrival period\nms"},
+               {"\nsd ms"},
+               {"drift\nppm"},
+               {"by envelope\nppm"},
+               {"excess ms\n50 %"},
+               {"\n95 %"},
+               {"\n99 %"},
+               {"\nmax"}});
   for (const CameraReplay& camera : replay.cameras) {
     const CameraStatistics& s = camera.statistics;
     table.add({name_of(replay, camera), camera.host, count_text(s.frames),
@@ -58,19 +62,19 @@ std::string cameras_text(const Replay& replay) {
                number_text(s.excess.p50_ms), number_text(s.excess.p95_ms),
                number_text(s.excess.p99_ms), number_text(s.excess.max_ms)});
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string rows_text(const Replay& replay) {
-  TextTable table({{"camera", Align::kLeft},
-                   {"device_time", Align::kLeft},
-                   {"jitter\nms"},
-                   {"residual ms\nsd"},
-                   {"\n95 %"},
-                   {"\n99 %"},
-                   {"\nmax"},
-                   {"drift\nppm"}},
-                  2);
+  Table table({{"camera", Align::kLeft},
+               {"device_time", Align::kLeft},
+               {"jitter\nms"},
+               {"residual ms\nsd"},
+               {"\n95 %"},
+               {"\n99 %"},
+               {"\nmax"},
+               {"drift\nppm"}},
+              2);
   for (const CameraReplay& camera : replay.cameras) {
     for (const DeviceTimeReplay& row : camera.rows) {
       table.add({name_of(replay, camera), row.device_time, number_text(row.jitter_ms),
@@ -79,7 +83,7 @@ std::string rows_text(const Replay& replay) {
                  number_text(row.drift_ppm)});
     }
   }
-  return table.plain();
+  return plain(table);
 }
 
 std::string rig_text(const RigReplay& rig) {
@@ -93,13 +97,13 @@ std::string rig_text(const RigReplay& rig) {
       rig.common_start_plausible
           ? "less than half a period, as after a common start."
           : "half a period or more, so without a common start; its AMD and RMDV mean nothing.");
-  TextTable table({{"device_time", Align::kLeft},
-                   {"frames matched by", Align::kLeft},
-                   {"sets"},
-                   {"frames\ndiscarded"},
-                   {"AMD\nms"},
-                   {"RMDV\nms"}},
-                  2);
+  Table table({{"device_time", Align::kLeft},
+               {"frames matched by", Align::kLeft},
+               {"sets"},
+               {"frames\ndiscarded"},
+               {"AMD\nms"},
+               {"RMDV\nms"}},
+              2);
   for (const RigRow& row : rig.rows) {
     table.add({row.device_time, "GenLock order", count_text(rig.complete_pulses), "-",
                number_text(row.amd_ms), number_text(row.rmdv_ms)});
@@ -108,7 +112,7 @@ std::string rig_text(const RigReplay& rig) {
                  number_text(found.amd_ms), number_text(found.rmdv_ms)});
     }
   }
-  return text + table.plain();
+  return text + plain(table);
 }
 
 constexpr const char* kReplayLegend = R"(
@@ -124,6 +128,78 @@ void append_ms(fmt::memory_buffer& text, Nanoseconds time) {
   text.push_back(',');
   const std::string ms = simbench::ms_text(time);
   text.append(ms.data(), ms.data() + ms.size());
+}
+
+Json period_json(const evaluation::PeriodStatistics& period) {
+  return {{"mean", period.mean_ms}, {"sd", period.sd_ms}};
+}
+
+Json residual_json(const evaluation::ResidualStatistics& residual) {
+  return {{"sd", residual.sd_ms},
+          {"p95", residual.p95_ms},
+          {"p99", residual.p99_ms},
+          {"max", residual.max_ms}};
+}
+
+Json camera_json(const evaluation::CameraReplay& camera) {
+  const evaluation::CameraStatistics& found = camera.statistics;
+  return {{"camera", camera.camera},
+          {"host", camera.host},
+          {"stream", camera.stream},
+          {"frames", found.frames},
+          {"missing_frames", found.missing_frames},
+          {"long_intervals", found.long_intervals},
+          {"span_s", found.span_s},
+          {"sensor_period_ms", period_json(found.sensor_period)},
+          {"arrival_period_ms", period_json(found.arrival_period)},
+          {"drift_ppm", found.drift_ppm},
+          {"envelope_drift_ppm", found.envelope_drift_ppm},
+          {"residual_ms", residual_json(found.residual)},
+          {"excess_ms",
+           {{"mean", found.excess.mean_ms},
+            {"p50", found.excess.p50_ms},
+            {"p95", found.excess.p95_ms},
+            {"p99", found.excess.p99_ms},
+            {"max", found.excess.max_ms}}}};
+}
+
+Json row_json(const evaluation::CameraReplay& camera, const evaluation::DeviceTimeReplay& row) {
+  return {{"camera", camera.camera},
+          {"stream", camera.stream},
+          {"device_time", row.device_time},
+          {"jitter_ms", row.jitter_ms},
+          {"residual_ms", residual_json(row.residual)},
+          {"drift_ppm", row.drift_ppm}};
+}
+
+Json rig_row_json(const evaluation::RigRow& row) {
+  Json gatherings = Json::array();
+  for (const evaluation::GatheringReplay& found : row.gatherings) {
+    gatherings.push_back({{"gathering", found.gathering},
+                          {"sets", found.sets},
+                          {"discarded_frames", found.discarded_frames},
+                          {"amd_ms", found.amd_ms},
+                          {"rmdv_ms", found.rmdv_ms}});
+  }
+  return {{"device_time", row.device_time},
+          {"amd_ms", row.amd_ms},
+          {"rmdv_ms", row.rmdv_ms},
+          {"gathering", gatherings}};
+}
+
+Json rig_json(const evaluation::Replay& replay, const evaluation::RigReplay& rig) {
+  Json cameras = Json::array();
+  for (const std::size_t index : rig.cameras) cameras.push_back(replay.cameras[index].camera);
+  Json rows = Json::array();
+  for (const evaluation::RigRow& row : rig.rows) rows.push_back(rig_row_json(row));
+  return {{"stream", rig.stream},
+          {"cameras", cameras},
+          {"period_ms", rig.period_ms},
+          {"complete_pulses", rig.complete_pulses},
+          {"first_arrival_range_ms", rig.first_arrival_range_ms},
+          {"common_start_plausible", rig.common_start_plausible},
+          {"verified", false},
+          {"rows", rows}};
 }
 
 }  // namespace
@@ -173,6 +249,29 @@ void write_replay_frames(const Replay& replay, std::ostream& out) {
       out.write(text.data(), static_cast<std::streamsize>(text.size()));
     }
   }
+}
+
+std::string replay_json(const evaluation::Replay& replay, const std::vector<std::string>& files) {
+  Json root = {{"schema_version", 1},
+               {"version", version()},
+               {"commit", commit()},
+               {"files", files},
+               {"notes", Json::array({"host_sync cannot be replayed"})},
+               {"cameras", Json::array()},
+               {"rows", Json::array()},
+               {"rigs", Json::array()},
+               {"warnings", replay.warnings}};
+  for (const evaluation::CameraReplay& camera : replay.cameras) {
+    root["cameras"].push_back(camera_json(camera));
+    for (const evaluation::DeviceTimeReplay& row : camera.rows) {
+      root["rows"].push_back(row_json(camera, row));
+    }
+  }
+  for (const evaluation::RigReplay& rig : replay.rigs) {
+    root["rigs"].push_back(rig_json(replay, rig));
+  }
+  // A file may name its cameras in bytes that are no UTF-8.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace simbench::reports

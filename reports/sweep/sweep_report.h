@@ -1,4 +1,4 @@
-// The results of a sweep: tables for people, CSV for scripts.
+// The results of a sweep: blocks for people, CSV for scripts.
 #ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 #define SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 
@@ -8,6 +8,7 @@
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_response.h"
 #include "evaluation/sweep/sweep_score.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
@@ -29,16 +30,16 @@ std::string sweep_hosts_csv(const evaluation::SweepPlan& plan,
 
 // The response: median AMD with its band, absolute error, host error, precision, recall and margin
 // of each pipeline at each point.
-std::string response_table(const evaluation::SweepPlan& plan,
-                           const std::vector<evaluation::ResponseRow>& rows);
+Block response_block(const evaluation::SweepPlan& plan,
+                     const std::vector<evaluation::ResponseRow>& rows);
 
 // The median clock error of each host, in the order of their sessions.
-std::string host_order_table(const evaluation::SweepPlan& plan,
-                             const std::vector<evaluation::ResponseRow>& rows);
+Block host_order_block(const evaluation::SweepPlan& plan,
+                       const std::vector<evaluation::ResponseRow>& rows);
 
 // How near the median AMD of n seeds comes to that of all, and how many are needed.
-std::string seeds_needed_table(const evaluation::SweepPlan& plan,
-                               const std::vector<evaluation::ResponseRow>& rows);
+Block seeds_needed_block(const evaluation::SweepPlan& plan,
+                         const std::vector<evaluation::ResponseRow>& rows);
 
 }  // namespace simbench::reports
 

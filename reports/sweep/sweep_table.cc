@@ -8,7 +8,6 @@
 #include "evaluation/statistics/statistics.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/number_text.h"
-#include "reports/text/text_table.h"
 
 namespace simbench::reports {
 namespace {
@@ -47,7 +46,7 @@ std::string counted(std::uint64_t count, const char* thing) {
 }
 
 std::string heading(const SweepPlan& plan) {
-  return fmt::format("{}: {}, {}, {}\n\n", plan.scenario, counted(plan.points(), "point"),
+  return fmt::format("{}: {}, {}, {}", plan.scenario, counted(plan.points(), "point"),
                      counted(plan.pipelines.size(), "pipeline"), counted(plan.seeds, "seed"));
 }
 
@@ -57,13 +56,13 @@ std::string percent_text(double share) {
 
 }  // namespace
 
-std::string response_table(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   std::vector<Column> columns = point_columns(plan);
   for (const char* name : {"AMD\nms", "AMD\n5-95 %", "absolute\nerror ms", "host\nerror ms",
                            "precision", "recall", "margin\nms"}) {
     columns.push_back({name});
   }
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (std::string& cell :
@@ -75,18 +74,18 @@ std::string response_table(const SweepPlan& plan, const std::vector<ResponseRow>
     }
     table.add(std::move(cells));
   }
-  return heading(plan) + table.plain() + "\n" +
-         wrapped(
-             "Medians over the seeds; precision and recall over all of them. Margin: the "
-             "gathering interval less the 99.9 % quantile of a seed's spreads.");
+  return {.heading = heading(plan),
+          .table = std::move(table),
+          .prose = {"Medians over the seeds; precision and recall over all of them. Margin: the "
+                    "gathering interval less the 99.9 % quantile of a seed's spreads."}};
 }
 
-std::string host_order_table(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   std::size_t hosts = 0;
   for (const ResponseRow& row : rows) hosts = std::max(hosts, row.hosts.size());
   std::vector<Column> columns = point_columns(plan);
   for (std::size_t host = 1; host < hosts; ++host) columns.push_back({fmt::format("{}", host)});
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (std::size_t host = 1; host < hosts; ++host) {
@@ -94,13 +93,13 @@ std::string host_order_table(const SweepPlan& plan, const std::vector<ResponseRo
     }
     table.add(std::move(cells));
   }
-  return "Clock error of each slave, in the order of their sessions\n\n" + table.plain() + "\n" +
-         wrapped(
-             "Milliseconds: the median over the seeds of a host's |mean clock error| during "
-             "the capture. Host 1 is synchronised first and has run free for longest.");
+  return {.heading = "Clock error of each slave, in the order of their sessions",
+          .table = std::move(table),
+          .prose = {"Milliseconds: the median over the seeds of a host's |mean clock error| during "
+                    "the capture. Host 1 is synchronised first and has run free for longest."}};
 }
 
-std::string seeds_needed_table(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   std::vector<Column> columns = point_columns(plan);
   columns.push_back({"AMD\nms"});
   std::vector<std::int64_t> counts;
@@ -113,7 +112,7 @@ std::string seeds_needed_table(const SweepPlan& plan, const std::vector<Response
   for (const double wanted : kWanted) {
     columns.push_back({fmt::format("seeds for\n+-{:.0f} %", wanted * 100)});
   }
-  TextTable table(std::move(columns));
+  Table table(std::move(columns));
   for (const ResponseRow& row : rows) {
     const std::vector<double>& values = row.of("amd_ms").values;
     std::vector<std::string> cells = point_cells(plan, row);
@@ -127,13 +126,14 @@ std::string seeds_needed_table(const SweepPlan& plan, const std::vector<Response
     }
     table.add(std::move(cells));
   }
-  return fmt::format("How far the median AMD of n seeds is from that of all {}\n\n", plan.seeds) +
-         table.plain() + "\n" +
-         wrapped(
-             "In 95 % of studies with n seeds the median lies within +- so many percent. The "
-             "last columns turn that round; beyond the number of seeds run they go by the "
-             "distribution that these have shown. Differences between pipelines need fewer: "
-             "they are paired by seed.");
+  return {
+      .heading =
+          fmt::format("How far the median AMD of n seeds is from that of all {}", plan.seeds),
+      .table = std::move(table),
+      .prose = {"In 95 % of studies with n seeds the median lies within +- so many percent. The "
+                "last columns turn that round; beyond the number of seeds run they go by the "
+                "distribution that these have shown. Differences between pipelines need fewer: "
+                "they are paired by seed."}};
 }
 
 }  // namespace simbench::reports

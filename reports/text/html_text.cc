@@ -1,20 +1,10 @@
 #include "reports/text/html_text.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "algorithms/ports/assert.h"
 
 namespace simbench::reports {
-namespace {
-
-const char* class_of(HtmlTable::Align align) {
-  return align == HtmlTable::Align::kLeft ? " class=\"text\"" : "";
-}
-
-}  // namespace
-
 std::string html_escaped(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -71,30 +61,6 @@ std::string filled(std::string_view page,
     out += value->second;
     page.remove_prefix(close + 2);
   }
-}
-
-void HtmlTable::add(const std::vector<std::string>& cells) {
-  SIMBENCH_ASSERT(cells.size() == columns_.size(), "a cell for every column");
-  rows_ += "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string text = html_escaped(cells[i]);
-    rows_ += i == 0 ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
-                    : fmt::format("<td{}>{}</td>", class_of(columns_[i].align), text);
-  }
-  rows_ += "</tr>\n";
-}
-
-std::string HtmlTable::html() const {
-  std::string head;
-  for (const Column& column : columns_) {
-    head += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(column.align),
-                        html_escaped(column.header));
-  }
-  return fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">\n"
-      "<table><caption>{0}</caption>\n<thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table>"
-      "</div>\n",
-      html_escaped(caption_), head, rows_);
 }
 
 }  // namespace simbench::reports

@@ -107,6 +107,33 @@ inline evaluation::Results sample_results() {
   return results;
 }
 
+// A slave capture and, of the other pipeline, none that could be made.
+inline evaluation::Results sample_rig_results() {
+  evaluation::Results results = sample_results();
+  results.performance.simulated_seconds = 0;
+  evaluation::Row& both = results.rows[0];
+  both.ground_truth = evaluation::GroundTruth::kNone;
+  both.absolute_error_ms = both.bias_ms = both.host_error_ms = no_series();
+  both.precision = both.recall = both.margin_ms = kNaN;
+  both.published.reset();
+  both.evaluated_pulses = both.sets.emitted;
+  both.sets.pure = both.sets.complete_pulses = 0;
+  both.notes = {"repetition 2: camera 7 was unplugged"};
+  evaluation::Row& none = results.rows[1];
+  none.ground_truth = evaluation::GroundTruth::kNone;
+  none.amd_ms = none.rmdv_ms = no_series();
+  none.frames = {};
+  none.notes = {"repetition 1: host2 could not be reached", "repetition 2: host2 is \"lost\", too"};
+  return results;
+}
+
+inline evaluation::Results sample_genlock_results() {
+  evaluation::Results results = sample_results();
+  for (evaluation::Row& row : results.rows)
+    row.ground_truth = evaluation::GroundTruth::kGenlockOrder;
+  return results;
+}
+
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_TESTS_REPORTS_SAMPLE_RESULTS_H_

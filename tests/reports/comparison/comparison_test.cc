@@ -108,7 +108,7 @@ TEST(CompareArchives, WithoutCommonSeedsTheIndexIsOffered) {
   const Comparison c = compare_archives(a, b, {.by_index = true});
   EXPECT_EQ(c.seed_count, 32U);
   EXPECT_EQ(c.first_seed_b, 33U);
-  EXPECT_THAT(comparison_table(c), HasSubstr("32 pairs by index: seeds 1-32 with 33-64"));
+  EXPECT_THAT(plain(comparison_document(c)), HasSubstr("32 pairs by index: seeds 1-32 with 33-64"));
 }
 
 TEST(CompareArchives, WithoutCommonPipelinesThereIsNothingToCompare) {
@@ -134,7 +134,7 @@ TEST(ComparePipelines, BIsHeldAgainstA) {
 TEST(CompareWithBaseline, SaysHowMuchBetterInPlainWords) {
   const Comparison c = compare_with_baseline(sample_archive("a"), "plain", {});
   EXPECT_THAT(
-      comparison_table(c),
+      plain(comparison_document(c)),
       AllOf(HasSubstr("good against plain: AMD 5 times smaller [5, 5]; RMDV 5 times smaller"),
             HasSubstr("absolute error 5 times smaller [5, 5]; recall: no")));
   EXPECT_THAT([] { compare_with_baseline(sample_archive("a"), "ntp", {}); },
@@ -178,7 +178,7 @@ TEST(ComparisonOutput, JsonHasNullWhereThereIsNothing) {
   EXPECT_TRUE(root["pipelines"][0]["amd_ms"]["difference"]["low"].is_null());
   EXPECT_EQ(root["pipelines"][1]["amd_ms"]["verdict"], "no_difference_seen");
   EXPECT_TRUE(root["pipelines"][1]["amd_ms"]["seeds_needed"].is_null());
-  EXPECT_THAT(comparison_table(c), AllOf(HasSubstr("no values"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(plain(comparison_document(c)), AllOf(HasSubstr("no values"), Not(HasSubstr("nan"))));
   EXPECT_THAT(comparison_csv(c),
               AllOf(HasSubstr("plain,plain,amd_ms,0,32,,,"), Not(HasSubstr("nan"))));
 }
@@ -192,7 +192,7 @@ TEST(ComparisonOutput, CsvHasALinePerPipelineAndMetric) {
 TEST(ComparisonOutput, MarkdownIsATableWithItsNotes) {
   Archive b = sample_archive("b");
   b.version = "2";
-  EXPECT_THAT(comparison_markdown(compare_archives(sample_archive("a"), b, {})),
+  EXPECT_THAT(markdown(comparison_document(compare_archives(sample_archive("a"), b, {}))),
               AllOf(HasSubstr("| plain"), HasSubstr("- version 1.2.3 against 2\n")));
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
-#include "reports/figures/budget_figure.h"
 
 namespace simbench::reports {
 namespace {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "reports/figures/display_clock.h"
 #include "tests/reports/figures/hand_made_run.h"
 
 namespace simbench::reports {

@@ -2,12 +2,16 @@
 // browser (tests/browser/).
 #include "reports/page/html_report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "reports/page/html_figures.h"
+#include "reports/results/results_document.h"
+#include "reports/text/html_text.h"
 #include "tests/reports/sample_figures.h"
 #include "tests/reports/sample_results.h"
 
@@ -62,6 +66,88 @@ TEST(HtmlReport, HasTheNumbersOfTheTable) {
         "none is worst", "(needs 18cam_6host_15fps)", "a host was not synchronised",
         "1.23 M events", "2 seeds (1 to 2)", "0.1.0 (abc)", "A rig.", "a note"}) {
     EXPECT_TRUE(has(page, part)) << part;
+  }
+}
+
+ReportedArchive archive_of(evaluation::Results results) {
+  ReportedArchive archive = sample_archive();
+  archive.archive.results = std::move(results);
+  return archive;
+}
+
+// Whatever `simbench run` prints of results stands on their page too.
+TEST(HtmlReport, SaysWhatTheTerminalSays) {
+  for (const evaluation::Results& results :
+       {sample_results(), sample_rig_results(), sample_genlock_results()}) {
+    const std::string page = page_of({archive_of(results)});
+    std::size_t cells = 0;
+    for (const Block& block : results_document(results, "").blocks) {
+      EXPECT_TRUE(has(page, html_escaped(block.heading))) << block.heading;
+      for (const std::string& text : block.prose)
+        EXPECT_TRUE(has(page, html_escaped(text))) << text;
+      for (const std::string& text : block.items)
+        EXPECT_TRUE(has(page, html_escaped(text))) << text;
+      if (!block.table) continue;
+      for (const auto& row : block.table->rows) {
+        for (const std::string& cell : row) {
+          ++cells;
+          EXPECT_TRUE(has(page, ">" + html_escaped(cell) + "<")) << cell;
+        }
+      }
+    }
+    EXPECT_GT(cells, 30U);
+  }
+}
+
+TEST(HtmlReport, ARealRigMeetsNoCommonWorlds) {
+  const std::string page = page_of({archive_of(sample_rig_results())});
+  EXPECT_FALSE(has(page, "meets the same worlds"));
+  EXPECT_TRUE(has(page, "Every repetition of a pipeline is a capture of its own."));
+  EXPECT_TRUE(has(page, "<td class=\"text\">unverified</td>"));
+  EXPECT_TRUE(has(page, "<li>yoon2021_both, repetition 2: camera 7 was unplugged</li>"));
+  EXPECT_TRUE(has(page_of({sample_archive()}), "Every pipeline meets the same worlds"));
+}
+
+TEST(HtmlReport, IndexErrorsOfUnverifiedSetsAreNotKnown) {
+  evaluation::Results results = sample_rig_results();
+  results.rows[1].gathering = "epsilon";  // so that the sets are shown
+  EXPECT_TRUE(has(page_of({archive_of(results)}),
+                  "<td class=\"text\">yoon2021</td><td>720</td><td>-</td><td>-</td><td>-</td>"
+                  "<td>4</td>"));
+}
+
+TEST(HtmlReport, ARealRigSimulatesNoSeconds) {
+  const std::string page = page_of({archive_of(sample_rig_results())});
+  EXPECT_FALSE(has(page, "simulated seconds"));
+  EXPECT_FALSE(has(page, "events/s"));
+  EXPECT_TRUE(has(page, "Cost: 0.25 s (0.50 s of CPU)."));
+}
+
+TEST(HtmlReport, ABoardOfGatheringIsAboutSets) {
+  evaluation::Results results = sample_results();
+  results.rows.resize(1);
+  for (const char* name : {"yoon2021", "epsilon"}) {
+    evaluation::Row row = results.rows.front();
+    row.pipeline = fmt::format("sets.{}", name);
+    row.gathering = name;
+    results.rows.push_back(row);
+  }
+  for (const bool real : {false, true}) {
+    if (real) {
+      for (evaluation::Row& row : results.rows) row.ground_truth = evaluation::GroundTruth::kNone;
+    }
+    ReportedArchive archive = archive_of(results);
+    archive.archive.scenario_json = R"({"evaluation": {"table": "leaderboard"}})";
+    const std::string page = page_of({archive});
+    const std::size_t heading =
+        page.find("<h3>sets: yoon2021_both + regression_30 + each gathering");
+    ASSERT_NE(heading, std::string::npos);
+    const std::string board = page.substr(heading, page.find("</section>", heading) - heading);
+    EXPECT_TRUE(has(board, "index errors</th>"));
+    EXPECT_FALSE(has(board, "oracle&#39;s</th>"));
+    EXPECT_EQ(has(page, "meets the same worlds"), !real);
+    // The references beside it have their errors.
+    EXPECT_TRUE(has(page, "error / oracle&#39;s</th>"));
   }
 }
 

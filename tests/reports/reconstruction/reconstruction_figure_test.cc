@@ -1,7 +1,6 @@
-#include "reports/reconstruction/reconstruction_figure.h"
-
 #include <gmock/gmock.h>
 
+#include "reports/reconstruction/reconstruction_document.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {

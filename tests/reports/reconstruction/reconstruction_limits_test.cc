@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reports/reconstruction/reconstruction_text.h"
+#include "reports/reconstruction/reconstruction_document.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {

@@ -36,18 +36,18 @@ BudgetReport sample() {
 }
 
 TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
-  const std::string text = budget_table(sample());
+  const std::string text = plain(budget_document(sample()));
   EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed from 1"));
   EXPECT_THAT(text, HasSubstr("USB delivery"));
   EXPECT_THAT(text, HasSubstr("28.4 %"));  // of the gathering: 6 / 21.125
   EXPECT_THAT(text, HasSubstr("over the sets that gathering emits"));
-  EXPECT_THAT(budget_markdown(sample()), HasSubstr("## Error budget of mine"));
+  EXPECT_THAT(markdown(budget_document(sample())), HasSubstr("## Error budget of mine"));
 }
 
 TEST(BudgetReport, SaysWhenGatheringHasNoPart) {
   BudgetReport report = sample();
   report.budgets[0].amd_of_sets = false;
-  EXPECT_THAT(budget_table(report), HasSubstr("gathering has no part"));
+  EXPECT_THAT(plain(budget_document(report)), HasSubstr("gathering has no part"));
 }
 
 TEST(BudgetReport, JsonHasEveryStageAndNullForWhatDoesNotExist) {

@@ -11,11 +11,10 @@
 #include <string>
 
 #include "reports/archive/archive_reader.h"
-#include "reports/page/html_tables.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
-#include "reports/results/table.h"
+#include "reports/results/results_document.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
 
@@ -29,31 +28,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-// A slave capture and, of the other pipeline, none that could be made.
-Results rig_results() {
-  Results results = sample_results();
-  results.performance.simulated_seconds = 0;
-  evaluation::Row& both = results.rows[0];
-  both.ground_truth = GroundTruth::kNone;
-  both.absolute_error_ms = both.bias_ms = both.host_error_ms = no_series();
-  both.precision = both.recall = both.margin_ms = kNaN;
-  both.published.reset();
-  both.evaluated_pulses = both.sets.emitted;
-  both.sets.pure = both.sets.complete_pulses = 0;
-  both.notes = {"repetition 2: camera 7 was unplugged"};
-  evaluation::Row& none = results.rows[1];
-  none.ground_truth = GroundTruth::kNone;
-  none.amd_ms = none.rmdv_ms = no_series();
-  none.frames = {};
-  none.notes = {"repetition 1: host2 could not be reached", "repetition 2: host2 is \"lost\", too"};
-  return results;
-}
-
-Results genlock_results() {
-  Results results = sample_results();
-  for (evaluation::Row& row : results.rows) row.ground_truth = GroundTruth::kGenlockOrder;
-  return results;
-}
+std::string table(const Results& results) { return plain(results_document(results, "")); }
 
 TEST(GroundTruthText, Labels) {
   evaluation::Row row = sample_results().rows[0];
@@ -62,21 +37,22 @@ TEST(GroundTruthText, Labels) {
   EXPECT_EQ(ground_truth_label(row), "GenLock order");
   row.ground_truth = GroundTruth::kNone;
   EXPECT_EQ(ground_truth_label(row), "unverified");
-  EXPECT_EQ(ground_truth_label(rig_results().rows[1]), "-");
+  EXPECT_EQ(ground_truth_label(sample_rig_results().rows[1]), "-");
 }
 
 TEST(GroundTruthText, SimulatedResultsLookAsTheyAlwaysDid) {
   const Results results = sample_results();
   EXPECT_FALSE(has_real_rows(results));
   for (const std::string& text :
-       {table(results, ""), markdown(results, ""), csv(results), html_tables(results, false)}) {
+       {table(results), csv(results), markdown(results_document(results, "")),
+        html(results_document(results, "").blocks)}) {
     EXPECT_THAT(text, AllOf(Not(HasSubstr("unverified")), Not(HasSubstr("truth,")),
                             Not(HasSubstr("GenLock order"))));
   }
 }
 
 TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
-  const std::string text = table(rig_results(), "");
+  const std::string text = table(sample_rig_results());
   EXPECT_THAT(text, HasSubstr("yoon2021_both  unverified      2.000"));
   EXPECT_THAT(text, HasSubstr("free_running   -                   -"));
   EXPECT_THAT(text, HasSubstr("What went wrong\n"
@@ -85,35 +61,36 @@ TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
   EXPECT_THAT(text, HasSubstr("looks perfect"));
   EXPECT_THAT(text, HasSubstr("Every repetition of a pipeline is a capture of its own."));
   EXPECT_THAT(text, Not(HasSubstr("events/s")));
-  EXPECT_THAT(markdown(rig_results(), ""), HasSubstr("| yoon2021_both | unverified | 2.000 |"));
+  EXPECT_THAT(markdown(results_document(sample_rig_results(), "")),
+              HasSubstr("| yoon2021_both | unverified | 2.000 |"));
 }
 
 TEST(GroundTruthText, GenlockCapturesAreVerified) {
-  const std::string text = table(genlock_results(), "");
+  const std::string text = table(sample_genlock_results());
   EXPECT_THAT(text, HasSubstr("GenLock order"));
   EXPECT_THAT(text, Not(HasSubstr("unverified")));
 }
 
 TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
-  Results results = rig_results();
+  Results results = sample_rig_results();
   results.rows[1].gathering = "epsilon";  // so that the sets are shown
-  EXPECT_THAT(table(results, ""),
+  EXPECT_THAT(table(results),
               HasSubstr("yoon2021_both  yoon2021        720          -       -       -        4"));
 }
 
 TEST(GroundTruthText, CsvHasThreeMoreColumns) {
-  const std::string text = csv(rig_results());
+  const std::string text = csv(sample_rig_results());
   EXPECT_THAT(text, HasSubstr(",emission_latency_max_ms,ground_truth,verified,notes\n"));
   EXPECT_THAT(text, HasSubstr(",none,unverified,repetition 2: camera 7 was unplugged\n"));
   EXPECT_THAT(text, HasSubstr("; repetition 2: host2 is \"\"lost\"\", too\"\n"));
   EXPECT_THAT(text, HasSubstr(",720,,4,,21,"));  // neither pure sets nor index errors
-  EXPECT_THAT(csv(genlock_results()), HasSubstr(",genlock_order,verified,\n"));
+  EXPECT_THAT(csv(sample_genlock_results()), HasSubstr(",genlock_order,verified,\n"));
 }
 
 TEST(GroundTruthText, HtmlAndLeaderboardLabelThemToo) {
-  EXPECT_THAT(html_tables(rig_results(), false),
+  EXPECT_THAT(html(results_document(sample_rig_results(), "").blocks),
               AllOf(HasSubstr("unverified"), HasSubstr("camera 7 was unplugged")));
-  EXPECT_THAT(leaderboard_table(rig_results(), ""),
+  EXPECT_THAT(plain(leaderboard_document(sample_rig_results(), "")),
               AllOf(HasSubstr("yoon2021_both (unverified)"), HasSubstr("host2 is \"lost\"")));
 }
 
@@ -122,7 +99,7 @@ TEST(GroundTruthText, JsonSaysItOfEachRow) {
   EXPECT_EQ(simulated["rows"][0]["ground_truth"], "simulation");
   EXPECT_EQ(simulated["rows"][0]["verified"], true);
   EXPECT_EQ(simulated["rows"][0]["notes"], nlohmann::json::array());
-  const auto row = nlohmann::json::parse(json(rig_results()))["rows"][0];
+  const auto row = nlohmann::json::parse(json(sample_rig_results()))["rows"][0];
   EXPECT_EQ(row["ground_truth"], "none");
   EXPECT_EQ(row["verified"], false);
   EXPECT_EQ(row["notes"][0], "repetition 2: camera 7 was unplugged");
@@ -146,13 +123,14 @@ class GroundTruthArchive : public testing::Test {
 };
 
 TEST_F(GroundTruthArchive, ReadsWhatItWrites) {
-  const Results results = rig_results();
+  const Results results = sample_rig_results();
   const Results read_back = read(nlohmann::ordered_json::parse(json(results)));
   EXPECT_EQ(read_back.rows[0].ground_truth, GroundTruth::kNone);
   EXPECT_EQ(read_back.rows[0].sets.pure, 0);
   EXPECT_THAT(read_back.rows[0].notes, ElementsAre("repetition 2: camera 7 was unplugged"));
-  EXPECT_EQ(read(nlohmann::ordered_json::parse(json(genlock_results()))).rows[1].ground_truth,
-            GroundTruth::kGenlockOrder);
+  EXPECT_EQ(
+      read(nlohmann::ordered_json::parse(json(sample_genlock_results()))).rows[1].ground_truth,
+      GroundTruth::kGenlockOrder);
 }
 
 TEST_F(GroundTruthArchive, OlderArchivesAreOfSimulations) {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reports/results/results_document.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
@@ -28,7 +29,7 @@ evaluation::Results boards() {
 }
 
 TEST(LeaderboardReport, SaysWhatABoardVariesAndTheRatios) {
-  const std::string text = leaderboard_table(boards(), "Nominal.");
+  const std::string text = plain(leaderboard_document(boards(), "Nominal."));
   EXPECT_THAT(text, HasSubstr("Nominal."));
   EXPECT_THAT(text, HasSubstr("host: each host_sync + regression_30 + yoon2021"));
   EXPECT_LT(text.find("\noracle  "), text.find("\nmine  "));
@@ -42,7 +43,7 @@ TEST(LeaderboardReport, SaysWhatABoardVariesAndTheRatios) {
 TEST(LeaderboardReport, PrintsTheFloorOfUnequalLinks) {
   evaluation::Results results = boards();
   results.asymmetry_floor = evaluation::asymmetry_floor(0.01, 6);
-  EXPECT_THAT(leaderboard_markdown(results, ""), HasSubstr("Floor: unequal links"));
+  EXPECT_THAT(markdown(leaderboard_document(results, "")), HasSubstr("Floor: unequal links"));
   EXPECT_THAT(asymmetry_line(results), HasSubstr("0.012"));
 }
 

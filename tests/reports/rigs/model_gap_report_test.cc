@@ -82,7 +82,7 @@ TEST(ModelGapReport, JsonSaysWhatEachStageRestsOn) {
 }
 
 TEST(ModelGapReport, TableForPeople) {
-  const std::string text = model_gap_table(model_gap_report(study(), simulated()));
+  const std::string text = plain(model_gap_document(model_gap_report(study(), simulated())));
   EXPECT_THAT(text, HasSubstr("relay: measured beside simulated\n"
                               "Measured 2026-11-21 on 2 cores, Linux 6.1 (simbench abc); "));
   EXPECT_THAT(text, HasSubstr("simulated with 4 seeds"));
@@ -97,10 +97,10 @@ TEST(ModelGapReport, TableForPeople) {
 }
 
 TEST(ModelGapReport, MarkdownHasTheSameTables) {
-  const std::string text = model_gap_markdown(model_gap_report(study(), simulated()));
+  const std::string text = markdown(model_gap_document(model_gap_report(study(), simulated())));
   EXPECT_THAT(text, HasSubstr("## relay: measured beside simulated"));
   EXPECT_THAT(text, HasSubstr("| both | amd_ms | 5/4 | 3.000 | [2.000, 4.000] |"));
-  EXPECT_THAT(text, HasSubstr("| transport and kernel stamps |  | x |  |  |  | "));
+  EXPECT_THAT(text, HasSubstr("| transport and kernel stamps |  | x |  |  |  |\n"));
 }
 
 TEST(ModelGapReport, WithoutCommonPipelinesThereAreNoRows) {
@@ -108,14 +108,14 @@ TEST(ModelGapReport, WithoutCommonPipelinesThereAreNoRows) {
   others.rows[0].pipeline = "another";
   const ModelGapReport report = model_gap_report(study(), others);
   EXPECT_TRUE(report.rows.empty());
-  EXPECT_THAT(model_gap_table(report), HasSubstr("0 of 0 medians"));
+  EXPECT_THAT(plain(model_gap_document(report)), HasSubstr("0 of 0 medians"));
   EXPECT_THAT(model_gap_json(report), HasSubstr("\"rows\": []"));
 }
 
 TEST(ModelGapReport, NothingWentWrongIsNotSaid) {
   MeasuredStudy fine = study();
   fine.rows[0].notes.clear();
-  EXPECT_THAT(model_gap_table(model_gap_report(fine, simulated())),
+  EXPECT_THAT(plain(model_gap_document(model_gap_report(fine, simulated()))),
               Not(HasSubstr("What went wrong")));
 }
 

@@ -75,16 +75,18 @@ TEST(Prediction, UnverifiedRowsAreComparedBySets) {
   EXPECT_EQ(rows[0].metric, "set_amd_ms");
   EXPECT_FALSE(rows[0].verified);
   EXPECT_EQ(rows[0].inside, true);  // 1 in [0.55, 1.45]
-  EXPECT_THAT(prediction_table(found, simulated()), HasSubstr("AMD of sets (unverified)"));
+  EXPECT_THAT(plain({.blocks = {prediction_block(found, simulated())}}),
+              HasSubstr("AMD of sets (unverified)"));
 }
 
 TEST(Prediction, OneRepetitionHasAValueAndNoBand) {
-  const std::string text = prediction_table(measured({2}), simulated());
+  const std::string text = plain({.blocks = {prediction_block(measured({2}), simulated())}});
   EXPECT_THAT(
       text,
       HasSubstr("both      AMD         2.000         -      2.000  [1.100, 2.900]  inside\n"));
   EXPECT_THAT(text, HasSubstr("One repetition\nhas a value and no band."));
-  EXPECT_THAT(prediction_table(measured({2, 2}), simulated()), Not(HasSubstr("One repetition")));
+  EXPECT_THAT(plain({.blocks = {prediction_block(measured({2, 2}), simulated())}}),
+              Not(HasSubstr("One repetition")));
 }
 
 TEST(Prediction, APipelineThatWasNeverCapturedHasItsPrediction) {
@@ -93,7 +95,8 @@ TEST(Prediction, APipelineThatWasNeverCapturedHasItsPrediction) {
   ASSERT_EQ(rows.size(), 1);
   EXPECT_EQ(rows[0].metric, "amd_ms");
   EXPECT_FALSE(rows[0].inside.has_value());
-  EXPECT_THAT(prediction_table(nothing, simulated()), Not(HasSubstr("unverified")));
+  EXPECT_THAT(plain({.blocks = {prediction_block(nothing, simulated())}}),
+              Not(HasSubstr("unverified")));
 }
 
 TEST(Prediction, OfOnePipelineThatWasNotSimulatedThereIsNone) {
@@ -119,7 +122,7 @@ TEST(Prediction, IsAMemberOfTheResultsJson) {
 
 TEST(Prediction, Markdown) {
   EXPECT_THAT(
-      prediction_markdown(measured({2.5, 2.7}), simulated()),
+      markdown({.blocks = {prediction_block(measured({2.5, 2.7}), simulated())}}),
       HasSubstr("| both | AMD | 2.600 | [2.510, 2.690] | 2.000 | [1.100, 2.900] | inside |"));
 }
 

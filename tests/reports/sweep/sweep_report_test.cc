@@ -82,14 +82,14 @@ TEST(SweepReport, TheResponseIsOfAllSeeds) {
   EXPECT_EQ(all[3].recall, 0.75);
   EXPECT_EQ(all[3].precision, 1);
   EXPECT_EQ(all[3].hosts[2].median, 2);
-  const std::string table = response_table(plan(), all);
+  const std::string table = plain({.blocks = {response_block(plan(), all)}});
   EXPECT_THAT(table, HasSubstr("4 points, 2 pipelines, 2 seeds"));
   EXPECT_THAT(table, testing::ContainsRegex("2 +4 +application +slow +14.500 "));
   EXPECT_THAT(table, HasSubstr("75.0 %"));
 }
 
 TEST(SweepReport, HostsInTheOrderOfTheirSessions) {
-  EXPECT_THAT(host_order_table(plan(), rows()),
+  EXPECT_THAT(plain({.blocks = {host_order_block(plan(), rows())}}),
               testing::ContainsRegex("4 +8 +kernel +fast +1.000  2.000\n"));
 }
 
@@ -101,7 +101,8 @@ TEST(SweepReport, SeedsNeededUpToThoseThatWereRun) {
   std::vector<SweepScore> many(40);
   for (std::size_t i = 0; i < many.size(); ++i)
     many[i].at("amd_ms") = 1 + static_cast<double>(i) / 39;
-  const std::string table = seeds_needed_table(one, evaluation::response(one, many));
+  const std::string table =
+      plain({.blocks = {seeds_needed_block(one, evaluation::response(one, many))}});
   EXPECT_THAT(table, HasSubstr("n = 32"));
   EXPECT_THAT(table, testing::Not(HasSubstr("n = 64")));
   EXPECT_THAT(table, HasSubstr("+-5 %"));

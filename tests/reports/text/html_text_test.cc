@@ -33,16 +33,5 @@ TEST(HtmlText, ANameWithoutAValueIsAProgrammingError) {
   EXPECT_DEATH(filled("{{missing}}", {}), "without a value");
 }
 
-TEST(HtmlTable, HasItsCellsAsText) {
-  HtmlTable table("A <caption>", {{"name", HtmlTable::Align::kLeft}, {"AMD, ms"}});
-  EXPECT_TRUE(table.empty());
-  table.add({"<b>", "1.500"});
-  EXPECT_FALSE(table.empty());
-  const std::string html = table.html();
-  EXPECT_THAT(html, HasSubstr("<th scope=\"row\" class=\"text\">&lt;b&gt;</th><td>1.500</td>"));
-  EXPECT_THAT(html, HasSubstr("<caption>A &lt;caption&gt;</caption>"));
-  EXPECT_THAT(html, HasSubstr("<th scope=\"col\">AMD, ms</th>"));
-}
-
 }  // namespace
 }  // namespace simbench::reports

@@ -1,4 +1,4 @@
-#include "reports/reconstruction/reconstruction_report.h"
+#include "reports/reconstruction/reconstruction_document.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reports/text/text_table.h"
+#include "reports/reconstruction/reconstruction_json.h"
+#include "reports/text/plain_text.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {
@@ -17,7 +18,7 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string table() { return reconstruction_table(sample_reconstruction()); }
+std::string table() { return plain(reconstruction_document(sample_reconstruction())); }
 Json json() { return Json::parse(reconstruction_json(sample_reconstruction())); }
 
 TEST(ReconstructionTable, HasTheRowsOfTable4) {
@@ -69,7 +70,7 @@ TEST(ReconstructionTable, SaysNothingOfWhatWasNotAskedFor) {
   results.speed_needed.reset();
   results.rows.erase(results.rows.begin());
   results.seeds = results.frames = 1;
-  const std::string text = reconstruction_table(results);
+  const std::string text = plain(reconstruction_document(results));
   EXPECT_THAT(text, HasSubstr("a_studio: 1 seed (1), 1 frame set each\n"));
   for (const char* part : {"How good must", "all hosts off", "ntp_last_set", "published:"}) {
     EXPECT_THAT(text, Not(HasSubstr(part)));
@@ -81,7 +82,7 @@ TEST(ReconstructionTable, FitsAPageOf100Columns) {
   results.rows[0].pipeline = "two_way_hull_upstream";
   results.rows[0].seeds[0].errors.mean_cm = 123.456;
   set_page_width(100);
-  const std::string text = reconstruction_table(results);
+  const std::string text = plain(reconstruction_document(results));
   set_page_width(std::nullopt);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;

@@ -1,10 +1,4 @@
-// A reconstruction experiment for people, programs and spreadsheets: the paper's Table 4 over
-// seeds, and how good a synchronisation has to be for a subject.
-//
-// Text: a row for each pipeline with mean and standard deviation of the reprojection error beside
-// the published ones; how they came about; the curve of error over desynchronisation; the largest
-// desynchronisation that each speed forgives; what is assumed. No line of a table is wider than 100
-// columns with pipeline names of up to 21.
+// A reconstruction experiment for programs and spreadsheets.
 //
 // JSON, schema_version 1; what does not exist is null. A series is {"median", "p05", "p95",
 // "values": [in seed order]}. Only /performance differs between equal runs.
@@ -24,8 +18,8 @@
 //    "notes": [...], "performance": {"wall_s", "seconds_per_set"}}
 //
 // CSV: a line for each pipeline, medians and bands, the same names.
-#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_REPORT_H_
-#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_REPORT_H_
+#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_JSON_H_
+#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_JSON_H_
 
 #include <string>
 
@@ -33,10 +27,9 @@
 
 namespace simbench::reports {
 
-std::string reconstruction_table(const reconstruction::ReconstructionResults& results);
 std::string reconstruction_json(const reconstruction::ReconstructionResults& results);
 std::string reconstruction_csv(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports
 
-#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_REPORT_H_
+#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_JSON_H_

@@ -1,15 +1,30 @@
-// The sentences and cells that the table and the page of a reconstruction share.
-#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_TEXT_H_
-#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_TEXT_H_
+// A reconstruction experiment for people: the paper's Table 4 over seeds, and how good a
+// synchronisation has to be for a subject.
+//
+// A row for each pipeline with mean and standard deviation of the reprojection error beside the
+// published ones; how they came about; the curve of error over desynchronisation; the largest
+// desynchronisation that each speed forgives; what is assumed. No line of a table is wider than 100
+// columns with pipeline names of up to 21.
+//
+//   std::cout << plain(reconstruction_document(results));
+#ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
+#define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
 
 #include <string>
 #include <vector>
 
 #include "reconstruction/results.h"
+#include "reports/figures/figure.h"
 #include "reports/reconstruction/reconstruction_limits.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
+// Its first block is Table 4.
+Document reconstruction_document(const reconstruction::ReconstructionResults& results);
+
+// The cells and sentences it is made of.
+//
 // "2.39"; "-" for NaN.
 std::string cm_text(double cm);
 // Median and band: "2.39 [1.80, 2.95]".
@@ -35,21 +50,16 @@ std::string speed_sentence(const reconstruction::SpeedNeeded& needed);
 // What was simulated and assumed, and what the numbers cannot tell; then what the results note.
 std::vector<std::string> honest_notes(const reconstruction::ReconstructionResults& results);
 
-inline constexpr const char* kErrorLegend =
-    "error: distance between a vertex of the reconstructed mesh and the point that a depth camera "
-    "measured where it sees that vertex. A value is the median over the seeds, [a, b] their band "
-    "from 5 to 95 %.";
-inline constexpr const char* kDesyncLegend =
-    "desynchronisation: how far apart the true mid-exposures of a frame set are. For every row "
-    "frames are grouped by the nearest global stamp, without a threshold; seeds without a gathered "
-    "set: where the pipeline's own gathering emitted none at all.";
-inline constexpr const char* kPublishedLegend =
-    "published: the paper's Table 4, one recording. inside: within the band.";
-inline constexpr const char* kLimitLegend =
-    "desynchronisation up to: at which the median error stays within 10 % of its floor, the error "
-    "at the smallest desynchronisation of the curve (interpolated). cost: the local slope of the "
-    "curve there, or at its end.";
+// What a millisecond costs, as a figure (reports/figures/figure.h), which anything that draws
+// figures can draw.
+//
+// One panel: the median mean error over desynchronisation, a curve for each speed of the subject,
+// and the published means as lines. A second one, where it was looked for: the error over the
+// speed, at the desynchronisation of the row with the largest published mean. With neither there is
+// nothing to draw (Figure::absent).
+
+Figure reconstruction_figure(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports
 
-#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_TEXT_H_
+#endif  // SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_

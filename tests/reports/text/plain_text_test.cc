@@ -1,6 +1,6 @@
 // Tables and prose on pages of a given width. Expectations are written out; then, over seeded
 // random tables, what must hold of every layout.
-#include "reports/text/table_layout.h"
+#include "reports/text/plain_text.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,6 +11,8 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <optional>
 #include <sstream>
+
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 namespace {
@@ -36,23 +38,23 @@ std::size_t widest(const std::string& text) {
   return width;
 }
 
-TextTable numbers() {
-  TextTable table({{"name", Align::kLeft}, {"one"}, {"two"}, {"three"}});
+Table numbers() {
+  Table table({{"name", Align::kLeft}, {"one"}, {"two"}, {"three"}});
   table.add({"a", "1", "22", "333"});
   table.add({"b", "4", "55", "666"});
   return table;
 }
 
-TEST(TableLayout, ATableThatFitsIsOneBlock) {
-  const std::string unlimited = numbers().plain();
+TEST(PlainTable, ATableThatFitsIsOneBlock) {
+  const std::string unlimited = plain(numbers());
   const PageGuard page(21);
   EXPECT_EQ(widest(unlimited), 21);
-  EXPECT_EQ(numbers().plain(), unlimited);
+  EXPECT_EQ(plain(numbers()), unlimited);
 }
 
-TEST(TableLayout, ATableTooWideIsDividedIntoBlocksOfLikeWidthWithTheKeyInEach) {
+TEST(PlainTable, ATableTooWideIsDividedIntoBlocksOfLikeWidthWithTheKeyInEach) {
   const PageGuard page(20);
-  EXPECT_EQ(numbers().plain(),
+  EXPECT_EQ(plain(numbers()),
             "name  one  two\n"
             "----  ---  ---\n"
             "a       1   22\n"
@@ -64,11 +66,11 @@ TEST(TableLayout, ATableTooWideIsDividedIntoBlocksOfLikeWidthWithTheKeyInEach) {
             "b       666\n");
 }
 
-TEST(TableLayout, EveryKeyColumnIsRepeated) {
-  TextTable table({{"camera", Align::kLeft}, {"stream", Align::kLeft}, {"one"}, {"two"}}, 2);
+TEST(PlainTable, EveryKeyColumnIsRepeated) {
+  Table table({{"camera", Align::kLeft}, {"stream", Align::kLeft}, {"one"}, {"two"}}, 2);
   table.add({"a", "depth", "1", "2"});
   const PageGuard page(20);
-  EXPECT_EQ(table.plain(),
+  EXPECT_EQ(plain(table),
             "camera  stream  one\n"
             "------  ------  ---\n"
             "a       depth     1\n"
@@ -78,31 +80,31 @@ TEST(TableLayout, EveryKeyColumnIsRepeated) {
             "a       depth     2\n");
 }
 
-TEST(TableLayout, ProseGoesOnBelow) {
-  TextTable table({{"name", Align::kLeft}, {"meaning", Align::kLeft}});
+TEST(PlainTable, ProseGoesOnBelow) {
+  Table table({{"name", Align::kLeft}, {"meaning", Align::kLeft}});
   table.add({"rate", "how often the trigger fires in a second"});
   const PageGuard page(32);
-  EXPECT_EQ(table.plain(),
+  EXPECT_EQ(plain(table),
             "name  meaning\n"
             "----  --------------------------\n"
             "rate  how often the trigger\n"
             "      fires in a second\n");
 }
 
-TEST(TableLayout, AWordIsNeverBroken) {
-  TextTable table({{"name", Align::kLeft}, {"value"}});
+TEST(PlainTable, AWordIsNeverBroken) {
+  Table table({{"name", Align::kLeft}, {"value"}});
   table.add({"a", std::string(50, 'x')});
   const PageGuard page(20);
-  EXPECT_THAT(table.plain(), testing::HasSubstr(fmt::format("a     {:x<50}\n", "")));
+  EXPECT_THAT(plain(table), testing::HasSubstr(fmt::format("a     {:x<50}\n", "")));
 }
 
-TEST(TableLayout, MarkdownKnowsNoPage) {
-  const std::string unlimited = numbers().markdown();
+TEST(PlainTable, MarkdownKnowsNoPage) {
+  const std::string unlimited = markdown(numbers());
   const PageGuard page(20);
-  EXPECT_EQ(numbers().markdown(), unlimited);
+  EXPECT_EQ(markdown(numbers()), unlimited);
 }
 
-TEST(TableLayout, LosesNoCellAndKeepsToThePage) {
+TEST(PlainTable, LosesNoCellAndKeepsToThePage) {
   boost::random::mt19937 random(7);
   const auto pick = [&](int low, int high) {
     return boost::random::uniform_int_distribution<int>(low, high)(random);
@@ -113,7 +115,7 @@ TEST(TableLayout, LosesNoCellAndKeepsToThePage) {
     for (int c = pick(1, 14); c > 0; --c) {
       columns.push_back({std::string(pick(1, 12), 'h'), pick(0, 1) ? Align::kLeft : Align::kRight});
     }
-    TextTable table(columns);
+    Table table(columns);
     std::vector<std::string> words;
     for (int r = pick(0, 4); r > 0; --r) {
       std::vector<std::string> cells;
@@ -129,7 +131,7 @@ TEST(TableLayout, LosesNoCellAndKeepsToThePage) {
     }
     const std::size_t width = static_cast<std::size_t>(pick(54, 170));
     const PageGuard page(width);
-    const std::string text = table.plain();
+    const std::string text = plain(table);
     EXPECT_LE(widest(text), width) << text;
     for (const std::string& word : words) {
       EXPECT_THAT(" " + text, testing::ContainsRegex("[ \n]" + word + "[ \n]"));

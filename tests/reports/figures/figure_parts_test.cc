@@ -1,4 +1,4 @@
-#include "reports/figures/thin.h"
+#include "reports/figures/figure_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,13 @@
 // The whole table, as a newcomer sees it.
-#include "reports/results/table.h"
+#include "reports/results/results_document.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "reports/text/text_table.h"
+#include "evaluation/scoring/metrics.h"
+#include "reports/text/plain_text.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
@@ -14,6 +15,10 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+std::string table(const evaluation::Results& results, const std::string& summary) {
+  return plain(results_document(results, summary));
+}
 
 TEST(Table, PlainText) {
   EXPECT_EQ(table(sample_results(), "A fit, stated as such."), R"(sample: 2 seeds (1-2)
@@ -76,7 +81,8 @@ free_running   epsilon           0          -     0 %       0        0          
 }
 
 TEST(Table, Markdown) {
-  EXPECT_EQ(markdown(sample_results(), "A fit, stated as such."), R"(## sample: 2 seeds (1-2)
+  EXPECT_EQ(markdown(results_document(sample_results(), "A fit, stated as such.")),
+            R"(## sample: 2 seeds (1-2)
 
 A fit, stated as such.
 
@@ -119,6 +125,21 @@ yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 
 Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated seconds per second.
 )");
+}
+
+TEST(ResultsDocument, AMetricThatNamesItsTableStandsInIt) {
+  evaluation::Metric mine = evaluation::metric("bias_ms");
+  mine.id = "mine_ms";
+  mine.tables = {.truth = 10};
+  mine.heading = "mine\nms";
+  mine.legend = "mine: of this test.";
+  mine.legend_continues = false;
+  const evaluation::ScopedMetric scoped(mine);
+  const Document document = results_document(sample_results(), "");
+  EXPECT_THAT(plain(document), HasSubstr("  -29.000\n"));  // in the last column
+  EXPECT_THAT(plain(document), HasSubstr("\n  mine: of this test.\n"));
+  EXPECT_THAT(markdown(document), HasSubstr("| pulses scored | mine ms |\n"));
+  EXPECT_THAT(html(document.blocks), HasSubstr("title=\"mine: of this test.\">mine ms</th></tr>"));
 }
 
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {

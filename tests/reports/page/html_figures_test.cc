@@ -1,5 +1,5 @@
 // Columns of numbers: read back by a decoder that is written from the description alone.
-#include "reports/page/html_columns.h"
+#include "reports/page/html_figures.h"
 
 #include <gmock/gmock.h>
 

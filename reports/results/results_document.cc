@@ -1,0 +1,283 @@
+#include "reports/results/results_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <string_view>
+
+#include "reports/results/ground_truth_text.h"
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Claim;
+using evaluation::Metric;
+using evaluation::PublishedComparison;
+using evaluation::Results;
+using evaluation::Row;
+using evaluation::SeedScore;
+using evaluation::TablePlaces;
+using RowFields = std::vector<Field<Row>>;
+
+bool any_published(const Results& results) {
+  return std::any_of(results.rows.begin(), results.rows.end(),
+                     [](const Row& row) { return row.published.has_value(); });
+}
+
+std::string seeds_text(const Results& results) {
+  if (results.seed_count == 1) return fmt::format("1 seed ({})", results.first_seed);
+  return fmt::format("{} seeds ({}-{})", results.seed_count, results.first_seed,
+                     results.first_seed + results.seed_count - 1);
+}
+
+Field<Row> pipeline_field() {
+  return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
+}
+
+std::string value_text(const Metric& metric, const Row& row) {
+  if (metric.is_count()) return metric.is_known(row) ? count_text(metric.count(row)) : "-";
+  return metric.is_share() ? share_text(metric.value(row)) : number_text(metric.value(row));
+}
+
+Field<Row> published_field(Column column, std::string (*cell)(const PublishedComparison&)) {
+  return {std::move(column),
+          [cell](const Row& row) { return row.published ? cell(*row.published) : "-"; }};
+}
+
+void append(RowFields& fields, const RowFields& more) {
+  fields.insert(fields.end(), more.begin(), more.end());
+}
+
+RowFields published_amd_fields() {
+  return {published_field({"published\nAMD ms"},
+                          [](const auto& known) { return number_text(known.amd_ms); }),
+          published_field({"published\nAMD is", Align::kLeft},
+                          [](const auto& known) {
+                            return std::string(known.amd_inside ? "inside" : "outside");
+                          }),
+          published_field({"at percentile\n[95 % interval]"},
+                          [](const auto& known) { return percentile_text(known.amd_percentile); })};
+}
+
+RowFields published_rmdv_fields() {
+  return {published_field({"published\nRMDV ms"},
+                          [](const auto& known) { return number_text(known.rmdv_ms); }),
+          published_field({"published\nRMDV is", Align::kLeft}, [](const auto& known) {
+            return std::string(!known.rmdv_attainable ? "not attainable"
+                               : known.rmdv_inside    ? "inside"
+                                                      : "outside");
+          })};
+}
+
+// The paper's two metrics, beside what the paper says.
+Table paper_table(const Results& results) {
+  const bool published = any_published(results);
+  RowFields fields = {pipeline_field()};
+  if (has_real_rows(results)) {
+    fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
+  }
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::paper)) {
+    append(fields, metric_fields(*metric));
+    if (published && metric->id == std::string_view("amd_ms")) {
+      append(fields, published_amd_fields());
+    }
+    if (published && metric->id == std::string_view("rmdv_ms")) {
+      append(fields, published_rmdv_fields());
+    }
+  }
+  return table_of(fields, results.rows);
+}
+
+// What a real rig cannot measure about itself.
+Table truth_table(const Results& results) {
+  RowFields fields = {pipeline_field()};
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
+    append(fields, metric_fields(*metric));
+  }
+  return table_of(fields, results.rows);
+}
+
+// What the columns of a table mean, as the metrics say it.
+void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
+  for (const Metric* metric : evaluation::table_metrics(table)) {
+    const bool is_told = table == &TablePlaces::sets && metric->tables.truth > 0;
+    if (is_told || metric->legend[0] == '\0') continue;
+    if (metric->legend_continues && !lines.empty()) {
+      lines.back().append(" ").append(metric->legend);
+    } else {
+      lines.emplace_back(metric->legend);
+    }
+  }
+}
+
+std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  pointers.reserve(rows.size());
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
+bool gatherings_differ(const Results& results) {
+  return std::any_of(results.rows.begin(), results.rows.end(), [&](const Row& row) {
+    return row.gathering != results.rows.front().gathering;
+  });
+}
+
+// A line each: what the columns mean.
+std::vector<std::string> results_legend(const Results& results) {
+  std::vector<std::string> lines = {
+      has_real_rows(results)
+          ? "Every repetition of a pipeline is a capture of its own. A value is the median over "
+            "the repetitions, [a, b] their band from 5 to 95 %."
+          : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
+            "seeds, [a, b] their band from 5 to 95 %."};
+  append_legends(&TablePlaces::paper, lines);
+  append_legends(&TablePlaces::truth, lines);
+  if (const std::string unverified = unverified_legend(results); !unverified.empty()) {
+    lines.push_back(unverified);
+  }
+  if (any_published(results)) {
+    lines.emplace_back(
+        "published: the paper's one recording. inside: within the band. not attainable: under eq. "
+        "(4) no data have that RMDV with that AMD.");
+  }
+  if (gatherings_differ(results)) {
+    const std::vector<std::string> sets = sets_legend(results);
+    lines.insert(lines.end(), sets.begin(), sets.end());
+  }
+  const std::string asymmetry = asymmetry_line(results);
+  if (!asymmetry.empty()) lines.push_back(asymmetry);
+  return lines;
+}
+
+Table claims_table(const Results& results) {
+  const std::vector<Field<Claim>> fields = {
+      {{"claim", Align::kLeft}, [](const Claim& claim) { return claim.id; }},
+      {{"holds in"},
+       [](const Claim& claim) {
+         return claim.holds_fraction ? share_text(*claim.holds_fraction) : "-";
+       }},
+      {{"of the paper", Align::kLeft}, [](const Claim& claim) {
+         return claim.text + (claim.needs.empty() ? "" : fmt::format(" (needs {})", claim.needs));
+       }}};
+  return table_of(fields, results.claims);
+}
+
+std::string cost_line(const Results& results) {
+  const evaluation::Performance& cost = results.performance;
+  if (cost.simulated_seconds == 0) {
+    return fmt::format("Cost: {:.2f} s ({:.2f} s of CPU).", cost.wall_seconds, cost.cpu_seconds);
+  }
+  return fmt::format(
+      "Cost: {} events in {:.2f} s ({:.2f} s of CPU): {} events/s, {} simulated seconds per "
+      "second.",
+      short_text(static_cast<double>(cost.events)), cost.wall_seconds, cost.cpu_seconds,
+      short_text(cost.events_per_second), short_text(cost.simulated_seconds_per_second));
+}
+
+// With the first reason, which is mostly the reason of all.
+std::string unsynchronised_line(const Row& row) {
+  const std::string times =
+      row.unsynchronised_hosts == 1 ? "once" : count_text(row.unsynchronised_hosts) + " times";
+  std::string line =
+      fmt::format("{}: host synchronisation failed {} over all seeds.", row.pipeline, times);
+  for (const SeedScore& seed : row.seeds) {
+    if (seed.failures.empty()) continue;
+    return line + fmt::format(" Seed {}: {}.", seed.seed, seed.failures.front().message);
+  }
+  return line;
+}
+
+Block failures_block(const Results& results) {
+  Block block;
+  for (const Row& row : results.rows) {
+    if (row.unsynchronised_hosts > 0) block.prose.push_back(unsynchronised_line(row));
+  }
+  return block;
+}
+
+Block stages_block(const Results& results) {
+  Block block{.heading = "Pipelines = host_sync + device_time + gathering"};
+  for (const Row& row : results.rows) {
+    block.items.push_back(fmt::format("{} = {} + {} + {}", row.pipeline, row.host_sync,
+                                      row.device_time, row.gathering));
+  }
+  return block;
+}
+
+}  // namespace
+
+std::vector<Field<Row>> metric_fields(const Metric& metric) {
+  // Copied, since the address of a metric may not last.
+  RowFields fields = {{{metric.heading, Align::kRight, metric.legend},
+                       [metric](const Row& row) { return value_text(metric, row); }}};
+  if (metric.band_heading != nullptr) {
+    fields.push_back({{metric.band_heading, Align::kRight, metric.legend},
+                      [metric](const Row& row) { return band_text(metric.series(row)); }});
+  }
+  return fields;
+}
+
+Table sets_table(const std::vector<const Row*>& rows) {
+  RowFields fields = {pipeline_field(),
+                      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
+    append(fields, metric_fields(*metric));
+  }
+  std::vector<std::reference_wrapper<const Row>> subjects;
+  for (const Row* row : rows) subjects.emplace_back(*row);
+  return table_of(fields, subjects);
+}
+
+std::vector<std::string> sets_legend(const Results& results) {
+  std::vector<std::string> lines;
+  append_legends(&TablePlaces::sets, lines);
+  if (has_real_rows(results)) {
+    lines.emplace_back(
+        "Arrivals on a real rig are read from the hosts' own clocks: where these are apart, "
+        "\"emitted after\" is wrong by as much, and may be negative.");
+  }
+  return lines;
+}
+
+std::string asymmetry_line(const Results& results) {
+  if (!results.asymmetry_floor) return "";
+  const evaluation::AsymmetryFloor& floor = *results.asymmetry_floor;
+  return fmt::format(
+      "Floor: unequal links (sigma {} ms) alone put any host synchronisation that measures over "
+      "them at an AMD of {} ms and a host clock error of {} ms on average; only methods that do "
+      "not measure over the links can be below.",
+      number_text(floor.sigma_ms), number_text(floor.amd_ms), number_text(floor.host_error_ms));
+}
+
+Document results_document(const Results& results, const std::string& summary) {
+  Document document{.title = fmt::format("{}: {}", results.scenario, seeds_text(results))};
+  if (!summary.empty()) document.head.push_back(summary);
+  std::vector<Block>& blocks = document.blocks;
+  blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
+  blocks.push_back(
+      {.heading = "What only known true time can tell", .table = truth_table(results)});
+  if (gatherings_differ(results)) {
+    blocks.push_back({.heading = "What gathering made of the stamps, over all seeds",
+                      .table = sets_table(pointers_to(results.rows))});
+  }
+  if (Block failures = failures_block(results); !failures.prose.empty()) {
+    blocks.push_back(std::move(failures));
+  }
+  if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
+    blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+  }
+  blocks.push_back({.heading = "How to read it", .items = results_legend(results)});
+  blocks.push_back(stages_block(results));
+  if (!results.claims.empty()) {
+    blocks.push_back(
+        {.heading = "The paper's claims, and the fraction of seeds in which each holds",
+         .table = claims_table(results)});
+  }
+  blocks.push_back({.prose = {cost_line(results)}});
+  return document;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,151 @@
+#include "reports/text/block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "algorithms/ports/assert.h"
+#include "reports/text/html_text.h"
+#include "reports/text/plain_text.h"
+
+namespace simbench::reports {
+namespace {
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string markdown_cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : one_line(text)) {
+    escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+  }
+  return escaped;
+}
+
+// What begins a document needs no empty line before it.
+std::string without_first_break(std::string text) {
+  if (text.starts_with('\n')) text.erase(0, 1);
+  return text;
+}
+
+std::string plain_block(const Block& block) {
+  std::string out;
+  if (!block.heading.empty()) out += fmt::format("\n{}\n", block.heading);
+  if (block.table) out += "\n" + plain(*block.table);
+  for (const std::string& text : block.prose) out += "\n" + wrapped(text);
+  if ((block.table || !block.prose.empty()) && !block.items.empty()) out += "\n";
+  for (const std::string& item : block.items) out += wrapped(item, 2);
+  return out;
+}
+
+std::string markdown_block(const Block& block, const char* level) {
+  std::string out;
+  if (!block.heading.empty()) out += fmt::format("\n{} {}\n", level, block.heading);
+  if (block.table) out += "\n" + markdown(*block.table);
+  for (const std::string& text : block.prose) out += fmt::format("\n{}\n", text);
+  if (!block.items.empty()) out += "\n";
+  for (const std::string& item : block.items) out += fmt::format("- {}\n", item);
+  return out;
+}
+
+// Attributes of a header's cell.
+std::string attributes(const Column& column) {
+  std::string out = column.align == Align::kLeft ? " class=\"text\"" : "";
+  if (!column.legend.empty()) out += fmt::format(" title=\"{}\"", html_escaped(column.legend));
+  return out;
+}
+
+std::string html_row(const Table& table, const std::vector<std::string>& cells) {
+  std::string out = "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string text = html_escaped(cells[i]);
+    const char* const align = table.columns[i].align == Align::kLeft ? " class=\"text\"" : "";
+    out += i < table.key_columns ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
+                                 : fmt::format("<td{}>{}</td>", align, text);
+  }
+  return out + "</tr>\n";
+}
+
+}  // namespace
+
+void Table::add(std::vector<std::string> cells) {
+  SIMBENCH_ASSERT(cells.size() == columns.size(), "a row has a cell for every column");
+  rows.push_back(std::move(cells));
+}
+
+std::string plain(const Document& document) {
+  std::string out;
+  if (!document.title.empty()) out += document.title + "\n";
+  for (const std::string& text : document.head) out += wrapped(text);
+  for (const Block& block : document.blocks) out += plain_block(block);
+  return fitted(without_first_break(std::move(out)));
+}
+
+std::string markdown(const Table& table) {
+  std::string out = "|";
+  for (const Column& column : table.columns) {
+    out += fmt::format(" {} |", markdown_cell(column.header));
+  }
+  out += "\n|";
+  for (const Column& column : table.columns) {
+    out += column.align == Align::kLeft ? "---|" : "---:|";
+  }
+  out += "\n";
+  for (const auto& row : table.rows) {
+    out += "|";
+    for (const std::string& cell : row) out += fmt::format(" {} |", markdown_cell(cell));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string markdown(const Document& document) {
+  std::string out;
+  if (!document.title.empty()) out += fmt::format("## {}\n", document.title);
+  for (const std::string& text : document.head) out += fmt::format("\n{}\n", text);
+  const char* const level = document.title.empty() ? "##" : "###";
+  for (const Block& block : document.blocks) out += markdown_block(block, level);
+  return without_first_break(std::move(out));
+}
+
+std::string html(const Table& table, const std::string& caption) {
+  std::string head;
+  for (const Column& column : table.columns) {
+    head += fmt::format("<th scope=\"col\"{}>{}</th>", attributes(column),
+                        html_escaped(one_line(column.header)));
+  }
+  std::string rows;
+  for (const auto& row : table.rows) rows += html_row(table, row);
+  return fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">\n"
+      "<table><caption>{0}</caption>\n<thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table>"
+      "</div>\n",
+      html_escaped(caption), head, rows);
+}
+
+std::string html(const Block& block) {
+  std::string out = block.is_warning ? "<section class=\"warnings\">\n" : "<section>\n";
+  if (!block.heading.empty()) out += fmt::format("<h3>{}</h3>\n", html_escaped(block.heading));
+  if (block.table) out += html(*block.table, block.heading);
+  for (const std::string& text : block.prose) {
+    out += fmt::format("<p class=\"legend\">{}</p>\n", html_escaped(text));
+  }
+  if (!block.items.empty()) {
+    std::string items;
+    for (const std::string& item : block.items) {
+      items += fmt::format("<li>{}</li>\n", html_escaped(item));
+    }
+    out += fmt::format("<ul{}>\n{}</ul>\n", block.is_warning ? "" : " class=\"legend\"", items);
+  }
+  return out + "</section>\n";
+}
+
+std::string html(const std::vector<Block>& blocks) {
+  std::string out;
+  for (const Block& block : blocks) out += html(block);
+  return out;
+}
+
+}  // namespace simbench::reports

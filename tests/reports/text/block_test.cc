@@ -1,0 +1,118 @@
+// What each renderer makes of the same blocks.
+#include "reports/text/block.h"
+
+#include <gmock/gmock.h>
+
+#include "reports/text/plain_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Table sample() {
+  Table table({{"name", Align::kLeft}, {"AMD\nmedian ms"}, {"note", Align::kLeft}});
+  table.add({"a", "1.5", "x|y"});
+  table.add({"longer", "12345.25", ""});
+  return table;
+}
+
+Document sample_document() {
+  return {.title = "a title",
+          .head = {"What it is about."},
+          .blocks = {{.heading = "Numbers", .table = sample(), .prose = {"A sentence."}},
+                     {.heading = "What went wrong", .items = {"this", "that"}, .is_warning = true},
+                     {.prose = {"The end."}}}};
+}
+
+TEST(Table, PlainAlignsNumbersRightAndHeadersAtTheBottom) {
+  EXPECT_EQ(plain(sample()),
+            "              AMD\n"
+            "name    median ms  note\n"
+            "------  ---------  ----\n"
+            "a             1.5  x|y\n"
+            "longer   12345.25\n");
+}
+
+TEST(Table, MarkdownJoinsHeadersAndEscapesBars) {
+  EXPECT_EQ(markdown(sample()),
+            "| name | AMD median ms | note |\n"
+            "|---|---:|---|\n"
+            "| a | 1.5 | x\\|y |\n"
+            "| longer | 12345.25 |  |\n");
+}
+
+TEST(Table, HtmlHasItsCellsAsText) {
+  Table table({{"name", Align::kLeft}, {"AMD\nms", Align::kRight, "a \"mean\""}});
+  table.add({"<b>", "1.500"});
+  const std::string text = html(table, "A <caption>");
+  EXPECT_THAT(text, HasSubstr("<th scope=\"row\" class=\"text\">&lt;b&gt;</th><td>1.500</td>"));
+  EXPECT_THAT(text, HasSubstr("<caption>A &lt;caption&gt;</caption>"));
+  EXPECT_THAT(text, HasSubstr("<th scope=\"col\" title=\"a &quot;mean&quot;\">AMD ms</th>"));
+}
+
+TEST(Table, HtmlHeadsARowByAllItsKeys) {
+  Table table({{"camera"}, {"stream"}, {"ms"}}, 2);
+  table.add({"c", "depth", "1"});
+  EXPECT_THAT(html(table, ""), HasSubstr("<th scope=\"row\" class=\"text\">depth</th><td>1</td>"));
+}
+
+TEST(Table, WithoutRowsHasItsHeader) { EXPECT_EQ(plain(Table({{"a"}, {"b"}})), "a  b\n-  -\n"); }
+
+TEST(Table, IsMadeOfFields) {
+  const std::vector<Field<int>> fields = {
+      {{"number"}, [](int number) { return std::to_string(number); }},
+      {{"twice"}, [](int number) { return std::to_string(2 * number); }}};
+  EXPECT_EQ(plain(table_of(fields, std::vector<int>{1, 20})),
+            "number  twice\n"
+            "------  -----\n"
+            "     1      2\n"
+            "    20     40\n");
+}
+
+TEST(TableDeathTest, ARowHasACellForEveryColumn) {
+  Table table({{"a"}, {"b"}});
+  EXPECT_DEATH(table.add({"1"}), "a cell for every column");
+}
+
+TEST(Document, PlainHasAnEmptyLineBetweenBlocks) {
+  EXPECT_EQ(plain(sample_document()), "a title\nWhat it is about.\n\nNumbers\n\n" +
+                                          plain(sample()) +
+                                          "\nA sentence.\n\nWhat went wrong\n  this\n  that\n"
+                                          "\nThe end.\n");
+}
+
+TEST(Document, MarkdownHasHeadingsAndLists) {
+  EXPECT_EQ(markdown(sample_document()),
+            "## a title\n\nWhat it is about.\n\n### Numbers\n\n" + markdown(sample()) +
+                "\nA sentence.\n\n### What went wrong\n\n- this\n- that\n\nThe end.\n");
+}
+
+TEST(Document, WithoutATitleABlockBeginsIt) {
+  const Document document{.blocks = {{.heading = "Numbers", .table = sample()}}};
+  EXPECT_EQ(plain(document), "Numbers\n\n" + plain(sample()));
+  EXPECT_EQ(markdown(document), "## Numbers\n\n" + markdown(sample()));
+}
+
+TEST(Document, PlainFitsThePage) {
+  set_page_width(12);
+  const std::string text = plain(sample_document());
+  set_page_width(std::nullopt);
+  EXPECT_THAT(text, HasSubstr("What it is\nabout.\n"));
+  EXPECT_THAT(text, HasSubstr("What went\n  wrong\n"));
+}
+
+TEST(Document, HtmlHasASectionForEachBlock) {
+  const std::string text = html(sample_document().blocks);
+  EXPECT_THAT(text, HasSubstr("<section>\n<h3>Numbers</h3>\n<div class=\"scroll\""));
+  EXPECT_THAT(text, HasSubstr("<p class=\"legend\">A sentence.</p>\n</section>\n"));
+  EXPECT_THAT(text, HasSubstr("<section class=\"warnings\">\n<h3>What went wrong</h3>\n<ul>\n"
+                              "<li>this</li>\n<li>that</li>\n</ul>\n</section>\n"));
+  EXPECT_THAT(html(Block{.heading = "<h>", .items = {"<i>"}}),
+              testing::AllOf(HasSubstr("&lt;h&gt;"), HasSubstr("<li>&lt;i&gt;</li>"),
+                             Not(HasSubstr("<i>"))));
+}
+
+}  // namespace
+}  // namespace simbench::reports
