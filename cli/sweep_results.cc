@@ -6,7 +6,6 @@
 
 #include "algorithms/ports/assert.h"
 #include "cli/messages.h"
-#include "evaluation/sweep/sweep_response.h"
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/sweep/sweep_figure.h"

@@ -7,7 +7,6 @@
 
 #include "cli/exit_status.h"
 #include "reports/comparison/gate.h"
-#include "reports/comparison/junit.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::cli {

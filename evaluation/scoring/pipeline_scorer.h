@@ -36,7 +36,6 @@
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
 #include "evaluation/scoring/deferred_stamps.h"
-#include "evaluation/scoring/host_errors.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/pulse_table.h"

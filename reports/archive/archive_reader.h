@@ -39,7 +39,7 @@ struct Archive {
 Archive read_archive(const std::string& path);
 
 // Fills Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else.
-// The archive must be a folder. (seed_details.cc)
+// The archive must be a folder.
 void read_seed_details(Archive& archive);
 
 }  // namespace simbench::reports

@@ -26,7 +26,7 @@
 
 #include "evaluation/scoring/metrics.h"
 #include "reports/archive/archive_reader.h"
-#include "reports/comparison/comparison_seeds.h"
+#include "reports/comparison/comparison_scenarios.h"
 
 namespace simbench::reports {
 

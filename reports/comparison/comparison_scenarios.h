@@ -1,5 +1,7 @@
-// Where two resolved scenarios differ, divided into what makes their results incomparable and what
-// is under test.
+// What makes two results comparable: the same world, and seeds that stand in pairs.
+//
+// Where two resolved scenarios differ is divided into what makes their results incomparable and
+// what is under test.
 //
 // The world is what a pipeline is put into: everything but the parameters of the algorithms, the
 // pipelines, published values and the scenario's words about itself. Numbers of different worlds
@@ -10,8 +12,12 @@
 #ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_SCENARIOS_H_
 #define SIMBENCH_REPORTS_COMPARISON_COMPARISON_SCENARIOS_H_
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "evaluation/scoring/results.h"
 
 namespace simbench::reports {
 
@@ -31,6 +37,43 @@ std::string digest_of_json(const std::string& text);
 
 // The first few of many, in one line: "x; y; and 7 more".
 std::string first_few(const std::vector<std::string>& differences);
+
+// `count` consecutive seeds.
+struct SeedRange {
+  std::uint64_t first = 1;
+  std::uint64_t count = 0;
+};
+
+inline SeedRange seeds_of(const evaluation::Results& results) {
+  return {results.first_seed, results.seed_count};
+}
+
+// "1-32"; "7".
+std::string seeds_text(const SeedRange& seeds);
+
+// Which seeds of two results stand in pairs.
+//
+//   const SeedPairing pairing = pair_by_seed(seeds_of(a.results), seeds_of(b.results));
+//   pair_up(pairing.of_a(row_a.amd_ms.values), pairing.of_b(row_b.amd_ms.values));
+struct SeedPairing {
+  std::uint64_t skip_a = 0;  // values before the first that has a partner
+  std::uint64_t skip_b = 0;
+  std::uint64_t count = 0;
+
+  std::vector<double> of_a(const std::vector<double>& values) const { return part(values, skip_a); }
+  std::vector<double> of_b(const std::vector<double>& values) const { return part(values, skip_b); }
+
+ private:
+  std::vector<double> part(const std::vector<double>& values, std::uint64_t skip) const {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(skip);
+    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+  }
+};
+
+// The seeds that both have.
+SeedPairing pair_by_seed(const SeedRange& a, const SeedRange& b);
+// The n-th with the n-th.
+SeedPairing pair_by_index(const SeedRange& a, const SeedRange& b);
 
 }  // namespace simbench::reports
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "reports/comparison/comparison.h"
-#include "reports/comparison/comparison_seeds.h"
+#include "reports/comparison/comparison_scenarios.h"
 #include "reports/comparison/comparison_words.h"
 #include "reports/text/number_text.h"
 #include "reports/text/text_table.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/statistics/paired_gate.h"
+#include "evaluation/statistics/paired.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/comparison/gate_commands.h"
 #include "scenarios/loader.h"

@@ -9,7 +9,7 @@
 // Statistical, for 32 or more seeds of any numbers: paired by seed if at least 32 are common, else
 // by index, as independent runs. A check fails only if the mean is worse by more than the margin
 // and its Student's t interval excludes zero after Holm's correction over all checks of the gate
-// (evaluation/statistics/paired_gate.h): a gate cries wolf in fewer than one of twenty runs. Values
+// (evaluation/statistics/paired.h): a gate cries wolf in fewer than one of twenty runs. Values
 // that vanished fail here too if the seeds are the same, or if none is left.
 //
 // In both a pipeline of the baseline that the result lacks fails; one that it has more is noted.
@@ -28,12 +28,13 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/archive/baseline.h"
-#include "reports/comparison/comparison_seeds.h"
+#include "reports/comparison/comparison_scenarios.h"
 
 namespace simbench::reports {
 
@@ -97,6 +98,17 @@ const char* outcome_name(GateOutcome outcome);
 std::string gate_text(const GateReport& report);
 // schema_version 1; members are only ever added. What does not exist is null.
 std::string gate_json(const GateReport& report);
+
+// A gate's report as JUnit XML, which CI services show beside a change: a suite for the gate, a
+// case for each metric of each pipeline, a failure with its numbers and the commands that repeat
+// it.
+//
+// There is no standard; written is the part that GitLab, Jenkins and the common GitHub actions
+// read: testsuites, testsuite, testcase (classname, name, time), failure (message, text).
+std::string gate_junit(const GateReport& report);
+
+// Text for an attribute or an element of XML 1.0: what it cannot hold is a question mark.
+std::string xml_text(std::string_view text);
 
 }  // namespace simbench::reports
 

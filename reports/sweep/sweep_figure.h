@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "evaluation/sweep/sweep_plan.h"
-#include "evaluation/sweep/sweep_response.h"
+#include "evaluation/sweep/sweep_score.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

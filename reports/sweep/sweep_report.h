@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "evaluation/sweep/sweep_plan.h"
-#include "evaluation/sweep/sweep_response.h"
 #include "evaluation/sweep/sweep_score.h"
 
 namespace simbench::reports {

@@ -8,7 +8,6 @@
 
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
-#include "evaluation/sweep/sweep_response.h"
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/archive/baseline.h"
 #include "reports/comparison/comparison.h"

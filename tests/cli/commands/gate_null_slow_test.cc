@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
-#include "evaluation/statistics/paired_gate.h"
+#include "evaluation/statistics/paired.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/comparison/gate.h"
 #include "scenarios/loader.h"

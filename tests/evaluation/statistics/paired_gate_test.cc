@@ -1,4 +1,4 @@
-#include "evaluation/statistics/paired_gate.h"
+#include "evaluation/statistics/paired.h"
 
 #include <gmock/gmock.h>
 

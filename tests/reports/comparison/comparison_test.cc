@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "reports/comparison/comparison_seeds.h"
+#include "reports/comparison/comparison_scenarios.h"
 #include "reports/comparison/comparison_words.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_archive.h"

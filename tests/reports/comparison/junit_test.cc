@@ -1,4 +1,4 @@
-#include "reports/comparison/junit.h"
+#include "reports/comparison/gate.h"
 
 #include <gmock/gmock.h>
 
