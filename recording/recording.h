@@ -6,7 +6,7 @@
 // and no PulseTruth.
 //
 // Streaming is deliberate: a capture of 18,000 cameras is scored without being held in memory.
-// KeptRecording (kept_recording.h) keeps it all and can play itself back into another sink.
+// KeptRecording (recording/event.h) keeps it all and can play itself back into another sink.
 //
 // Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
 // Source: docs/design.md section 2; the four stamps: docs/reference/d455.md section 1.
