@@ -1,11 +1,11 @@
-#include "evaluation/statistics/paired.h"
-
 #include <gmock/gmock.h>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
+
+#include "evaluation/statistics/paired.h"
 
 namespace simbench::evaluation {
 namespace {

@@ -1,7 +1,6 @@
-#include "reports/comparison/gate.h"
-
 #include <gmock/gmock.h>
 
+#include "reports/comparison/gate.h"
 #include "tests/reports/sample_archive.h"
 
 namespace simbench::reports {
