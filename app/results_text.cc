@@ -9,7 +9,7 @@ namespace simbench::app {
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, const std::vector<reports::Block>& more) {
-  const bool leaderboard = scenario.evaluation.table == "leaderboard";
+  const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
   if (format == "json") {
     return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
   }

@@ -20,6 +20,7 @@ namespace {
 using evaluation::ResponseRow;
 using evaluation::SweepPlan;
 using evaluation::SweepScore;
+using scenarios::StudyTable;
 
 std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan& plan) {
   std::vector<SweepScore> scores;
@@ -33,26 +34,27 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
 }
 
 std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
-                    const std::vector<std::string>& tables) {
+                    const std::vector<StudyTable>& tables) {
   reports::Document document;
-  for (const std::string& table : tables) {
-    document.blocks.push_back(table == "host_order"     ? reports::host_order_block(plan, rows)
-                              : table == "seeds_needed" ? reports::seeds_needed_block(plan, rows)
-                                                        : reports::response_block(plan, rows));
+  for (const StudyTable table : tables) {
+    document.blocks.push_back(
+        table == StudyTable::kHostOrder     ? reports::host_order_block(plan, rows)
+        : table == StudyTable::kSeedsNeeded ? reports::seeds_needed_block(plan, rows)
+                                            : reports::response_block(plan, rows));
   }
   return plain(document);
 }
 
 std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
-                          const std::vector<std::string>& tables) {
+                          const std::vector<StudyTable>& tables) {
   const reports::FilePage page;
   return text_of(plan, rows, tables);
 }
 
 reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
-                          const std::string& table) {
-  if (table == "host_order") return reports::host_order_figure(plan, rows);
-  if (table == "seeds_needed") return reports::seeds_needed_figure(plan, rows);
+                          StudyTable table) {
+  if (table == StudyTable::kHostOrder) return reports::host_order_figure(plan, rows);
+  if (table == StudyTable::kSeedsNeeded) return reports::seeds_needed_figure(plan, rows);
   return reports::response_figure(plan, rows);
 }
 
@@ -73,7 +75,8 @@ void draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
 
 }  // namespace
 
-std::string write_sweep_results(const SweepPlan& plan, const std::vector<std::string>& tables,
+std::string write_sweep_results(const SweepPlan& plan,
+                                const std::vector<scenarios::StudyTable>& tables,
                                 reports::SweepFolder& folder) {
   const std::vector<SweepScore> scores = scores_in(folder.log(), plan);
   const std::vector<ResponseRow> rows = evaluation::response(plan, scores);

@@ -7,14 +7,15 @@
 
 #include "evaluation/sweep/sweep_plan.h"
 #include "reports/sweep/sweep_folder.h"
+#include "scenarios/study.h"
 
 namespace simbench::cli {
 
 // Writes sweep.csv, hosts.csv, sweep.txt and, where gnuplot is, sweep.svg, and puts the log in
-// order. `tables`: "response", "host_order", "seeds_needed"; the first one is drawn. Returns the
-// tables for standard output. Throws reports::OutputError.
+// order. The first of `tables` is drawn. Returns the tables for standard output. Throws
+// reports::OutputError.
 std::string write_sweep_results(const evaluation::SweepPlan& plan,
-                                const std::vector<std::string>& tables,
+                                const std::vector<scenarios::StudyTable>& tables,
                                 reports::SweepFolder& folder);
 
 // All studies by name, with the question that each answers.

@@ -51,16 +51,11 @@ Posture gait(double distance, double speed_m_per_s) {
 
 Motion::Motion(const scenarios::StudioSubject& subject, double speed_factor)
     : speed_factor_(speed_factor) {
-  const bool walks = subject.motion == "walk" || subject.motion == "walk_and_turn";
-  const bool turns = subject.motion == "turn" || subject.motion == "walk_and_turn";
-  const bool raises_arms = subject.motion == "raise_arms";
-  if (!walks && !turns && !raises_arms && subject.motion != "stand") {
-    throw std::invalid_argument(fmt::format(
-        "no motion '{}'; there are stand, turn, walk, walk_and_turn, raise_arms", subject.motion));
+  if (walks(subject.motion)) walk_speed_m_per_s_ = subject.walk_speed_m_per_s;
+  if (turns(subject.motion)) turn_rate_rad_per_s_ = subject.turn_rate_rad_per_s;
+  if (subject.motion == scenarios::MotionScript::kRaiseArms) {
+    arm_rate_rad_per_s_ = subject.arm_rate_rad_per_s;
   }
-  if (walks) walk_speed_m_per_s_ = subject.walk_speed_m_per_s;
-  if (turns) turn_rate_rad_per_s_ = subject.turn_rate_rad_per_s;
-  if (raises_arms) arm_rate_rad_per_s_ = subject.arm_rate_rad_per_s;
 }
 
 MotionState Motion::at(double seconds) const {

@@ -15,13 +15,15 @@ namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
+using scenarios::StreamKind;
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 // What the camera model's profile says of this size of depth image; 0: nothing.
 double known_focal_px(const std::string& model, const scenarios::Stream& stream) {
   const scenarios::CameraProfile* profile = scenarios::find_camera_profile(model);
-  const scenarios::StreamProfile* depth = profile != nullptr ? profile->stream("depth") : nullptr;
+  const scenarios::StreamProfile* depth =
+      profile != nullptr ? profile->stream(StreamKind::kDepth) : nullptr;
   const scenarios::ImageSize* size =
       depth != nullptr ? depth->find_size(stream.width, stream.height) : nullptr;
   return size != nullptr ? size->focal_px : 0;
@@ -31,7 +33,7 @@ Pinhole depth_camera(const scenarios::Scenario& scenario) {
   const auto& streams = scenario.cameras.streams;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const scenarios::Stream& stream = streams[i];
-    if (stream.kind != "depth") continue;
+    if (stream.kind != StreamKind::kDepth) continue;
     const double focal_px = known_focal_px(scenario.cameras.model, stream);
     if (focal_px > 0) {
       return centred_pinhole(static_cast<int>(stream.width), static_cast<int>(stream.height),

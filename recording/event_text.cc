@@ -9,7 +9,8 @@
 namespace simbench {
 namespace {
 
-constexpr std::array<std::string_view, 2> kStreams = {"depth", "colour"};
+constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamKind::kDepth),
+                                                      scenarios::to_text(StreamKind::kColour)};
 constexpr std::array<std::string_view, 3> kDomains = {"hardware_clock", "system_time",
                                                       "global_time"};
 

@@ -28,13 +28,14 @@
 #include "algorithms/ports/exchange.h"
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
+#include "scenarios/choices.h"
 
 namespace simbench {
 
 class HostSync;
 class WorldObserver;
 
-enum class StreamKind : std::uint8_t { kDepth, kColour };
+using scenarios::StreamKind;
 enum class StampDomain : std::uint8_t { kHardwareClock, kSystemTime, kGlobalTime };
 
 // One frame as its host received it.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
+#include "scenarios/fields.h"
 
 namespace simbench::scenarios {
 
@@ -13,7 +14,7 @@ using nlohmann::json;
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ImageSize, width, height, focal_px, rates_hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
                                    bytes_per_pixel, sizes, source)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncMode, mode, triggered)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SyncModeProfile, mode, triggered)
 
 namespace {
 
@@ -56,20 +57,20 @@ const ImageSize* StreamProfile::find_size(std::int64_t width, std::int64_t heigh
   return found == sizes.end() ? nullptr : &*found;
 }
 
-const StreamProfile* CameraProfile::stream(std::string_view kind) const {
+const StreamProfile* CameraProfile::stream(StreamKind kind) const {
   const auto found = std::find_if(streams.begin(), streams.end(),
                                   [&](const StreamProfile& each) { return each.kind == kind; });
   return found == streams.end() ? nullptr : &*found;
 }
 
-const SyncMode* CameraProfile::sync_mode(std::string_view mode) const {
+const SyncModeProfile* CameraProfile::sync_mode(SyncMode mode) const {
   const auto found = std::find_if(sync_modes.begin(), sync_modes.end(),
-                                  [&](const SyncMode& each) { return each.mode == mode; });
+                                  [&](const SyncModeProfile& each) { return each.mode == mode; });
   return found == sync_modes.end() ? nullptr : &*found;
 }
 
-bool CameraProfile::triggers(std::string_view mode, std::string_view kind) const {
-  const SyncMode* found = sync_mode(mode);
+bool CameraProfile::triggers(SyncMode mode, StreamKind kind) const {
+  const SyncModeProfile* found = sync_mode(mode);
   return found != nullptr && std::find(found->triggered.begin(), found->triggered.end(), kind) !=
                                  found->triggered.end();
 }

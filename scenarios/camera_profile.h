@@ -9,8 +9,8 @@
 // Another model is another file in that folder; nothing else needs to change.
 //
 //   const CameraProfile* camera = find_camera_profile("d455");
-//   camera->triggers("slave", "depth")                      // true
-//   camera->stream("depth")->find_size(848, 480)->rates_hz  // 15, 30, 60, 90
+//   camera->triggers(SyncMode::kSlave, StreamKind::kDepth)              // true
+//   camera->stream(StreamKind::kDepth)->find_size(848, 480)->rates_hz  // 15, 30, 60, 90
 #ifndef SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
 #define SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
 
@@ -19,6 +19,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scenarios/choices.h"
 
 namespace simbench::scenarios {
 
@@ -30,9 +32,9 @@ struct ImageSize {
 };
 
 struct StreamProfile {
-  std::string kind;  // "depth" or "colour"
+  StreamKind kind{};
   std::string format;
-  std::string shutter;         // "global" or "rolling"
+  ShutterKind shutter{};
   double readout_periods = 0;  // rolling: readout as a share of the frame period
   double bytes_per_pixel = 0;
   std::vector<ImageSize> sizes;
@@ -41,9 +43,9 @@ struct StreamProfile {
   const ImageSize* find_size(std::int64_t width, std::int64_t height) const;  // null: none
 };
 
-struct SyncMode {
-  std::string mode;
-  std::vector<std::string> triggered;  // streams that follow the pulses
+struct SyncModeProfile {
+  SyncMode mode{};
+  std::vector<StreamKind> triggered;  // streams that follow the pulses
 };
 
 struct StampProfile {
@@ -60,7 +62,7 @@ struct CameraProfile {
   std::string name;   // the maker's
   std::string maker;
   std::vector<StreamProfile> streams;
-  std::vector<SyncMode> sync_modes;
+  std::vector<SyncModeProfile> sync_modes;
   std::vector<double> sync_rates_hz;  // in modes other than default and genlock; empty: all
   std::string sync_wiring;
   std::string sync_source;
@@ -68,10 +70,10 @@ struct CameraProfile {
   std::vector<double> typical_latency_ms;  // lowest and highest mean; empty: not documented
   std::string latency_source;
 
-  const StreamProfile* stream(std::string_view kind) const;  // null: the model has none
-  const SyncMode* sync_mode(std::string_view mode) const;    // null: the model does not have it
+  const StreamProfile* stream(StreamKind kind) const;     // null: the model has none
+  const SyncModeProfile* sync_mode(SyncMode mode) const;  // null: the model does not have it
   // Whether exposures of that stream follow the pulses in that mode; false where there is none.
-  bool triggers(std::string_view mode, std::string_view kind) const;
+  bool triggers(SyncMode mode, StreamKind kind) const;
 };
 
 // In alphabetical order of the models.

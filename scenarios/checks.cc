@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
+#include "scenarios/fields.h"
 #include "scenarios/loader.h"
-#include "scenarios/rates.h"
-#include "scenarios/studio_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -88,24 +89,25 @@ void check_tables(const Scenario& scenario) {
 }
 
 void check_streams(const Scenario& scenario) {
-  std::set<std::string> kinds;
+  std::set<std::string_view> kinds;  // in alphabetical order
   const std::vector<Stream>& streams = scenario.cameras.streams;
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    if (kinds.insert(streams[i].kind).second) continue;
+    if (kinds.insert(to_text(streams[i].kind)).second) continue;
     fail_at(scenario, fmt::format("/cameras/streams/{}/kind", i),
-            fmt::format("found a second \"{}\", allowed one stream of a kind", streams[i].kind));
+            fmt::format("found a second \"{}\", allowed one stream of a kind",
+                        to_text(streams[i].kind)));
   }
-  if (kinds.count(scenario.evaluation.stream) == 0) {
+  if (scenario.scored_stream() == nullptr) {
     fail_at(scenario, "/evaluation/stream",
             fmt::format("found \"{}\", allowed \"{}\", the captured streams",
-                        scenario.evaluation.stream, fmt::join(kinds, "\", \"")));
+                        to_text(scenario.evaluation.stream), fmt::join(kinds, "\", \"")));
   }
 }
 
 void check_shutters(const Scenario& scenario) {
   const std::vector<Stream>& streams = scenario.cameras.streams;
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    if (streams[i].shutter == "rolling" || streams[i].readout_ms == 0) continue;
+    if (streams[i].shutter == ShutterKind::kRolling || streams[i].readout_ms == 0) continue;
     fail_at(scenario, fmt::format("/cameras/streams/{}/readout_ms", i),
             fmt::format("found {}, allowed 0: a global shutter exposes all rows at once",
                         streams[i].readout_ms));
@@ -129,49 +131,48 @@ void check_auto_exposure(const Scenario& scenario) {
   }
 }
 
+// That a fault states what its kind has, and no more.
+void check_members(const Scenario& scenario, const std::string& pointer, std::string_view kind,
+                   const std::vector<std::string_view>& members, const nlohmann::json& stated) {
+  for (const std::string_view member : members) {
+    if (stated.contains(member)) continue;
+    fail_at(scenario, fmt::format("{}/{}", pointer, member),
+            fmt::format("found nothing, \"{}\" needs {}", kind, fmt::join(members, ", ")));
+  }
+  for (const auto& [key, value] : stated.items()) {
+    if (key == "kind" || std::find(members.begin(), members.end(), key) != members.end()) continue;
+    fail_at(scenario, fmt::format("{}/{}", pointer, key),
+            fmt::format("found {}, \"{}\" uses {} alone", value.dump(), kind,
+                        fmt::join(members, ", ")));
+  }
+}
+
+void check_below(const Scenario& scenario, const std::string& pointer, std::int64_t found,
+                 const char* count_pointer, std::int64_t count) {
+  if (found < count) return;
+  fail_at(
+      scenario, pointer,
+      fmt::format("found {}, allowed 0 to {} ({} is {})", found, count - 1, count_pointer, count));
+}
+
 void check_faults(const Scenario& scenario) {
-  // What each kind of fault needs; the rest of a Fault's members it may not state.
-  struct Need {
-    std::string_view kind;
-    std::vector<std::string_view> members;
-  };
-  static const std::vector<Need> needs = {
-      {"camera_vanishes", {"camera", "at_ms", "duration_ms"}},
-      {"late_first_frame", {"camera", "duration_ms"}},
-      {"clock_step", {"host", "at_ms", "step_ms"}},
-      {"host_stops", {"host", "at_ms", "duration_ms"}},
-      {"link_stops", {"host", "at_ms", "duration_ms"}},
-  };
   const auto stated = nlohmann::json::parse(scenario.resolved_json).at("faults");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
-    const Fault& fault = scenario.faults[i];
     const std::string pointer = fmt::format("/faults/{}", i);
-    const auto& members = std::find_if(needs.begin(), needs.end(), [&](const Need& need) {
-                            return need.kind == fault.kind;
-                          })->members;
-    for (const std::string_view member : members) {
-      if (stated[i].contains(member)) continue;
-      fail_at(scenario, fmt::format("{}/{}", pointer, member),
-              fmt::format("found nothing, \"{}\" needs {}", fault.kind, fmt::join(members, ", ")));
-    }
-    for (const auto& [key, value] : stated[i].items()) {
-      if (key == "kind" || std::find(members.begin(), members.end(), key) != members.end()) {
-        continue;
-      }
-      fail_at(scenario, fmt::format("{}/{}", pointer, key),
-              fmt::format("found {}, \"{}\" uses {} alone", value.dump(), fault.kind,
-                          fmt::join(members, ", ")));
-    }
-    if (fault.camera >= scenario.cameras.count) {
-      fail_at(scenario, pointer + "/camera",
-              fmt::format("found {}, allowed 0 to {} (/cameras/count is {})", fault.camera,
-                          scenario.cameras.count - 1, scenario.cameras.count));
-    }
-    if (fault.host >= scenario.hosts.count) {
-      fail_at(scenario, pointer + "/host",
-              fmt::format("found {}, allowed 0 to {} (/hosts/count is {})", fault.host,
-                          scenario.hosts.count - 1, scenario.hosts.count));
-    }
+    std::visit(
+        [&](const auto& fault) {
+          std::vector<std::string_view> members;
+          for_each_member(fault, [&](const char* name, auto) { members.emplace_back(name); });
+          check_members(scenario, pointer, fault.kKind, members, stated[i]);
+          if constexpr (requires { fault.camera; }) {
+            check_below(scenario, pointer + "/camera", fault.camera, "/cameras/count",
+                        scenario.cameras.count);
+          } else {
+            check_below(scenario, pointer + "/host", fault.host, "/hosts/count",
+                        scenario.hosts.count);
+          }
+        },
+        scenario.faults[i]);
   }
 }
 
@@ -206,6 +207,169 @@ void check_pipelines(const Scenario& scenario) {
   if (scenario.studio) {
     check_published(scenario, "/studio/published", scenario.studio->published, names);
   }
+}
+
+// Slaves accept pulses in a window "so strict" that Intel's page on external synchronisation does
+// not give its size: 1 % is an assumption.
+constexpr double kRateTolerance = 0.01;
+constexpr double kRounding = 1e-9;
+
+void check_profile(const Scenario& scenario, const CameraProfile& camera,
+                   const std::string& pointer, const Stream& stream) {
+  const StreamProfile* profile = camera.stream(stream.kind);
+  if (profile == nullptr) {
+    std::vector<std::string_view> kinds;
+    for (const StreamProfile& each : camera.streams) kinds.push_back(to_text(each.kind));
+    fail_at(scenario, pointer + "/kind",
+            fmt::format("found {}, allowed {} (streams of the {})", to_text(stream.kind),
+                        fmt::join(kinds, ", "), camera.name));
+  }
+  const ImageSize* offered = profile->find_size(stream.width, stream.height);
+  if (offered == nullptr) {
+    std::vector<std::string> sizes;
+    for (const ImageSize& size : profile->sizes) {
+      sizes.push_back(fmt::format("{}x{}", size.width, size.height));
+    }
+    fail_at(scenario, pointer + "/width",
+            fmt::format("found {} {}x{}, allowed {} (profiles of the {})", to_text(stream.kind),
+                        stream.width, stream.height, fmt::join(sizes, ", "), camera.name));
+  }
+  const std::vector<double>& rates = offered->rates_hz;
+  if (std::find(rates.begin(), rates.end(), stream.mode_rate_hz) == rates.end()) {
+    fail_at(scenario, pointer + "/mode_rate_hz",
+            fmt::format("found {}, allowed {} (profiles of the {} for {} {}x{})",
+                        stream.mode_rate_hz, fmt::join(rates, ", "), camera.name,
+                        to_text(stream.kind), stream.width, stream.height));
+  }
+}
+
+void check_sync_mode(const Scenario& scenario, const CameraProfile& camera) {
+  const SyncMode mode = scenario.cameras.sync_mode;
+  if (camera.sync_mode(mode) != nullptr) return;
+  std::vector<std::string_view> modes;
+  for (const SyncModeProfile& each : camera.sync_modes) modes.push_back(to_text(each.mode));
+  fail_at(scenario, "/cameras/sync_mode",
+          fmt::format("found \"{}\", allowed \"{}\" (sync modes of the {})", to_text(mode),
+                      fmt::join(modes, "\", \""), camera.name));
+}
+
+const CameraProfile& checked_profile(const Scenario& scenario) {
+  const std::string& model = scenario.cameras.model;
+  if (const CameraProfile* camera = find_camera_profile(model)) return *camera;
+  std::vector<std::string> models;
+  for (const CameraProfile& each : camera_profiles()) models.push_back(each.model);
+  fail_at(scenario, "/cameras/model",
+          fmt::format("found \"{}\", allowed {} (simbench list cameras)", shown_text(model),
+                      fmt::join(models, ", ")));
+}
+
+// Genlock takes a pulse every two frame times at most (librealsense #12560).
+void check_genlock(const Scenario& scenario, const Stream& stream) {
+  const double guard = scenario.cameras.genlock_guard_fraction;
+  const double fastest = stream.mode_rate_hz / 2 / (1 - guard);
+  const double rate = scenario.trigger.pulse_rate_hz();
+  if (rate <= fastest * (1 + kRounding)) return;
+  fail_at(scenario, "/trigger/rate_hz",
+          fmt::format("found {:.6g} Hz, allowed at most {:.6g} Hz: genlock in a {} Hz mode ignores "
+                      "pulses for two mode periods less the guard of {}",
+                      rate, fastest, stream.mode_rate_hz, guard));
+}
+
+// Slaves follow pulses close to their mode rate. An evaluated stream that runs free keeps its mode
+// rate, which must then be the rate that is evaluated.
+void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
+                     const std::string& pointer, const Stream& stream) {
+  const std::vector<double>& rates = camera.sync_rates_hz;
+  const SyncMode mode = scenario.cameras.sync_mode;
+  if (mode != SyncMode::kDefault && !rates.empty() &&
+      std::find(rates.begin(), rates.end(), stream.mode_rate_hz) == rates.end()) {
+    fail_at(scenario, pointer + "/mode_rate_hz",
+            fmt::format("found {}, allowed {} in sync mode \"{}\"", stream.mode_rate_hz,
+                        fmt::join(rates, ", "), to_text(mode)));
+  }
+  if (!scenario.cameras.follows_trigger(stream) && stream.kind != scenario.evaluation.stream) {
+    return;
+  }
+  const double rate = scenario.trigger.pulse_rate_hz();
+  if (std::abs(rate / stream.mode_rate_hz - 1) <= kRateTolerance + kRounding) return;
+  fail_at(
+      scenario, "/trigger/rate_hz",
+      fmt::format("found {:.6g} Hz, allowed {:.6g} to {:.6g} Hz in sync mode \"{}\" with a {} "
+                  "Hz mode",
+                  rate, stream.mode_rate_hz * (1 - kRateTolerance),
+                  stream.mode_rate_hz * (1 + kRateTolerance), to_text(mode), stream.mode_rate_hz));
+}
+
+// The model and its sync mode, the sizes and rates of the streams.
+void check_rates(const Scenario& scenario) {
+  const Cameras& cameras = scenario.cameras;
+  const CameraProfile& camera = checked_profile(scenario);
+  check_sync_mode(scenario, camera);
+  for (std::size_t i = 0; i < cameras.streams.size(); ++i) {
+    const Stream& stream = cameras.streams[i];
+    const std::string pointer = fmt::format("/cameras/streams/{}", i);
+    check_profile(scenario, camera, pointer, stream);
+    if (cameras.sync_mode != SyncMode::kGenlock) {
+      check_full_rate(scenario, camera, pointer, stream);
+    } else if (cameras.follows_trigger(stream)) {
+      check_genlock(scenario, stream);
+    }
+  }
+}
+
+constexpr double kFullCircleDeg = 360;
+
+// The cameras see with their depth stream, whose profile must say how.
+void check_depth_stream(const Scenario& scenario) {
+  const Stream* depth = scenario.cameras.stream(StreamKind::kDepth);
+  if (depth == nullptr) {
+    fail_at(scenario, "/studio",
+            "found a studio without a depth stream in /cameras/streams, allowed null");
+  }
+  const CameraProfile* camera = find_camera_profile(scenario.cameras.model);
+  if (camera->stream(StreamKind::kDepth)->find_size(depth->width, depth->height)->focal_px > 0)
+    return;
+  fail_at(scenario, "/studio",
+          fmt::format("found a studio with depth images of {}x{}, whose focal length the profile "
+                      "of the {} does not state",
+                      depth->width, depth->height, camera->name));
+}
+
+void check_room(const Scenario& scenario) {
+  const Studio& studio = *scenario.studio;
+  const auto heights = static_cast<std::int64_t>(studio.heights_m.size());
+  const std::int64_t azimuths = (scenario.cameras.count + heights - 1) / heights;
+  const double widest_deg = kFullCircleDeg / static_cast<double>(azimuths);
+  if (studio.azimuth_step_deg <= widest_deg) return;
+  fail_at(
+      scenario, "/studio/azimuth_step_deg",
+      fmt::format("found {}, allowed at most {:.4g}: {} cameras at {} height(s) need {} angles",
+                  studio.azimuth_step_deg, widest_deg, scenario.cameras.count, heights, azimuths));
+}
+
+void check_subject(const Scenario& scenario) {
+  const StudioSubject& subject = scenario.studio->subject;
+  if (subject.kind == SubjectKind::kMesh && subject.mesh_file.empty()) {
+    fail_at(scenario, "/studio/subject/mesh_file",
+            "found \"\", allowed the path of a PLY, OBJ, OFF or STL file: the subject is a mesh");
+  }
+  if (subject.kind == SubjectKind::kPerson && !subject.mesh_file.empty()) {
+    fail_at(scenario, "/studio/subject/mesh_file",
+            fmt::format("found \"{}\", allowed \"\": the subject is a person",
+                        shown_text(subject.mesh_file)));
+  }
+}
+
+void check_studio(const Scenario& scenario) {
+  if (!scenario.studio) return;
+  check_depth_stream(scenario);
+  check_room(scenario);
+  check_subject(scenario);
+  const Studio& studio = *scenario.studio;
+  if (studio.min_distance_m < studio.max_distance_m) return;
+  fail_at(scenario, "/studio/min_distance_m",
+          fmt::format("found {}, allowed less than /studio/max_distance_m, {}",
+                      studio.min_distance_m, studio.max_distance_m));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
-#include "scenarios/places.h"
 #include "scenarios/schema.h"
 
 namespace simbench::scenarios {

@@ -14,6 +14,8 @@
 #include <string>
 #include <string_view>
 
+#include "scenarios/loader.h"
+
 namespace simbench::scenarios {
 
 inline constexpr std::size_t kMaximumNesting = 64;
@@ -46,6 +48,37 @@ std::string child_pointer(const std::string& parent, std::string_view key);
 
 // Whether the text is UTF-8, as all text in JSON must be.
 bool is_utf8(const std::string& text);
+
+// Where a value came from: which file and line, or which --set.
+struct Place {
+  std::string label;        // "FILE:LINE" or "--set /pointer=value"
+  std::string set_pointer;  // of a --set: the pointer it names
+  bool is_set = false;
+  bool is_builtin = false;  // a file of the distribution
+  std::size_t level = 0;    // later sources have higher levels
+  std::size_t line = 0;
+};
+
+// Kept beside the JSON value while files and overrides are merged, so that a message about the
+// resolved scenario can still name the line that the user wrote.
+class Places final : public Origin {
+ public:
+  std::string describe(const std::string& pointer) const override;
+
+  // The place of `pointer`, else of its nearest ancestor that has one.
+  const Place& nearest(const std::string& pointer) const;
+
+  void set(const std::string& pointer, Place place);
+  // The highest level of `pointer` and everything below it.
+  std::size_t latest_level(const std::string& pointer) const;
+  // Forgets `pointer` and everything below it.
+  void erase(const std::string& pointer);
+  // Takes over from `other` the places of `pointer` and of everything below it.
+  void adopt(const std::string& pointer, const Places& other);
+
+ private:
+  std::map<std::string, Place> places_;
+};
 
 // A value for a message: short, on one line, printable.
 std::string shown(const nlohmann::json& value);

@@ -30,6 +30,60 @@ struct nlohmann::adl_serializer<simbench::scenarios::ParameterValue> {
   }
 };
 
+// A choice is its word; the schema allows no other.
+template <simbench::scenarios::Choice Enum>
+struct nlohmann::adl_serializer<Enum, void> {
+  static void to_json(json& out, Enum value) {
+    out = std::string(simbench::scenarios::to_text(value));
+  }
+  static void from_json(const json& in, Enum& value) {
+    value = simbench::scenarios::from_text<Enum>(in.get_ref<const std::string&>()).value();
+  }
+};
+
+namespace simbench::scenarios {
+
+// Calls visit(name, member) for each member of a kind of fault, in the order of messages.
+template <class Kind, class Visit>
+void for_each_member(Kind& fault, Visit visit) {
+  if constexpr (requires { fault.camera; }) visit("camera", fault.camera);
+  if constexpr (requires { fault.host; }) visit("host", fault.host);
+  if constexpr (requires { fault.at_ms; }) visit("at_ms", fault.at_ms);
+  if constexpr (requires { fault.duration_ms; }) visit("duration_ms", fault.duration_ms);
+  if constexpr (requires { fault.step_ms; }) visit("step_ms", fault.step_ms);
+}
+
+}  // namespace simbench::scenarios
+
+// A fault is its kind and the members that this kind has. One that is not stated is 0 until the
+// checks refuse it.
+template <>
+struct nlohmann::adl_serializer<simbench::scenarios::Fault> {
+  static void to_json(json& out, const simbench::scenarios::Fault& fault) {
+    std::visit(
+        [&out](const auto& stated) {
+          out = {{"kind", stated.kKind}};
+          simbench::scenarios::for_each_member(
+              stated, [&out](const char* name, const auto& member) { out[name] = member; });
+        },
+        fault);
+  }
+  static void from_json(const json& in, simbench::scenarios::Fault& fault) { read(in, fault); }
+
+ private:
+  template <class... Kinds>
+  static void read(const json& in, std::variant<Kinds...>& fault) {
+    const auto& kind = in.at("kind").get_ref<const std::string&>();
+    const auto read_as = [&in, &fault](auto stated) {
+      simbench::scenarios::for_each_member(stated, [&in](const char* name, auto& member) {
+        if (in.contains(name)) in.at(name).get_to(member);
+      });
+      fault = stated;
+    };
+    ((kind == Kinds::kKind ? read_as(Kinds{}) : void()), ...);
+  }
+};
+
 namespace simbench::scenarios {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timeline, wait_before_capture_ms, warm_up_ms, frames)
@@ -80,9 +134,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per
                                    delivery_jitter_transfers, host_jitter_transfers,
                                    host_jitter_correlation, spike_probability, spike_max_transfers,
                                    delivery_quantiles_ms, delivery_correlation)
-// What a kind of fault does not use is 0.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Fault, kind, camera, host, at_ms, duration_ms,
-                                                step_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathering)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)

@@ -1,15 +1,368 @@
 #include "scenarios/loader.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/checks.h"
+#include "scenarios/document.h"
 #include "scenarios/fields.h"
-#include "scenarios/resolve.h"
 #include "scenarios/schema.h"
 
 namespace simbench::scenarios {
 namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// Insertions, deletions, replacements and swaps of neighbours; upper and lower case count as equal.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  const auto equal = [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) ==
+           std::tolower(static_cast<unsigned char>(y));
+  };
+  // distance[i][j]: between the first i characters of a and the first j of b.
+  std::vector<std::vector<std::size_t>> distance(a.size() + 1,
+                                                 std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      std::size_t& here = distance[i][j];
+      if (i == 0 || j == 0) {
+        here = i + j;
+        continue;
+      }
+      here = std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1,
+                       distance[i - 1][j - 1] + (equal(a[i - 1], b[j - 1]) ? 0 : 1)});
+      if (i > 1 && j > 1 && equal(a[i - 1], b[j - 2]) && equal(a[i - 2], b[j - 1])) {
+        here = std::min(here, distance[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return distance[a.size()][b.size()];
+}
+
+// The text of a scenario file and where it lies: built into the program, on disk, or in memory.
+struct Source {
+  std::string label;  // the file's name in messages
+  std::string text;
+  bool is_builtin = false;
+};
+
+// Far above any scenario, and small enough to be read before it is refused.
+constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
+
+std::optional<Source> find_builtin(const std::string& name) {
+  for (const BuiltinFile& file : builtin_files()) {
+    if (file.name == name) {
+      return Source{name + ".json", std::string(file.text), true};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string unknown_name(const std::string& name) {
+  std::vector<std::string> known;
+  for (const BuiltinFile& file : builtin_files()) known.emplace_back(file.name);
+  const std::vector<std::string> similar = nearest(name, known);
+  return fmt::format("found \"{}\", {} {} (or the path of a .json file)", shown_text(name),
+                     similar.empty() ? "allowed" : "did you mean",
+                     fmt::join(similar.empty() ? known : similar, similar.empty() ? ", " : " or "));
+}
+
+bool looks_like_path(const std::string& name) {
+  return name.find('/') != std::string::npos || name.ends_with(".json");
+}
+
+[[noreturn]] void fail_to_read(const std::string& prefix, const std::string& reason) {
+  throw InputError(prefix + ": cannot be read: " + reason);
+}
+
+// `prefix` begins the message if the file cannot be read.
+Source read_file(const std::string& path, const std::string& prefix) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) fail_to_read(prefix, "it is a folder");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
+  std::string text(kMaximumBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMaximumBytes) {
+    fail_to_read(prefix,
+                 fmt::format("found more than {} bytes, which no scenario needs", kMaximumBytes));
+  }
+  return {path, std::move(text), false};
+}
+
+// What the user named: a built-in scenario, else a file. Throws InputError.
+Source find_source(const std::string& name_or_path) {
+  if (const auto builtin = find_builtin(name_or_path)) return *builtin;
+  std::error_code ignored;
+  if (looks_like_path(name_or_path) || fs::exists(name_or_path, ignored)) {
+    return read_file(name_or_path, shown_text(name_or_path));
+  }
+  throw InputError("scenario: " + unknown_name(name_or_path));
+}
+
+// What `from` names as its base; a path is relative to the folder of `from`. A scenario built into
+// the program may only name another one. Throws InputError, whose message begins with `place`.
+Source find_base(const Source& from, const std::string& base, const std::string& place) {
+  if (const auto builtin = find_builtin(base)) return *builtin;
+  if (from.is_builtin || !looks_like_path(base)) {
+    throw InputError(place + ": " + unknown_name(base));
+  }
+  const std::string path = (fs::path(from.label).parent_path() / base).lexically_normal().string();
+  const std::string prefix = fmt::format("{}: found \"{}\"", place, shown_text(base));
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    fail_to_read(prefix, "it is no regular file");
+  }
+  return read_file(path, prefix);
+}
+
+// The keys of a pointer without its escapes.
+std::vector<std::string> keys_of(const std::string& pointer, const std::string& label) {
+  std::vector<std::string> keys;
+  try {
+    for (json::json_pointer rest(pointer); !rest.empty(); rest.pop_back()) {
+      keys.insert(keys.begin(), rest.back());
+    }
+  } catch (const json::exception&) {
+    keys.clear();
+  }
+  if (keys.empty()) {
+    throw InputError(label + ": found no JSON pointer, allowed one such as /timeline/frames");
+  }
+  return keys;
+}
+
+json parse_value(const std::string& value, const std::string& label) {
+  try {
+    return parse_document(value).root;
+  } catch (const DocumentError& error) {
+    if (error.is_syntax()) return value;
+    throw InputError(label + ": " + error.what());
+  }
+}
+
+std::string no_such_key(const std::string& pointer, const std::string& key, const json& object) {
+  std::vector<std::string> known;
+  for (const auto& [name, member] : object.items()) known.push_back(name);
+  const std::string parent = pointer.empty() ? "the scenario" : pointer;
+  if (known.empty()) {
+    return fmt::format("found no \"{}\" in {}, which is empty", shown_text(key), parent);
+  }
+  const std::vector<std::string> similar = nearest(key, known);
+  return fmt::format("found no \"{}\" in {}, {} {}", shown_text(key), parent,
+                     similar.empty() ? "allowed" : "did you mean",
+                     similar.empty() ? fmt::format("{}", fmt::join(known, ", "))
+                                     : fmt::format("{}?", fmt::join(similar, " or ")));
+}
+
+json& element(json& array, const std::string& pointer, const std::string& key,
+              const std::string& label) {
+  const bool is_index =
+      !key.empty() && key.size() < 10 && (key == "0" || key[0] != '0') &&
+      std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (is_index && std::stoul(key) < array.size()) return array[std::stoul(key)];
+  throw InputError(array.empty() ? fmt::format("{}: found no \"{}\" in {}, which is empty", label,
+                                               shown_text(key), pointer)
+                                 : fmt::format("{}: found no \"{}\" in {}, allowed 0 to {}", label,
+                                               shown_text(key), pointer, array.size() - 1));
+}
+
+// A parameter of an algorithm need not be there yet.
+bool is_algorithm_parameter(const std::vector<std::string>& keys) {
+  return keys.size() == 3 && keys[0] == "algorithms" && !keys[1].empty() && !keys[2].empty();
+}
+
+// --set /json/pointer=value: replaces the value that the pointer names; null removes it. The
+// pointer must name something that is there, but for /algorithms/NAME/PARAMETER: the algorithms
+// know their parameters and defaults themselves. Throws InputError.
+void apply_override(const Override& setting, std::size_t level, json& document, Places& places) {
+  const std::string& pointer = setting.pointer;
+  const std::string label =
+      fmt::format("--set {}={}", shown_text(pointer), shown_text(setting.value));
+  if (!is_utf8(pointer) || !is_utf8(setting.value)) {
+    throw InputError(label + ": found bytes that are no UTF-8 text");
+  }
+  const std::vector<std::string> keys = keys_of(pointer, label);
+  const json value = parse_value(setting.value, label);
+  const bool may_create = is_algorithm_parameter(keys);
+
+  json* target = &document;
+  json* parent = nullptr;
+  std::string walked;
+  for (const std::string& key : keys) {
+    parent = target;
+    if (target->is_array()) {
+      target = &element(*target, walked, key, label);
+    } else if (target->is_object() && (target->contains(key) || may_create)) {
+      target = &(*target)[key];
+    } else if (target->is_object()) {
+      throw InputError(label + ": " + no_such_key(walked, key, *target));
+    } else {
+      throw InputError(fmt::format("{}: found no \"{}\" in {}, which is a single value", label,
+                                   shown_text(key), walked));
+    }
+    walked = child_pointer(walked, key);
+    if (may_create && target->is_null()) *target = json::object();
+  }
+
+  if (value.is_null() && parent->is_object()) {
+    parent->erase(keys.back());
+  } else if (value.is_object()) {
+    *target = json::object();
+    target->merge_patch(value);  // takes the nulls out
+  } else {
+    *target = value;
+  }
+  places.erase(pointer);
+  Place place;
+  place.label = label;
+  place.set_pointer = pointer;
+  place.is_set = true;
+  place.level = level;
+  places.set(pointer, std::move(place));
+}
+
+// One file as written, checked by itself.
+struct Layer {
+  json document;
+  Places places;
+};
+
+Layer read_layer(const Source& source, std::size_t level) {
+  const std::string label = source.is_builtin ? source.label : shown_text(source.label);
+  Layer layer;
+  try {
+    Document parsed = parse_document(source.text);
+    layer.document = std::move(parsed.root);
+    for (const auto& [pointer, line] : parsed.lines) {
+      layer.places.set(pointer, {.label = fmt::format("{}:{}", label, line),
+                                 .set_pointer = "",
+                                 .is_set = false,
+                                 .is_builtin = source.is_builtin,
+                                 .level = level,
+                                 .line = line});
+    }
+  } catch (const DocumentError& error) {
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", label, error.line(), error.column(), error.what()));
+  }
+  validate(layer.document, Completeness::kDifferences, layer.places);
+  return layer;
+}
+
+// The file and its bases, the most basic one first.
+std::vector<Layer> read_layers(Source source) {
+  constexpr std::size_t kMostLayers = 32;
+  std::vector<Layer> layers;
+  std::vector<std::string> files;
+  for (;;) {
+    files.push_back(source.label);
+    layers.push_back(read_layer(source, kMostLayers - layers.size()));
+    const Layer& layer = layers.back();
+    if (!layer.document.contains("base")) break;
+    const std::string place = layer.places.describe("/base");
+    Source base = find_base(source, layer.document["base"].get<std::string>(), place);
+    if (std::find(files.begin(), files.end(), base.label) != files.end()) {
+      throw InputError(fmt::format("{}: found a circle of bases: {} -> {}", place,
+                                   fmt::join(files, " -> "), base.label));
+    }
+    if (layers.size() == kMostLayers) {
+      throw InputError(
+          fmt::format("{}: found more than {} bases upon each other", place, kMostLayers));
+    }
+    source = std::move(base);
+  }
+  std::reverse(layers.begin(), layers.end());
+  return layers;
+}
+
+// RFC 7386, with the places beside the values.
+void merge(const std::string& pointer, const json& patch, const Places& patch_places, json& target,
+           Places& places) {
+  if (!patch.is_object()) {
+    target = patch;
+    places.erase(pointer);
+    places.adopt(pointer, patch_places);
+    return;
+  }
+  if (!target.is_object()) {
+    target = json::object();
+    places.erase(pointer);
+  }
+  places.set(pointer, patch_places.nearest(pointer));
+  for (const auto& [key, value] : patch.items()) {
+    const std::string child = child_pointer(pointer, key);
+    if (value.is_null()) {
+      target.erase(key);
+      places.erase(child);
+    } else {
+      merge(child, value, patch_places, target[key], places);
+    }
+  }
+}
+
+// From a source to the resolved scenario as JSON.
+struct Resolved {
+  json document;  // complete and valid by the schema; without "base" and "$schema"
+  std::shared_ptr<Places> places = std::make_shared<Places>();
+};
+
+// A published result belongs to a pipeline: it does not outlive a base's pipelines.
+void drop_outlived_results(const std::string& published, Resolved& resolved) {
+  const json::json_pointer at(published);
+  if (!resolved.document.contains(at)) return;
+  const std::size_t pipelines_level = resolved.places->latest_level("/pipelines");
+  json kept = json::object();
+  for (const auto& [name, result] : resolved.document[at].items()) {
+    const json& pipelines = resolved.document["pipelines"];
+    const bool has_pipeline =
+        std::any_of(pipelines.begin(), pipelines.end(),
+                    [&wanted = name](const json& pipeline) { return pipeline["name"] == wanted; });
+    const std::string pointer = child_pointer(published, name);
+    if (has_pipeline || resolved.places->latest_level(pointer) >= pipelines_level) {
+      kept[name] = result;
+    } else {
+      resolved.places->erase(pointer);
+    }
+  }
+  resolved.document[at] = std::move(kept);
+}
+
+// Every file is validated by itself, then merged over its base (RFC 7386: objects are merged,
+// anything else is replaced, null removes); then the overrides are applied in their order; then the
+// whole is validated. Published results inherited for pipelines that are no longer there are
+// dropped. Throws InputError.
+Resolved resolve(Source source, const std::vector<Override>& overrides) {
+  Resolved resolved;
+  for (Layer& layer : read_layers(std::move(source))) {
+    layer.document.erase("base");
+    layer.document.erase("$schema");
+    merge("", layer.document, layer.places, resolved.document, *resolved.places);
+  }
+  std::size_t level = resolved.places->latest_level("");
+  for (const Override& setting : overrides) {
+    apply_override(setting, ++level, resolved.document, *resolved.places);
+  }
+  validate(resolved.document, Completeness::kResolved, *resolved.places);
+  drop_outlived_results("/published", resolved);
+  drop_outlived_results("/studio/published", resolved);
+  return resolved;
+}
 
 Scenario load(Source source, const std::vector<Override>& overrides) {
   Resolved resolved = resolve(std::move(source), overrides);
@@ -42,6 +395,28 @@ std::vector<BuiltinScenario> builtin_scenarios() {
 
 void fail_at(const Scenario& scenario, const std::string& pointer, const std::string& problem) {
   throw InputError(scenario.origin->describe(pointer) + ": " + problem);
+}
+
+std::vector<std::string> nearest(const std::string& name, const std::vector<std::string>& known) {
+  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kLongestName = 200;
+  if (name.empty() || name.size() > kLongestName) return {};
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    // A name is similar if a third of it is wrong at most, or if it is a part of the candidate.
+    const bool is_part = name.size() >= 3 && candidate.find(name) != std::string::npos;
+    if (is_part || distance <= std::max<std::size_t>(1, candidate.size() / 3)) {
+      found.emplace_back(distance, candidate);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> names;
+  for (const auto& [distance, candidate] : found) {
+    if (names.size() == kMost || distance > 2 * found.front().first) break;
+    names.push_back(candidate);
+  }
+  return names;
 }
 
 }  // namespace simbench::scenarios

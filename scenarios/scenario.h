@@ -5,7 +5,7 @@
 // has the name, the unit and the meaning of its JSON key; scenarios/schema.json documents each with
 // its allowed range and its source. There are no defaults (the zeros below never reach a loaded
 // scenario): what it does not inherit it must state, so that `simbench describe` prints every
-// number a result rests on.
+// number a result rests on. Members whose values are words are enums (scenarios/choices.h).
 //
 // Conventions: *_sigma is a standard deviation of a zero-mean normal; *_exponential_ms the mean of
 // an exponential; *_log_sigma the sigma of exp(N(0, sigma)), a factor of median 1; a probability is
@@ -22,8 +22,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
+
+#include "scenarios/choices.h"
 
 namespace simbench::scenarios {
 
@@ -125,9 +128,9 @@ struct Network {
   double retransmit_timeout_ms = 0;
   bool nagle = false;         // streams: a small segment waits for the previous one's ACK
   double delayed_ack_ms = 0;  // streams: ACK of a single segment waits this long (0: at once)
-  std::string stamp_point;    // "application" or "kernel": where receive stamps are taken
+  StampPoint stamp_point{};   // where receive stamps are taken
   double capture_traffic_share = 0;  // of each frame's bytes, sent on through the host's port
-  std::string switch_clock;          // "none", "transparent" or "boundary" (PTP)
+  SwitchClockKind switch_clock{};    // PTP
   double switch_clock_error_ns = 0;
 };
 
@@ -147,20 +150,26 @@ struct Trigger {
   double daisy_chain_delay_us = 0;  // from camera to camera (0: a star)
   double missed_pulse_probability = 0;
   std::vector<TriggerPause> pauses;
+
+  double period_ms() const { return 1e3 / rate_hz; }
+  // The rate of the pulses, with the trigger's own rate error.
+  double pulse_rate_hz() const { return rate_hz * (1 + rate_error_ppm * 1e-6); }
 };
 
 // One image stream of a camera.
 struct Stream {
-  std::string kind;  // "depth" or "colour"
+  StreamKind kind{};
   std::int64_t width = 0;
   std::int64_t height = 0;
   double bytes_per_pixel = 0;
   double mode_rate_hz = 0;          // of the profile; genlock delivers at most half of it
   double pipeline_latency_ms = 0;   // fixed, from end of exposure to the start of the transfer
   double latency_mode_periods = 0;  // plus this many mode periods
-  std::string shutter;              // "global" or "rolling"
-  double readout_ms = 0;            // rolling: from the first row's exposure to the last row's
-  double calibrated_delay_ms = 0;   // end of exposure to arrival, as a user measured it once
+  ShutterKind shutter{};
+  double readout_ms = 0;           // rolling: from the first row's exposure to the last row's
+  double calibrated_delay_ms = 0;  // end of exposure to arrival, as a user measured it once
+
+  double image_bytes() const { return static_cast<double>(width * height) * bytes_per_pixel; }
 };
 
 // Readings of a camera's clock over its control interface.
@@ -173,12 +182,16 @@ struct ClockPoll {
   double tail_probability = 0;  // of a request that takes U(0, tail_max_ms) longer
   double tail_max_ms = 0;
   double calibrated_asymmetry_ms = 0;  // request minus reply, as a user measured it once
+
+  bool is_on() const { return interval_ms > 0; }
 };
 
 struct AutoExposure {
   double step_interval_exponential_ms = 0;  // 0: the exposure does not change
   double min_ms = 0;                        // a step goes to U(min_ms, max_ms)
   double max_ms = 0;
+
+  bool is_on() const { return step_interval_exponential_ms > 0; }
 };
 
 struct Cameras {
@@ -187,7 +200,7 @@ struct Cameras {
   std::vector<std::int64_t> host_of_camera;  // this names a host for each camera (else empty)
   std::vector<double> skew_of_camera_ppm{};  // in place of the drawn skew (else empty)
   std::string model;                         // a profile of scenarios/cameras
-  std::string sync_mode;  // "default", "master", "slave", "full_slave", "genlock"
+  SyncMode sync_mode{};                      // what a pulse means to the cameras
   // genlock: trigger off, start all, trigger on; else the cameras start one by one
   bool common_start = false;
   double start_spread_ms = 0;  // without a common start: each camera starts after U(0, this)
@@ -207,11 +220,17 @@ struct Cameras {
   double unstable_start_jitter_sigma_ms = 0;
   ClockPoll clock_poll;
   AutoExposure auto_exposure;
+
+  // Null if the cameras do not have that stream.
+  const Stream* stream(StreamKind kind) const;
+  // Whether the sync mode lets the trigger decide when the stream exposes, by the model's profile.
+  // Throws std::invalid_argument if there is no such model, which a loaded scenario cannot have.
+  bool follows_trigger(const Stream& stream) const;
 };
 
 struct Usb {
   double bandwidth_mb_per_s = 0;  // of a controller (of a camera when dedicated)
-  std::string sharing;            // "dedicated", "fair" or "fifo"
+  UsbSharing sharing{};
   std::int64_t cameras_per_controller = 0;
   std::int64_t buffered_frames = 0;       // pending transfers per stream; beyond: frame dropped
   double kernel_copy_exponential_ms = 0;  // between end of transfer and the back-end stamp
@@ -226,17 +245,38 @@ struct Usb {
   double delivery_correlation = 0;  // from frame to frame (Gaussian copula); 0 without the table
 };
 
-// Something that goes wrong, at a time after the start of the capture. Members that the kind does
-// not use may not be stated and are 0 here.
-struct Fault {
-  // "camera_vanishes", "clock_step", "late_first_frame", "host_stops", "link_stops"
-  std::string kind;
-  std::int64_t camera = 0;  // camera_vanishes, late_first_frame
-  std::int64_t host = 0;    // clock_step, host_stops, link_stops
-  double at_ms = 0;         // all but late_first_frame
-  double duration_ms = 0;   // until it returns; late_first_frame: its delay
-  double step_ms = 0;       // clock_step
+// What goes wrong during the capture: one type for each kind of fault. Times count from the start
+// of the capture; a duration lasts until the camera, host or link returns.
+struct CameraVanishes {
+  static constexpr std::string_view kKind = "camera_vanishes";
+  std::int64_t camera = 0;
+  double at_ms = 0;
+  double duration_ms = 0;
 };
+struct LateFirstFrame {
+  static constexpr std::string_view kKind = "late_first_frame";
+  std::int64_t camera = 0;
+  double duration_ms = 0;  // how late its first frame arrives
+};
+struct ClockStep {
+  static constexpr std::string_view kKind = "clock_step";
+  std::int64_t host = 0;
+  double at_ms = 0;
+  double step_ms = 0;
+};
+struct HostStops {
+  static constexpr std::string_view kKind = "host_stops";
+  std::int64_t host = 0;
+  double at_ms = 0;
+  double duration_ms = 0;
+};
+struct LinkStops {
+  static constexpr std::string_view kKind = "link_stops";
+  std::int64_t host = 0;
+  double at_ms = 0;
+  double duration_ms = 0;
+};
+using Fault = std::variant<CameraVanishes, LateFirstFrame, ClockStep, HostStops, LinkStops>;
 
 // One choice for each stage, by the names under which algorithms are registered.
 struct Pipeline {
@@ -252,10 +292,10 @@ using ParameterValue = std::variant<bool, double, std::string>;
 using AlgorithmParameters = std::map<std::string, std::map<std::string, ParameterValue>>;
 
 struct Evaluation {
-  std::string stream;                     // which stream is scored: "depth" or "colour"
-  std::string table;                      // "pipelines" or "leaderboard"
+  StreamKind stream{};  // which stream is scored
+  TableKind table{};
   double gathering_interval_periods = 0;  // T_int as a share of the frame period
-  std::string rmdv_median;                // "upper_middle" or "mean_of_middle_two"
+  MedianKind rmdv_median{};
 };
 
 // A published result that a pipeline's row is put beside.
@@ -266,10 +306,10 @@ struct Published {
 
 // What stands in a studio and how it moves; the scripts: reconstruction/motion.h.
 struct StudioSubject {
-  std::string kind;       // "person" or "mesh"
+  SubjectKind kind{};
   std::string mesh_file;  // mesh: PLY, OBJ, OFF or STL; of a person ""
   double height_m = 0;    // of a person
-  std::string motion;     // "stand", "turn", "walk", "walk_and_turn", "raise_arms"
+  MotionScript motion{};
   double walk_speed_m_per_s = 0;
   double turn_rate_rad_per_s = 0;
   double arm_rate_rad_per_s = 0;
@@ -329,6 +369,14 @@ struct Scenario {
     return cameras.host_of_camera.empty()
                ? camera / cameras.cameras_per_host
                : cameras.host_of_camera[static_cast<std::size_t>(camera)];
+  }
+  // How many cameras each host has.
+  std::vector<std::size_t> cameras_by_host() const;
+  // The stream that is scored; a loaded scenario has it.
+  const Stream* scored_stream() const { return cameras.stream(evaluation.stream); }
+  // The rate at which a stream delivers frames if none is lost.
+  double frame_rate_hz(const Stream& stream) const {
+    return cameras.follows_trigger(stream) ? trigger.pulse_rate_hz() : stream.mode_rate_hz;
   }
 };
 

@@ -5,13 +5,50 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
 #include <vector>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/document.h"
 
 namespace simbench::scenarios {
+
+using valijson::adapters::NlohmannJsonAdapter;
+
+struct JsonSchema::Compiled {
+  explicit Compiled(const nlohmann::json& text) {
+    const NlohmannJsonAdapter adapter(text);
+    valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(adapter, schema);
+  }
+  valijson::Schema schema;
+};
+
+JsonSchema::JsonSchema(nlohmann::json text)
+    : text_(std::move(text)), compiled_(std::make_unique<const Compiled>(text_)) {}
+
+JsonSchema::~JsonSchema() = default;
+
+std::vector<JsonSchema::Refusal> JsonSchema::validate(const nlohmann::json& document) const {
+  valijson::Validator validator;
+  valijson::ValidationResults results;
+  const NlohmannJsonAdapter target(document);
+  std::vector<Refusal> refusals;
+  if (validator.validate(compiled_->schema, target, &results)) return refusals;
+  for (const auto& error : results) {
+    // The place is written as {"<root>", "[key]", "[0]"}.
+    Refusal refusal{{}, error.description};
+    for (std::size_t i = 1; i < error.context.size(); ++i) {
+      refusal.keys.push_back(error.context[i].substr(1, error.context[i].size() - 2));
+    }
+    refusals.push_back(std::move(refusal));
+  }
+  return refusals;
+}
+
 namespace {
 
 using nlohmann::json;
@@ -34,8 +71,33 @@ void require_all(json& node) {
   }
 }
 
+// Replaces each {"$ref": "#/definitions/NAME", ...} by that definition. What stands beside the
+// reference is merged into it: texts that say of this place what the definition cannot.
+template <class Json>
+void expand(Json& node, const Json& definitions) {
+  if (node.is_object() && node.contains("$ref")) {
+    constexpr std::string_view kDefinitions = "#/definitions/";
+    const auto name = node["$ref"].template get<std::string>().substr(kDefinitions.size());
+    Json whole = definitions.at(name);
+    node.erase("$ref");
+    whole.merge_patch(node);
+    node = std::move(whole);
+  }
+  if (!node.is_structured()) return;
+  for (Json& child : node) expand(child, definitions);
+}
+
+template <class Json>
+Json expanded_schema() {
+  Json schema = Json::parse(schema_text());
+  const Json definitions = schema.at("definitions");
+  schema.erase("definitions");
+  expand(schema, definitions);
+  return schema;
+}
+
 json schema_for(Completeness completeness) {
-  json schema = json::parse(schema_text());
+  auto schema = expanded_schema<json>();
   if (completeness == Completeness::kResolved) require_all(schema);
   return schema;
 }
@@ -188,7 +250,7 @@ nlohmann::ordered_json in_schema_order(const json& document) {
 }
 
 const nlohmann::ordered_json& ordered_schema() {
-  static const auto schema = nlohmann::ordered_json::parse(schema_text());
+  static const auto schema = expanded_schema<nlohmann::ordered_json>();
   return schema;
 }
 

@@ -6,13 +6,41 @@
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_H_
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "scenarios/json_schema.h"
-#include "scenarios/places.h"
+#include "scenarios/document.h"
 
 namespace simbench::scenarios {
+
+// A JSON Schema (draft-07) as a validator. schema.cc is the one place that includes valijson.
+class JsonSchema {
+ public:
+  // A value that was refused, and after it the values around it.
+  struct Refusal {
+    std::vector<std::string> keys;  // the way to it: keys and array indices
+    std::string reason;
+  };
+
+  // The schema must be one that valijson accepts; anything else is a programming error.
+  explicit JsonSchema(nlohmann::json text);
+  ~JsonSchema();
+  JsonSchema(const JsonSchema&) = delete;
+  JsonSchema& operator=(const JsonSchema&) = delete;
+
+  const nlohmann::json& text() const { return text_; }
+
+  // All that is refused; empty if the document is valid. Types are strict: 1 is not "1". Safe to be
+  // called by several threads.
+  std::vector<Refusal> validate(const nlohmann::json& document) const;
+
+ private:
+  struct Compiled;
+  nlohmann::json text_;
+  std::unique_ptr<const Compiled> compiled_;
+};
 
 enum class Completeness {
   kDifferences,  // a file as written: what it states must be right
@@ -24,7 +52,7 @@ void validate(const nlohmann::json& document, Completeness completeness, const P
 // The same against a schema of the caller's.
 void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places);
 
-// scenarios/schema.json with its properties in the order of the file.
+// scenarios/schema.json with its references resolved and its properties in the order of the file.
 const nlohmann::ordered_json& ordered_schema();
 
 // The same value with its keys in the order of the schema.

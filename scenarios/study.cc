@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
+#include "scenarios/fields.h"
 
 namespace simbench::scenarios {
 

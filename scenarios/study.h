@@ -7,12 +7,23 @@
 #ifndef SIMBENCH_SCENARIOS_STUDY_H_
 #define SIMBENCH_SCENARIOS_STUDY_H_
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scenarios/choices.h"
+
 namespace simbench::scenarios {
+
+// What a sweep prints and draws.
+enum class StudyTable : std::uint8_t { kResponse, kHostOrder, kSeedsNeeded };
+constexpr auto words_of(StudyTable) {
+  using enum StudyTable;
+  return std::to_array<Word<StudyTable>>(
+      {{kResponse, "response"}, {kHostOrder, "host_order"}, {kSeedsNeeded, "seeds_needed"}});
+}
 
 struct Study {
   std::string name;
@@ -22,7 +33,7 @@ struct Study {
   std::vector<std::string> sweep;  // axes, as `simbench sweep --sweep` takes them
   std::vector<std::string> pipelines;
   std::uint64_t seeds = 0;
-  std::vector<std::string> tables;  // "response", "host_order", "seeds_needed"
+  std::vector<StudyTable> tables;
 };
 
 // In alphabetical order.

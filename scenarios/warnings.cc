@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenarios/camera_profile.h"
 #include "scenarios/loader.h"
-#include "scenarios/rates.h"
-#include "scenarios/studio_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -25,29 +23,21 @@ void warn(Lines& lines, const Scenario& scenario, const std::string& pointer,
 double camera_load_mb_per_s(const Scenario& scenario) {
   double load = 0;
   for (const Stream& stream : scenario.cameras.streams) {
-    load += static_cast<double>(stream.width * stream.height) * stream.bytes_per_pixel *
-            frame_rate_hz(scenario, stream) * 1e-6;
+    load += stream.image_bytes() * scenario.frame_rate_hz(stream) * 1e-6;
   }
   return load;
 }
 
-std::map<std::int64_t, std::int64_t> cameras_by_host(const Scenario& scenario) {
-  std::map<std::int64_t, std::int64_t> cameras;
-  for (std::int64_t j = 0; j < scenario.cameras.count; ++j) ++cameras[scenario.host_of(j)];
-  return cameras;
-}
-
 std::int64_t most_cameras_on_a_host(const Scenario& scenario) {
-  std::int64_t most = 0;
-  for (const auto& [host, count] : cameras_by_host(scenario)) most = std::max(most, count);
-  return most;
+  const std::vector<std::size_t> counts = scenario.cameras_by_host();
+  return static_cast<std::int64_t>(*std::max_element(counts.begin(), counts.end()));
 }
 
 void warn_about_usb(Lines& lines, const Scenario& scenario) {
   const Usb& usb = scenario.usb;
   constexpr std::int64_t kKnownToWork = 3;
   std::int64_t sharers = 1;
-  if (usb.sharing != "dedicated") {
+  if (usb.sharing != UsbSharing::kDedicated) {
     sharers = std::min(usb.cameras_per_controller, most_cameras_on_a_host(scenario));
   }
   const double offered = camera_load_mb_per_s(scenario) * static_cast<double>(sharers);
@@ -69,14 +59,14 @@ void warn_about_usb(Lines& lines, const Scenario& scenario) {
 // Exposures that do not end before the next pulse make the camera miss it.
 void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
-  const double period_ms = 1e3 / pulse_rate_hz(scenario.trigger);
+  const double period_ms = 1e3 / scenario.trigger.pulse_rate_hz();
   const double readout_ms =
       std::max_element(cameras.streams.begin(), cameras.streams.end(),
                        [](const Stream& a, const Stream& b) { return a.readout_ms < b.readout_ms; })
           ->readout_ms;
   const bool is_triggered =
       std::any_of(cameras.streams.begin(), cameras.streams.end(),
-                  [&cameras](const Stream& stream) { return follows_trigger(cameras, stream); });
+                  [&cameras](const Stream& stream) { return cameras.follows_trigger(stream); });
   const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
   const auto warn_if_longer = [&](const std::string& pointer, double longest_ms) {
     if (start_ms + longest_ms <= period_ms) return;
@@ -90,7 +80,7 @@ void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   warn_if_longer("/cameras/exposure_ms",
                  readout_ms + cameras.exposure_ms +
                      (cameras.exposure_camera_periods + cameras.exposure_host_periods) * period_ms);
-  if (cameras.auto_exposure.step_interval_exponential_ms > 0) {
+  if (cameras.auto_exposure.is_on()) {
     warn_if_longer("/cameras/auto_exposure/max_ms", readout_ms + cameras.auto_exposure.max_ms);
   }
 }
@@ -102,8 +92,8 @@ void warn_about_shutters(Lines& lines, const Scenario& scenario) {
     const StreamProfile* profile = camera->stream(stream.kind);
     if (stream.shutter == profile->shutter) continue;
     warn(lines, scenario, fmt::format("/cameras/streams/{}/shutter", i),
-         fmt::format("{}, but the {} camera of the {} has a {} shutter", stream.shutter,
-                     stream.kind, camera->name, profile->shutter));
+         fmt::format("{}, but the {} camera of the {} has a {} shutter", to_text(stream.shutter),
+                     to_text(stream.kind), camera->name, to_text(profile->shutter)));
   }
 }
 
@@ -123,12 +113,12 @@ void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
 
 void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
-  for (const Stream& stream : cameras.streams) {
-    if (stream.kind != scenario.evaluation.stream || follows_trigger(cameras, stream)) continue;
+  const Stream& stream = *scenario.scored_stream();
+  if (!cameras.follows_trigger(stream)) {
     warn(lines, scenario, "/evaluation/stream",
          fmt::format("in sync mode \"{}\" the {} stream does not follow the trigger: its frames "
                      "differ by up to a frame period",
-                     cameras.sync_mode, stream.kind));
+                     to_text(cameras.sync_mode), to_text(stream.kind)));
   }
   if (scenario.timeline.warm_up_ms < cameras.unstable_start_ms) {
     warn(lines, scenario, "/timeline/warm_up_ms",
@@ -138,11 +128,55 @@ void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
 }
 
 void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
-  const auto busy = static_cast<std::int64_t>(cameras_by_host(scenario).size());
-  if (busy == scenario.hosts.count) return;
+  const std::vector<std::size_t> counts = scenario.cameras_by_host();
+  const std::int64_t idle = std::count(counts.begin(), counts.end(), 0U);
+  if (idle == 0) return;
   warn(lines, scenario, "/hosts/count",
-       fmt::format("{} of {} hosts have no camera", scenario.hosts.count - busy,
-                   scenario.hosts.count));
+       fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
+}
+
+// How far the farthest camera is from the point that all look at, and the nearest.
+struct Sight {
+  double nearest_m = 0;
+  double farthest_m = 0;
+};
+
+Sight sight_of(const Studio& studio) {
+  Sight sight = {.nearest_m = HUGE_VAL, .farthest_m = 0};
+  for (const double height_m : studio.heights_m) {
+    const double distance_m = std::hypot(studio.radius_m, height_m - studio.look_at_height_m);
+    sight.nearest_m = std::min(sight.nearest_m, distance_m);
+    sight.farthest_m = std::max(sight.farthest_m, distance_m);
+  }
+  return sight;
+}
+
+std::vector<std::string> studio_warnings(const Scenario& scenario) {
+  std::vector<std::string> lines;
+  if (!scenario.studio) return lines;
+  const Studio& studio = *scenario.studio;
+  const auto warn = [&](const std::string& pointer, const std::string& text) {
+    lines.push_back(scenario.origin->describe(pointer) + ": " + text);
+  };
+  const Sight sight = sight_of(studio);
+  if (sight.nearest_m < studio.min_distance_m || sight.farthest_m > studio.max_distance_m) {
+    warn("/studio/radius_m",
+         fmt::format("cameras are {:.3g} to {:.3g} m from the centre they look at and see from "
+                     "{:g} to {:g} m",
+                     sight.nearest_m, sight.farthest_m, studio.min_distance_m,
+                     studio.max_distance_m));
+  }
+  const StudioSubject& subject = studio.subject;
+  if (subject.motion == MotionScript::kWalkAndTurn && subject.turn_rate_rad_per_s > 0) {
+    const double circle_m = subject.walk_speed_m_per_s / subject.turn_rate_rad_per_s;
+    if (circle_m >= studio.radius_m) {
+      warn("/studio/subject/walk_speed_m_per_s",
+           fmt::format("the subject walks on a circle of {:.3g} m, the cameras stand on one of "
+                       "{:g} m",
+                       circle_m, studio.radius_m));
+    }
+  }
+  return lines;
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 # Citations of the project's own pages: prints FILE:LINE: what does not exist. For tools/lint, which
-# gives it all pages (*.md) and sources. A citation is the path of a page below docs/, or a link from
-# one page to another, and may go on with sections: "section 2", "(sections 1 and 2)", "sections 5
+# gives it all pages (*.md) and sources, and all folders as `known`. A citation is the path of a page
+# below docs/, or a link from one page to another, and may go on with sections: "section 2", "(sections 1 and 2)", "sections 5
 # to 7". A page's sections are its headings "## 2 Title". Citations may go on on the next line.
+# Sources that a page of docs/ or CONTRIBUTING names are there too: `sim/camera/device_clock.h`.
 {
   line = $0
   gsub(/^[ \t]*(\/\/|#|"|-|\*)?[ \t]*|"?[ \t]*$/, "", line)
   cite(last, last " " line)
   if (FILENAME !~ /\.md$/) note_bare(line)
+  if (FILENAME ~ /^(docs\/|CONTRIBUTING)/) check_sources(line)
   last = line
   file = FILENAME
   row = FNR
@@ -40,6 +42,16 @@ function note_bare(text,   name) {
     sub(/^[^a-z]/, "", name)
     bare[FILENAME ":" FNR] = name
     text = substr(text, RSTART + RLENGTH)
+  }
+}
+
+function check_sources(text,   path, dummy) {
+  while (match(text, /`[a-z]+\/[A-Za-z0-9_.\/-]+\.(h|cc|json|awk|cmake)`/)) {
+    path = substr(text, RSTART + 1, RLENGTH - 2)
+    text = substr(text, RSTART + RLENGTH)
+    if (!index(" " known " ", " " substr(path, 1, index(path, "/") - 1) " ")) continue  # not ours
+    if ((getline dummy < path) < 0) print FILENAME ":" FNR ": there is no " path
+    close(path)
   }
 }
 

@@ -14,8 +14,8 @@ constexpr std::size_t kDeeper = 4;
 
 std::string stream_text(const scenarios::StreamProfile& stream) {
   std::string text = reports::wrapped(
-      fmt::format("{}: {}, {} shutter, {} bytes a pixel [{}]", stream.kind, stream.format,
-                  stream.shutter, stream.bytes_per_pixel, stream.source),
+      fmt::format("{}: {}, {} shutter, {} bytes a pixel [{}]", to_text(stream.kind), stream.format,
+                  to_text(stream.shutter), stream.bytes_per_pixel, stream.source),
       kIndent);
   for (const scenarios::ImageSize& size : stream.sizes) {
     text += fmt::format("{:{}}{}x{} at {} Hz\n", "", kDeeper, size.width, size.height,
@@ -26,10 +26,12 @@ std::string stream_text(const scenarios::StreamProfile& stream) {
 
 std::string sync_text(const scenarios::CameraProfile& camera) {
   std::vector<std::string> modes;
-  for (const scenarios::SyncMode& mode : camera.sync_modes) {
-    modes.push_back(mode.triggered.empty() ? mode.mode + " (runs free)"
-                                           : fmt::format("{} (the trigger leads {})", mode.mode,
-                                                         fmt::join(mode.triggered, " and ")));
+  for (const scenarios::SyncModeProfile& mode : camera.sync_modes) {
+    std::vector<std::string_view> triggered;
+    for (const scenarios::StreamKind kind : mode.triggered) triggered.push_back(to_text(kind));
+    modes.push_back(triggered.empty() ? fmt::format("{} (runs free)", to_text(mode.mode))
+                                      : fmt::format("{} (the trigger leads {})", to_text(mode.mode),
+                                                    fmt::join(triggered, " and ")));
   }
   return reports::wrapped(fmt::format("sync modes: {}. {} [{}]", fmt::join(modes, ", "),
                                       camera.sync_wiring, camera.sync_source),

@@ -163,7 +163,7 @@ void add_subject_options(CLI::App& command, ReconstructOptions& options) {
                   "How the subject moves: stand, turn, walk, walk_and_turn, raise_arms. Short\n"
                   "for --set /studio/subject/motion=NAME. Default: the scenario's")
       ->type_name("NAME")
-      ->check(one_of({"stand", "turn", "walk", "walk_and_turn", "raise_arms"}));
+      ->check(one_of(scenarios::all_texts<scenarios::MotionScript>()));
 }
 
 void add_curve_options(CLI::App& command, ReconstructOptions& options) {

@@ -137,8 +137,8 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
                            folder.log().finished(), plan.runs(), options.output));
     return kInterrupted;
   }
-  const std::vector<std::string> tables =
-      study != nullptr ? study->tables : std::vector<std::string>{"response"};
+  const std::vector<scenarios::StudyTable> tables =
+      study != nullptr ? study->tables : std::vector{scenarios::StudyTable::kResponse};
   print_result(write_sweep_results(plan, tables, folder));
   return kOk;
 }

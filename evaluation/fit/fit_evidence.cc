@@ -169,11 +169,12 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
   } else {
     lines.emplace_back("the rate of the host's own clock: that of the base");
   }
-  if (base.usb.sharing != "dedicated" && input.cameras.size() > input.hosts.size()) {
+  if (base.usb.sharing != scenarios::UsbSharing::kDedicated &&
+      input.cameras.size() > input.hosts.size()) {
     lines.push_back(fmt::format(
         "how cameras share a bus: the base has it \"{}\"; where that delays frames unequally, it "
         "is in the measured delays as well and counts twice",
-        base.usb.sharing));
+        to_text(base.usb.sharing)));
   }
   return lines;
 }

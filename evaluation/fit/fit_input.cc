@@ -70,7 +70,7 @@ FitInput FitInputSink::take() {
                         .arrival = Nanoseconds(s.arrival_ns)});
     }
     input_.streams.push_back({.camera = key.first,
-                              .kind = key.second == StreamKind::kColour ? "colour" : "depth",
+                              .kind = std::string(to_text(key.second)),
                               .frames = unwrapped(frames)});
   }
   stamps_.clear();

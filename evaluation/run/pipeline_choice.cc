@@ -133,7 +133,7 @@ std::string lacking(const Scenario& scenario, Need need) {
     case Need::kTriggerLine:
       return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
     case Need::kPolls:
-      return scenario.cameras.clock_poll.interval_ms > 0
+      return scenario.cameras.clock_poll.is_on()
                  ? ""
                  : "polls of the cameras' clocks (/cameras/clock_poll/interval_ms is 0)";
     case Need::kFrames:
@@ -156,9 +156,8 @@ void check_needs(const Scenario& scenario, std::size_t pipeline, const char* sta
 CalibratedDelays calibrated_delays(const Scenario& scenario) {
   CalibratedDelays delays;
   delays.poll_asymmetry = from_ms(scenario.cameras.clock_poll.calibrated_asymmetry_ms);
-  for (const scenarios::Stream& stream : scenario.cameras.streams) {
-    if (stream.kind != scenario.evaluation.stream) continue;
-    delays.arrival = from_ms(stream.calibrated_delay_ms);
+  if (const scenarios::Stream* scored = scenario.scored_stream()) {
+    delays.arrival = from_ms(scored->calibrated_delay_ms);
   }
   return delays;
 }
@@ -232,9 +231,9 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
 
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
-  setup.stream = scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth;
-  setup.median = median_kind(scenario.evaluation.rmdv_median);
-  setup.genlock = scenario.cameras.sync_mode == "genlock";
+  setup.stream = scenario.evaluation.stream;
+  setup.median = scenario.evaluation.rmdv_median;
+  setup.genlock = scenario.cameras.sync_mode == scenarios::SyncMode::kGenlock;
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
   setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
                             const GatheringSetup& gathering) {

@@ -12,7 +12,6 @@
 #include "evaluation/scoring/pulse_table.h"
 #include "evaluation/scoring/score_observer.h"
 #include "recording/forwarding_sink.h"
-#include "scenarios/rates.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -42,11 +41,8 @@ struct CapturedCamera {
 
 // Whether the frames that are scored are exposed by trigger pulses.
 bool is_triggered(const scenarios::Scenario& scenario) {
-  const std::vector<scenarios::Stream>& streams = scenario.cameras.streams;
-  const auto scored = std::find_if(
-      streams.begin(), streams.end(),
-      [&](const scenarios::Stream& each) { return each.kind == scenario.evaluation.stream; });
-  return scored == streams.end() || scenarios::follows_trigger(scenario.cameras, *scored);
+  const scenarios::Stream* scored = scenario.scored_stream();
+  return scored == nullptr || scenario.cameras.follows_trigger(*scored);
 }
 
 // Keeps the true exposures of frames on their way to the scorer, and the stamps that come out.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/ports/assert.h"
-
 namespace simbench::evaluation {
 namespace {
 
@@ -21,12 +19,6 @@ double median_above(std::int64_t base, MedianKind kind, std::vector<std::int64_t
 }
 
 }  // namespace
-
-MedianKind median_kind(std::string_view name) {
-  SIMBENCH_ASSERT(name == "upper_middle" || name == "mean_of_middle_two",
-                  "the schema allows no other median");
-  return name == "upper_middle" ? MedianKind::kUpperMiddle : MedianKind::kMeanOfMiddleTwo;
-}
 
 double spread_ms(std::span<const std::int64_t> stamps_ns) {
   const auto [least, greatest] = std::minmax_element(stamps_ns.begin(), stamps_ns.end());

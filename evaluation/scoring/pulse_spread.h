@@ -19,20 +19,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
+
+#include "scenarios/choices.h"
 
 namespace simbench::evaluation {
 
-// The median of an even number of values is not defined in the paper; of an odd number, both are
-// the middle one.
-enum class MedianKind : std::uint8_t {
-  kUpperMiddle,      // sorted[n / 2]
-  kMeanOfMiddleTwo,  // (sorted[n / 2 - 1] + sorted[n / 2]) / 2
-};
-
-// From a scenario's /evaluation/rmdv_median: "upper_middle" or "mean_of_middle_two".
-MedianKind median_kind(std::string_view name);
+using scenarios::MedianKind;
 
 // Largest minus smallest. `stamps_ns` must not be empty. O(n).
 double spread_ms(std::span<const std::int64_t> stamps_ns);

@@ -81,10 +81,10 @@ double margin_ms(const std::vector<SeedScore>& seeds, double gathering_interval_
 }  // namespace
 
 RowSetting row_setting(const scenarios::Scenario& scenario) {
-  const double period_ms = 1000 / scenario.trigger.rate_hz;
-  return {.gathering_interval_ms = scenario.evaluation.gathering_interval_periods * period_ms,
+  return {.gathering_interval_ms =
+              scenario.evaluation.gathering_interval_periods * scenario.trigger.period_ms(),
           .sources = static_cast<std::size_t>(scenario.cameras.count),
-          .median = median_kind(scenario.evaluation.rmdv_median)};
+          .median = scenario.evaluation.rmdv_median};
 }
 
 SeedScore missing_score(std::uint64_t seed, const std::string& reason) {

@@ -16,7 +16,7 @@
 //
 //   for (const CameraInfo& found : driver.list()) ...
 //   auto camera = driver.open("018322071234");
-//   camera->configure({.sync_mode = "genlock", ...});
+//   camera->configure({.sync_mode = scenarios::SyncMode::kGenlock, ...});
 //   camera->start([&](const CameraFrame& frame) { ... }, [&](const CameraEvent& event) { ... });
 #ifndef SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
 #define SIMBENCH_HARDWARE_CAMERA_CAMERA_H_
@@ -49,7 +49,7 @@ struct CameraInfo {
 
 // What a capture asks of each camera: from the scenario.
 struct CameraSettings {
-  std::string sync_mode;                   // as scenarios::Cameras::sync_mode
+  scenarios::SyncMode sync_mode{};
   std::vector<scenarios::Stream> streams;  // profiles
   double exposure_ms = 0;
   bool auto_exposure = false;

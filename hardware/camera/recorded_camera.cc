@@ -13,10 +13,6 @@
 namespace simbench::hardware {
 namespace {
 
-StreamKind kind_of_stream(const scenarios::Stream& stream) {
-  return stream.kind == "colour" ? StreamKind::kColour : StreamKind::kDepth;
-}
-
 class RecordedCamera final : public Camera {
  public:
   RecordedCamera(CameraInfo info, std::string trigger_file,
@@ -36,13 +32,12 @@ class RecordedCamera final : public Camera {
     if (started_) fail("configured while it is started");
     std::array<bool, 2> wanted = {};
     for (const scenarios::Stream& stream : settings.streams) {
-      const StreamKind kind = kind_of_stream(stream);
       const auto& frames = play_.camera->frames;
       if (std::none_of(frames.begin(), frames.end(),
-                       [kind](const PlayedFrame& frame) { return frame.stream == kind; })) {
-        fail(fmt::format("{} has no {} stream", info_.model, stream.kind));
+                       [&](const PlayedFrame& frame) { return frame.stream == stream.kind; })) {
+        fail(fmt::format("{} has no {} stream", info_.model, to_text(stream.kind)));
       }
-      wanted[static_cast<std::size_t>(kind)] = true;
+      wanted[static_cast<std::size_t>(stream.kind)] = true;
     }
     play_.wanted = wanted;
     play_.watch = StreamWatch(settings, true);

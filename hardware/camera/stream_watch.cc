@@ -17,14 +17,8 @@ constexpr Nanoseconds kBetweenNotes = std::chrono::seconds(10);
 constexpr std::uint32_t kLargestGap = 1U << 31;
 constexpr std::int64_t kClockToleranceUs = 1'000'000;
 
-const char* name_of(StreamKind kind) { return kind == StreamKind::kDepth ? "depth" : "colour"; }
-
-bool triggered(const CameraSettings& settings) {
-  return settings.sync_mode != "default" && settings.sync_mode != "master";
-}
-
 Nanoseconds patience_of(const CameraSettings& settings, const scenarios::Stream& stream) {
-  const double rate_hz = triggered(settings) && settings.trigger_rate_hz > 0
+  const double rate_hz = waits_for_trigger(settings.sync_mode) && settings.trigger_rate_hz > 0
                              ? std::min(settings.trigger_rate_hz, stream.mode_rate_hz)
                              : stream.mode_rate_hz;
   if (rate_hz <= 0) return kLeastPatience;
@@ -43,7 +37,7 @@ bool clock_jumped(std::uint32_t passed_us, Nanoseconds host_passed, StampDomain 
 StreamWatch::StreamWatch(const CameraSettings& settings, bool waits) : waits_(waits) {
   for (Stream& stream : streams_) stream.patience = kLeastPatience;
   for (const scenarios::Stream& wanted : settings.streams) {
-    Stream& stream = streams_[wanted.kind == "colour" ? 1 : 0];
+    Stream& stream = streams_[static_cast<std::size_t>(wanted.kind)];
     stream.expected = true;
     stream.patience = patience_of(settings, wanted);
   }
@@ -71,7 +65,7 @@ void StreamWatch::on_frame(const CameraFrame& frame, const CameraEventHandler& r
   if (stream.seen) compare(stream, frame, report);
   if (stream.stalled) {
     report({CameraEvent::Kind::kNote,
-            fmt::format("{}: frames come again, after {:.1f} s", name_of(frame.stream),
+            fmt::format("{}: frames come again, after {:.1f} s", to_text(frame.stream),
                         to_seconds(frame.arrived - stream.last))});
   }
   stream.seen = true;
@@ -90,14 +84,14 @@ void StreamWatch::compare(const Stream& before, const CameraFrame& frame,
     if (!restarts_.permits(frame.arrived)) return;
     report({CameraEvent::Kind::kNote,
             fmt::format("{}: the camera's {} jumped between frames {} and {}: did it restart?",
-                        name_of(frame.stream), counts_anew ? "frame counter" : "clock",
+                        to_text(frame.stream), counts_anew ? "frame counter" : "clock",
                         before.counter, frame.counter)});
   } else if (forward > 1) {
     lost_ += forward - 1;
     if (!losses_.permits(frame.arrived)) return;
     report({CameraEvent::Kind::kNote,
             fmt::format("{}: the frame counter went from {} to {}: {} frames lost since the start",
-                        name_of(frame.stream), before.counter, frame.counter, lost_)});
+                        to_text(frame.stream), before.counter, frame.counter, lost_)});
   }
 }
 
@@ -110,7 +104,7 @@ void StreamWatch::check(MonotonicTime now, const CameraEventHandler& report) {
     if (!awaited || stream.stalled || now - stream.last <= patience) continue;
     stream.stalled = true;
     report({CameraEvent::Kind::kStalled,
-            fmt::format("{}: no frame for {:.1f} s{}", name_of(static_cast<StreamKind>(i)),
+            fmt::format("{}: no frame for {:.1f} s{}", to_text(static_cast<StreamKind>(i)),
                         to_seconds(now - stream.last),
                         stream.seen ? fmt::format(", the last was {}", stream.counter) : "")});
   }

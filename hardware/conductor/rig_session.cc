@@ -58,11 +58,6 @@ json master_role(std::size_t hosts) {
   return {{"role", "master"}, {"slaves", std::move(slaves)}};
 }
 
-bool is_triggered(const scenarios::Scenario& scenario) {
-  const std::string& mode = scenario.cameras.sync_mode;
-  return mode == "genlock" || mode == "slave" || mode == "full_slave";
-}
-
 constexpr Nanoseconds kGreetingLimit = std::chrono::seconds(3);
 constexpr Nanoseconds kReadLimit = std::chrono::seconds(2);
 // Opening and setting cameras takes its time on a real host.
@@ -127,7 +122,7 @@ RigSession::RigSession(boost::asio::io_context& context, const Rig& rig, const S
       trigger_(context, rig.trigger, settings.prompt),
       id_(settings.collect_session.empty() ? fresh_session_id() : settings.collect_session),
       layout_(layout_of(scenario)),
-      scored_(scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth) {
+      scored_(scenario.evaluation.stream) {
   hosts_.reserve(rig.hosts.size());
   for (std::size_t host = 0; host < rig.hosts.size(); ++host) {
     hosts_.push_back({NodeLink(context, rig.hosts[host], key,
@@ -201,8 +196,8 @@ Task<void> RigSession::synchronise() {
 }
 
 Task<void> RigSession::capture() {
-  const bool genlock = scenario_.cameras.sync_mode == "genlock";
-  const bool triggered = is_triggered(scenario_);
+  const bool genlock = scenario_.cameras.sync_mode == scenarios::SyncMode::kGenlock;
+  const bool triggered = waits_for_trigger(scenario_.cameras.sync_mode);
   progress(fmt::format("capturing {} frames after {:.1f} s", scenario_.timeline.frames,
                        scenario_.timeline.warm_up_ms / 1000));
   if (triggered) co_await trigger_.turn(!genlock);

@@ -33,7 +33,7 @@ CameraSettings settings_of(const scenarios::Scenario& scenario) {
   return {.sync_mode = cameras.sync_mode,
           .streams = cameras.streams,
           .exposure_ms = cameras.exposure_ms,
-          .auto_exposure = cameras.auto_exposure.step_interval_exponential_ms > 0,
+          .auto_exposure = cameras.auto_exposure.is_on(),
           .trigger_rate_hz = scenario.trigger.rate_hz};
 }
 
@@ -43,8 +43,7 @@ Session::Session(SessionWorld world, SessionPlan plan)
     : world_(std::move(world)),
       plan_(std::move(plan)),
       since_(time_of_day()),
-      scored_(plan_.scenario.evaluation.stream == "colour" ? StreamKind::kColour
-                                                           : StreamKind::kDepth),
+      scored_(plan_.scenario.evaluation.stream),
       journal_(world_.context, world_.journal_folder, plan_.id,
                [this](const std::string& trouble) { note(trouble); }),
       sync_ended_(world_.context) {

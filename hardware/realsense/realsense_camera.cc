@@ -48,7 +48,7 @@ class RealsenseCamera::Outlet {
     const std::lock_guard lock(mutex_);
     on_frame_ = std::move(on_frame);
     on_event_ = std::move(on_event);
-    watch_ = StreamWatch(settings, settings.sync_mode == "genlock");
+    watch_ = StreamWatch(settings, settings.sync_mode == scenarios::SyncMode::kGenlock);
     watch_.start(monotonic_now());
     open_ = connected_ = true;
     checker_ = std::thread([this] { check(); });

@@ -4,28 +4,40 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace simbench::hardware {
 namespace {
 
+using scenarios::SyncMode;
+
 constexpr double kGenlockTolerance = 1.02;
 constexpr std::size_t kNearestShown = 5;
 
-struct SyncMode {
-  const char* name;
+// The value of Inter Cam Sync Mode and the first firmware that has it.
+struct SyncOption {
   int value;
-  const char* firmware;  // the first that has it
+  const char* firmware;
 };
 
-constexpr std::array<SyncMode, 5> kSyncModes = {{{"default", 0, "5.9.15.1"},
-                                                 {"master", 1, "5.9.15.1"},
-                                                 {"slave", 2, "5.9.15.1"},
-                                                 {"full_slave", 3, "5.12.4.0"},
-                                                 {"genlock", 4, "5.12.4.0"}}};
+SyncOption option_of(SyncMode mode) {
+  switch (mode) {
+    case SyncMode::kDefault:
+      return {0, "5.9.15.1"};
+    case SyncMode::kMaster:
+      return {1, "5.9.15.1"};
+    case SyncMode::kSlave:
+      return {2, "5.9.15.1"};
+    case SyncMode::kFullSlave:
+      return {3, "5.12.4.0"};
+    case SyncMode::kGenlock:
+      return {4, "5.12.4.0"};
+  }
+  return {};
+}
 
 [[noreturn]] void fail(const std::string& serial, const std::string& problem) {
   throw CameraError(fmt::format("camera {}: {}", serial, problem));
@@ -76,15 +88,15 @@ std::vector<Profile> profiles_of(const std::vector<rs2::sensor>& sensors, rs2_st
     if (std::find(nearest.begin(), nearest.end(), text) == nearest.end()) nearest.push_back(text);
   }
   const std::string allowed = nearest.empty()
-                                  ? fmt::format("it has no {} stream", stream.kind)
+                                  ? fmt::format("it has no {} stream", to_text(stream.kind))
                                   : fmt::format("the nearest it has: {}", fmt::join(nearest, ", "));
-  fail(serial, fmt::format("no {} profile {}x{} at {} Hz, {}", stream.kind, stream.width,
+  fail(serial, fmt::format("no {} profile {}x{} at {} Hz, {}", to_text(stream.kind), stream.width,
                            stream.height, stream.mode_rate_hz, allowed));
 }
 
 Profile choose_profile(const std::string& serial, const std::vector<rs2::sensor>& sensors,
                        const scenarios::Stream& stream) {
-  const bool colour = stream.kind == "colour";
+  const bool colour = stream.kind == StreamKind::kColour;
   const std::vector<Profile> all =
       profiles_of(sensors, colour ? RS2_STREAM_COLOR : RS2_STREAM_DEPTH);
   const rs2_format preferred = colour ? RS2_FORMAT_YUYV : RS2_FORMAT_Z16;
@@ -104,36 +116,30 @@ void set_option(const ChosenSensor& sensor, rs2_option option, float value) {
 
 void apply_sync_mode(const rs2::device& device, const CameraInfo& info,
                      const CameraSettings& settings) {
-  const auto* mode = std::find_if(kSyncModes.begin(), kSyncModes.end(), [&](const SyncMode& each) {
-    return settings.sync_mode == each.name;
-  });
-  if (mode == kSyncModes.end()) {
-    fail(info.serial, fmt::format("found sync mode '{}', allowed default, master, slave, "
-                                  "full_slave, genlock",
-                                  settings.sync_mode));
-  }
+  const std::string_view mode = to_text(settings.sync_mode);
+  const SyncOption option = option_of(settings.sync_mode);
   const std::string firmware = info.firmware.empty() ? "its firmware" : "firmware " + info.firmware;
   for (const rs2::sensor& sensor : device.query_sensors()) {
     if (!sensor.supports(RS2_OPTION_INTER_CAM_SYNC_MODE)) continue;
     const rs2::option_range range = sensor.get_option_range(RS2_OPTION_INTER_CAM_SYNC_MODE);
-    if (static_cast<float>(mode->value) > range.max) {
+    if (static_cast<float>(option.value) > range.max) {
       fail(info.serial,
            fmt::format("sync mode {} is {} of Inter Cam Sync Mode, {} allows 0 to {}: it needs "
                        "firmware {} or newer (rs-fw-update) and a global shutter",
-                       mode->name, mode->value, firmware, range.max, mode->firmware));
+                       mode, option.value, firmware, range.max, option.firmware));
     }
     if (sensor.is_option_read_only(RS2_OPTION_INTER_CAM_SYNC_MODE)) {
       fail(info.serial, fmt::format("sync mode {} cannot be set now: is the camera streaming in "
                                     "another program?",
-                                    mode->name));
+                                    mode));
     }
-    sensor.set_option(RS2_OPTION_INTER_CAM_SYNC_MODE, static_cast<float>(mode->value));
+    sensor.set_option(RS2_OPTION_INTER_CAM_SYNC_MODE, static_cast<float>(option.value));
     return;
   }
-  if (mode->value == 0) return;
+  if (option.value == 0) return;
   fail(info.serial, fmt::format("sync mode {}: {} has no option Inter Cam Sync Mode; it needs "
                                 "firmware {} or newer, and a D405 has none",
-                                mode->name, firmware, mode->firmware));
+                                mode, firmware, option.firmware));
 }
 
 void apply_exposure(const ChosenSensor& sensor, const std::string& serial,
@@ -160,13 +166,14 @@ void apply_exposure(const ChosenSensor& sensor, const std::string& serial,
 }
 
 void check_trigger(const std::string& serial, const CameraSettings& settings) {
-  if (settings.sync_mode != "genlock") return;
+  if (settings.sync_mode != SyncMode::kGenlock) return;
   for (const scenarios::Stream& stream : settings.streams) {
     const double most_hz = stream.mode_rate_hz / 2;
     if (settings.trigger_rate_hz <= most_hz * kGenlockTolerance) continue;
-    fail(serial, fmt::format("found triggers at {} Hz, allowed in genlock: at most {} Hz, half of "
-                             "the {} mode's {} Hz",
-                             settings.trigger_rate_hz, most_hz, stream.kind, stream.mode_rate_hz));
+    fail(serial,
+         fmt::format("found triggers at {} Hz, allowed in genlock: at most {} Hz, half of "
+                     "the {} mode's {} Hz",
+                     settings.trigger_rate_hz, most_hz, to_text(stream.kind), stream.mode_rate_hz));
   }
 }
 

@@ -92,11 +92,11 @@ void check_relay_can(const scenarios::Scenario& scenario) {
     scenarios::fail_at(scenario, "/network/nagle",
                        "found true, allowed where a relay imitates the network: false");
   }
-  if (network.switch_clock != "none") {
+  if (network.switch_clock != scenarios::SwitchClockKind::kNone) {
     scenarios::fail_at(
         scenario, "/network/switch_clock",
         fmt::format(R"(found "{}", allowed where a relay imitates the network: "none")",
-                    network.switch_clock));
+                    to_text(network.switch_clock)));
   }
 }
 

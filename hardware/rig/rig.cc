@@ -16,8 +16,6 @@
 #include <utility>
 
 #include "scenarios/document.h"
-#include "scenarios/json_schema.h"
-#include "scenarios/places.h"
 #include "scenarios/schema.h"
 
 namespace simbench::hardware {
@@ -264,16 +262,8 @@ std::string counted(std::size_t count, const std::string& thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-std::vector<std::size_t> cameras_by_host(const Scenario& scenario) {
-  std::vector<std::size_t> counts(static_cast<std::size_t>(scenario.hosts.count));
-  for (std::int64_t camera = 0; camera < scenario.cameras.count; ++camera) {
-    ++counts[static_cast<std::size_t>(scenario.host_of(camera))];
-  }
-  return counts;
-}
-
 void check_cameras(const Rig& rig, const Scenario& scenario) {
-  const std::vector<std::size_t> wanted = cameras_by_host(scenario);
+  const std::vector<std::size_t> wanted = scenario.cameras_by_host();
   for (std::size_t i = 0; i < rig.hosts.size(); ++i) {
     const std::size_t found = rig.hosts[i].cameras.size();
     if (found == wanted[i]) continue;
@@ -291,11 +281,6 @@ void check_cameras(const Rig& rig, const Scenario& scenario) {
                        camera, i, scenario.host_of(camera), scenario.name));
     }
   }
-}
-
-bool needs_trigger(const Scenario& scenario) {
-  const std::string& mode = scenario.cameras.sync_mode;
-  return mode == "genlock" || mode == "slave" || mode == "full_slave";
 }
 
 }  // namespace
@@ -355,11 +340,11 @@ void check_rig_fits(const Rig& rig, const Scenario& scenario) {
                      counted(rig.hosts.size(), "host"), scenario.hosts.count, scenario.name));
   }
   check_cameras(rig, scenario);
-  if (needs_trigger(scenario) && !rig.trigger) {
+  if (waits_for_trigger(scenario.cameras.sync_mode) && !rig.trigger) {
     fail(rig, "/trigger",
          fmt::format("found nothing, allowed \"manual\" or {{\"on_command\": ..., \"off_command\": "
                      "...}}: scenario {} has sync mode {}, whose cameras wait for a trigger",
-                     scenario.name, scenario.cameras.sync_mode));
+                     scenario.name, to_text(scenario.cameras.sync_mode)));
   }
 }
 

@@ -22,7 +22,9 @@ class SubjectMaker {
  public:
   // Throws scenarios::InputError for a mesh file that cannot be used.
   explicit SubjectMaker(const scenarios::StudioSubject& subject) : subject_(subject) {
-    if (subject.kind == "mesh") loaded_ = load_subject_mesh(subject.mesh_file);
+    if (subject.kind == scenarios::SubjectKind::kMesh) {
+      loaded_ = load_subject_mesh(subject.mesh_file);
+    }
   }
   std::unique_ptr<Subject> make(double speed_factor) const {
     return loaded_ ? make_rigid_subject(loaded_->mesh, subject_, speed_factor)

@@ -15,6 +15,7 @@
 #include "reports/results/results_document.h"
 #include "reports/text/html_text.h"
 #include "reports/text/number_text.h"
+#include "scenarios/choices.h"
 
 namespace simbench::reports {
 namespace {
@@ -80,7 +81,7 @@ std::vector<Block> blocks_of(const Archive& archive) {
   if (!archive.results.warnings.empty()) {
     append({{.heading = "Warnings", .items = archive.results.warnings, .is_warning = true}});
   }
-  if (scenario_text(archive, "/evaluation/table") == "leaderboard") {
+  if (scenario_text(archive, "/evaluation/table") == to_text(scenarios::TableKind::kLeaderboard)) {
     append(board_blocks(archive.results));
   }
   append(results_document(archive.results, "").blocks);

@@ -39,18 +39,14 @@ constexpr const char* kLimitLegend =
     "at the smallest desynchronisation of the curve (interpolated). cost: the local slope of the "
     "curve there, or at its end.";
 
-bool walks(const StudioSubject& subject) {
-  return subject.motion == "walk" || subject.motion == "walk_and_turn";
-}
-
 std::string motion_text(const StudioSubject& subject) {
-  std::string text = fmt::format("motion \"{}\"", subject.motion);
-  if (walks(subject)) text += fmt::format(" at {:g} m/s", subject.walk_speed_m_per_s);
-  if (subject.motion == "turn" || subject.motion == "walk_and_turn") {
-    text +=
-        fmt::format("{} {:g} rad/s", walks(subject) ? " and" : " at", subject.turn_rate_rad_per_s);
+  std::string text = fmt::format("motion \"{}\"", to_text(subject.motion));
+  if (walks(subject.motion)) text += fmt::format(" at {:g} m/s", subject.walk_speed_m_per_s);
+  if (turns(subject.motion)) {
+    text += fmt::format("{} {:g} rad/s", walks(subject.motion) ? " and" : " at",
+                        subject.turn_rate_rad_per_s);
   }
-  if (subject.motion == "raise_arms") {
+  if (subject.motion == scenarios::MotionScript::kRaiseArms) {
     text += fmt::format(" at {:g} rad/s", subject.arm_rate_rad_per_s);
   }
   return text;
@@ -58,7 +54,7 @@ std::string motion_text(const StudioSubject& subject) {
 
 std::string subject_note(const StudioSubject& subject) {
   const std::string who =
-      subject.kind == "mesh"
+      subject.kind == scenarios::SubjectKind::kMesh
           ? fmt::format("The subject is the mesh {}", subject.mesh_file)
           : fmt::format("The subject is a simulated person of {:g} m", subject.height_m);
   return fmt::format("{}, {}; the paper says \"moving person\" and no more.", who,
@@ -82,7 +78,7 @@ std::string floor_note(const std::vector<ReprojectionRow>& rows, const StudioSub
     if (!row.published) continue;
     if (best == nullptr || row.published->mean_cm < best->published->mean_cm) best = &row;
   }
-  if (best == nullptr || !walks(subject)) return "";
+  if (best == nullptr || !walks(subject.motion)) return "";
   const double ms = best->desync_ms().median;
   const double moved_cm = ms * subject.walk_speed_m_per_s / 10;
   if (!(moved_cm < best->mean_cm().median)) return "";

@@ -18,10 +18,6 @@ using Json = nlohmann::ordered_json;
 
 double us(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
 
-const char* stream_name(StreamKind stream) {
-  return stream == StreamKind::kColour ? "colour" : "depth";
-}
-
 class ChromeWriter {
  public:
   ChromeWriter(const Trace& trace, std::ostream& out)
@@ -107,7 +103,7 @@ class ChromeWriter {
       return;
     }
     add(R"(,"cat":"frame","name":"frame {}","args":{{"frame":{},"camera":{},"stream":"{}")",
-        way.counter, way.counter, way.camera, stream_name(way.stream));
+        way.counter, way.counter, way.camera, to_text(way.stream));
     if (way.pulse >= 0) add(R"(,"pulse":{})", way.pulse);
     if (event.what == TraceWhat::kHostStack) {
       add(R"(,"kernel_copy_us":{:.3f})", us(way.copied - way.transferred));

@@ -10,7 +10,7 @@ AutoExposure::AutoExposure(const scenarios::AutoExposure& settings, Nanoseconds 
     : settings_(settings),
       stream_(run_seed, "camera/auto_exposure", camera),
       steps_{{camera_start, initial}} {
-  if (settings_.step_interval_exponential_ms > 0) {
+  if (settings_.is_on()) {
     next_step_ =
         camera_start + from_ms(stream_.exponential(settings_.step_interval_exponential_ms));
   }

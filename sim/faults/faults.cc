@@ -1,18 +1,21 @@
 #include "sim/faults/faults.h"
 
 #include <algorithm>
+#include <variant>
 
 namespace simbench::sim {
 
 Outages::Outages(const std::vector<scenarios::Fault>& faults) {
-  for (const scenarios::Fault& fault : faults) {
-    const bool of_link = fault.kind == "link_stops";
-    if (!of_link && fault.kind != "host_stops") continue;
-    const Nanoseconds begin = from_ms(fault.at_ms);
-    outages_.push_back({.host = static_cast<PeerId>(fault.host),
+  const auto add = [this](const auto& stop, bool of_link) {
+    const Nanoseconds begin = from_ms(stop.at_ms);
+    outages_.push_back({.host = static_cast<PeerId>(stop.host),
                         .of_link = of_link,
                         .begin = begin,
-                        .end = begin + from_ms(fault.duration_ms)});
+                        .end = begin + from_ms(stop.duration_ms)});
+  };
+  for (const scenarios::Fault& fault : faults) {
+    if (const auto* host = std::get_if<scenarios::HostStops>(&fault)) add(*host, false);
+    if (const auto* link = std::get_if<scenarios::LinkStops>(&fault)) add(*link, true);
   }
 }
 
@@ -27,11 +30,12 @@ bool Outages::stopped(PeerId host, TrueTime at, bool or_its_link) const {
 
 CameraFaults::CameraFaults(const std::vector<scenarios::Fault>& faults) {
   for (const scenarios::Fault& fault : faults) {
-    const auto camera = static_cast<std::uint32_t>(fault.camera);
-    if (fault.kind == "camera_vanishes") {
-      absences_.push_back({camera, fault.at_ms, fault.at_ms + fault.duration_ms});
-    } else if (fault.kind == "late_first_frame") {
-      late_frames_.push_back({camera, fault.at_ms, fault.duration_ms * 1e6, false});
+    if (const auto* gone = std::get_if<scenarios::CameraVanishes>(&fault)) {
+      absences_.push_back(
+          {static_cast<std::uint32_t>(gone->camera), gone->at_ms, gone->at_ms + gone->duration_ms});
+    } else if (const auto* late = std::get_if<scenarios::LateFirstFrame>(&fault)) {
+      late_frames_.push_back(
+          {static_cast<std::uint32_t>(late->camera), late->duration_ms * 1e6, false});
     }
   }
 }
@@ -45,10 +49,10 @@ bool CameraFaults::vanished(std::uint32_t camera, TrueTime at) const {
   });
 }
 
-double CameraFaults::take_delay_ns(std::uint32_t camera, TrueTime at) {
+double CameraFaults::take_delay_ns(std::uint32_t camera) {
   double delay_ns = 0;
   for (LateFrame& late : late_frames_) {
-    if (late.taken || late.camera != camera || to_ms(at - start_) < late.from_ms) continue;
+    if (late.taken || late.camera != camera) continue;
     late.taken = true;
     delay_ns += late.delay_ns;
   }

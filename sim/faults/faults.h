@@ -62,9 +62,9 @@ class CameraFaults {
   // The camera takes no frames and answers no polls.
   bool vanished(std::uint32_t camera, TrueTime at) const;
 
-  // How much later than others a frame is delivered whose exposure begins at `at`. A fault delays
-  // one frame, the first of its camera that is asked about.
-  double take_delay_ns(std::uint32_t camera, TrueTime at);
+  // How much later than others a frame of the camera is delivered. A fault delays one frame, the
+  // first of its camera that is asked about.
+  double take_delay_ns(std::uint32_t camera);
 
  private:
   struct Absence {
@@ -74,7 +74,6 @@ class CameraFaults {
   };
   struct LateFrame {
     std::uint32_t camera;
-    double from_ms;  // after the start of the capture
     double delay_ns;
     bool taken;
   };

@@ -29,14 +29,6 @@ double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
   return draw.normal(clock.initial_offset_sigma_ms);
 }
 
-std::vector<bool> hosts_with_cameras(const scenarios::Scenario& scenario) {
-  std::vector<bool> with_cameras(static_cast<std::size_t>(scenario.hosts.count), false);
-  for (std::int64_t camera = 0; camera < scenario.cameras.count; ++camera) {
-    with_cameras.at(static_cast<std::size_t>(scenario.host_of(camera))) = true;
-  }
-  return with_cameras;
-}
-
 }  // namespace
 
 HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed,
@@ -58,10 +50,10 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .trigger_line = trigger_line_,
                         .sink = sink,
                         .run_seed = run_seed};
-  const std::vector<bool> with_cameras = hosts_with_cameras(scenario);
+  const std::vector<std::size_t> cameras = scenario.cameras_by_host();
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
     make_clock(scenario.hosts.clock, run_seed, initial_clocks);
-    hosts_.emplace_back(world, id, clocks_.back(), with_cameras[id]);
+    hosts_.emplace_back(world, id, clocks_.back(), cameras[id] > 0);
   }
 }
 

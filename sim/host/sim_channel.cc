@@ -24,7 +24,8 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
       peer_(peer),
       transport_(transport),
       path_(host.world().network.open(host.id(), peer, transport, *this)),
-      stamps_in_kernel_(host.world().network_parameters.stamp_point == "kernel"),
+      stamps_in_kernel_(host.world().network_parameters.stamp_point ==
+                        scenarios::StampPoint::kKernel),
       send_cost_ms_(host.world().hosts.send_cost_ms +
                     host.world().load.session(host.id(), peer).send_cost_ms),
       arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))),

@@ -10,6 +10,8 @@
 namespace simbench::sim {
 namespace {
 
+using scenarios::SwitchClockKind;
+
 constexpr ComponentKey kResidenceError("network: error of the residence time");
 constexpr ComponentKey kBoundaryError("network: error of the boundary clock");
 constexpr std::int64_t kBoundaryGridNs = 30'000'000'000;
@@ -26,13 +28,11 @@ constexpr double kUnitsPerNs = 65536;
 
 SwitchClock::SwitchClock(const scenarios::Network& network, std::uint64_t run_seed)
     : run_seed_(run_seed),
-      kind_(network.switch_clock == "transparent" ? Kind::kTransparent
-            : network.switch_clock == "boundary"  ? Kind::kBoundary
-                                                  : Kind::kNone),
+      kind_(network.switch_clock),
       error_sigma_ns_(network.switch_clock_error_ns) {}
 
 bool SwitchClock::corrects(const Bytes& message) const {
-  return kind_ != Kind::kNone && message.size() >= kEventMessageBytes &&
+  return kind_ != SwitchClockKind::kNone && message.size() >= kEventMessageBytes &&
          (message[0] & kLowNibble) <= kLastEventType && (message[1] & kLowNibble) == kVersion;
 }
 
@@ -41,7 +41,7 @@ void SwitchClock::correct(Bytes& message, const Passage& passage, Nanoseconds re
   RandomStream draw(run_seed_, kResidenceError, direction_of(passage.from, passage.to),
                     2 * passage.id + passage.copy);
   double correction_ns = static_cast<double>(residence.count()) + draw.normal(error_sigma_ns_);
-  if (kind_ == Kind::kBoundary) {
+  if (kind_ == SwitchClockKind::kBoundary) {
     if (passage.from == 0) correction_ns += boundary_error_ns(at);
     if (passage.to == 0) correction_ns -= boundary_error_ns(at);
   }

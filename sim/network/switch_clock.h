@@ -48,10 +48,8 @@ class SwitchClock {
   double boundary_error_ns(TrueTime at) const;
 
  private:
-  enum class Kind : std::uint8_t { kNone, kTransparent, kBoundary };
-
   std::uint64_t run_seed_;
-  Kind kind_;
+  scenarios::SwitchClockKind kind_;
   double error_sigma_ns_;
 };
 

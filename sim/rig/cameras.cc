@@ -5,25 +5,19 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
-#include "scenarios/rates.h"
 
 namespace simbench::sim {
 namespace {
 
 Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
 
-UsbSharing sharing_of(const scenarios::Usb& usb) {
-  if (usb.sharing == "fifo") return UsbSharing::kFifo;
-  if (usb.sharing == "fair") return UsbSharing::kFair;
-  return UsbSharing::kDedicated;
-}
-
 // 1 MB/s is 1e6 bytes in 1e9 ns.
 double bytes_per_ns(const scenarios::Usb& usb) { return usb.bandwidth_mb_per_s * 1e-3; }
 
 ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Stream& stream) {
-  if (!scenarios::follows_trigger(cameras, stream)) return ShutterMode::kFreeRunning;
-  return cameras.sync_mode == "genlock" ? ShutterMode::kGenlock : ShutterMode::kSlave;
+  if (!cameras.follows_trigger(stream)) return ShutterMode::kFreeRunning;
+  return cameras.sync_mode == scenarios::SyncMode::kGenlock ? ShutterMode::kGenlock
+                                                            : ShutterMode::kSlave;
 }
 
 }  // namespace
@@ -79,8 +73,7 @@ void Cameras::add_camera(std::size_t camera) {
 CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
   const scenarios::Stream& profile = scenario_.cameras.streams[which];
   const ShutterSettings shutter = shutter_settings(camera, profile);
-  const double bytes =
-      static_cast<double>(profile.width * profile.height) * profile.bytes_per_pixel;
+  const double bytes = profile.image_bytes();
   RandomStream latency(seed_, "camera/latency", camera);
   TrueTime started = start_of(camera);
   if (shutter.mode == ShutterMode::kFreeRunning) {
@@ -93,7 +86,7 @@ CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
           .host = 0,
           .controller = 0,
           .index_on_controller = 0,
-          .kind = profile.kind == "colour" ? StreamKind::kColour : StreamKind::kDepth,
+          .kind = profile.kind,
           .bytes = bytes,
           .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
           .latency = from_ms(profile.pipeline_latency_ms +
@@ -114,7 +107,8 @@ ShutterSettings Cameras::shutter_settings(std::size_t camera,
   return {.mode = shutter_mode(cameras, profile),
           .mode_period_ns = 1e9 / profile.mode_rate_hz * clocks_[camera].true_per_device(),
           .exposure = first_exposure(camera),
-          .readout = from_ms(profile.shutter == "rolling" ? profile.readout_ms : 0),
+          .readout =
+              from_ms(profile.shutter == scenarios::ShutterKind::kRolling ? profile.readout_ms : 0),
           .trigger_to_exposure = from_us(cameras.trigger_to_exposure_us),
           .guard_fraction = cameras.genlock_guard_fraction,
           .free_run_after_periods = cameras.slave_free_run_after_periods};
@@ -128,14 +122,13 @@ Nanoseconds Cameras::first_exposure(std::size_t camera) const {
   RandomStream of_host(seed_, "host/exposure", host);
   const double periods = cameras.exposure_camera_periods * of_camera.uniform() +
                          cameras.exposure_host_periods * of_host.uniform();
-  const double trigger_period_ms = 1e3 / scenario_.trigger.rate_hz;
-  return from_ms(cameras.exposure_ms + periods * trigger_period_ms);
+  return from_ms(cameras.exposure_ms + periods * scenario_.trigger.period_ms());
 }
 
 std::vector<UsbController> Cameras::make_controllers() const {
   const scenarios::Usb& usb = scenario_.usb;
   const std::size_t kinds = scenario_.cameras.streams.size();
-  const UsbSettings settings{.sharing = sharing_of(usb),
+  const UsbSettings settings{.sharing = usb.sharing,
                              .bytes_per_ns = bytes_per_ns(usb),
                              .buffered_frames = static_cast<std::uint32_t>(usb.buffered_frames),
                              .streams_per_camera = static_cast<std::uint32_t>(kinds)};

@@ -11,6 +11,19 @@ namespace {
 
 constexpr ComponentKey kLateFrame("host: late delivery of a frame");
 
+// A late first frame is late from the start.
+double begin_ms(const scenarios::Fault& fault) {
+  return std::visit(
+      [](const auto& each) {
+        if constexpr (requires { each.at_ms; }) {
+          return each.at_ms;
+        } else {
+          return 0.0;
+        }
+      },
+      fault);
+}
+
 }  // namespace
 
 Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
@@ -63,7 +76,7 @@ void Capture::start(TrueTime at, std::function<void()> on_end) {
     if (timer != TrueTime::max()) engine_.schedule(timer, id_, kShutterTimer, id);
   }
   for (std::uint32_t i = 0; i < scenario_.faults.size(); ++i) {
-    engine_.schedule(at + from_ms(scenario_.faults[i].at_ms), id_, kFault, i);
+    engine_.schedule(at + from_ms(begin_ms(scenario_.faults[i])), id_, kFault, i);
   }
   engine_.schedule(end_, id_, kEnd, 0);
 }
@@ -169,8 +182,7 @@ void Capture::expose(std::uint32_t stream_id, const Exposure& planned) {
   frame.record.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
   way.stream = stream_id;
   way.kernel_copy_ns = delays.kernel_copy_ns;
-  way.delivery_ns =
-      delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera, exposure.start);
+  way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
   engine_.schedule(exposure.end + stream.latency, id_, kReadout, id);
 }
 
@@ -240,9 +252,10 @@ void Capture::stamp(CapturedFrame& frame) {
 }
 
 void Capture::on_fault(const scenarios::Fault& fault) {
-  if (fault.kind != "clock_step") return;
-  SystemClock& clock = *clocks_[static_cast<std::size_t>(fault.host)];
-  clock.set(engine_.now(), clock.read(engine_.now()) + from_ms(fault.step_ms));
+  const auto* step = std::get_if<scenarios::ClockStep>(&fault);
+  if (step == nullptr) return;
+  SystemClock& clock = *clocks_[static_cast<std::size_t>(step->host)];
+  clock.set(engine_.now(), clock.read(engine_.now()) + from_ms(step->step_ms));
 }
 
 void Capture::end_if_done() {

@@ -25,7 +25,7 @@ ObservedFrame observed(const CapturedFrame& frame) {
 
 FrameFeeds::FrameFeeds(const scenarios::Scenario& scenario, HostGroup& hosts)
     : hosts_(hosts),
-      scored_(scenario.evaluation.stream == "colour" ? StreamKind::kColour : StreamKind::kDepth),
+      scored_(scenario.evaluation.stream),
       traffic_share_(scenario.network.capture_traffic_share) {}
 
 void FrameFeeds::on_delivery(const CapturedFrame& frame) {

@@ -14,9 +14,7 @@ Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
 
 TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras,
                          std::uint64_t seed)
-    : settings_(settings),
-      seed_(seed),
-      period_ns_(1e9 / (settings.rate_hz * (1.0 + settings.rate_error_ppm * 1e-6))) {
+    : settings_(settings), seed_(seed), period_ns_(1e9 / settings.pulse_rate_hz()) {
   delays_.reserve(cameras);
   for (std::size_t camera = 0; camera < cameras; ++camera) {
     const auto per_branch = static_cast<std::size_t>(settings.cameras_per_sub_trigger);

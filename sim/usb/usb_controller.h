@@ -31,10 +31,11 @@
 #include <vector>
 
 #include "recording/true_time.h"
+#include "scenarios/choices.h"
 
 namespace simbench::sim {
 
-enum class UsbSharing : std::uint8_t { kDedicated, kFifo, kFair };
+using scenarios::UsbSharing;
 
 struct UsbSettings {
   UsbSharing sharing = UsbSharing::kDedicated;

@@ -128,7 +128,7 @@ TEST(Studio, IntrinsicsAreTheProfiles) {
 TEST(Studio, OtherStreamsDoNotMatter) {
   scenarios::Scenario scenario = studio_scenario();
   scenarios::Stream colour = scenario.cameras.streams[0];
-  colour.kind = "colour";
+  colour.kind = scenarios::StreamKind::kColour;
   colour.width = 1280;
   colour.height = 720;
   scenario.cameras.streams.insert(scenario.cameras.streams.begin(), colour);
@@ -247,8 +247,9 @@ TEST(Studio, AScenarioWithoutOneIsRefused) {
 }
 
 TEST(Studio, NoDepthStreamIsRefused) {
-  expect_refused([](scenarios::Scenario& s) { s.cameras.streams[0].kind = "colour"; },
-                 {"/cameras/streams", "no depth stream"});
+  expect_refused(
+      [](scenarios::Scenario& s) { s.cameras.streams[0].kind = scenarios::StreamKind::kColour; },
+      {"/cameras/streams", "no depth stream"});
 }
 
 TEST(Studio, AnUnknownFocalLengthIsRefused) {

@@ -53,10 +53,10 @@ inline scenarios::Studio sample_studio() {
   studio.calibration_translation_sigma_mm = 10;
   studio.calibration_rotation_sigma_deg = 0.29;
   studio.subpixel_error_px = 0.08;
-  studio.subject = {.kind = "person",
+  studio.subject = {.kind = scenarios::SubjectKind::kPerson,
                     .mesh_file = "",
                     .height_m = 1.75,
-                    .motion = "walk_and_turn",
+                    .motion = scenarios::MotionScript::kWalkAndTurn,
                     .walk_speed_m_per_s = 1.2,
                     .turn_rate_rad_per_s = 1,
                     .arm_rate_rad_per_s = 0};

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/json_schema.h"
+#include "scenarios/schema.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -58,17 +58,17 @@ TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
 TEST(CameraProfiles, AreConsistent) {
   for (const CameraProfile& camera : camera_profiles()) {
     SCOPED_TRACE(camera.model);
-    ASSERT_NE(camera.sync_mode("default"), nullptr);
-    EXPECT_TRUE(camera.sync_mode("default")->triggered.empty());
-    std::set<std::string> modes;
-    for (const SyncMode& mode : camera.sync_modes) {
+    ASSERT_NE(camera.sync_mode(SyncMode::kDefault), nullptr);
+    EXPECT_TRUE(camera.sync_mode(SyncMode::kDefault)->triggered.empty());
+    std::set<SyncMode> modes;
+    for (const SyncModeProfile& mode : camera.sync_modes) {
       EXPECT_TRUE(modes.insert(mode.mode).second);
-      for (const std::string& kind : mode.triggered) EXPECT_NE(camera.stream(kind), nullptr);
+      for (const StreamKind kind : mode.triggered) EXPECT_NE(camera.stream(kind), nullptr);
     }
     EXPECT_TRUE(std::is_sorted(camera.sync_rates_hz.begin(), camera.sync_rates_hz.end()));
     for (const StreamProfile& stream : camera.streams) {
       EXPECT_EQ(camera.stream(stream.kind), &stream) << "one stream of a kind";
-      EXPECT_EQ(stream.shutter == "rolling", stream.readout_periods > 0);
+      EXPECT_EQ(stream.shutter == ShutterKind::kRolling, stream.readout_periods > 0);
       for (const ImageSize& size : stream.sizes) {
         EXPECT_EQ(stream.find_size(size.width, size.height), &size) << "a size once only";
         EXPECT_TRUE(std::is_sorted(size.rates_hz.begin(), size.rates_hz.end()));
@@ -84,43 +84,43 @@ TEST(CameraProfiles, AreConsistent) {
 
 TEST(CameraProfiles, WhatTheTriggerLeads) {
   const CameraProfile& d455 = *find_camera_profile("d455");
-  EXPECT_FALSE(d455.triggers("default", "depth"));
-  EXPECT_FALSE(d455.triggers("master", "depth"));
-  EXPECT_TRUE(d455.triggers("slave", "depth"));
-  EXPECT_FALSE(d455.triggers("slave", "colour"));
-  EXPECT_TRUE(d455.triggers("full_slave", "colour"));
-  EXPECT_TRUE(d455.triggers("genlock", "depth"));
-  EXPECT_FALSE(d455.triggers("genlock", "colour"));
-  EXPECT_FALSE(find_camera_profile("d435")->triggers("slave", "colour"));
-  EXPECT_EQ(find_camera_profile("d435")->sync_mode("full_slave"), nullptr);
-  EXPECT_TRUE(find_camera_profile("azure_kinect")->triggers("slave", "colour"));
-  EXPECT_FALSE(find_camera_profile("l515")->triggers("slave", "depth"));
+  EXPECT_FALSE(d455.triggers(SyncMode::kDefault, StreamKind::kDepth));
+  EXPECT_FALSE(d455.triggers(SyncMode::kMaster, StreamKind::kDepth));
+  EXPECT_TRUE(d455.triggers(SyncMode::kSlave, StreamKind::kDepth));
+  EXPECT_FALSE(d455.triggers(SyncMode::kSlave, StreamKind::kColour));
+  EXPECT_TRUE(d455.triggers(SyncMode::kFullSlave, StreamKind::kColour));
+  EXPECT_TRUE(d455.triggers(SyncMode::kGenlock, StreamKind::kDepth));
+  EXPECT_FALSE(d455.triggers(SyncMode::kGenlock, StreamKind::kColour));
+  EXPECT_FALSE(find_camera_profile("d435")->triggers(SyncMode::kSlave, StreamKind::kColour));
+  EXPECT_EQ(find_camera_profile("d435")->sync_mode(SyncMode::kFullSlave), nullptr);
+  EXPECT_TRUE(find_camera_profile("azure_kinect")->triggers(SyncMode::kSlave, StreamKind::kColour));
+  EXPECT_FALSE(find_camera_profile("l515")->triggers(SyncMode::kSlave, StreamKind::kDepth));
   EXPECT_EQ(find_camera_profile("D455"), nullptr);
 }
 
 // The specifications of Table 1 of Yoon et al. 2021.
 TEST(CameraProfiles, SizesOfThePapersTable) {
-  const auto rates = [](const char* model, const char* kind, int width, int height) {
+  const auto rates = [](const char* model, StreamKind kind, int width, int height) {
     const ImageSize* size = find_camera_profile(model)->stream(kind)->find_size(width, height);
     return size == nullptr ? std::vector<double>{} : size->rates_hz;
   };
   using testing::Contains;
-  EXPECT_THAT(rates("azure_kinect", "colour", 3840, 2160), Contains(30));
-  EXPECT_THAT(rates("azure_kinect", "depth", 640, 576), Contains(30));
-  EXPECT_THAT(rates("astra_plus", "colour", 1920, 1080), Contains(30));
-  EXPECT_THAT(rates("astra_plus", "depth", 640, 480), Contains(30));
-  EXPECT_THAT(rates("astra_s", "colour", 1280, 720), Contains(30));
-  EXPECT_THAT(rates("astra_s", "depth", 640, 480), Contains(30));
-  EXPECT_THAT(rates("d455", "colour", 1280, 800), Contains(30));
-  EXPECT_THAT(rates("d455", "depth", 1280, 720), Contains(30));
-  EXPECT_THAT(rates("d455", "depth", 848, 480), Contains(90));
-  EXPECT_THAT(rates("d435", "colour", 1920, 1080), Contains(30));
-  EXPECT_THAT(rates("d435", "depth", 1280, 720), Contains(30));
-  EXPECT_THAT(rates("d435", "depth", 848, 480), Contains(90));
-  EXPECT_THAT(rates("l515", "colour", 1920, 1080), Contains(30));
-  EXPECT_THAT(rates("l515", "depth", 1024, 768), Contains(30));
+  EXPECT_THAT(rates("azure_kinect", StreamKind::kColour, 3840, 2160), Contains(30));
+  EXPECT_THAT(rates("azure_kinect", StreamKind::kDepth, 640, 576), Contains(30));
+  EXPECT_THAT(rates("astra_plus", StreamKind::kColour, 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("astra_plus", StreamKind::kDepth, 640, 480), Contains(30));
+  EXPECT_THAT(rates("astra_s", StreamKind::kColour, 1280, 720), Contains(30));
+  EXPECT_THAT(rates("astra_s", StreamKind::kDepth, 640, 480), Contains(30));
+  EXPECT_THAT(rates("d455", StreamKind::kColour, 1280, 800), Contains(30));
+  EXPECT_THAT(rates("d455", StreamKind::kDepth, 1280, 720), Contains(30));
+  EXPECT_THAT(rates("d455", StreamKind::kDepth, 848, 480), Contains(90));
+  EXPECT_THAT(rates("d435", StreamKind::kColour, 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("d435", StreamKind::kDepth, 1280, 720), Contains(30));
+  EXPECT_THAT(rates("d435", StreamKind::kDepth, 848, 480), Contains(90));
+  EXPECT_THAT(rates("l515", StreamKind::kColour, 1920, 1080), Contains(30));
+  EXPECT_THAT(rates("l515", StreamKind::kDepth, 1024, 768), Contains(30));
   for (const char* model : {"azure_kinect", "astra_plus", "astra_s", "l515"}) {
-    for (const ImageSize& size : find_camera_profile(model)->stream("depth")->sizes) {
+    for (const ImageSize& size : find_camera_profile(model)->stream(StreamKind::kDepth)->sizes) {
       EXPECT_LE(size.rates_hz.back(), 30) << model << " has no 90 Hz";
     }
   }
@@ -128,7 +128,7 @@ TEST(CameraProfiles, SizesOfThePapersTable) {
 
 // docs/reference/calibration.md section 6: 107.5 px at a quarter of 848x480.
 TEST(CameraProfiles, FocalLengthOfDepth) {
-  const StreamProfile& depth = *find_camera_profile("d455")->stream("depth");
+  const StreamProfile& depth = *find_camera_profile("d455")->stream(StreamKind::kDepth);
   EXPECT_EQ(depth.find_size(848, 480)->focal_px, 4 * 107.5);
   EXPECT_EQ(depth.find_size(848, 100)->focal_px, 430) << "a crop";
   EXPECT_NEAR(depth.find_size(640, 480)->focal_px, 0.6 * depth.find_size(1280, 720)->focal_px, 0.01)
@@ -139,11 +139,11 @@ TEST(CameraProfiles, FocalLengthOfDepth) {
     EXPECT_NEAR(size.focal_px, 430 * static_cast<double>(size.width) / 848, 0.01)
         << size.width << 'x' << size.height;
   }
-  for (const ImageSize& size : find_camera_profile("d435")->stream("depth")->sizes) {
+  for (const ImageSize& size : find_camera_profile("d435")->stream(StreamKind::kDepth)->sizes) {
     EXPECT_NEAR(size.focal_px, depth.find_size(size.width, size.height)->focal_px, 10);
   }
   for (const CameraProfile& camera : camera_profiles()) {
-    const StreamProfile* colour = camera.stream("colour");
+    const StreamProfile* colour = camera.stream(StreamKind::kColour);
     if (colour == nullptr) continue;
     for (const ImageSize& size : colour->sizes) EXPECT_EQ(size.focal_px, 0) << camera.model;
   }

@@ -16,8 +16,8 @@ Scenario set(const std::string& pointer, const std::string& value) {
 TEST(Set, ReplacesValuesOfAllTypes) {
   EXPECT_EQ(set("/timeline/frames", "100").timeline.frames, 100);
   EXPECT_EQ(set("/timeline/warm_up_ms", "0.5").timeline.warm_up_ms, 0.5);
-  EXPECT_EQ(set("/network/stamp_point", "kernel").network.stamp_point, "kernel");
-  EXPECT_EQ(set("/network/stamp_point", "\"kernel\"").network.stamp_point, "kernel");
+  EXPECT_EQ(set("/network/stamp_point", "kernel").network.stamp_point, StampPoint::kKernel);
+  EXPECT_EQ(set("/network/stamp_point", "\"kernel\"").network.stamp_point, StampPoint::kKernel);
   EXPECT_TRUE(set("/network/nagle", "true").network.nagle);
   EXPECT_EQ(set("/pipelines/0/device_time", "oracle").pipelines[0].device_time, "oracle");
   const Scenario pauses = set("/trigger/pauses", R"([{"at_ms": 1, "duration_ms": 2}])");

@@ -47,9 +47,9 @@ TEST(Studio, OfThePaper) {
   const Studio& studio = *scenario.studio;
   EXPECT_EQ(studio.azimuth_step_deg, 60);
   EXPECT_THAT(studio.heights_m, ElementsAre(0.5, 1, 1.5));
-  EXPECT_EQ(studio.subject.kind, "person");
+  EXPECT_EQ(studio.subject.kind, SubjectKind::kPerson);
   EXPECT_EQ(studio.subject.mesh_file, "");
-  EXPECT_EQ(studio.subject.motion, "walk_and_turn");
+  EXPECT_EQ(studio.subject.motion, MotionScript::kWalkAndTurn);
   EXPECT_EQ(studio.published.at("ntp_last_set").mean_cm, 9.703);
   EXPECT_EQ(studio.published.at("ntp_last_set").std_cm, 12.1391);
   EXPECT_EQ(studio.published.at("yoon2021_both").mean_cm, 2.3942);
@@ -62,7 +62,7 @@ TEST(Studio, DepthNoiseOfTheStudy) {
   const Scenario scenario = load_scenario(kStudio);
   const Stream& depth = scenario.cameras.streams.front();
   const double focal_px = find_camera_profile(scenario.cameras.model)
-                              ->stream("depth")
+                              ->stream(StreamKind::kDepth)
                               ->find_size(depth.width, depth.height)
                               ->focal_px;
   const Studio& studio = *scenario.studio;
@@ -77,7 +77,7 @@ TEST(Studio, IsInherited) {
   ASSERT_TRUE(scenario.studio.has_value());
   EXPECT_EQ(scenario.studio->radius_m, 3);
   EXPECT_EQ(scenario.studio->azimuth_step_deg, 60);
-  EXPECT_EQ(scenario.studio->subject.motion, "stand");
+  EXPECT_EQ(scenario.studio->subject.motion, MotionScript::kStand);
   EXPECT_EQ(scenario.studio->subject.height_m, 1.75);
   EXPECT_EQ(scenario.studio->published.size(), 1U);
 }

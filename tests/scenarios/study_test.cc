@@ -6,7 +6,7 @@
 #include <string>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/json_schema.h"
+#include "scenarios/schema.h"
 
 namespace simbench::scenarios {
 namespace {

@@ -81,7 +81,7 @@ TEST(DiagnoseSimulated, FramesThatTheCamerasLoseAreCounted) {
 
 TEST(DiagnoseSimulated, ACameraThatVanishesEndsEarly) {
   scenarios::Scenario scenario = three_cameras();
-  scenario.faults = {{.kind = "camera_vanishes", .camera = 1, .at_ms = 50'000, .duration_ms = 1e6}};
+  scenario.faults = {scenarios::CameraVanishes{.camera = 1, .at_ms = 50'000, .duration_ms = 1e6}};
   const Diagnosis found = diagnosed(scenario);
   EXPECT_THAT(found.findings, Contains(Field(&Finding::kind, "ended_early")));
   for (const Finding& finding : found.findings) EXPECT_EQ(finding.camera, "1") << finding.text;

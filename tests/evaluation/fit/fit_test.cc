@@ -135,7 +135,7 @@ TEST(Fit, AFitOfAFitIsTheSame) {
 TEST(Fit, SettingsOfTheSystemClockAreNoDelay) {
   scenarios::Scenario world = known_world();
   const RigFit plain = fit_rig(recorded(world, 3));
-  world.faults = {{.kind = "clock_step", .host = 0, .at_ms = 20'000, .step_ms = 500}};
+  world.faults = {scenarios::ClockStep{.host = 0, .at_ms = 20'000, .step_ms = 500}};
   const RigFit stepped = fit_rig(recorded(world, 3));
   EXPECT_EQ(plain.excess_ms, stepped.excess_ms);
 }

@@ -224,7 +224,7 @@ class LateStartSource final : public RecordingSource {
 
 TEST(EvaluateTest, WarnsWhenGenlockOrderIsNotTheTruth) {
   Scenario scenario = test_scenario();
-  scenario.cameras.sync_mode = "genlock";
+  scenario.cameras.sync_mode = scenarios::SyncMode::kGenlock;
   const Results results = evaluate(
       scenario, [] { return std::make_unique<LateStartSource>(); },
       {.seeds = 2, .pipelines = {"arrival"}}, nullptr);

@@ -17,7 +17,7 @@ class LeaderboardScenario : public testing::TestWithParam<const char*> {};
 TEST_P(LeaderboardScenario, HasEveryHostSyncAndEveryDeviceTime) {
   const scenarios::Scenario scenario = scenarios::load_scenario(GetParam());
   EXPECT_NO_THROW(check_pipelines(scenario));
-  EXPECT_EQ(scenario.evaluation.table, "leaderboard");
+  EXPECT_EQ(scenario.evaluation.table, scenarios::TableKind::kLeaderboard);
   std::set<std::string> host_syncs;
   std::set<std::string> device_times;
   for (const scenarios::Pipeline& pipeline : scenario.pipelines) {

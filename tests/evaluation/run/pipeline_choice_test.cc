@@ -183,10 +183,10 @@ TEST(PipelineChoiceTest, OnlyTheClaimsPipelineIsAlsoScoredOffline) {
 
 TEST(PipelineChoiceTest, TheScenarioDecidesWhatIsScored) {
   Scenario scenario = test_scenario();
-  scenario.evaluation.stream = "colour";
-  scenario.evaluation.rmdv_median = "mean_of_middle_two";
+  scenario.evaluation.stream = scenarios::StreamKind::kColour;
+  scenario.evaluation.rmdv_median = scenarios::MedianKind::kMeanOfMiddleTwo;
   scenario.evaluation.gathering_interval_periods = 0.25;
-  scenario.cameras.sync_mode = "genlock";
+  scenario.cameras.sync_mode = scenarios::SyncMode::kGenlock;
   const ScorerSetup setup = scorer_setup(scenario, choose_pipelines(scenario, {})[0]);
   EXPECT_EQ(setup.stream, StreamKind::kColour);
   EXPECT_EQ(setup.median, MedianKind::kMeanOfMiddleTwo);

@@ -88,10 +88,5 @@ TEST(MetricsTest, RmdvNeverExceedsTheBoundTimesAmd) {
   }
 }
 
-TEST(MetricsTest, NamesOfMedians) {
-  EXPECT_EQ(median_kind("upper_middle"), MedianKind::kUpperMiddle);
-  EXPECT_EQ(median_kind("mean_of_middle_two"), MedianKind::kMeanOfMiddleTwo);
-}
-
 }  // namespace
 }  // namespace simbench::evaluation

@@ -14,7 +14,7 @@ namespace simbench::hardware {
 inline scenarios::Stream stream(const std::string& kind, double mode_rate_hz, int width = 640,
                                 int height = 480) {
   scenarios::Stream result;
-  result.kind = kind;
+  result.kind = scenarios::from_text<StreamKind>(kind).value();
   result.mode_rate_hz = mode_rate_hz;
   result.width = width;
   result.height = height;
@@ -24,7 +24,7 @@ inline scenarios::Stream stream(const std::string& kind, double mode_rate_hz, in
 inline CameraSettings settings(const std::string& sync_mode, std::vector<scenarios::Stream> streams,
                                double trigger_rate_hz = 0) {
   CameraSettings result;
-  result.sync_mode = sync_mode;
+  result.sync_mode = scenarios::from_text<scenarios::SyncMode>(sync_mode).value();
   result.streams = std::move(streams);
   result.trigger_rate_hz = trigger_rate_hz;
   return result;

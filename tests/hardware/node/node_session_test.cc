@@ -191,7 +191,7 @@ TEST_F(NodeSession, CamerasAreSetAsTheScenarioSays) {
   make_node("3cam_1host_30fps");
   run(capture(*this));
   const CameraSettings settings = cameras_->settings();
-  EXPECT_EQ(settings.sync_mode, "genlock");
+  EXPECT_EQ(settings.sync_mode, scenarios::SyncMode::kGenlock);
   EXPECT_EQ(settings.exposure_ms, scenario_.cameras.exposure_ms);
   EXPECT_EQ(settings.trigger_rate_hz, 30);
   EXPECT_FALSE(settings.auto_exposure);

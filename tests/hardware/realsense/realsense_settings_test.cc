@@ -47,8 +47,6 @@ TEST(RealsenseSettings, AModeThatTheFirmwareHasNotIsRefusedWithTheOneThatHas) {
                                                HasSubstr("firmware 5.12.3.0 allows 0 to 2"),
                                                HasSubstr("needs firmware 5.12.4.0 or newer"))));
   EXPECT_NO_THROW(configure(camera, depth("slave", 60)));
-  EXPECT_THAT([&] { configure(camera, depth("burst")); },
-              ThrowsMessage<CameraError>(HasSubstr("found sync mode 'burst', allowed default")));
 }
 
 TEST(RealsenseSettings, ACameraWithoutTheOptionRunsFreeOnly) {

@@ -304,13 +304,14 @@ TEST(RigFitTest, HostsCamerasAndTriggerMustAgree) {
 
 TEST(RigFitTest, OnlySomeSyncModesNeedATrigger) {
   auto scenario = scenarios::load_scenario("18cam_6host_45fps");
-  for (const char* const mode : {"slave", "full_slave"}) {
+  using enum scenarios::SyncMode;
+  for (const scenarios::SyncMode mode : {kSlave, kFullSlave, kGenlock}) {
     scenario.cameras.sync_mode = mode;
-    EXPECT_THAT(misfit(studio(3, false), scenario), HasSubstr("/trigger")) << mode;
+    EXPECT_THAT(misfit(studio(3, false), scenario), HasSubstr("/trigger")) << to_text(mode);
   }
-  for (const char* const mode : {"default", "master"}) {
+  for (const scenarios::SyncMode mode : {kDefault, kMaster}) {
     scenario.cameras.sync_mode = mode;
-    EXPECT_EQ(misfit(studio(3, false), scenario), "") << mode;
+    EXPECT_EQ(misfit(studio(3, false), scenario), "") << to_text(mode);
   }
 }
 

@@ -132,7 +132,7 @@ TEST(SetReconstruction, ErrorsOfAMovingPlateAreSpeedTimesDesynchronisation) {
   scenario.cameras.count = 6;
   scenario.studio->azimuth_step_deg = 1;
   scenario.studio->heights_m = {0.9};
-  scenario.studio->subject.motion = "walk";
+  scenario.studio->subject.motion = scenarios::MotionScript::kWalk;
   scenario.studio->subject.walk_speed_m_per_s = 1.0;
   TriangleMesh plate = make_box({0.02, 1.2, 1.2});
   const auto subject = standing(plate, scenario, 0.9F);

@@ -85,7 +85,6 @@ TEST(ReconstructionHtml, MarkupInNamesIsText) {
   auto results = sample_reconstruction();
   results.scenario.name = results.scenario.summary = results.scenario.resolved_json = evil;
   results.notes = {evil};
-  results.scenario.studio->subject.motion = evil;
   for (auto& row : results.rows) row.pipeline = row.host_sync = row.gathering = evil;
   results.speed_needed->pipeline = evil;
   const std::string page = reconstruction_html(

@@ -14,17 +14,9 @@ namespace {
 
 TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
-scenarios::Fault stop(const char* kind, std::int64_t host, double at, double duration) {
-  scenarios::Fault fault{};
-  fault.kind = kind;
-  fault.host = host;
-  fault.at_ms = at;
-  fault.duration_ms = duration;
-  return fault;
-}
-
 TEST(Outages, CountFromTheStartOfTheCapture) {
-  Outages outages({stop("host_stops", 2, 100, 50), stop("link_stops", 3, 100, 50)});
+  Outages outages({scenarios::HostStops{.host = 2, .at_ms = 100, .duration_ms = 50},
+                   scenarios::LinkStops{.host = 3, .at_ms = 100, .duration_ms = 50}});
   EXPECT_FALSE(outages.host_stopped(2, at_ms(120)));
   outages.start(at_ms(1000));
   EXPECT_FALSE(outages.host_stopped(2, at_ms(1099)));
@@ -34,7 +26,9 @@ TEST(Outages, CountFromTheStartOfTheCapture) {
   EXPECT_TRUE(outages.unreachable(3, at_ms(1120)));
   EXPECT_FALSE(outages.host_stopped(3, at_ms(1120))) << "only its link";
   EXPECT_FALSE(outages.unreachable(1, at_ms(1120)));
-  EXPECT_FALSE(Outages({stop("camera_vanishes", 2, 0, 50)}).unreachable(2, at_ms(10)));
+  Outages other({scenarios::CameraVanishes{.camera = 2, .at_ms = 0, .duration_ms = 50}});
+  other.start(at_ms(0));
+  EXPECT_FALSE(other.unreachable(2, at_ms(10)));
 }
 
 struct End final : Endpoint {
@@ -64,7 +58,7 @@ struct Talk {
     parameters.retransmit_timeout_ms = 80;
     parameters.nagle = nagle;
     Engine engine;
-    Outages outages({stop("link_stops", 1, 300, 200)});
+    Outages outages({scenarios::LinkStops{.host = 1, .at_ms = 300, .duration_ms = 200}});
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
     Network network(engine, parameters, 1, 3, load, outages);
@@ -118,7 +112,7 @@ TEST(Outages, AStreamBreaksOnALinkThatStaysDeadBeyondItsRetransmissions) {
     scenarios::Network parameters{};
     parameters.retransmit_timeout_ms = 80;
     Engine engine;
-    Outages outages({stop("link_stops", 1, 0, dead_ms)});
+    Outages outages({scenarios::LinkStops{.host = 1, .at_ms = 0, .duration_ms = dead_ms}});
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
     Network network(engine, parameters, 1, 2, load, outages);

@@ -213,7 +213,7 @@ TEST(SimChannelTest, KernelStampsAreTakenAtTheArrival) {
   scenario.hosts.receive_wake_up_ms = 3;
   scenario.hosts.clock.resolution_ms = 1;
   scenario.network.latency_fixed_ms = 5.5;
-  scenario.network.stamp_point = "kernel";
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
   SimWorld world(scenario);
   std::vector<Received> received;
   world.spawn(send_many(world, 0, 1, 1));
@@ -242,7 +242,7 @@ Task<void> send_two_and_ask(SimWorld& world, double patience_ms, Stamp& second) 
 TEST(SimChannelTest, TransmitStampIsWhenTheMessageLeft) {
   scenarios::Scenario scenario = ideal_hosts();
   scenario.hosts.send_cost_ms = 2.5;
-  scenario.network.stamp_point = "kernel";
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
   SimWorld world(scenario);
   Stamp stamp;
   world.spawn(send_two_and_ask(world, 100, stamp));
@@ -273,7 +273,7 @@ Task<void> give_up_a_send(SimWorld& world, Stamp& next) {
 TEST(SimChannelTest, ACancelledSendSendsNothingAndTheNextOneIsUnharmed) {
   scenarios::Scenario scenario = ideal_hosts();
   scenario.hosts.send_cost_ms = 2;
-  scenario.network.stamp_point = "kernel";
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
   SimWorld world(scenario);
   Stamp next;
   std::vector<Received> received;
@@ -310,7 +310,7 @@ TEST(SimChannelTest, ACancelledReceiveLeavesTheMessageToTheNext) {
 // Under Nagle's algorithm the second message leaves when the first is acknowledged.
 TEST(SimChannelTest, TransmitStampWaitsUntilTheMessageHasLeft) {
   scenarios::Scenario scenario = ideal_hosts();
-  scenario.network.stamp_point = "kernel";
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
   scenario.network.latency_fixed_ms = 1;
   scenario.network.nagle = true;
   scenario.network.delayed_ack_ms = 40;

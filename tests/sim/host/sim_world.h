@@ -20,7 +20,7 @@ inline scenarios::Scenario ideal_hosts(std::int64_t count = 2) {
   scenarios::Scenario scenario{};
   scenario.hosts.count = count;
   scenario.network.retransmit_timeout_ms = 200;
-  scenario.network.stamp_point = "application";
+  scenario.network.stamp_point = scenarios::StampPoint::kApplication;
   return scenario;
 }
 

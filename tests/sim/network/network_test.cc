@@ -21,7 +21,7 @@ scenarios::Network plain_network() {
   scenarios::Network network{};
   network.latency_fixed_ms = 1;
   network.retransmit_timeout_ms = 200;
-  network.stamp_point = "application";
+  network.stamp_point = scenarios::StampPoint::kApplication;
   return network;
 }
 

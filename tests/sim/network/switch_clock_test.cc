@@ -10,6 +10,8 @@
 namespace simbench::sim {
 namespace {
 
+using scenarios::SwitchClockKind;
+
 TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 // A PTPv2 message of this type, with this in its correctionField.
@@ -28,16 +30,16 @@ double correction_ns(const Bytes& message) {
   return static_cast<double>(static_cast<std::int64_t>(field)) / 65536;
 }
 
-scenarios::Network with_switch(const char* kind, double error_ns = 0) {
+scenarios::Network with_switch(scenarios::SwitchClockKind kind, double error_ns = 0) {
   scenarios::Network network{};
   network.switch_clock = kind;
   network.switch_clock_error_ns = error_ns;
-  network.stamp_point = "kernel";
+  network.stamp_point = scenarios::StampPoint::kKernel;
   return network;
 }
 
 TEST(SwitchClock, KnowsEventMessagesOfVersion2) {
-  const SwitchClock clock(with_switch("transparent"), 1);
+  const SwitchClock clock(with_switch(SwitchClockKind::kTransparent), 1);
   for (std::uint8_t type = 0; type < 16; ++type) {
     EXPECT_EQ(clock.corrects(ptp(type)), type <= 3) << int{type};
   }
@@ -47,11 +49,11 @@ TEST(SwitchClock, KnowsEventMessagesOfVersion2) {
   version_1[1] = std::byte{1};
   EXPECT_FALSE(clock.corrects(version_1));
   EXPECT_FALSE(clock.corrects({}));
-  EXPECT_FALSE(SwitchClock(with_switch("none"), 1).corrects(ptp(0)));
+  EXPECT_FALSE(SwitchClock(with_switch(SwitchClockKind::kNone), 1).corrects(ptp(0)));
 }
 
 TEST(SwitchClock, AddsToTheCorrectionFieldInItsUnitAndByteOrder) {
-  const SwitchClock clock(with_switch("transparent"), 1);
+  const SwitchClock clock(with_switch(SwitchClockKind::kTransparent), 1);
   Bytes message = ptp(1);
   clock.correct(message, {.from = 0, .to = 1}, Nanoseconds(0x1234), at_ms(0));
   EXPECT_EQ(message[12], std::byte{0x12});
@@ -66,7 +68,7 @@ TEST(SwitchClock, AddsToTheCorrectionFieldInItsUnitAndByteOrder) {
 }
 
 TEST(SwitchClock, TheErrorIsDrawnPerMessage) {
-  const SwitchClock clock(with_switch("transparent", 40), 9);
+  const SwitchClock clock(with_switch(SwitchClockKind::kTransparent, 40), 9);
   double sum = 0;
   double squares = 0;
   constexpr int kMessages = 10'000;
@@ -87,7 +89,7 @@ TEST(SwitchClock, ABoundaryClocksErrorIsSlowAndOfTheSameSizeEverywhere) {
   constexpr int kSeeds = 4000;
   double largest_change_ns = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const SwitchClock clock(with_switch("boundary", 40), seed);
+    const SwitchClock clock(with_switch(SwitchClockKind::kBoundary, 40), seed);
     for (int i = 0; i < 4; ++i) {
       const double error = clock.boundary_error_ns(at_ms(10'000 * i - 12'345));
       squares[i] += error * error;
@@ -103,9 +105,9 @@ TEST(SwitchClock, ABoundaryClocksErrorIsSlowAndOfTheSameSizeEverywhere) {
 }
 
 TEST(SwitchClock, SlavesOfABoundaryClockAreAheadOfTheMasterByItsError) {
-  SwitchClock clock(with_switch("boundary", 1000), 5);
+  SwitchClock clock(with_switch(SwitchClockKind::kBoundary, 1000), 5);
   const double error_ns = clock.boundary_error_ns(at_ms(7));
-  const SwitchClock transparent(with_switch("transparent", 1000), 5);
+  const SwitchClock transparent(with_switch(SwitchClockKind::kTransparent, 1000), 5);
   const auto extra_ns = [&](PeerId from, PeerId to) {
     Bytes boundary = ptp(0);
     Bytes plain = ptp(0);

@@ -49,7 +49,7 @@ TEST(CaptureCameras, ExposuresAreUnsteadyAfterTheStartOnly) {
 
 TEST(CaptureCameras, ARollingShutterLastsLongerThanItsExposure) {
   scenarios::Scenario s = ideal_scenario();
-  s.cameras.streams[0].shutter = "rolling";
+  s.cameras.streams[0].shutter = scenarios::ShutterKind::kRolling;
   s.cameras.streams[0].readout_ms = 6;
   for (const auto& [record, truth] : nonempty(capture(s).frames)) {
     const double pulse_us = static_cast<double>(truth.pulse) * 1e6 / 45;
@@ -60,7 +60,7 @@ TEST(CaptureCameras, ARollingShutterLastsLongerThanItsExposure) {
     EXPECT_NEAR(record.frame.us, pulse_us + 4000, 1);   // the first row is read out
     EXPECT_NEAR(host_ms_of(record.arrival), pulse_us * 1e-3 + 10 + 8 + 2, 2e-6);
   }
-  s.cameras.streams[0].shutter = "global";
+  s.cameras.streams[0].shutter = scenarios::ShutterKind::kGlobal;
   EXPECT_EQ(capture(s).frames[0].truth.exposure_end, TrueTime(from_ms(4)));
 }
 
@@ -133,8 +133,8 @@ TEST(CaptureCameras, TheModelSaysWhichStreamsFollowASlavesTrigger) {
   s.trigger.rate_hz = 30;
   s.cameras.streams[0].mode_rate_hz = 30;
   s.cameras.streams.push_back(s.cameras.streams[0]);
-  s.cameras.streams[1].kind = "colour";
-  s.cameras.sync_mode = "slave";
+  s.cameras.streams[1].kind = StreamKind::kColour;
+  s.cameras.sync_mode = scenarios::SyncMode::kSlave;
   for (const auto& [model, follows] : {std::pair{"azure_kinect", true}, std::pair{"d435", false}}) {
     s.cameras.model = model;
     const auto frames = capture(s).of(0, StreamKind::kColour);

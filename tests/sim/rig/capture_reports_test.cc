@@ -74,18 +74,17 @@ TEST(FrameFeeds, EachHostSeesItsOwnCamerasFramesAsTheRecordingHasThem) {
 TEST(FrameFeeds, OnlyTheScoredStream) {
   scenarios::Scenario s = ideal_scenario();
   s.cameras.streams.push_back(s.cameras.streams[0]);
-  s.cameras.streams[1].kind = "colour";
-  for (const char* scored : {"depth", "colour"}) {
+  s.cameras.streams[1].kind = StreamKind::kColour;
+  for (const StreamKind scored : {StreamKind::kDepth, StreamKind::kColour}) {
     s.evaluation.stream = scored;
     std::vector<Seen> seen(2);
     Service service([&](Host& host) { return watch(host, seen); });
     KeptLists kept;
     run_world(s, &service, kept);
-    const auto frames = of_host(
-        s, kept, 1, s.evaluation.stream == "depth" ? StreamKind::kDepth : StreamKind::kColour);
+    const auto frames = of_host(s, kept, 1, scored);
     ASSERT_GE(seen[1].frames.size(), frames.size() - 1);
     for (std::size_t i = 0; i < seen[1].frames.size(); ++i) {
-      EXPECT_EQ(seen[1].frames[i].arrival, frames[i].arrival) << scored;
+      EXPECT_EQ(seen[1].frames[i].arrival, frames[i].arrival) << to_text(scored);
     }
   }
 }

@@ -51,7 +51,7 @@ TEST(Capture, DeliversInOrderOfArrival) {
 
 TEST(Capture, SlaveExposuresOfAnyLengthArriveAtTheSameTime) {
   scenarios::Scenario s = ideal_scenario();
-  s.cameras.sync_mode = "slave";
+  s.cameras.sync_mode = scenarios::SyncMode::kSlave;
   s.trigger.rate_hz = 90;
   const CapturedFrames brief = capture(s);
   s.cameras.exposure_ms = 9;
@@ -65,7 +65,7 @@ TEST(Capture, SlaveExposuresOfAnyLengthArriveAtTheSameTime) {
 
 TEST(Capture, ASlaveWithoutPulsesRunsFree) {
   scenarios::Scenario s = ideal_scenario();
-  s.cameras.sync_mode = "slave";
+  s.cameras.sync_mode = scenarios::SyncMode::kSlave;
   s.trigger.rate_hz = 90;
   s.trigger.pauses = {{.at_ms = 500, .duration_ms = 300}};
   const CapturedFrames result = capture(s);
@@ -89,12 +89,12 @@ TEST(Capture, ColourFollowsInFullSlaveOnly) {
   scenarios::Scenario s = ideal_scenario();
   s.trigger.rate_hz = 90;
   s.cameras.streams.push_back(s.cameras.streams[0]);
-  s.cameras.streams[1].kind = "colour";
-  s.cameras.sync_mode = "full_slave";
+  s.cameras.streams[1].kind = StreamKind::kColour;
+  s.cameras.sync_mode = scenarios::SyncMode::kFullSlave;
   for (const auto& frame : nonempty(capture(s).of(0, StreamKind::kColour))) {
     EXPECT_NE(frame.truth.pulse, kNoPulse);
   }
-  s.cameras.sync_mode = "slave";
+  s.cameras.sync_mode = scenarios::SyncMode::kSlave;
   const CapturedFrames slave = capture(s);
   for (const auto& frame : slave.of(0, StreamKind::kDepth)) EXPECT_NE(frame.truth.pulse, kNoPulse);
   ASSERT_FALSE(slave.of(0, StreamKind::kColour).empty());
@@ -118,12 +118,12 @@ TEST(Capture, FramesShareAFairBus) {
   s.cameras.count = 3;
   s.cameras.cameras_per_host = 3;
   s.hosts.count = 1;
-  s.usb.sharing = "fair";
+  s.usb.sharing = scenarios::UsbSharing::kFair;
   for (const auto& [record, truth] : nonempty(capture(s).frames)) {
     EXPECT_NEAR(host_ms_of(record.arrival), static_cast<double>(truth.pulse) * 1e3 / 45 + 12 + 6,
                 3e-6);
   }
-  s.usb.sharing = "fifo";
+  s.usb.sharing = scenarios::UsbSharing::kFifo;
   const CapturedFrames fifo = capture(s);
   EXPECT_NEAR(host_ms_of(fifo.of(0)[0].record.arrival), 14, 2e-6);
   EXPECT_NEAR(host_ms_of(fifo.of(1)[0].record.arrival), 16, 2e-6);
@@ -139,10 +139,12 @@ TEST(Capture, AnOverloadedBusLosesWhatItCannotCarry) {
   const double offered = 3.0 * 945;
   // A camera offers 45 x 0.7 = 31.5 MB/s. The bus carries two thirds of what is asked of it.
   for (const auto& [sharing, bandwidth_mb_per_s] :
-       {std::pair{"fifo", 63.0}, std::pair{"fair", 63.0}, std::pair{"dedicated", 21.0}}) {
+       {std::pair{UsbSharing::kFifo, 63.0}, std::pair{UsbSharing::kFair, 63.0},
+        std::pair{UsbSharing::kDedicated, 21.0}}) {
     s.usb.sharing = sharing;
     s.usb.bandwidth_mb_per_s = bandwidth_mb_per_s;
-    EXPECT_NEAR(static_cast<double>(capture(s).frames.size()) / offered, 2.0 / 3, 0.01) << sharing;
+    EXPECT_NEAR(static_cast<double>(capture(s).frames.size()) / offered, 2.0 / 3, 0.01)
+        << to_text(sharing);
   }
 }
 
@@ -160,12 +162,7 @@ TEST(Capture, LosesFramesWithTheirProbabilityAndTheCounterTells) {
 
 TEST(Capture, ACameraVanishesAndReturns) {
   scenarios::Scenario s = ideal_scenario();
-  s.faults = {{.kind = "camera_vanishes",
-               .camera = 1,
-               .host = 0,
-               .at_ms = 1000,
-               .duration_ms = 500,
-               .step_ms = 0}};
+  s.faults = {scenarios::CameraVanishes{.camera = 1, .at_ms = 1000, .duration_ms = 500}};
   const CapturedFrames result = capture(s);
   EXPECT_EQ(result.of(0).size(), 135u);
   EXPECT_EQ(result.of(1).size(), 135u - 23);  // slots 45 to 67
@@ -173,12 +170,7 @@ TEST(Capture, ACameraVanishesAndReturns) {
 
 TEST(Capture, AStepOfAHostsClockMovesItsArrivals) {
   scenarios::Scenario s = ideal_scenario();
-  s.faults = {{.kind = "clock_step",
-               .camera = 0,
-               .host = 1,
-               .at_ms = 1500,
-               .duration_ms = 0,
-               .step_ms = 7}};
+  s.faults = {scenarios::ClockStep{.host = 1, .at_ms = 1500, .step_ms = 7}};
   for (const auto& [record, truth] : nonempty(capture(s).frames)) {
     const double arrival_ms = static_cast<double>(truth.pulse) * 1e3 / 45 + 14;
     const double step_ms = record.camera == 1 && arrival_ms >= 1500 ? 7 : 0;
@@ -189,12 +181,7 @@ TEST(Capture, AStepOfAHostsClockMovesItsArrivals) {
 
 TEST(Capture, TheFirstFrameMayComeLate) {
   scenarios::Scenario s = ideal_scenario();
-  s.faults = {{.kind = "late_first_frame",
-               .camera = 0,
-               .host = 0,
-               .at_ms = 0,
-               .duration_ms = 5,
-               .step_ms = 0}};
+  s.faults = {scenarios::LateFirstFrame{.camera = 0, .duration_ms = 5}};
   const auto frames = capture(s).of(0);
   EXPECT_NEAR(host_ms_of(frames[0].record.arrival), 19, 2e-6);
   EXPECT_NEAR(host_ms_of(frames[1].record.arrival), 1e3 / 45 + 14, 2e-6);

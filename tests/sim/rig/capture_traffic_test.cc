@@ -30,7 +30,7 @@ scenarios::Scenario saturated_scenario() {
   s.network.latency_fixed_ms = 0.1;
   s.network.bandwidth_mbit_per_s = kMbitPerS;
   s.network.capture_traffic_share = 1;
-  s.network.stamp_point = "kernel";
+  s.network.stamp_point = scenarios::StampPoint::kKernel;
   s.cameras.count = 3;
   s.cameras.cameras_per_host = 3;
   s.cameras.host_of_camera = {1, 1, 1};

@@ -154,12 +154,7 @@ TEST(ClockPolls, CostOneEventEach) {
 
 TEST(ClockPolls, AVanishedCameraDoesNotAnswer) {
   scenarios::Scenario s = polled_scenario();
-  scenarios::Fault fault{};
-  fault.kind = "camera_vanishes";
-  fault.camera = 1;
-  fault.at_ms = 1000;
-  fault.duration_ms = 500;
-  s.faults = {fault};
+  s.faults = {scenarios::CameraVanishes{.camera = 1, .at_ms = 1000, .duration_ms = 500}};
   const KeptLists kept = polled(s);
   EXPECT_EQ(of_camera(kept, 1).size(), of_camera(polled(polled_scenario()), 1).size() - 5);
   for (const DevicePoll& poll : of_camera(kept, 1)) {

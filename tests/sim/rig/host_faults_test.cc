@@ -104,7 +104,7 @@ Task<void> note_arrivals(Host& host, std::vector<double>& kernel_ms, std::vector
 
 TEST(HostLoad, MessagesAreNoticedLaterButStampedByTheKernelInTime) {
   scenarios::Scenario s = ideal_scenario();
-  s.network.stamp_point = "kernel";
+  s.network.stamp_point = scenarios::StampPoint::kKernel;
   s.timeline.frames = 45 * 20;
   s.hosts.receive_wake_up_ms = 0.02;
   s.hosts.load_burst = {.rate_hz = 1, .duration_exponential_ms = 500, .latency_ms = 4};
@@ -127,16 +127,13 @@ TEST(HostLoad, MessagesAreNoticedLaterButStampedByTheKernelInTime) {
   EXPECT_NEAR(late / static_cast<double>(seen_ms.size()), 1 - std::exp(-0.5), 0.25) << "seed 1";
 }
 
-scenarios::Scenario with_fault(const char* kind) {
+// `Stops` is HostStops or LinkStops.
+template <class Stops>
+scenarios::Scenario with_stop() {
   scenarios::Scenario s = ideal_scenario();
   s.cameras.clock_poll.interval_ms = 50;
   s.hosts.pulse_lines.trigger = true;
-  scenarios::Fault fault{};
-  fault.kind = kind;
-  fault.host = 1;
-  fault.at_ms = 1000;
-  fault.duration_ms = 500;
-  s.faults = {fault};
+  s.faults = {Stops{.host = 1, .at_ms = 1000, .duration_ms = 500}};
   return s;
 }
 
@@ -150,7 +147,7 @@ Task<void> count_pulses(Host& host, std::vector<std::vector<double>>& pulses_ms)
 bool in_span(double ms) { return ms >= 1100 && ms < 1600; }  // the capture starts at 100 ms
 
 TEST(HostStops, ItsFramesPollsAndPulsesAreMissing) {
-  scenarios::Scenario s = with_fault("host_stops");
+  scenarios::Scenario s = with_stop<scenarios::HostStops>();
   std::vector<std::vector<double>> pulses_ms(2);
   Service service([&](Host& host) { return count_pulses(host, pulses_ms); });
   KeptLists stopped;
@@ -174,7 +171,7 @@ TEST(HostStops, ItsFramesPollsAndPulsesAreMissing) {
 }
 
 TEST(LinkStops, OnlyMessagesAreLost) {
-  scenarios::Scenario s = with_fault("link_stops");
+  scenarios::Scenario s = with_stop<scenarios::LinkStops>();
   std::vector<double> kernel_ms;
   std::vector<double> seen_ms;
   Service service([&](Host& host) {
@@ -193,7 +190,7 @@ TEST(LinkStops, OnlyMessagesAreLost) {
 }
 
 TEST(HostFaults, AWorldWithThemRepeats) {
-  scenarios::Scenario s = with_fault("host_stops");
+  scenarios::Scenario s = with_stop<scenarios::HostStops>();
   s.hosts.load_burst = {.rate_hz = 1, .duration_exponential_ms = 500, .latency_ms = 4};
   KeptLists kept[2];
   RecordingCost cost[2];

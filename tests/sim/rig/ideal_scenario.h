@@ -23,22 +23,22 @@ inline scenarios::Scenario ideal_scenario() {
   s.hosts.clock.arrival_quantum_ms = 1e-6;
   s.network.latency_fixed_ms = 0.1;
   s.network.retransmit_timeout_ms = 200;
-  s.network.stamp_point = "application";
+  s.network.stamp_point = scenarios::StampPoint::kApplication;
   s.trigger.rate_hz = 45;
   s.trigger.cameras_per_sub_trigger = 6;
   s.cameras.count = 2;
   s.cameras.cameras_per_host = 1;
   s.cameras.model = "d455";
-  s.cameras.sync_mode = "genlock";
+  s.cameras.sync_mode = scenarios::SyncMode::kGenlock;
   s.cameras.common_start = true;
-  s.cameras.streams = {{.kind = "depth",
+  s.cameras.streams = {{.kind = scenarios::StreamKind::kDepth,
                         .width = 1000,
                         .height = 350,
                         .bytes_per_pixel = 2,
                         .mode_rate_hz = 90,
                         .pipeline_latency_ms = 8,
                         .latency_mode_periods = 0,
-                        .shutter = "global",
+                        .shutter = scenarios::ShutterKind::kGlobal,
                         .readout_ms = 0,
                         .calibrated_delay_ms = 0}};
   s.cameras.oscillator = exact;
@@ -46,7 +46,7 @@ inline scenarios::Scenario ideal_scenario() {
   s.cameras.genlock_guard_fraction = 0.02;
   s.cameras.slave_free_run_after_periods = 3;
   s.usb = {.bandwidth_mb_per_s = 350,
-           .sharing = "dedicated",
+           .sharing = scenarios::UsbSharing::kDedicated,
            .cameras_per_controller = 3,
            .buffered_frames = 4,
            .kernel_copy_exponential_ms = 0,
@@ -55,10 +55,10 @@ inline scenarios::Scenario ideal_scenario() {
            .host_jitter_correlation = 0,
            .spike_probability = 0,
            .spike_max_transfers = 0};
-  s.evaluation = {.stream = "depth",
-                  .table = "pipelines",
+  s.evaluation = {.stream = scenarios::StreamKind::kDepth,
+                  .table = scenarios::TableKind::kPipelines,
                   .gathering_interval_periods = 0.5,
-                  .rmdv_median = "upper_middle"};
+                  .rmdv_median = scenarios::MedianKind::kUpperMiddle};
   return s;
 }
 

@@ -176,7 +176,7 @@ TEST(WorldObserver, LostMessagesAreToldAndRetransmissionsAreNot) {
 // Nobody knows of messages to a host that has stopped but the sender and the observer.
 TEST(WorldObserver, AMessageToAStoppedHostIsLost) {
   scenarios::Scenario scenario = ideal_scenario();
-  scenario.faults = {{.kind = "host_stops", .host = 0, .at_ms = 0, .duration_ms = 500}};
+  scenario.faults = {scenarios::HostStops{.host = 0, .at_ms = 0, .duration_ms = 500}};
   Service service([](Host& host) -> Task<void> {
     if (host.id() == 0) co_return;
     MessageChannel& channel = host.open_channel(0, Transport::kDatagram);

@@ -9,7 +9,7 @@ namespace {
 
 scenarios::Usb quiet() {
   return {.bandwidth_mb_per_s = 350,
-          .sharing = "dedicated",
+          .sharing = scenarios::UsbSharing::kDedicated,
           .cameras_per_controller = 3,
           .buffered_frames = 4,
           .kernel_copy_exponential_ms = 0,

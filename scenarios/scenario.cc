@@ -1,0 +1,32 @@
+#include "scenarios/scenario.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "scenarios/camera_profile.h"
+
+namespace simbench::scenarios {
+
+const Stream* Cameras::stream(StreamKind kind) const {
+  const auto found = std::find_if(streams.begin(), streams.end(),
+                                  [kind](const Stream& each) { return each.kind == kind; });
+  return found == streams.end() ? nullptr : &*found;
+}
+
+bool Cameras::follows_trigger(const Stream& stream) const {
+  const CameraProfile* camera = find_camera_profile(model);
+  if (camera == nullptr) {
+    throw std::invalid_argument("no profile of camera model \"" + model + "\"");
+  }
+  return camera->triggers(sync_mode, stream.kind);
+}
+
+std::vector<std::size_t> Scenario::cameras_by_host() const {
+  std::vector<std::size_t> counts(static_cast<std::size_t>(hosts.count));
+  for (std::int64_t camera = 0; camera < cameras.count; ++camera) {
+    ++counts.at(static_cast<std::size_t>(host_of(camera)));
+  }
+  return counts;
+}
+
+}  // namespace simbench::scenarios
