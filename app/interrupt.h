@@ -1,7 +1,8 @@
 // Ctrl-C: stops the jobs at their next frame instead of in the middle of something.
 //
 //   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
-//   ... evaluate(scenario, [&] { return interruptible(make_simulation(scenario)); }, ...)
+//   evaluate(
+//       scenario, [&] { return interruptible(make_simulation(scenario)); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
 // A second SIGINT ends the program at once, as it always did.

@@ -16,7 +16,8 @@
 // that fails ends with neither, but with an "error".
 //
 //   Progress progress(std::cerr, progress_style(), "runs");
-//   evaluate(..., [&](auto done, auto total) { progress.update(done, total); });
+//   evaluate(scenario, make_source, options,
+//            [&](auto done, auto total) { progress.update(done, total); });
 //   progress.finish();
 //
 // Not thread-safe: one call at a time.

@@ -6,7 +6,7 @@
 // on; what went wrong while one was made (RecordingCost::notes) is a warning and kept with it.
 //
 //   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
-//   const auto source = interruptible(sim::make_simulation(scenario));
+//   const auto source = app::interruptible(sim::make_simulation(scenario));
 //   return record_captures(choices, *source, {.folder = "monday"}, writer);
 #ifndef SIMBENCH_CLI_RECORD_CAPTURES_H_
 #define SIMBENCH_CLI_RECORD_CAPTURES_H_

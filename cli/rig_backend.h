@@ -3,7 +3,6 @@
 //
 //   BackendOptions backend;
 //   add_backend_options(*command, backend);
-//   ...
 //   if (is_hardware(backend)) source = make_rig_source(backend, scenario);
 #ifndef SIMBENCH_CLI_RIG_BACKEND_H_
 #define SIMBENCH_CLI_RIG_BACKEND_H_

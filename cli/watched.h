@@ -4,7 +4,7 @@
 // line says how far it got, and there is no result. With --json all of it is JSON lines
 // (cli/progress.h); a command needs to do nothing for that but run its work in here.
 //
-//   const auto results = watched<Results>([&](const evaluation::Progress& progress) {
+//   const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
 //     return evaluation::evaluate(scenario, make_source, options, progress);
 //   });
 //   if (!results) return kInterrupted;

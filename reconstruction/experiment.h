@@ -13,7 +13,8 @@
 // Needs Embree and Open3D: run_reconstruction() is in simbench::reconstruction_libraries, which is
 // there where they are (cmake/reconstruction.cmake).
 //
-//   const ReconstructionResults results = run_reconstruction(scenario, options, on_mesh, progress);
+//   const ReconstructionResults results = run_reconstruction(
+//       scenario, make_simulated, options, on_mesh, progress);
 #ifndef SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
 #define SIMBENCH_RECONSTRUCTION_EXPERIMENT_H_
 

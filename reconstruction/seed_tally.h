@@ -1,7 +1,7 @@
 // Adds up the frame sets of one pipeline at one seed.
 //
 //   SeedTally tally;
-//   for (each set) tally.add(set, reconstructed, errors_of_the_set);
+//   tally.add(set, reconstructed, errors_of_the_set);   // each set
 //   row.seeds.push_back(tally.finish(seed, gathered));
 #ifndef SIMBENCH_RECONSTRUCTION_SEED_TALLY_H_
 #define SIMBENCH_RECONSTRUCTION_SEED_TALLY_H_

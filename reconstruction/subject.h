@@ -4,7 +4,7 @@
 // floor at z = 0, the studio's centre at the origin. Time is in seconds since the first evaluated
 // trigger pulse; negative times are fine. Poses are a pure function of time.
 //
-//   const std::unique_ptr<Subject> person = make_person(studio.subject);   // person.h
+//   const std::unique_ptr<Subject> person = make_person(studio.subject, 1.0);   // person.h
 //   const std::vector<Eigen::Isometry3d> poses = person->poses(/*seconds=*/0.25);
 #ifndef SIMBENCH_RECONSTRUCTION_SUBJECT_H_
 #define SIMBENCH_RECONSTRUCTION_SUBJECT_H_

@@ -8,7 +8,7 @@
 // before the damage: "FILE: ..." where a file cannot be read, "FILE:LINE: ..." where a line is
 // damaged or longer than kLongestLine.
 //
-//   CaptureReader reader(folder, capture);
+//   CaptureReader reader("monday", capture);
 //   while (reader.next()) notify(reader.event(), sink);
 #ifndef SIMBENCH_RECORDING_CAPTURE_READER_H_
 #define SIMBENCH_RECORDING_CAPTURE_READER_H_

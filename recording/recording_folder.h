@@ -27,7 +27,7 @@
 //   writer.end(cost);                // or abandon(notes)
 //
 //   RecordingFolder folder("monday");
-//   folder.play(folder.find("yoon2021_both", 1), scorer);
+//   folder.play(folder.find("yoon2021_both", 1).value(), scorer);
 #ifndef SIMBENCH_RECORDING_RECORDING_FOLDER_H_
 #define SIMBENCH_RECORDING_RECORDING_FOLDER_H_
 

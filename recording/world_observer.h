@@ -7,10 +7,12 @@
 //
 // Cost: nothing without an observer but a test of a pointer per frame and message.
 //
-//   class Counter final : public WorldObserver {
+//   class Counter : public WorldObserver {
 //     void on_message(const ObservedMessage&) override { ++messages; }
-//    ...
-//   source.record({.seed = 1, .pipeline = "mine", .host_sync = sync, .observer = &counter}, sink);
+//     int messages = 0;
+//   };
+//
+//   source.record({.seed = 1, .pipeline = "mine", .observer = &observer}, sink);
 #ifndef SIMBENCH_RECORDING_WORLD_OBSERVER_H_
 #define SIMBENCH_RECORDING_WORLD_OBSERVER_H_
 

@@ -9,8 +9,8 @@
 // Another model is another file in that folder; nothing else needs to change.
 //
 //   const CameraProfile* camera = find_camera_profile("d455");
-//   camera->triggers(SyncMode::kSlave, StreamKind::kDepth)              // true
-//   camera->stream(StreamKind::kDepth)->find_size(848, 480)->rates_hz  // 15, 30, 60, 90
+//   camera->triggers(SyncMode::kSlave, StreamKind::kDepth);              // true
+//   camera->stream(StreamKind::kDepth)->find_size(848, 480)->rates_hz;  // 15, 30, 60, 90
 #ifndef SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
 #define SIMBENCH_SCENARIOS_CAMERA_PROFILE_H_
 

@@ -16,8 +16,8 @@
 //
 //   LowerHull hull;
 //   hull.add({.x = 0, .y = 3}); hull.add({.x = 2, .y = 9}); hull.add({.x = 4, .y = 5});
-//   support_line(hull.vertices(), hull.vertices().front().x + hull.vertices().back().x).at(4);  //
-//   5
+//   support_line(hull.vertices(), hull.vertices().front().x + hull.vertices().back().x).at(4);
+//   // 5
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_LOWER_HULL_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_LOWER_HULL_H_
 

@@ -11,7 +11,7 @@
 // (Wrap).
 //
 //   DeviceStampUnwrapper unwrapper;   // one per camera
-//   DeviceTime sensor = unwrapper.unwrap(frame.sensor);
+//   DeviceTime sensor = unwrapper.unwrap(record.sensor);
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_UNWRAP_H_
 

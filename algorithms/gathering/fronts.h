@@ -25,7 +25,7 @@ namespace simbench {
 //   FrameQueues queues(sources, capacity);
 //   if (queues.size(frame.source) == capacity) queues.pop(frame.source);
 //   queues.push(frame);
-//   if (queues.all_waiting()) sink.on_set(queues.take_fronts());
+//   if (queues.all_waiting()) set_sink.on_set(queues.take_fronts());
 inline constexpr std::int64_t kFarthestKey = (std::int64_t{1} << 62) - 1;
 
 inline std::int64_t gather_key(const GatherFrame& frame) {
@@ -154,8 +154,8 @@ class FrontMatcher {
 // and a key, allocated when made.
 //
 //   FrontTournament fronts(sources);
-//   fronts.set(source, key);              // of all sources, before the first question
-//   key_of(fronts.latest()) - key_of(fronts.earliest())
+//   fronts.set(3, key);              // of all sources, before the first question
+//   auto range = key_of(fronts.latest()) - key_of(fronts.earliest());
 class FrontTournament {
  public:
   explicit FrontTournament(std::uint32_t sources);

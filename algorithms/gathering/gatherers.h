@@ -1,7 +1,7 @@
 // The gathering policies, each with what to expect of it; gathering.h has their interface.
 //
-//   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = period, .interval = t_int});
-//   gatherer->push(frame, sink);
+//   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = from_ms(22)});
+//   gatherer->push(frame, set_sink);
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_GATHERERS_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_GATHERERS_H_
 

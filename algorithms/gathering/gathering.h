@@ -7,7 +7,7 @@
 // Memory is bounded: at most `queue_limit` frames wait per source, an overflow drops the oldest.
 //
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = ..., .interval = ...});
-//   gatherer->push({.source = 3, .stamp = t, .tag = frame_index}, sink);
+//   gatherer->push({.source = 3, .stamp = stamp, .tag = frame_index}, set_sink);
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_GATHERING_H_
 

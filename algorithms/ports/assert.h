@@ -3,7 +3,7 @@
 // For contracts that only a bug in simbench (or in an algorithm built on it) can break, where the
 // check is cheap. Expected failures - input, network, hardware - are values or typed exceptions.
 //
-//   SIMBENCH_ASSERT(at >= now_, "an event cannot be scheduled in the past");
+//   SIMBENCH_ASSERT(at >= now, "an event cannot be scheduled in the past");
 #ifndef SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_
 #define SIMBENCH_ALGORITHMS_PORTS_ASSERT_H_
 

@@ -17,7 +17,7 @@
 //
 //   Task<void> greet(Host& host) {
 //     MessageChannel& channel = host.open_channel(0, Transport::kStream);
-//     co_await channel.send(Bytes{std::byte{1}});
+//     co_await channel.send(Bytes(1));
 //     auto reply = co_await channel.receive(host.steady_clock().now() + from_ms(100));
 //     if (reply) co_await host.clock().set(reply->received + from_ms(2));
 //   }

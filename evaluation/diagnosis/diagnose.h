@@ -16,7 +16,7 @@
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
 //
 //   Diagnosis d = diagnose(reader.take(), {.rate_hz = 30});
-//   d.verdict.status, d.verdict.reason
+//   print(d.verdict.status, d.verdict.reason);
 #ifndef SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 #define SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 

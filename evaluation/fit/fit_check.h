@@ -15,7 +15,7 @@
 // rates, so they are left out of both sides.
 //
 //   const FitStudy study = study_fit(input, base, "model.json", sim::make_simulation);
-//   study.whole.ks, study.hold_out->ks
+//   print(study.whole.ks, study.hold_out->ks);
 #ifndef SIMBENCH_EVALUATION_FIT_FIT_CHECK_H_
 #define SIMBENCH_EVALUATION_FIT_FIT_CHECK_H_
 

@@ -13,7 +13,7 @@
 // (that have any); if there are none, over all evaluated pulses. A frame of free-running cameras
 // counts as one of the last trigger pulse before its mid-exposure; so it does in the score.
 //
-//   const ExposureSets sets = exposure_sets(scenario, choice, seed, *source, /*count=*/10);
+//   const ExposureSets sets = exposure_sets(scenario, choice, seed, source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;
 #ifndef SIMBENCH_EVALUATION_SCORING_EXPOSURE_SETS_H_
 #define SIMBENCH_EVALUATION_SCORING_EXPOSURE_SETS_H_

@@ -3,7 +3,7 @@
 // For figures and timelines. A score is the same with and without an observer, which costs a test
 // of a pointer per frame and set where there is none.
 //
-//   scorer.watch(&observer);
+//   scorer.watch(observer);
 //   source.record(request, scorer);
 //   const SeedScore score = scorer.finish();
 #ifndef SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_

@@ -15,7 +15,7 @@
 //   UnverifiedScores scores(layout, MedianKind::kUpperMiddle, nullptr);
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
 //   scores.before_push(arrival);
-//   gatherer.push({... .tag = tag}, scores);
+//   gatherer.push({.stamp = stamp, .tag = tag}, scores);
 //   scores.score(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
 #define SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_

@@ -6,10 +6,10 @@
 // Order, errors and threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
 //   ThreadFarm farm([](const std::string& setup) {
-//     return [world = World(setup)](const std::string& task) { return world.answer(task); };
+//     return [setup](const std::string& task) { return answer_in(setup, task); };
 //   });
-//   farm.run({.setup = scenario, .count = 1000, .task = task_text, .threads = 0},
-//            [&](std::size_t task, const std::string& answer) { log.append(task, answer); });
+//   farm.run({.setup = text, .count = 1000, .task = task_text, .threads = 0},
+//            [&](std::size_t task, const std::string& answer) { keep(task, answer); });
 #ifndef SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 #define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 

@@ -27,7 +27,8 @@
 // is none of these; from configure() a stream that is not in the recording; from start() one that
 // is started.
 //
-//   RecordedCameraDriver driver({{.serial = "left", .recording = "monday#ntp/1"}});
+//   const std::vector<RigCamera> cameras = {{.serial = "left", .recording = "monday#ntp/1"}};
+//   RecordedCameraDriver driver(cameras);
 //   auto camera = driver.open("left");
 #ifndef SIMBENCH_HARDWARE_CAMERA_RECORDED_CAMERA_H_
 #define SIMBENCH_HARDWARE_CAMERA_RECORDED_CAMERA_H_

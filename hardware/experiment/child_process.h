@@ -6,9 +6,8 @@
 //
 // Errors: ChildError, with the last lines of its standard error.
 //
-//   ChildProcess node({.program = "/proc/self/exe", .arguments = {"node", ...}, .log =
-//   "node0.log"}); std::string line = node.read_line(deadline);    // "node host0: listening on
-//   ..."
+//   ChildProcess node({.program = "/proc/self/exe", .arguments = {"node"}, .log = "node0.log"});
+//   std::string line = node.read_line(deadline);  // "node host0: listening on ..."
 #ifndef SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
 #define SIMBENCH_HARDWARE_EXPERIMENT_CHILD_PROCESS_H_
 

@@ -4,8 +4,8 @@
 // One thread.
 //
 //   Newcomers newcomers(context, key, PeerName{2});
-//   newcomers.greet(std::move(socket), [self](std::unique_ptr<SecureStream> stream) {
-//     if (stream) self->admit(std::move(stream));
+//   newcomers.greet(std::move(socket), [&](std::unique_ptr<SecureStream> stream) {
+//     if (stream) admit(std::move(stream));
 //   });
 #ifndef SIMBENCH_HARDWARE_NET_NEWCOMERS_H_
 #define SIMBENCH_HARDWARE_NET_NEWCOMERS_H_

@@ -6,7 +6,7 @@
 //
 // One thread. Both must outlive their waiters, so they live in the shared state that those hold.
 //
-//   while (queue.empty()) {
+//   while (messages.empty()) {
 //     if (!co_await notice.wait(deadline)) co_return std::nullopt;
 //   }
 #ifndef SIMBENCH_HARDWARE_NET_NOTICE_H_

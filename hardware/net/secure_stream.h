@@ -17,9 +17,10 @@
 //
 // Source: libsodium's secretstream design notes, RFC 8446 section 7 (derivation from both hellos).
 //
-//   SecureStream stream = co_await SecureStream::connect(context, host, port, key, me, deadline);
-//   co_await stream.send(bytes);
-//   StreamMessage message = co_await stream.receive(deadline);
+//   const auto stream =
+//       co_await SecureStream::connect(context, "10.0.0.3", port, key, me, deadline);
+//   co_await stream->send(bytes);
+//   StreamMessage message = co_await stream->receive(deadline);
 #ifndef SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_
 #define SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_
 

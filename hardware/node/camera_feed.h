@@ -7,7 +7,7 @@
 // The handlers are of any thread and may outlive the feed; after close() they do nothing. All else
 // is of the context's thread.
 //
-//   CameraFeed feed(context, {.on_frame = ..., .on_event = ...});
+//   CameraFeed feed(context, feed_sink);
 //   camera.start(feed.frame_handler(11), feed.event_handler(11));
 //   camera.stop();
 //   feed.drain();   // now everything that the camera said has been handed over

@@ -17,7 +17,7 @@
 //   Journal journal(context, folder, "0123456789abcdef", [&](const std::string& text) { ... });
 //   journal.write(FrameEvent{record, std::nullopt});
 //   journal.note("camera 018322071234: unplugged");
-//   JournalChunk chunk = read_journal(folder, "0123456789abcdef", 0);
+//   std::optional<JournalChunk> chunk = read_journal(folder, "0123456789abcdef", 0);
 #ifndef SIMBENCH_HARDWARE_NODE_JOURNAL_H_
 #define SIMBENCH_HARDWARE_NODE_JOURNAL_H_
 

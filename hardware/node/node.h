@@ -13,7 +13,7 @@
 //  - What happens is a line each for `log`.
 //  - Arrival stamps are taken in the camera's thread; everything else runs on `context`'s thread.
 //
-//   Node node(context, settings, make_host_sync, drivers, log);
+//   Node node(context, settings, clock, cameras, make_host_sync, log);
 //   node.start();
 //   context.run();
 #ifndef SIMBENCH_HARDWARE_NODE_NODE_H_

@@ -9,8 +9,9 @@
 // Exchanges, outcomes and clock adjustments go to `sink` as they happen.
 // One thread. Coroutines that use it end before it does.
 //
-//   RealHost host(context, 3, clock, network, sink);
-//   co_spawn(context, host_sync.run_slave(host, 0), detached);
+//   RealHost host(context, 3, clock, network,
+//                 [&](const RecordingEvent& event) { journal.write(event); });
+//   boost::asio::co_spawn(context, host_sync.run_slave(host, 0), boost::asio::detached);
 #ifndef SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
 #define SIMBENCH_HARDWARE_NODE_REAL_HOST_H_
 

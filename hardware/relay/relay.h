@@ -23,7 +23,7 @@
 //
 //   Relay relay(context, {.nodes = rigs, .scenario = &scenario, .seed = 1});
 //   context.run();   // until relay.stop()
-//   std::string json = relay.statistics_json();
+//   std::string json = statistics_json(relay.statistics());
 #ifndef SIMBENCH_HARDWARE_RELAY_RELAY_H_
 #define SIMBENCH_HARDWARE_RELAY_RELAY_H_
 

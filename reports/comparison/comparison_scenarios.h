@@ -54,7 +54,7 @@ std::string seeds_text(const SeedRange& seeds);
 // Which seeds of two results stand in pairs.
 //
 //   const SeedPairing pairing = pair_by_seed(seeds_of(a.results), seeds_of(b.results));
-//   pair_up(pairing.of_a(row_a.amd_ms.values), pairing.of_b(row_b.amd_ms.values));
+//   evaluation::pair_up(pairing.of_a(row_a.amd_ms.values), pairing.of_b(row_b.amd_ms.values));
 struct SeedPairing {
   std::uint64_t skip_a = 0;  // values before the first that has a partner
   std::uint64_t skip_b = 0;

@@ -68,7 +68,7 @@ std::string truth_note(const evaluation::RunDetail& run);
 // are kept, in their order, with the first and the last of all: a spike stays, however short. A gap
 // (NaN) between two kept points stays a gap.
 //
-//   panel.series.push_back(thinned(std::move(series), 1000));
+//   figure.panels[0].series.push_back(thinned(std::move(dense), 1000));
 
 // At most `most` points, at least 8. A shorter series is returned as it is. O(n).
 FigureSeries thinned(FigureSeries series, std::size_t most);

@@ -8,12 +8,13 @@
 //   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; what is not a letter,
 //                           a digit, '.', '_' or '-' in the name of a pipeline becomes '_'
 //   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG where there
-//   is
-//                           a gnuplot
+//                           is a gnuplot
 //   report.html             reports/reconstruction/reconstruction_html.h
 //
+// While the experiment runs keep() writes each mesh, at the end write() the rest:
+//
 //   ReconstructionFolder folder("results/table4", scenario);
-//   run_reconstruction(..., [&](const ShownMesh& mesh) { folder.keep(mesh); }, ...);
+//   folder.keep(mesh);
 //   folder.write(results, provenance);
 //
 // Errors: OutputError.

@@ -12,8 +12,8 @@
 // Errors: scenarios::InputError, with file, line and JSON pointer, for a file that is cut short,
 // edited wrongly, of a newer schema or of another scenario; OutputError where it cannot be written.
 //
-//   write_measured_study("relay.json", measured_study(results, "2026-11-21", "4 cores,
-//   Linux 6.1")); const MeasuredStudy study = read_measured_study("relay.json", "6node_relay");
+//   write_measured_study("relay.json", measured_study(results, "2026-11-21", "4 cores"));
+//   const MeasuredStudy study = read_measured_study("relay.json", "6node_relay");
 //   model_gap(results_of(study), simulated);
 #ifndef SIMBENCH_REPORTS_RIGS_MEASURED_STUDY_H_
 #define SIMBENCH_REPORTS_RIGS_MEASURED_STUDY_H_

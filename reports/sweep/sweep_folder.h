@@ -8,9 +8,9 @@
 // The manifest is the sweep's identity: a folder of another sweep, or with anything else in it, is
 // refused. The folder is locked while this lives; the file `lock` for that stays.
 //
-//   SweepFolder folder("results/rate", manifest, plan.runs(), {.restart = false});
+//   SweepFolder folder("results/rate", manifest, plan.runs(), /*restart=*/false);
 //   folder.log().append(run, text);
-//   folder.write("sweep.csv", csv);
+//   folder.write("sweep.csv", text);
 //
 // Errors: OutputError, whose message says what to do.
 #ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_FOLDER_H_

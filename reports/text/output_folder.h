@@ -5,7 +5,7 @@
 // then. Only such an earlier result is replaced: a folder with anything else in it is refused.
 //
 //   OutputFolder output("results/monday");    // before the work: refuses what cannot be written
-//   write_frames_csv(results, output.file("frames.csv"));
+//   output.file("table.txt") << text;
 //   output.publish();
 //
 // Errors: OutputError, whose message says what to do.

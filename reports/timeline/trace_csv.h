@@ -4,9 +4,8 @@
 //   trigger/pulse                number of the pulse
 //   hostN/clock_error_us         system clock minus the master's (N > 0)
 //   hostN/clock_step_us          what was set at once
-//   cameraN/latency_ms           middle of the exposure to delivery, at the delivery;
-//   cameraN/colour
-//                                for colour streams
+//   cameraN/latency_ms           middle of the exposure to delivery, at the delivery
+//                                (cameraN/colour/latency_ms: of the colour stream)
 //   cameraN/stamp_error_us       the pipeline's stamp minus what it should be, at the delivery
 //   gathering/stamps_range_us    of the set emitted then
 //   gathering/frames             in that set

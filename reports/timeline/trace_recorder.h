@@ -6,8 +6,9 @@
 // TraceOptions::max_events events, and 24 bytes for each frame of a set, which is less than what
 // the scorer keeps of it.
 //
-//   const Trace trace = record_trace(scenario, choice, /*seed=*/1, *source, {.max_events =
-//   50'000}); write_chrome_trace(trace, std::cout);
+//   const Trace trace = record_trace(scenario, choice, /*seed=*/1, *source,
+//                                    {.max_events = 50'000});
+//   write_chrome_trace(trace, std::cout);
 #ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_RECORDER_H_
 #define SIMBENCH_REPORTS_TIMELINE_TRACE_RECORDER_H_
 

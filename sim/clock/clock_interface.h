@@ -8,7 +8,7 @@
 // Source: docs/reference/calibration.md section 2 ("Host clock").
 //
 //   const ClockInterface interface(from_ms(15.625), from_ms(4), from_ms(1));
-//   HostTime seen = interface.read(clock.read(now));
+//   HostTime seen = interface.read(system_clock.read(now));
 #ifndef SIMBENCH_SIM_CLOCK_CLOCK_INTERFACE_H_
 #define SIMBENCH_SIM_CLOCK_CLOCK_INTERFACE_H_
 

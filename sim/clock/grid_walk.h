@@ -10,7 +10,9 @@
 // 8 bytes each.
 //
 //   GridWalk<double> walk(step_ns, frequency_at_zero);
-//   double ns = walk.phase_ns(t_ns, [&](double& frequency, std::int64_t index, double sign) {...});
+//   double ns = walk.phase_ns(t_ns, [&](double& frequency, std::int64_t index, double sign) {
+//     return (frequency += sign * draw(index)) * step_ns;
+//   });
 #ifndef SIMBENCH_SIM_CLOCK_GRID_WALK_H_
 #define SIMBENCH_SIM_CLOCK_GRID_WALK_H_
 

@@ -7,9 +7,9 @@
 // Cost: O(1); memory for the most objects that were ever under way at once, none allocated beyond
 // that. add() may move the objects: a reference does not outlive it.
 //
-//   Slots<FrameInFlight> frames;
+//   Slots<FrameArrival> frames;
 //   const std::uint32_t id = frames.add();
-//   frames[id].stream = 3;
+//   frames[id].counter = 3;
 //   engine.schedule(at, handler, kReadout, id);
 //   frames.release(id);
 #ifndef SIMBENCH_SIM_ENGINE_SLOTS_H_

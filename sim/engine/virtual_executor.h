@@ -23,6 +23,7 @@
 //       co_await sleep_until(context, context.engine().now() + from_ms(500), "lamp: blink");
 //     }
 //   }
+//
 //   Engine engine;
 //   VirtualContext context(engine);
 //   boost::asio::co_spawn(context, blink(context, lamp), boost::asio::detached);
@@ -164,8 +165,8 @@ boost::asio::awaitable<void> sleep_until(VirtualContext& context, TrueTime at,
 // notify() ends the wait that is under way; without one it does nothing and is not remembered, so
 // look before waiting and again afterwards:
 //
-//   while (messages_.empty()) {
-//     const bool notified = co_await arrived_.wait(deadline);
+//   while (messages.empty()) {
+//     const bool notified = co_await arrived.wait(deadline);
 //     if (!notified) co_return std::nullopt;
 //   }
 class WaitPoint {

@@ -1,10 +1,10 @@
 // All hosts of a scenario, with their clocks and the network between them, ready to run.
 //
 // The clocks at true zero, whenever the world starts: the master's reads 0. The slaves' clocks are
-//   kUnsynchronised  off by N(initial_offset_sigma_ms);
+//   kUnsynchronised  off by N(initial_offset_sigma_ms)
 //   kLastSet         off by N(last_set.skew_sigma_ppm) * hours_ago, the rate error of those hours
 //                    being independent of the present one, plus the present rate difference to the
-//                    master times minutes_since_baseline;
+//                    master times minutes_since_baseline
 //   kMaster          the master's own, at every instant.
 // Steady clocks start from an arbitrary reading within an hour, each host's another one, so that
 // nothing can mistake one host's for another's.
@@ -18,7 +18,8 @@
 //   HostGroup hosts(scenario, seed, "both@18cam_6host_45fps", InitialClocks::kUnsynchronised,
 //                   context, sink);
 //   hosts.report_clocks();
-//   co_spawn(context, host_sync.run_master(hosts.host(0), slaves), detached);
+//   boost::asio::co_spawn(context, host_sync.run_master(hosts.host(0), slaves),
+//                         boost::asio::detached);
 #ifndef SIMBENCH_SIM_HOST_HOST_GROUP_H_
 #define SIMBENCH_SIM_HOST_HOST_GROUP_H_
 

@@ -13,7 +13,7 @@
 //   const std::optional<TrueTime> at = receiver.pulse(*receiver.first_from(engine.now()));
 //
 //   SimPulseInput line(host, receiver, "pps");
-//   const std::optional<PulseStamp> stamp = co_await line.next(deadline);
+//   const std::optional<PulseStamp> stamp = co_await line.next(steady_deadline);
 #ifndef SIMBENCH_SIM_HOST_PULSE_LINES_H_
 #define SIMBENCH_SIM_HOST_PULSE_LINES_H_
 

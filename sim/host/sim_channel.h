@@ -1,7 +1,7 @@
 // A simulated host's channel to one peer.
 //
 // send() occupies the host's CPU for
-//   send_cost_ms + Exp(send_cost_exponential_ms) + what the session's load adds;
+//   send_cost_ms + Exp(send_cost_exponential_ms) + what the session's load adds:
 // the message leaves, and the call returns, at the end of that. The random part is keyed by (link,
 // direction, transport, number of the message).
 //

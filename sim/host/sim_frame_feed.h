@@ -6,8 +6,8 @@
 // without a trace, and afterwards a frame that nobody waits for costs no event.
 //
 //   SimFrameFeed feed(host);
-//   feed.push(arrival);                       // by the rig, at the frame's delivery
-//   auto frame = co_await feed.next(deadline);  // by an algorithm
+//   feed.push(frame);                         // by the rig, at the frame's delivery
+//   auto next = co_await feed.next(steady_deadline);  // by an algorithm
 #ifndef SIMBENCH_SIM_HOST_SIM_FRAME_FEED_H_
 #define SIMBENCH_SIM_HOST_SIM_FRAME_FEED_H_
 

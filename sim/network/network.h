@@ -28,7 +28,7 @@
 // Source: docs/design.md section 7; docs/reference/calibration.md sections 2 and 5 (H9).
 //
 //   Network network(engine, scenario.network, seed, host_count, load, outages);
-//   PathId path = network.open(0, 3, Transport::kStream, endpoint_of_host_0);
+//   PathId path = network.open(0, 3, Transport::kStream, endpoint);
 //   network.send(path, 0, std::move(bytes));  // leaves host 0 now
 #ifndef SIMBENCH_SIM_NETWORK_NETWORK_H_
 #define SIMBENCH_SIM_NETWORK_NETWORK_H_

@@ -16,8 +16,7 @@
 //
 //   const auto source = make_simulation(scenario);
 //   KeptRecording recording;
-//   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = host_sync.get()},
-//                  recording);
+//   source->record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = &host_sync}, recording);
 #ifndef SIMBENCH_SIM_RIG_SIMULATION_H_
 #define SIMBENCH_SIM_RIG_SIMULATION_H_
 

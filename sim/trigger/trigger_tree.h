@@ -16,7 +16,7 @@
 //
 //   TriggerTree tree(scenario.trigger, 18, seed);
 //   tree.start(capture_start);
-//   if (auto pulse = tree.pulse(0)) camera_sees_it_at = *pulse + tree.delay_to(7);
+//   if (auto pulse = tree.pulse(0)) expose(*pulse + tree.delay_to(7));   // camera 7 sees it then
 #ifndef SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
 #define SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/nonempty.h"
+
 namespace simbench {
 namespace {
 
@@ -46,7 +48,7 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
 }
 
 TEST(Registry, MakesEveryBuiltInAlgorithm) {
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
     EXPECT_FALSE(entry.info.summary.empty() && entry.info.source != "test") << entry.info.name;
     if (entry.info.name == "oracle") {
       EXPECT_FALSE(entry.make) << "only evaluation has the truth";
@@ -57,7 +59,7 @@ TEST(Registry, MakesEveryBuiltInAlgorithm) {
     EXPECT_EQ(estimator->relative(), entry.info.name == "sensor_normalised") << entry.info.name;
   }
   const GatheringSetup setup = {.sources = 2, .period = from_ms(20), .interval = from_ms(10)};
-  for (const GatheringEntry& entry : gathering_algorithms()) {
+  for (const GatheringEntry& entry : nonempty(gathering_algorithms())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
     EXPECT_EQ(gatherer->discarded(), 0U);
     EXPECT_EQ(gatherer->from_first_frame(), entry.info.family == "genlock") << entry.info.name;

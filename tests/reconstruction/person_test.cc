@@ -13,6 +13,7 @@
 
 #include "reconstruction/motion.h"
 #include "sim/engine/random.h"
+#include "tests/nonempty.h"
 
 namespace simbench::reconstruction {
 namespace {
@@ -85,7 +86,7 @@ TEST(Person, FeetAndNosePointAhead) {
 TEST(Person, IsSymmetricalStanding) {
   const auto person = make_person(script("stand"), 1.0);
   const auto parts = placed(*person, 0);
-  for (const auto& part : parts) {
+  for (const auto& part : nonempty(parts)) {
     AlignedBox3d box;
     for (const Vector3d& vertex : part) box.extend(vertex);
     const bool has_mirror = std::any_of(parts.begin(), parts.end(), [&](const auto& other) {

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/nonempty.h"
+
 namespace simbench::reconstruction {
 namespace {
 
@@ -64,7 +66,7 @@ void expect_closed(const TriangleMesh& mesh) {
 }
 
 void expect_outward(const TriangleMesh& mesh, const Vector3d& inside) {
-  for (const Corners& t : triangles_of(mesh)) {
+  for (const Corners& t : nonempty(triangles_of(mesh))) {
     ASSERT_GT(t.normal().norm(), 0);
     ASSERT_GT(t.normal().dot(t.a - inside), 0) << t.a.transpose();
   }
@@ -74,12 +76,12 @@ void expect_outward(const TriangleMesh& mesh, const Vector3d& inside) {
 // largest error deep. Returns the deepest.
 double expect_near(const TriangleMesh& mesh, double largest_error,
                    const std::function<double(const Vector3d&)>& distance) {
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+  for (const Eigen::Vector3f& vertex : nonempty(mesh.vertices)) {
     EXPECT_NEAR(distance(vertex.cast<double>()), 0, kRounding) << vertex.transpose();
   }
   double deepest = 0;
   constexpr int kSteps = 2;
-  for (const Corners& t : triangles_of(mesh)) {
+  for (const Corners& t : nonempty(triangles_of(mesh))) {
     for (int i = 0; i <= kSteps; ++i) {
       for (int j = 0; i + j <= kSteps; ++j) {
         const Vector3d point = t.a + (t.b - t.a) * i / kSteps + (t.c - t.a) * j / kSteps;

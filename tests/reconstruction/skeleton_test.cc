@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/engine/random.h"
+#include "tests/nonempty.h"
 
 namespace simbench::reconstruction {
 namespace {
@@ -98,7 +99,7 @@ TEST(Skeleton, BonesAreRigid) {
   const auto angle = [&] { return random.uniform(-1.5, 1.5); };
   for (int i = 0; i < 200; ++i) {
     const Posture posture{angle(), angle(), angle(), angle(), angle(), angle()};
-    for (const Eigen::Isometry3d& segment : segment_poses(posture, kHeight)) {
+    for (const Eigen::Isometry3d& segment : nonempty(segment_poses(posture, kHeight))) {
       EXPECT_NEAR(
           (segment.linear() * segment.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0,
           1e-12);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/nonempty.h"
 #include "tests/reconstruction/studio_scenario.h"
 
 namespace simbench::reconstruction {
@@ -63,7 +64,7 @@ TEST(Studio, CamerasLookAtTheCentre) {
   for (const bool portrait : {false, true}) {
     scenarios::Scenario scenario = studio_scenario();
     scenario.studio->portrait = portrait;
-    for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+    for (const StudioCamera& camera : nonempty(cameras_of(scenario, 1))) {
       const Vector3d centre(0, 0, 0.9);
       EXPECT_NEAR((pixel_of(camera, centre) - Vector2d(423.5, 239.5)).norm(), 0, 1e-9);
       const Vector3d seen = camera.world_from_camera.inverse() * centre;
@@ -79,7 +80,7 @@ TEST(Studio, CamerasLookAtTheCentre) {
 TEST(Studio, LandscapeIsUpright) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.studio->portrait = false;
-  for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+  for (const StudioCamera& camera : nonempty(cameras_of(scenario, 1))) {
     const Vector2d above = pixel_of(camera, {0, 0, 1.0});
     EXPECT_NEAR(above.x(), 423.5, 1e-9);
     EXPECT_LT(above.y(), 239.5 - 10);
@@ -90,7 +91,7 @@ TEST(Studio, LandscapeIsUpright) {
 }
 
 TEST(Studio, PortraitHasTheVerticalAlongItsRows) {
-  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+  for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     const Vector2d above = pixel_of(camera, {0, 0, 1.0});
     EXPECT_NEAR(above.y(), 239.5, 1e-9);
     EXPECT_LT(above.x(), 423.5 - 10);
@@ -102,7 +103,7 @@ TEST(Studio, PortraitHasTheVerticalAlongItsRows) {
 
 // All of a standing person is in the image of every camera.
 TEST(Studio, PortraitSeesAPersonFromHeadToFoot) {
-  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+  for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     for (const double height : {0.0, 1.75}) {
       const Vector2d pixel = pixel_of(camera, {0, 0, height});
       EXPECT_GT(pixel.x(), 0);
@@ -112,7 +113,7 @@ TEST(Studio, PortraitSeesAPersonFromHeadToFoot) {
 }
 
 TEST(Studio, IntrinsicsAreTheProfiles) {
-  for (const StudioCamera& camera : cameras_of(studio_scenario(), 1)) {
+  for (const StudioCamera& camera : nonempty(cameras_of(studio_scenario(), 1))) {
     EXPECT_EQ(camera.intrinsics.width, 848);
     EXPECT_EQ(camera.intrinsics.height, 480);
     EXPECT_EQ(camera.intrinsics.focal_px, 430);
@@ -195,7 +196,7 @@ TEST(Studio, WithoutSigmaTheCalibrationIsRight) {
   scenarios::Scenario scenario = studio_scenario();
   scenario.studio->calibration_translation_sigma_mm = 0;
   scenario.studio->calibration_rotation_sigma_deg = 0;
-  for (const StudioCamera& camera : cameras_of(scenario, 1)) {
+  for (const StudioCamera& camera : nonempty(cameras_of(scenario, 1))) {
     EXPECT_TRUE(camera.believed.isApprox(camera.world_from_camera, 0));
   }
 }

@@ -16,8 +16,9 @@
 
 #include "recording/event.h"
 #include "recording/recording_folder.h"
+#include "tests/nonempty.h"
 #include "tests/recording/random_events.h"
-#include "tests/recording/scratch_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench {
 namespace {
@@ -62,7 +63,7 @@ std::vector<RecordingEvent> numbered_events(int count) {
 
 class RecordingDeathTest : public testing::Test {
  protected:
-  std::string path(const std::string& name) const { return scratch_.path(name); }
+  std::string path(const std::string& name) const { return scratch_ / name; }
 
   // As a writer that died leaves it.
   void write_without_end(const std::string& name, const std::vector<RecordingEvent>& events) const {
@@ -76,7 +77,7 @@ class RecordingDeathTest : public testing::Test {
   static void expect_part_of(const std::vector<RecordingEvent>& played,
                              const std::vector<RecordingEvent>& recorded) {
     std::size_t at = 0;
-    for (const RecordingEvent& event : played) {
+    for (const RecordingEvent& event : nonempty(played)) {
       while (at < recorded.size() && !same(recorded[at], event)) ++at;
       ASSERT_LT(at, recorded.size()) << "an event that was not recorded";
       ++at;

@@ -12,7 +12,7 @@
 
 #include "recording/event.h"
 #include "tests/recording/random_events.h"
-#include "tests/recording/scratch_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench {
 namespace {
@@ -80,7 +80,7 @@ std::string error_of(const Work& work) {
 
 class RecordingFolderTest : public testing::Test {
  protected:
-  std::string path(const std::string& name) const { return scratch_.path(name); }
+  std::string path(const std::string& name) const { return scratch_ / name; }
 
   // Of the only capture of a folder.
   static std::string play_error(const std::string& folder) {

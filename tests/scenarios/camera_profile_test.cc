@@ -11,6 +11,7 @@
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/schema.h"
+#include "tests/nonempty.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -44,7 +45,7 @@ TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
   json text = json::parse(camera_schema_text());
   require_all(text);
   const JsonSchema schema(text);
-  for (const BuiltinFile& file : camera_files()) {
+  for (const BuiltinFile& file : nonempty(camera_files())) {
     const json profile = json::parse(file.text);
     const auto refusals = schema.validate(profile);
     EXPECT_TRUE(refusals.empty()) << file.name << ": " << refusals.front().reason;
@@ -56,26 +57,26 @@ TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
 }
 
 TEST(CameraProfiles, AreConsistent) {
-  for (const CameraProfile& camera : camera_profiles()) {
+  for (const CameraProfile& camera : nonempty(camera_profiles())) {
     SCOPED_TRACE(camera.model);
     ASSERT_NE(camera.sync_mode(SyncMode::kDefault), nullptr);
     EXPECT_TRUE(camera.sync_mode(SyncMode::kDefault)->triggered.empty());
     std::set<SyncMode> modes;
-    for (const SyncModeProfile& mode : camera.sync_modes) {
+    for (const SyncModeProfile& mode : nonempty(camera.sync_modes)) {
       EXPECT_TRUE(modes.insert(mode.mode).second);
       for (const StreamKind kind : mode.triggered) EXPECT_NE(camera.stream(kind), nullptr);
     }
     EXPECT_TRUE(std::is_sorted(camera.sync_rates_hz.begin(), camera.sync_rates_hz.end()));
-    for (const StreamProfile& stream : camera.streams) {
+    for (const StreamProfile& stream : nonempty(camera.streams)) {
       EXPECT_EQ(camera.stream(stream.kind), &stream) << "one stream of a kind";
       EXPECT_EQ(stream.shutter == ShutterKind::kRolling, stream.readout_periods > 0);
-      for (const ImageSize& size : stream.sizes) {
+      for (const ImageSize& size : nonempty(stream.sizes)) {
         EXPECT_EQ(stream.find_size(size.width, size.height), &size) << "a size once only";
         EXPECT_TRUE(std::is_sorted(size.rates_hz.begin(), size.rates_hz.end()));
       }
     }
     std::set<std::string> stamps;
-    for (const StampProfile& stamp : camera.stamps) {
+    for (const StampProfile& stamp : nonempty(camera.stamps)) {
       EXPECT_TRUE(stamps.insert(stamp.stamp).second) << stamp.stamp;
       EXPECT_EQ(stamp.clock == "camera", stamp.stamp == "sensor" || stamp.stamp == "frame");
     }
@@ -120,7 +121,8 @@ TEST(CameraProfiles, SizesOfThePapersTable) {
   EXPECT_THAT(rates("l515", StreamKind::kColour, 1920, 1080), Contains(30));
   EXPECT_THAT(rates("l515", StreamKind::kDepth, 1024, 768), Contains(30));
   for (const char* model : {"azure_kinect", "astra_plus", "astra_s", "l515"}) {
-    for (const ImageSize& size : find_camera_profile(model)->stream(StreamKind::kDepth)->sizes) {
+    for (const ImageSize& size :
+         nonempty(find_camera_profile(model)->stream(StreamKind::kDepth)->sizes)) {
       EXPECT_LE(size.rates_hz.back(), 30) << model << " has no 90 Hz";
     }
   }
@@ -134,19 +136,27 @@ TEST(CameraProfiles, FocalLengthOfDepth) {
   EXPECT_NEAR(depth.find_size(640, 480)->focal_px, 0.6 * depth.find_size(1280, 720)->focal_px, 0.01)
       << "a crop of 768x480";
   EXPECT_EQ(depth.find_size(256, 144)->focal_px, depth.find_size(1280, 720)->focal_px) << "a crop";
+  int nominal = 0;
   for (const ImageSize& size : depth.sizes) {
     if (size.width == 256 || size.height == 100 || size.height * 4 == size.width * 3) continue;
+    ++nominal;
     EXPECT_NEAR(size.focal_px, 430 * static_cast<double>(size.width) / 848, 0.01)
         << size.width << 'x' << size.height;
   }
-  for (const ImageSize& size : find_camera_profile("d435")->stream(StreamKind::kDepth)->sizes) {
+  EXPECT_GT(nominal, 0);
+  for (const ImageSize& size :
+       nonempty(find_camera_profile("d435")->stream(StreamKind::kDepth)->sizes)) {
     EXPECT_NEAR(size.focal_px, depth.find_size(size.width, size.height)->focal_px, 10);
   }
+  int colour_streams = 0;
   for (const CameraProfile& camera : camera_profiles()) {
     const StreamProfile* colour = camera.stream(StreamKind::kColour);
     if (colour == nullptr) continue;
-    for (const ImageSize& size : colour->sizes) EXPECT_EQ(size.focal_px, 0) << camera.model;
+    ++colour_streams;
+    for (const ImageSize& size : nonempty(colour->sizes))
+      EXPECT_EQ(size.focal_px, 0) << camera.model;
   }
+  EXPECT_GT(colour_streams, 0);
 }
 
 TEST(CameraProfiles, JsonHasThemAll) {

@@ -24,7 +24,8 @@
 // ntp.h).
 //
 //   NtpClockFilter filter(1e-6);
-//   if (const auto best = filter.add({offset, delay, dispersion, now}, 64)) use(best->offset_s);
+//   const auto best = filter.add({offset_s, delay_s, dispersion_s, now_s}, 64);
+//   if (best) use(best->offset_s);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_CLOCK_FILTER_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_CLOCK_FILTER_H_
 

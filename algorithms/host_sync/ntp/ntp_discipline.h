@@ -26,7 +26,7 @@
 // (ntp_loopfilter.c).
 //
 //   NtpDiscipline discipline({});
-//   switch (discipline.update(offset_s, now_s)) { case NtpAction::kStep: ... }
+//   if (discipline.update(offset_s, now_s) == NtpAction::kStep) step(offset_s);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
 

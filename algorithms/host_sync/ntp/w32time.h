@@ -52,7 +52,7 @@ namespace simbench {
 // Microsoft, "Windows Time service tools and settings".
 //
 //   W32TimeSpikes spikes;
-//   if (spikes.accept(offset, host.steady_clock().now())) ...correct the clock
+//   if (spikes.accept(offset, host.steady_clock().now())) correct_the_clock();
 class W32TimeSpikes {
  public:
   static constexpr Nanoseconds kLargePhaseOffset{5'000'000'000};

@@ -83,8 +83,8 @@ class MovingMedian {
 // Source: IEEE 1588-2008 clause 11; docs/reference/host_sync.md section 1 (linuxptp, tsproc.c).
 //
 //   PtpOffset filter(10);
-//   filter.add_sync(t1, t2);
-//   filter.add_request(t3, t4);
+//   filter.add_sync(t1_ns, t2_ns);
+//   filter.add_request(t3_ns, t4_ns);
 //   std::optional<Nanoseconds> offset = filter.offset();
 class PtpOffset {
  public:

@@ -25,7 +25,7 @@
 //
 //   PiServo servo(PiServo::kHardwareStamps, {});
 //   ServoAnswer answer = servo.sample(offset_ns, t2_ns, 1.0);
-//   if (answer.state != ServoState::kUnlocked) clock.adjust_frequency(-answer.ppb);
+//   if (answer.state != ServoState::kUnlocked) co_await clock.adjust_frequency(-answer.ppb);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_SERVO_H_
 

@@ -4,7 +4,7 @@
 // needs to know the master's clock over the network.
 //
 //   TwoWayClient client(host, master, own_clock, false);
-//   if (auto exchange = co_await client.ask()) estimator.add(*exchange);
+//   if (auto exchange = co_await client.ask(from_ms(100))) estimator.add(*exchange);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_PROBE_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_PROBE_H_
 

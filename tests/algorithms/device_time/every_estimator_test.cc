@@ -15,6 +15,7 @@
 #include "algorithms/registry.h"
 #include "tests/algorithms/device_time/polls.h"
 #include "tests/algorithms/device_time/streams.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -206,7 +207,7 @@ TEST_P(EveryEstimator, CoarseAndStandingArrivals) {
 }
 
 TEST(DeviceTimeRegistry, PollEstimatorsSaySo) {
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
     const bool polls =
         entry.info.name == "two_way_poll" || entry.info.name == "librealsense_global";
     EXPECT_EQ(std::count(entry.info.needs.begin(), entry.info.needs.end(), Need::kPolls), polls)
@@ -215,7 +216,7 @@ TEST(DeviceTimeRegistry, PollEstimatorsSaySo) {
 }
 
 TEST(DeviceTimeRegistry, OnlyPollsAreOfUseDuringTheWarmUp) {
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+  for (const DeviceTimeEntry& entry : nonempty(device_time_algorithms())) {
     if (!entry.make || entry.info.source == "test") continue;
     const auto estimator = entry.make(check_parameters(entry.info.parameters, {}));
     EXPECT_EQ(estimator->from_first_frame(), !entry.info.needs.empty()) << entry.info.name;

@@ -11,6 +11,7 @@
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/algorithms/gathering/gathering_world.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -177,7 +178,7 @@ TEST(ApproximateTime, EqualsTheNaiveImplementation) {
     NaiveApproximateTime naive(world.sources, options);
     CollectedSets out;
     CollectedSets expected;
-    for (const GatherFrame& frame : frames_of(world, seed)) {
+    for (const GatherFrame& frame : nonempty(frames_of(world, seed))) {
       gatherer->push(frame, out);
       naive.push(frame, expected);
       ASSERT_EQ(out.sets.size(), expected.sets.size()) << "seed " << seed;

@@ -8,6 +8,7 @@
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/algorithms/gathering/gathering_world.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -69,7 +70,7 @@ TEST(Epsilon, EqualsTheNaiveImplementation) {
     CollectedSets expected;
     std::vector<std::deque<GatherFrame>> queues(world.sources);
     std::uint64_t discarded = 0;
-    for (const GatherFrame& frame : frames_of(world, seed)) {
+    for (const GatherFrame& frame : nonempty(frames_of(world, seed))) {
       gatherer->push(frame, out);
       queues[frame.source].push_back(frame);
       if (queues[frame.source].size() > setup.queue_limit) {

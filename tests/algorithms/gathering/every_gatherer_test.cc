@@ -15,6 +15,7 @@
 
 #include "algorithms/registry.h"
 #include "tests/algorithms/gathering/collected_sets.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -59,7 +60,7 @@ using FrameName = std::pair<std::uint32_t, std::int64_t>;  // source, number of 
 void expect_sound(const CollectedSets& out, const Gatherer& gatherer, const GatheringSetup& setup,
                   std::uint64_t pushed, const std::string& context) {
   std::set<FrameName> used;
-  for (const std::vector<GatherFrame>& set : out.all) {
+  for (const std::vector<GatherFrame>& set : nonempty(out.all)) {
     ASSERT_FALSE(set.empty()) << context;
     for (std::size_t i = 0; i < set.size(); ++i) {
       const std::int64_t number = set[i].sensor.time_since_epoch().count();
@@ -78,7 +79,7 @@ void expect_sound(const CollectedSets& out, const Gatherer& gatherer, const Gath
 // Frames of a source are used in the order in which they came.
 void expect_in_order(const CollectedSets& out, const std::string& context) {
   std::map<std::uint32_t, std::int64_t> last;
-  for (const std::vector<GatherFrame>& set : out.all) {
+  for (const std::vector<GatherFrame>& set : nonempty(out.all)) {
     for (const GatherFrame& frame : set) {
       const std::int64_t number = frame.sensor.time_since_epoch().count();
       const auto [entry, is_first] = last.try_emplace(frame.source, -1);

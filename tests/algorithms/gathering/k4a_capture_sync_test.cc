@@ -8,6 +8,7 @@
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
 #include "tests/algorithms/gathering/gathering_world.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -85,7 +86,7 @@ TEST(K4a, EqualsTheNaiveImplementation) {
     const auto complete = [&] {
       return std::ranges::none_of(queues, [](const auto& queue) { return queue.empty(); });
     };
-    for (const GatherFrame& frame : frames_of(world, seed)) {
+    for (const GatherFrame& frame : nonempty(frames_of(world, seed))) {
       gatherer->push(frame, out);
       queues[frame.source].push_back(frame);
       while (complete()) {

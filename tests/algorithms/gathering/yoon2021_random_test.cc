@@ -16,6 +16,7 @@
 
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -120,7 +121,7 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
     NaiveGatherer naive(setup);
     CollectedSets sets;
     CollectedSets expected;
-    for (const GatherFrame& frame : frames_of(world, seed)) {
+    for (const GatherFrame& frame : nonempty(frames_of(world, seed))) {
       gatherer->push(frame, sets);
       naive.push(frame, expected);
       ASSERT_EQ(sets.sets.size(), expected.sets.size()) << "seed " << seed;

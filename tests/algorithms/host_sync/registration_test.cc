@@ -9,6 +9,7 @@
 
 #include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -24,7 +25,7 @@ std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& g
 }
 
 TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
-  for (const HostSyncEntry& each : host_sync_algorithms()) {
+  for (const HostSyncEntry& each : nonempty(host_sync_algorithms())) {
     EXPECT_FALSE(each.info.summary.empty()) << each.info.name;
     EXPECT_FALSE(each.info.source.empty()) << each.info.name;
     for (const ParameterSpec& spec : each.info.parameters) {

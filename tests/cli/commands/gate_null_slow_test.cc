@@ -14,6 +14,7 @@
 #include "reports/comparison/gate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/nonempty.h"
 
 namespace simbench::reports {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(NullGate, FailsSeldomWithoutMarginsToo) {
 
 // The t-test of one metric is neither blind nor jumpy: it rejects about as often as its level says.
 TEST_F(NullGate, ASingleMetricIsRejectedAboutOnceInTwenty) {
-  for (std::size_t row = 0; row < all_->results.rows.size(); ++row) {
+  for (std::size_t row = 0; row < nonempty(all_->results.rows).size(); ++row) {
     int rejected = 0;
     for (std::uint64_t i = 0; i < kGates; ++i) {
       const auto t =

@@ -12,6 +12,7 @@
 
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -94,7 +95,7 @@ Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline&
 }
 
 void expect_sum(const ErrorParts& error) {
-  for (std::size_t seed = 0; seed < error.total.values.size(); ++seed) {
+  for (std::size_t seed = 0; seed < nonempty(error.total.values).size(); ++seed) {
     double sum = error.remainder.values[seed];
     for (const BudgetPart& stage : error.stages) sum += stage.values[seed];
     EXPECT_NEAR(sum, error.total.values[seed], 1e-9) << "seed " << seed + 1;

@@ -17,12 +17,15 @@ TEST(Evidence, EveryStageRestsOnSomethingAndSaysWhy) {
 
 // The experiment has no cameras: it cannot be evidence for any stage of them.
 TEST(Evidence, TheExperimentIsNoEvidenceForCameras) {
+  int stages_of_cameras = 0;
   for (const StageEvidence& stage : model_evidence()) {
     const bool of_cameras = stage.stage == "trigger" || stage.stage == "exposure" ||
                             stage.stage == "device clock" || stage.stage == "USB and host stack";
     if (!of_cameras) continue;
+    ++stages_of_cameras;
     EXPECT_FALSE(stage.has(Evidence::kExperiment)) << stage.stage;
   }
+  EXPECT_EQ(stages_of_cameras, 4);
 }
 
 }  // namespace

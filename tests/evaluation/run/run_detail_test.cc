@@ -11,6 +11,7 @@
 #include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -69,11 +70,14 @@ TEST(RunDetailTest, TheWarmUpIsThereAndHasNoGlobalStamps) {
 
 TEST(RunDetailTest, OnlineIsThePipelineItselfWhereThatIsTheRegression) {
   const RunDetail run = detail(short_scenario(), "yoon2021_both");
+  int frames = 0;
   for (const FrameDetail& frame : run.cameras.at(7).frames) {
     if (frame.in_warm_up) continue;
+    ++frames;
     EXPECT_EQ(frame.online_ms, frame.global_ms);
     EXPECT_NEAR(frame.offline_ms, frame.online_ms, 2);
   }
+  EXPECT_EQ(frames, 60);
 }
 
 TEST(RunDetailTest, OracleClocksAreAlwaysRightAndUnsynchronisedOnesKeepTheirOffset) {
@@ -88,7 +92,7 @@ TEST(RunDetailTest, OracleClocksAreAlwaysRightAndUnsynchronisedOnesKeepTheirOffs
                              {"/hosts/clock/oscillator/white_frequency_ppb", "0"}}),
              "free_running");
   ASSERT_GT(free.clocks.size(), 10U);
-  for (std::size_t host = 1; host < free.clocks.front().errors_ms.size(); ++host) {
+  for (std::size_t host = 1; host < nonempty(free.clocks.front().errors_ms).size(); ++host) {
     const double initial = free.clocks.front().errors_ms[host];
     EXPECT_GT(std::abs(initial), 0.001);
     EXPECT_NEAR(free.clocks.back().errors_ms[host], initial, 1e-3);
@@ -110,7 +114,7 @@ TEST(RunDetailTest, EveryFrameIsDeliveredOrLost) {
   std::int64_t lost_of_evaluated = 0;
   for (const LostFrame& lost : run.lost) {
     EXPECT_EQ(lost.fate, FrameFate::kLostInCamera);
-    for (const FrameDetail& frame : run.cameras.at(lost.camera).frames) {
+    for (const FrameDetail& frame : nonempty(run.cameras.at(lost.camera).frames)) {
       EXPECT_NE(frame.counter, lost.counter);
     }
     if (lost.pulse >= run.first_pulse && lost.pulse < run.first_pulse + run.pulses) {
@@ -124,7 +128,7 @@ TEST(RunDetailTest, SetsAreThoseThatAreCounted) {
   const RunDetail run = detail(short_scenario({{"/cameras/drop_probability", "0.02"}}), "oracle");
   std::int64_t complete = 0;
   std::int64_t pure = 0;
-  for (const SetDetail& set : run.sets) {
+  for (const SetDetail& set : nonempty(run.sets)) {
     complete += set.complete ? 1 : 0;
     pure += set.complete && set.pure ? 1 : 0;
     if (!set.complete) continue;
@@ -136,6 +140,7 @@ TEST(RunDetailTest, SetsAreThoseThatAreCounted) {
       }
     }
   }
+  EXPECT_GT(pure, 0);
   EXPECT_EQ(complete, run.score.sets.emitted);
   EXPECT_EQ(pure, run.score.sets.pure);
 }

@@ -11,6 +11,7 @@
 #include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -109,7 +110,7 @@ TEST(StrippedTruth, ClaimsRestOnVerifiedRowsOnly) {
                                                          {"/trigger/rate_hz", "90"}});
   const Results results =
       stripped(scenario, {.first_seed = 1, .seeds = 1, .jobs = 1, .pipelines = {"yoon2021_both"}});
-  for (const Claim& claim : results.claims) {
+  for (const Claim& claim : nonempty(results.claims)) {
     EXPECT_FALSE(claim.holds_fraction.has_value()) << claim.id;
     EXPECT_FALSE(claim.needs.empty()) << claim.id;
   }

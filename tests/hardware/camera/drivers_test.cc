@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tests/hardware/camera/camera_values.h"
-#include "tests/hardware/camera/filled_folder.h"
 #include "tests/hardware/camera/seen_frames.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -26,7 +26,7 @@ RigHost host(std::vector<RigCamera> cameras) {
 }
 
 TEST(CameraDrivers, ARecordedCameraIsPlayed) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   Rig rig;
   rig.hosts = {host({recorded("real", "")}), host({recorded("left", folder.write("a.csv", kCsv))})};
   const auto driver = make_camera_driver(rig, 1);
@@ -41,7 +41,7 @@ TEST(CameraDrivers, ARecordedCameraIsPlayed) {
 }
 
 TEST(CameraDrivers, AnotherHostsCameraIsRefused) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   Rig rig;
   rig.hosts = {host({recorded("left", folder.write("a.csv", kCsv))}), host({})};
   EXPECT_THAT([&] { make_camera_driver(rig, 0)->open("right"); },

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "tests/hardware/camera/camera_values.h"
-#include "tests/hardware/camera/filled_folder.h"
 #include "tests/hardware/camera/seen_frames.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> counters(const std::vector<CameraFrame>& frames) {
 std::string instant(MonotonicTime at) { return std::to_string(nanoseconds_of(at)) + "\n"; }
 
 TEST(RecordedCamera, PlaysEveryFrameAsRecordedAndNeverEarly) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 20));
   RecordedCameraDriver driver({recorded("left", csv)});
   const auto camera = driver.open("left");
@@ -65,7 +65,7 @@ TEST(RecordedCamera, PlaysEveryFrameAsRecordedAndNeverEarly) {
 }
 
 TEST(RecordedCamera, ListsWhatItPlays) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 1) + lines("back", 1));
   RecordedCameraDriver driver(
       {recorded("one", csv, "back"), recorded("front", csv), recorded("three", csv, "1")});
@@ -78,7 +78,7 @@ TEST(RecordedCamera, ListsWhatItPlays) {
 }
 
 TEST(RecordedCamera, CamerasOfOneTriggerShareTheRecordingsZero) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv =
       folder.write("a.csv", kHeader + lines("front", 5, 100) + lines("back", 5, 150));
   const std::string trigger = folder / "trigger";
@@ -99,7 +99,7 @@ TEST(RecordedCamera, CamerasOfOneTriggerShareTheRecordingsZero) {
 }
 
 TEST(RecordedCamera, RemovingTheTriggerEndsPlayingAndTheNextBeginsAnew) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 2000));
   const std::string trigger = folder / "trigger";
   RecordedCameraDriver driver({recorded("front", csv, "", trigger)});
@@ -123,7 +123,7 @@ TEST(RecordedCamera, RemovingTheTriggerEndsPlayingAndTheNextBeginsAnew) {
 }
 
 TEST(RecordedCamera, ATriggerOfLongAgoIsNoTrigger) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 1000));
   RecordedCameraDriver driver({recorded(
       "front", csv, "", folder.write("trigger", instant(monotonic_now() - from_ms(1500))))});
@@ -140,7 +140,7 @@ TEST(RecordedCamera, ATriggerOfLongAgoIsNoTrigger) {
 }
 
 TEST(RecordedCamera, WhatWasDueBeforeTheCameraWasOnIsNotPlayed) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 300));
   const MonotonicTime zero = monotonic_now() - from_ms(600);
   RecordedCameraDriver driver({recorded("front", csv, "", folder.write("trigger", instant(zero)))});
@@ -153,7 +153,7 @@ TEST(RecordedCamera, WhatWasDueBeforeTheCameraWasOnIsNotPlayed) {
 }
 
 TEST(RecordedCamera, ATriggerFileWithoutAnInstantIsTold) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 3));
   RecordedCameraDriver driver({recorded("front", csv, "", folder.write("trigger", "soon\x01"))});
   const auto camera = driver.open("front");
@@ -166,7 +166,7 @@ TEST(RecordedCamera, ATriggerFileWithoutAnInstantIsTold) {
 }
 
 TEST(RecordedCamera, NoHandlerRunsAfterStopAndStartPlaysAgain) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 1000));
   RecordedCameraDriver driver({recorded("front", csv)});
   const auto camera = driver.open("front");
@@ -186,7 +186,7 @@ TEST(RecordedCamera, NoHandlerRunsAfterStopAndStartPlaysAgain) {
 }
 
 TEST(RecordedCamera, OutlivesItsDriver) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 3));
   std::unique_ptr<Camera> camera;
   {
@@ -199,7 +199,7 @@ TEST(RecordedCamera, OutlivesItsDriver) {
 }
 
 TEST(RecordedCamera, PlaysTheStreamsThatAreWantedAndRefusesThoseItHasNot) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write(
       "a.csv", kHeader + lines("front", 4) + lines("front", 4, 100, "Color") + lines("mono", 4));
   RecordedCameraDriver driver({recorded("front", csv), recorded("mono", csv)});
@@ -216,7 +216,7 @@ TEST(RecordedCamera, PlaysTheStreamsThatAreWantedAndRefusesThoseItHasNot) {
 }
 
 TEST(RecordedCamera, MisuseIsOneClearError) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 3));
   RecordedCameraDriver driver({recorded("front", csv)});
   EXPECT_THAT([&] { driver.open("back"); },
@@ -230,7 +230,7 @@ TEST(RecordedCamera, MisuseIsOneClearError) {
 }
 
 TEST(RecordedCamera, AStreamThatStallsInTheRecordingIsToldLikeARealOne) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv =
       folder.write("a.csv", kHeader + lines("front", 3) + "Depth,0,9,6700,1600,front,h\n");
   RecordedCameraDriver driver({recorded("front", csv)});

@@ -10,7 +10,7 @@
 #include "recording/event.h"
 #include "recording/recording_folder.h"
 #include "tests/hardware/camera/camera_values.h"
-#include "tests/hardware/camera/filled_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -50,7 +50,7 @@ FrameEvent true_frame(std::uint32_t camera, std::uint32_t counter, std::int64_t 
   return event;
 }
 
-std::string folder_of(const FilledFolder& folder, const std::vector<FrameEvent>& frames,
+std::string folder_of(const ScratchFolder& folder, const std::vector<FrameEvent>& frames,
                       const std::vector<std::string>& pipelines = {"both"}) {
   RecordingDescription description;
   description.backend = "sim";
@@ -84,7 +84,7 @@ std::vector<std::int64_t> due(const PlayedCamera& camera) {
 TEST(RecordedFrames, AFrameIsSmall) { EXPECT_LE(sizeof(PlayedFrame), 32U); }
 
 TEST(RecordedFrames, WithTruthTheZeroIsTheFirstTriggeredExposureOfAnyCamera) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path =
       folder_of(folder, {true_frame(0, 0, -1, 900, 30),  // free-running: before the zero
                          true_frame(1, 0, 0, 1000, 31), true_frame(0, 1, 0, 1002, 30),
@@ -99,7 +99,7 @@ TEST(RecordedFrames, WithTruthTheZeroIsTheFirstTriggeredExposureOfAnyCamera) {
 }
 
 TEST(RecordedFrames, WithoutTruthTheZeroIsTheFirstArrivalOfAnyCamera) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path =
       folder_of(folder, {frame(1, 0, 500), frame(0, 0, 503), frame(0, 1, 523)});
   const auto cameras = load_played_cameras(path, {recorded("a", path, "left"),  //
@@ -109,7 +109,7 @@ TEST(RecordedFrames, WithoutTruthTheZeroIsTheFirstArrivalOfAnyCamera) {
 }
 
 TEST(RecordedFrames, WhereNoPulseExposedTheZeroIsTheFirstDelivery) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path =
       folder_of(folder, {true_frame(1, 0, -1, 100, 20), true_frame(0, 0, -1, 103, 30)});
   const auto cameras = load_played_cameras(path, {recorded("left", path)});
@@ -117,7 +117,7 @@ TEST(RecordedFrames, WhereNoPulseExposedTheZeroIsTheFirstDelivery) {
 }
 
 TEST(RecordedFrames, StampsAreAsRecorded) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path = folder_of(folder, {frame(0, 5, 10)});
   const PlayedFrame played = load_played_cameras(path, {recorded("left", path)})[0]->frames[0];
   EXPECT_EQ(played.counter, 5U);
@@ -130,7 +130,7 @@ TEST(RecordedFrames, StampsAreAsRecorded) {
 }
 
 TEST(RecordedFrames, ABackendStampOfAnotherTimeIsNone) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   FrameEvent without = frame(0, 5, 10'000);
   without.record.backend = HostTime{};
   const std::string path = folder_of(folder, {without});
@@ -139,7 +139,7 @@ TEST(RecordedFrames, ABackendStampOfAnotherTimeIsNone) {
 }
 
 TEST(RecordedFrames, ACaptureIsChosenByNameAndSeed) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path = folder_of(folder, {frame(0, 0, 1)}, {"both", "ntp"});
   const auto counter = [&](const std::string& recording) {
     return load_played_cameras(recording, {recorded("left", recording)})[0]->frames[0].counter;
@@ -155,7 +155,7 @@ TEST(RecordedFrames, ACaptureIsChosenByNameAndSeed) {
 }
 
 TEST(RecordedFrames, BadRecordingsAreOneClearError) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const auto load = [](const std::string& path, const std::string& camera = "") {
     return load_played_cameras(path, {recorded("left", path, camera)});
   };
@@ -176,14 +176,14 @@ TEST(RecordedFrames, BadRecordingsAreOneClearError) {
 }
 
 TEST(RecordedFrames, FramesWithAndWithoutTruthDoNotMix) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string path = folder_of(folder, {frame(0, 0, 1), true_frame(0, 1, 0, 10, 20)});
   EXPECT_THAT([&] { load_played_cameras(path, {recorded("left", path)}); },
               ThrowsMessage<CameraError>(HasSubstr("with and without truth")));
 }
 
 TEST(RecordedFrames, ACsvsDepthIsPlayedElseItsFirstInfrared) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv = folder.write(
       "a.csv", std::string(kHeader) +
                    "Infrared,1,10,10,20,both,h\nDepth,0,20,10,21,both,h\nColor,0,30,10,22,both,h\n"
@@ -199,7 +199,7 @@ TEST(RecordedFrames, ACsvsDepthIsPlayedElseItsFirstInfrared) {
 }
 
 TEST(RecordedFrames, AStampBeyondTheRegisterIsWrapped) {
-  const FilledFolder folder;
+  const ScratchFolder folder;
   const std::string csv =
       folder.write("a.csv", std::string(kHeader) + "Depth,0,1,4294968.296,20,a,h\n");
   EXPECT_EQ(load_played_cameras(csv, {recorded("a", csv)})[0]->frames[0].sensor, DeviceStamp{1000});

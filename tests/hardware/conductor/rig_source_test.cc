@@ -71,7 +71,7 @@ TEST(RigSource, RecordsAllFramesOfAllHostsInOrder) {
     EXPECT_GE(outcome.frames(camera), 23U);
     EXPECT_EQ(outcome.frames(camera), rig.frames_delivered(camera));
   }
-  HostTime last = HostTime::min();
+  HostTime last = HostTime::min();  // and there are frames, as counted above
   for (const RecordingEvent& event : outcome.recording.events()) {
     const auto* frame = std::get_if<FrameEvent>(&event);
     if (frame == nullptr) continue;

@@ -3,10 +3,11 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -15,12 +16,6 @@ using testing::HasSubstr;
 
 class SecretKeyFile : public testing::Test {
  protected:
-  SecretKeyFile() {
-    std::string name = (std::filesystem::temp_directory_path() / "simbench_keys_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~SecretKeyFile() override { std::filesystem::remove_all(folder_); }
-
   std::string path(const std::string& name = "rig.key") const { return folder_ / name; }
   void write(const std::string& text, mode_t mode = 0600) const {
     std::ofstream(path()) << text;
@@ -36,7 +31,7 @@ class SecretKeyFile : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  const ScratchFolder folder_;
 };
 
 TEST_F(SecretKeyFile, IsReadAsItWasWritten) {

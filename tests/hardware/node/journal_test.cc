@@ -15,6 +15,7 @@
 
 #include "hardware/node/protocol.h"
 #include "recording/event_text.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -38,12 +39,6 @@ std::string line(std::uint32_t counter) { return to_line(frame(counter)) + "\n";
 
 class JournalTest : public testing::Test {
  protected:
-  JournalTest() {
-    std::string made = (fs::temp_directory_path() / "simbench_journal_XXXXXX").string();
-    root_ = mkdtemp(made.data());
-  }
-  ~JournalTest() override { fs::remove_all(root_); }
-
   std::string folder() const { return root_ / "journals"; }
   std::string path(const std::string& session = kSession) const {
     return folder() + "/" + session + ".csv";
@@ -58,7 +53,7 @@ class JournalTest : public testing::Test {
   }
 
   boost::asio::io_context context_;
-  fs::path root_;
+  const ScratchFolder root_;
 };
 
 TEST_F(JournalTest, HasTheLinesOfEventsAndNotesInOrder) {

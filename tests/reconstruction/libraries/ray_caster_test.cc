@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reconstruction/primitives.h"
+#include "tests/nonempty.h"
 
 namespace simbench::reconstruction {
 namespace {
@@ -90,7 +91,7 @@ TEST(RayCaster, TheNearestPartHidesTheOthersAndPosesCanChange) {
 TEST(RayCaster, SeesNothingOfWhatIsBehindOrEmpty) {
   RayCaster caster({make_sphere(0.5, kFine), TriangleMesh{}});
   caster.pose({shifted(0, 0, -2), shifted(0, 0, 2)});
-  for (const float depth : caster.depth(kCamera, Eigen::Isometry3d::Identity()).depth_m) {
+  for (const float depth : nonempty(caster.depth(kCamera, Eigen::Isometry3d::Identity()).depth_m)) {
     ASSERT_EQ(depth, 0);
   }
 }

@@ -1,18 +1,17 @@
 #include "reports/archive/baseline.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/text/output_folder.h"
 #include "scenarios/loader.h"
+#include "tests/nonempty.h"
 #include "tests/reports/sample_archive.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -25,21 +24,8 @@ using testing::ThrowsMessage;
 
 class BaselineFile : public testing::Test {
  protected:
-  BaselineFile() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("simbench_baseline_") + test->name() + "_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directory(folder_);
-    path_ = (folder_ / "b.json").string();
-  }
-  ~BaselineFile() override { fs::remove_all(folder_); }
-
-  std::string content() const {
-    std::ifstream in(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void overwrite(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+  std::string content() const { return folder_.content("b.json"); }
+  void overwrite(const std::string& text) const { folder_.write("b.json", text); }
   void edit(const std::string& what, const std::string& by) const {
     std::string text = content();
     const std::size_t at = text.find(what);
@@ -50,8 +36,8 @@ class BaselineFile : public testing::Test {
     return [this] { read_baseline(path_); };
   }
 
-  fs::path folder_;
-  std::string path_;
+  const ScratchFolder folder_;
+  const std::string path_ = folder_ / "b.json";
 };
 
 TEST_F(BaselineFile, ReadsWhatItWrote) {
@@ -72,8 +58,7 @@ TEST_F(BaselineFile, ReadsWhatItWrote) {
   EXPECT_TRUE(std::isnan(amd[1]));
   EXPECT_EQ(amd[2], 0);
   EXPECT_EQ(read.margins[0].relative, evaluation::metric("amd_ms").judged->margin.relative);
-  const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
-  EXPECT_EQ(files, 1) << "a temporary file is left";
+  EXPECT_THAT(folder_.names(), ElementsAre("b.json")) << "no temporary file is left";
 }
 
 TEST_F(BaselineFile, ALinePerMetricAndTwelveDigits) {
@@ -139,17 +124,18 @@ TEST_F(BaselineFile, NeedsTheScenario) {
 
 TEST_F(BaselineFile, WhereNothingCanBeWrittenNothingIsLeft) {
   const Baseline baseline = make_baseline(sample_archive("a"));
-  EXPECT_THROW(write_baseline(baseline, (folder_ / "no" / "b.json").string()), OutputError);
-  EXPECT_THROW(write_baseline(baseline, folder_.string()), OutputError);
+  EXPECT_THROW(write_baseline(baseline, folder_ / "no/b.json"), OutputError);
+  EXPECT_THROW(write_baseline(baseline, folder_.path().string()), OutputError);
   EXPECT_THROW(write_baseline(baseline, "/dev/null"), OutputError);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(folder_.names().empty());
 }
 
 // Each is of the scenario it is named after, as that is now: else tools/check could not hold a
 // build to it.
 TEST(CommittedBaselines, FitTheirScenarios) {
   int count = 0;
-  for (const auto& entry : fs::directory_iterator(SIMBENCH_SOURCE_DIR "/reports/baselines")) {
+  for (const auto& entry :
+       nonempty(fs::directory_iterator(SIMBENCH_SOURCE_DIR "/reports/baselines"))) {
     const Baseline baseline = read_baseline(entry.path().string());
     EXPECT_EQ(baseline.scenario, entry.path().stem().string());
     EXPECT_EQ(seeds_text(baseline.seeds), "1-32");

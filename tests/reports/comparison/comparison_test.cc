@@ -9,6 +9,7 @@
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/comparison/comparison_words.h"
 #include "scenarios/loader.h"
+#include "tests/nonempty.h"
 #include "tests/reports/sample_archive.h"
 
 namespace simbench::reports {
@@ -44,7 +45,7 @@ TEST(CompareArchives, TheSameArchiveTwiceShowsNoDifference) {
   const Comparison c = compare_archives(a, a, {});
   ASSERT_EQ(c.pipelines.size(), 2U);
   for (const ComparedPipeline& pipeline : c.pipelines) {
-    for (const auto& metric : pipeline.metrics) {
+    for (const auto& metric : nonempty(pipeline.metrics)) {
       EXPECT_EQ(metric.verdict, Verdict::kNoDifferenceSeen);
       EXPECT_EQ(metric.pairs, 32U);
     }

@@ -7,12 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
 #include "reports/figures/figure_csv.h"
 #include "reports/text/output_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -60,22 +60,11 @@ Figure photographs() {
 
 class GnuplotTest : public testing::Test {
  protected:
-  GnuplotTest() : folder_(fs::temp_directory_path() / ("gnuplot_" + std::to_string(getpid()))) {
-    fs::create_directory(folder_);
-  }
-  ~GnuplotTest() override { fs::remove_all(folder_); }
+  std::string file(const std::string& name) const { return folder_ / name; }
+  std::string content(const std::string& name) const { return folder_.content(name); }
+  std::size_t files() const { return folder_.names().size(); }
 
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::string content(const std::string& name) const {
-    std::ifstream in(folder_ / name);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
+  const ScratchFolder folder_;
 };
 
 TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
@@ -117,7 +106,7 @@ TEST_F(GnuplotTest, AFigureOfConstantsAndNothingElseIsDrawn) {
 
 TEST_F(GnuplotTest, WithoutGnuplotNothingIsWrittenAndTheMessageSaysWhatToInstall) {
   const std::string path = std::getenv("PATH");
-  setenv("PATH", folder_.c_str(), 1);
+  setenv("PATH", folder_.path().c_str(), 1);
   std::string message;
   try {
     draw(sample(), PlotFormat::kSvg, file("x.svg"));
@@ -130,10 +119,10 @@ TEST_F(GnuplotTest, WithoutGnuplotNothingIsWrittenAndTheMessageSaysWhatToInstall
 }
 
 TEST_F(GnuplotTest, WhatGnuplotRefusesLeavesNothingBehind) {
-  std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\necho 'line 7: no' >&2\nexit 1\n";
+  folder_.write("gnuplot", "#!/bin/sh\necho 'line 7: no' >&2\nexit 1\n");
   fs::permissions(folder_ / "gnuplot", fs::perms::owner_all);
   const std::string path = std::getenv("PATH");
-  setenv("PATH", (folder_.string() + ":" + path).c_str(), 1);
+  setenv("PATH", (folder_.path().string() + ":" + path).c_str(), 1);
   std::string message;
   try {
     draw(sample(), PlotFormat::kSvg, file("x.svg"));

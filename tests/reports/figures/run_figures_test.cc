@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/nonempty.h"
 #include "tests/reports/figures/hand_made_run.h"
 
 namespace simbench::reports {
@@ -113,7 +114,7 @@ TEST(RunFiguresTest, GatheringTellsWhatBecameOfEveryFrame) {
   std::vector<std::pair<double, double>> left_over;
   std::vector<std::pair<double, double>> dropped;
   int lines = 0;
-  for (const FigureSeries& series : figure.panels[0].series) {
+  for (const FigureSeries& series : nonempty(figure.panels[0].series)) {
     if (series.mark == Mark::kLine) {
       ++lines;
       EXPECT_THAT(series.x, ElementsAre(2.5, 10.5));
@@ -159,7 +160,7 @@ TEST(RunFiguresTest, ARunWithoutFramesSaysSo) {
   RunDetail run = hand_made_run({0, 1}, 1);
   for (evaluation::CameraDetail& camera : run.cameras) camera.frames.clear();
   run.sets.clear();
-  for (const Figure& figure : run_figures(run)) {
+  for (const Figure& figure : nonempty(run_figures(run))) {
     EXPECT_FALSE(figure.absent.empty()) << figure.id;
     EXPECT_THAT(figure.panels, IsEmpty()) << figure.id;
   }

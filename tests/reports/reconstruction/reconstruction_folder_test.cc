@@ -1,14 +1,13 @@
 #include "reports/reconstruction/reconstruction_folder.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tests/reports/sample_reconstruction.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -29,16 +28,6 @@ scenarios::Scenario scenario_with(const std::vector<std::string>& pipelines) {
 }
 
 class ReconstructionFolderTest : public testing::Test {
- public:
-  ReconstructionFolderTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root_ = fs::temp_directory_path() /
-            (std::string("simbench_") + test->name() + "_" + std::to_string(getpid()));
-    fs::remove_all(root_);
-    fs::create_directory(root_);
-  }
-  ~ReconstructionFolderTest() override { fs::remove_all(root_); }
-
  protected:
   std::string write() const {
     auto results = sample_reconstruction();
@@ -52,27 +41,17 @@ class ReconstructionFolderTest : public testing::Test {
     return folder.write(results,
                         {.command = {"simbench", "reconstruct"}, .started = {}, .finished = {}});
   }
-  std::string path() const { return (root_ / "out").string(); }
-  std::string content(const std::string& name) const {
-    std::ifstream in(root_ / "out" / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  static std::vector<std::string> names_in(const fs::path& folder) {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      names.push_back(entry.path().filename());
-    }
-    return names;
-  }
+  std::string path() const { return root_ / "out"; }
+  std::string content(const std::string& name) const { return root_.content("out/" + name); }
 
-  fs::path root_;
+  const ScratchFolder root_;
 };
 
 TEST_F(ReconstructionFolderTest, HoldsEverythingAndIsReplacedAsAWhole) {
   for (int i = 0; i < 2; ++i) {  // the second time over the first
     const std::string not_drawn = write();
-    EXPECT_THAT(names_in(root_), ElementsAre("out"));
-    EXPECT_THAT(names_in(root_ / "out"),
+    EXPECT_THAT(root_.names(), ElementsAre("out"));
+    EXPECT_THAT(root_.names("out"),
                 IsSupersetOf({"manifest.json", "scenario.json", "table.txt", "results.json",
                               "oracle.ply", "oracle.png", "curve.csv", "report.html"}));
     EXPECT_NE(fs::exists(root_ / "out/curve.svg"), !not_drawn.empty());
@@ -94,7 +73,7 @@ TEST_F(ReconstructionFolderTest, LeavesNothingWithoutResults) {
     mesh.ply = "ply\n";
     folder.keep(mesh);
   }
-  EXPECT_THAT(names_in(root_), ElementsAre());
+  EXPECT_THAT(root_.names(), ElementsAre());
 }
 
 TEST_F(ReconstructionFolderTest, AFolderWithOtherFilesIsRefused) {

@@ -1,12 +1,9 @@
 #include "reports/rigs/measured_study.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 
@@ -14,6 +11,7 @@
 #include "reports/text/output_folder.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -45,13 +43,9 @@ MeasuredStudy sample_study() {
 class MeasuredStudyTest : public testing::Test {
  protected:
   MeasuredStudyTest() { write_measured_study(path_, sample_study()); }
-  ~MeasuredStudyTest() override { std::filesystem::remove(path_); }
 
-  std::string content() const {
-    std::ifstream in(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+  std::string content() const { return folder_.content("study.json"); }
+  void write(const std::string& text) const { folder_.write("study.json", text); }
   void edit(const std::string& from, const std::string& to) const {
     std::string text = content();
     const std::size_t at = text.find(from);
@@ -67,9 +61,8 @@ class MeasuredStudyTest : public testing::Test {
     return "nothing";
   }
 
-  std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("measured_study_" + std::to_string(getpid()) + ".json"))
-                          .string();
+  const ScratchFolder folder_;
+  const std::string path_ = folder_ / "study.json";
 };
 
 TEST_F(MeasuredStudyTest, WhatIsWrittenIsRead) {

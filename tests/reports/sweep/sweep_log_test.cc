@@ -1,15 +1,13 @@
 #include "reports/sweep/sweep_log.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 
 #include "reports/text/output_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -21,23 +19,9 @@ constexpr const char* kIdentity = "this sweep";
 
 class SweepLogTest : public testing::Test {
  protected:
-  SweepLogTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("simbench_log_") + test->name() + "_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directory(folder_);
-  }
-  ~SweepLogTest() override { fs::remove_all(folder_); }
-
   fs::path path() const { return folder_ / "runs.log"; }
-  std::string content() const {
-    std::ifstream in(path(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void set_content(const std::string& text) const {
-    std::ofstream(path(), std::ios::binary) << text;
-  }
+  std::string content() const { return folder_.content("runs.log"); }
+  void set_content(const std::string& text) const { folder_.write("runs.log", text); }
   // Runs 0 to kRuns - 1, the last one first.
   void write_all_runs() const {
     SweepLog log(path(), kIdentity, kRuns);
@@ -46,7 +30,7 @@ class SweepLogTest : public testing::Test {
   static std::string text_of(std::size_t run) { return std::to_string(run) + ".5,x;1,2"; }
 
  private:
-  fs::path folder_;
+  const ScratchFolder folder_;
 };
 
 TEST_F(SweepLogTest, KeepsWhatWasAppended) {

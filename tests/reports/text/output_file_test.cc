@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "reports/text/output_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -17,20 +17,9 @@ using testing::HasSubstr;
 
 class OutputFileTest : public testing::Test {
  protected:
-  OutputFileTest() {
-    std::string pattern = (fs::temp_directory_path() / "output_file.XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~OutputFileTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  static std::string content(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  std::ptrdiff_t files() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
-  }
+  std::string path(const std::string& name) const { return folder_ / name; }
+  std::string content(const std::string& name) const { return folder_.content(name); }
+  std::size_t files() const { return folder_.names().size(); }
   static std::string problem(const std::string& path) {
     try {
       const OutputFile file(path);
@@ -41,7 +30,7 @@ class OutputFileTest : public testing::Test {
   }
 
  private:
-  fs::path folder_;
+  const ScratchFolder folder_;
 };
 
 TEST_F(OutputFileTest, AppearsWhole) {
@@ -49,24 +38,24 @@ TEST_F(OutputFileTest, AppearsWhole) {
   file.write("<p>");
   EXPECT_FALSE(fs::exists(path("a.html")));
   file.publish();
-  EXPECT_EQ(content(path("a.html")), "<p>");
-  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(content("a.html"), "<p>");
+  EXPECT_EQ(files(), 1U);
 }
 
 TEST_F(OutputFileTest, NothingIsLeftOfWhatWasNotWritten) {
   { const OutputFile file(path("a.html")); }
-  EXPECT_EQ(files(), 0);
+  EXPECT_EQ(files(), 0U);
 }
 
 TEST_F(OutputFileTest, AnEarlierFileStaysUntilThenAndIsReplaced) {
   std::ofstream(path("a.html")) << "earlier";
   {
     const OutputFile file(path("a.html"));
-    EXPECT_EQ(content(path("a.html")), "earlier");
+    EXPECT_EQ(content("a.html"), "earlier");
   }
-  EXPECT_EQ(content(path("a.html")), "earlier");
+  EXPECT_EQ(content("a.html"), "earlier");
   write_file(path("a.html"), "later");
-  EXPECT_EQ(content(path("a.html")), "later");
+  EXPECT_EQ(content("a.html"), "later");
 }
 
 TEST_F(OutputFileTest, ALinkStaysALink) {
@@ -74,7 +63,7 @@ TEST_F(OutputFileTest, ALinkStaysALink) {
   fs::create_symlink("real.html", path("link.html"));
   write_file(path("link.html"), "later");
   EXPECT_TRUE(fs::is_symlink(path("link.html")));
-  EXPECT_EQ(content(path("real.html")), "later");
+  EXPECT_EQ(content("real.html"), "later");
 }
 
 TEST_F(OutputFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {

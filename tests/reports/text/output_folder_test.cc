@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <string>
+
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -16,32 +16,7 @@ using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
 class OutputFolderTest : public testing::Test {
- public:
-  OutputFolderTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root_ = fs::temp_directory_path() /
-            (std::string("simbench_") + test->name() + "_" + std::to_string(getpid()));
-    fs::remove_all(root_);
-    fs::create_directory(root_);
-  }
-  ~OutputFolderTest() override { fs::remove_all(root_); }
-
  protected:
-  static std::vector<std::string> names_in(const fs::path& folder) {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      names.push_back(entry.path().filename());
-    }
-    return names;
-  }
-  static std::string content(const fs::path& file) {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  static void write(const fs::path& file, const std::string& text) {
-    fs::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-  }
   static std::string refusal(const fs::path& folder) {
     try {
       const OutputFolder output(folder);
@@ -51,7 +26,7 @@ class OutputFolderTest : public testing::Test {
     return "accepted";
   }
 
-  fs::path root_;
+  const ScratchFolder root_;
 };
 
 TEST_F(OutputFolderTest, AppearsWhenPublished) {
@@ -60,9 +35,9 @@ TEST_F(OutputFolderTest, AppearsWhenPublished) {
   output.file("frames.csv") << "a,b\n";
   EXPECT_FALSE(fs::exists(root_ / "run"));
   output.publish();
-  EXPECT_THAT(names_in(root_), UnorderedElementsAre("run"));
-  EXPECT_THAT(names_in(root_ / "run"), UnorderedElementsAre("manifest.json", "frames.csv"));
-  EXPECT_EQ(content(root_ / "run/frames.csv"), "a,b\n");
+  EXPECT_THAT(root_.names(), UnorderedElementsAre("run"));
+  EXPECT_THAT(root_.names("run"), UnorderedElementsAre("manifest.json", "frames.csv"));
+  EXPECT_EQ(root_.content("run/frames.csv"), "a,b\n");
 }
 
 TEST_F(OutputFolderTest, LeavesNothingWhenNotPublished) {
@@ -70,30 +45,30 @@ TEST_F(OutputFolderTest, LeavesNothingWhenNotPublished) {
     OutputFolder output(root_ / "run");
     output.file("manifest.json") << "{}";
   }
-  EXPECT_THAT(names_in(root_), testing::IsEmpty());
+  EXPECT_THAT(root_.names(), testing::IsEmpty());
 }
 
 TEST_F(OutputFolderTest, ASlashAtTheEndMeansTheSame) {
-  OutputFolder output((root_ / "run").string() + "/");
+  OutputFolder output(root_ / "run/");
   output.file("manifest.json") << "{}";
   output.publish();
-  EXPECT_THAT(names_in(root_), UnorderedElementsAre("run"));
+  EXPECT_THAT(root_.names(), UnorderedElementsAre("run"));
 }
 
 TEST_F(OutputFolderTest, ReplacesAnEarlierResult) {
-  write(root_ / "run/manifest.json", "old");
-  write(root_ / "run/hosts.csv", "old");
+  root_.write("run/manifest.json", "old");
+  root_.write("run/hosts.csv", "old");
   {
     OutputFolder unfinished(root_ / "run");
     unfinished.file("manifest.json") << "unfinished";
   }
-  EXPECT_EQ(content(root_ / "run/manifest.json"), "old");
+  EXPECT_EQ(root_.content("run/manifest.json"), "old");
   OutputFolder output(root_ / "run");
   output.file("manifest.json") << "new";
   output.publish();
-  EXPECT_EQ(content(root_ / "run/manifest.json"), "new");
-  EXPECT_THAT(names_in(root_ / "run"), UnorderedElementsAre("manifest.json"));
-  EXPECT_THAT(names_in(root_), UnorderedElementsAre("run"));
+  EXPECT_EQ(root_.content("run/manifest.json"), "new");
+  EXPECT_THAT(root_.names("run"), UnorderedElementsAre("manifest.json"));
+  EXPECT_THAT(root_.names(), UnorderedElementsAre("run"));
 }
 
 TEST_F(OutputFolderTest, ReplacesAnEmptyFolder) {
@@ -101,20 +76,20 @@ TEST_F(OutputFolderTest, ReplacesAnEmptyFolder) {
   OutputFolder output(root_ / "run");
   output.file("manifest.json") << "new";
   output.publish();
-  EXPECT_EQ(content(root_ / "run/manifest.json"), "new");
+  EXPECT_EQ(root_.content("run/manifest.json"), "new");
 }
 
 TEST_F(OutputFolderTest, RefusesWhatIsNotItsOwn) {
-  write(root_ / "mine/notes.txt", "mine");
-  write(root_ / "mine/manifest.json", "{}");
+  root_.write("mine/notes.txt", "mine");
+  root_.write("mine/manifest.json", "{}");
   EXPECT_THAT(refusal(root_ / "mine"), HasSubstr("holds other files (notes.txt)"));
-  write(root_ / "data/frames.csv", "mine");
+  root_.write("data/frames.csv", "mine");
   EXPECT_THAT(refusal(root_ / "data"), HasSubstr("no earlier result"));
-  write(root_ / "file", "mine");
+  root_.write("file", "mine");
   EXPECT_THAT(refusal(root_ / "file"), HasSubstr("is a file"));
   EXPECT_THAT(refusal(root_ / "no/such"), HasSubstr("make it first"));
   EXPECT_THAT(refusal("/"), HasSubstr("root folder"));
-  EXPECT_THAT(names_in(root_), UnorderedElementsAre("mine", "data", "file"));
+  EXPECT_THAT(root_.names(), UnorderedElementsAre("mine", "data", "file"));
 }
 
 TEST_F(OutputFolderTest, RefusesWhereItMayNotWrite) {

@@ -12,6 +12,7 @@
 #include "algorithms/host_sync/ntp/ntp_packet.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -40,7 +41,7 @@ void connect(ScriptWorld& world) {
 }
 
 TEST(NtpRegistration, EveryMemberIsAService) {
-  for (const HostSyncEntry& entry : ntp_host_syncs()) {
+  for (const HostSyncEntry& entry : nonempty(ntp_host_syncs())) {
     const auto algorithm = entry.make(check_parameters(entry.info.parameters, {}));
     EXPECT_TRUE(algorithm->warm_up()) << entry.info.name;
     const auto short_one =
@@ -104,7 +105,7 @@ Bytes noise(boost::random::mt19937& engine) {
 }
 
 TEST(NtpFamilyFuzz, NoisePacketsStopNoService) {
-  for (const HostSyncEntry& entry : ntp_host_syncs()) {
+  for (const HostSyncEntry& entry : nonempty(ntp_host_syncs())) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       boost::random::mt19937 engine(seed);
       ScriptWorld world(3);
@@ -119,7 +120,7 @@ TEST(NtpFamilyFuzz, NoisePacketsStopNoService) {
         });
       }
       world.run(*algorithm, from_ms(3600e3));
-      for (const PeerId slave : world.slaves()) {
+      for (const PeerId slave : nonempty(world.slaves())) {
         EXPECT_LE(world.host(slave).outcomes.size(), 1U) << entry.info.name << ", seed " << seed;
       }
       EXPECT_GE(world.unfinished(), 1U) << "the server never ends";

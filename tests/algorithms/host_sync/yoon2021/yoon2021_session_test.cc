@@ -10,6 +10,7 @@
 #include "algorithms/host_sync/yoon2021/yoon2021.h"
 #include "tests/algorithms/host_sync/script_host.h"
 #include "tests/algorithms/host_sync/yoon2021/yoon2021_rig.h"
+#include "tests/nonempty.h"
 
 namespace simbench {
 namespace {
@@ -189,7 +190,7 @@ TEST(Yoon2021Session, ParallelSessionsServeEverySlaveOnceAndSooner) {
     world.run(algorithm);
     EXPECT_EQ(world.unfinished(), 0U);
     std::vector<PeerId> served;
-    for (const SyncOutcome& outcome : world.host(0).outcomes) {
+    for (const SyncOutcome& outcome : nonempty(world.host(0).outcomes)) {
       EXPECT_TRUE(outcome.synchronised);
       served.push_back(outcome.slave);
     }
