@@ -1,8 +1,9 @@
 # Citations of the project's own pages: prints FILE:LINE: what does not exist. For tools/lint, which
-# gives it all pages (*.md) and sources, and all folders as `known`. A citation is the path of a page
-# below docs/, or a link from one page to another, and may go on with sections: "section 2", "(sections 1 and 2)", "sections 5
-# to 7". A page's sections are its headings "## 2 Title". Citations may go on on the next line.
-# Sources that a page of docs/ or CONTRIBUTING names are there too: `sim/camera/device_clock.h`.
+# gives it all pages (*.md) and sources, and all folders as `known`. A citation is the path of a
+# page below docs/, or a link from one page to another, and may go on with sections: "section 2",
+# "(sections 1 and 2)", "sections 5 to 7", also on the next line. A page's sections are its headings
+# "## 2 Title". Sources that a page of docs/ or CONTRIBUTING names, as `sim/camera/device_clock.h`,
+# are checked too.
 {
   line = $0
   gsub(/^[ \t]*(\/\/|#|"|-|\*)?[ \t]*|"?[ \t]*$/, "", line)
