@@ -153,7 +153,7 @@ struct Link {
   End ends[2];
 };
 
-scenarios::Network rough_network(const char* kind) {
+scenarios::Network rough_network(SwitchClockKind kind) {
   scenarios::Network network = with_switch(kind);
   network.latency_fixed_ms = 0.5;
   network.latency_exponential_ms = 0.3;
@@ -171,7 +171,7 @@ scenarios::Network rough_network(const char* kind) {
 }
 
 TEST(SwitchClock, OnlyTheCableIsLeftAfterTheCorrection) {
-  Link link(rough_network("transparent"));
+  Link link(rough_network(SwitchClockKind::kTransparent));
   for (int i = 0; i < 200; ++i) {
     for (End& end : link.ends) {
       link.engine.call_at(at_ms(i), [&end] { end.send(ptp(0)); });
@@ -195,21 +195,21 @@ TEST(SwitchClock, OnlyTheCableIsLeftAfterTheCorrection) {
 }
 
 TEST(SwitchClock, TouchesNothingElse) {
-  Link link(rough_network("transparent"));
+  Link link(rough_network(SwitchClockKind::kTransparent));
   link.ends[0].send(ptp(8));
   link.ends[0].send(Bytes(44, std::byte{0xAB}));
   link.engine.run();
   EXPECT_EQ(link.ends[1].arrived.at(0).bytes, ptp(8));
   EXPECT_EQ(link.ends[1].arrived.at(1).bytes, Bytes(44, std::byte{0xAB}));
-  Link stream(rough_network("transparent"), Transport::kStream);
+  Link stream(rough_network(SwitchClockKind::kTransparent), Transport::kStream);
   stream.ends[0].send(ptp(0));
   stream.engine.run();
   EXPECT_EQ(stream.ends[1].arrived.at(0).bytes, ptp(0));
 }
 
 TEST(SwitchClock, ChangesNoTiming) {
-  Link knowing(rough_network("boundary"));
-  Link plain(rough_network("none"));
+  Link knowing(rough_network(SwitchClockKind::kBoundary));
+  Link plain(rough_network(SwitchClockKind::kNone));
   for (Link* link : {&knowing, &plain}) {
     for (int i = 0; i < 100; ++i) {
       link->engine.call_at(at_ms(i), [link] { link->ends[0].send(ptp(0)); });
