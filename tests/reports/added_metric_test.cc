@@ -14,7 +14,9 @@
 #include "reports/comparison/gate.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
+#include "reports/results/results_document.h"
 #include "reports/sweep/sweep_report.h"
+#include "reports/text/block.h"
 #include "reports/text/output_file.h"
 #include "tests/reports/sample_archive.h"
 
@@ -23,6 +25,7 @@ namespace {
 
 using evaluation::MetricValues;
 using evaluation::Series;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -82,6 +85,14 @@ TEST_F(AddedMetric, IsInCsv) {
   const std::string text = csv(archive().results);
   EXPECT_THAT(text.substr(0, text.find('\n')), HasSubstr(",trend_ms,trend_ms_p05,trend_ms_p95,"));
   EXPECT_THAT(text, HasSubstr(",16.5,2.55,30.45,"));
+}
+
+TEST_F(AddedMetric, IsInTheTablesOfTerminalMarkdownAndPage) {
+  const Document document = results_document(archive().results, "");
+  EXPECT_THAT(plain(document), AllOf(HasSubstr("trend of"), HasSubstr("33.000"),
+                                     HasSubstr("trend: how much AMD grows")));
+  EXPECT_THAT(markdown(document), AllOf(HasSubstr("trend of AMD ms"), HasSubstr("33.000")));
+  EXPECT_THAT(html(document.blocks), AllOf(HasSubstr("trend of"), HasSubstr("33.000")));
 }
 
 TEST_F(AddedMetric, IsInTheSweep) {
