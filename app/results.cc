@@ -1,20 +1,24 @@
-#include "cli/sweep_results.h"
+#include "app/results.h"
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <optional>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
-#include "cli/messages.h"
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/results/csv.h"
+#include "reports/results/json.h"
+#include "reports/results/leaderboard_report.h"
+#include "reports/results/results_document.h"
 #include "reports/sweep/sweep_figure.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_folder.h"
 #include "reports/text/plain_text.h"
-#include "scenarios/study.h"
 
-namespace simbench::cli {
+namespace simbench::app {
 namespace {
 
 using evaluation::ResponseRow;
@@ -58,42 +62,63 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
   return reports::response_figure(plan, rows);
 }
 
-// Without a picture a sweep is complete all the same.
-void draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
+// Without a picture a sweep is complete all the same: returns why it was not drawn.
+std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
   constexpr const char* kName = "sweep.svg";
   folder.remove(kName);
-  if (figure.panels.empty()) return;
+  if (figure.panels.empty()) return "";
   std::string svg;
   try {
     svg = reports::drawn_svg(figure);
   } catch (const reports::OutputError& error) {
-    print_warnings({fmt::format("{} was not drawn: {}", kName, error.what())});
-    return;
+    return fmt::format("{} was not drawn: {}", kName, error.what());
   }
   folder.write(kName, svg);
+  return "";
 }
 
 }  // namespace
 
-std::string write_sweep_results(const SweepPlan& plan,
-                                const std::vector<scenarios::StudyTable>& tables,
-                                reports::SweepFolder& folder) {
+std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
+                         const std::string& format, const std::vector<reports::Block>& more) {
+  const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
+  if (format == "json") {
+    return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
+  }
+  if (format == "csv") return reports::csv(results);
+  reports::Document document = leaderboard
+                                   ? reports::leaderboard_document(results, scenario.summary)
+                                   : reports::results_document(results, scenario.summary);
+  document.blocks.insert(document.blocks.end(), more.begin(), more.end());
+  return format == "markdown" ? markdown(document) : plain(document);
+}
+
+RunArchive::RunArchive(std::vector<std::string> command) {
+  provenance_.command = std::move(command);
+  provenance_.started = std::chrono::system_clock::now();
+}
+
+void RunArchive::open(const std::string& folder) {
+  if (!folder.empty()) folder_ = std::make_unique<reports::OutputFolder>(folder);
+}
+
+bool RunArchive::write(const evaluation::Results& results, const scenarios::Scenario& scenario) {
+  if (!folder_) return false;
+  provenance_.finished = std::chrono::system_clock::now();
+  reports::write_archive(*folder_, results, scenario, provenance_);
+  return true;
+}
+
+SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTable>& tables,
+                              reports::SweepFolder& folder) {
   const std::vector<SweepScore> scores = scores_in(folder.log(), plan);
   const std::vector<ResponseRow> rows = evaluation::response(plan, scores);
   folder.write("sweep.csv", reports::sweep_csv(plan, scores));
   folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
   folder.write("sweep.txt", text_for_file(plan, rows, tables));
-  draw_figure(figure_of(plan, rows, tables.front()), folder);
+  std::string not_drawn = draw_figure(figure_of(plan, rows, tables.front()), folder);
   folder.log().put_in_order();
-  return text_of(plan, rows, tables);
+  return {.tables = text_of(plan, rows, tables), .not_drawn = std::move(not_drawn)};
 }
 
-std::string study_list() {
-  std::string text = "studies\n";
-  for (const scenarios::Study& study : scenarios::studies()) {
-    text += fmt::format("  {}\n{}", study.name, reports::wrapped(study.summary, 6));
-  }
-  return text;
-}
-
-}  // namespace simbench::cli
+}  // namespace simbench::app

@@ -1,13 +1,18 @@
-#include "cli/mpi_launch.h"
+#include "cli/process.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
+#include <system_error>
 
-#include "cli/sibling_program.h"
 #include "scenarios/loader.h"
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace simbench::cli {
 namespace {
@@ -32,6 +37,29 @@ constexpr std::initializer_list<Launcher> kLaunchers = {
     {"SLURM_NTASKS", "PMIX_RANK"}};
 
 }  // namespace
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kBytes = 256 << 20;
+  mallopt(M_TRIM_THRESHOLD, kBytes);
+  mallopt(M_MMAP_THRESHOLD, kBytes);
+#endif
+}
+
+std::filesystem::path sibling_program(const std::string& name) {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+}
+
+int become_sibling(const std::string& name, std::vector<std::string> arguments) {
+  const std::string program = sibling_program(name);
+  std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  ::execv(program.c_str(), argv.data());
+  return errno;
+}
 
 std::optional<long> mpi_rank() {
   for (const Launcher& launcher : kLaunchers) {

@@ -1,4 +1,4 @@
-#include "cli/terminal.h"
+#include "cli/messages.h"
 
 #include <gtest/gtest.h>
 
