@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/interrupt.h"
+#include "app/simulated.h"
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
@@ -18,7 +18,6 @@
 #include "reports/figures/run_figures.h"
 #include "reports/figures/seed_figures.h"
 #include "scenarios/loader.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::app {
 namespace {
@@ -95,9 +94,8 @@ class FigureMaker {
     for (const PipelineChoice& choice : choices) {
       const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
                                                    .seeds = options_.budget_seeds};
-      const auto world = [](const Scenario& of) { return interruptible(sim::make_simulation(of)); };
       add({reports::budget_figure(
-          evaluation::error_budget(scenario, choice.pipeline, world, seeds, progress_))});
+          evaluation::error_budget(scenario, choice.pipeline, simulated_world, seeds, progress_))});
     }
   }
 
@@ -133,7 +131,7 @@ class FigureMaker {
                 std::uint64_t seed) {
     std::vector<RunDetail> runs;
     for (const PipelineChoice& choice : choices) {
-      const std::unique_ptr<RecordingSource> source = interruptible(sim::make_simulation(scenario));
+      const std::unique_ptr<RecordingSource> source = simulated_world(scenario);
       RunDetail run = evaluation::run_detail(scenario, choice, seed, *source);
       if (progress_) progress_(++runs_, options_.seeds.size() * choices.size());
       if (is_the_archives(run)) runs.push_back(std::move(run));
@@ -226,7 +224,7 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
     const auto [first, last] = std::minmax_element(chosen.seeds.begin(), chosen.seeds.end());
     const std::uint64_t shown = *last - *first + 1;
     archive.results = evaluation::evaluate(
-        scenario, [&] { return interruptible(sim::make_simulation(scenario)); },
+        scenario, [&] { return simulated_world(scenario); },
         {.first_seed = *first,
          .seeds = over ? std::max(over_seeds, shown) : shown,
          .pipelines = chosen.pipelines,

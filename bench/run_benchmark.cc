@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/freed_memory.h"
+#include "cli/process.h"
 #include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"

@@ -2,37 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <memory>
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/commands/compare_command.h"
-#include "cli/commands/convert_ibl_command.h"
-#include "cli/commands/describe_command.h"
-#include "cli/commands/diagnose_command.h"
-#include "cli/commands/figure_command.h"
-#include "cli/commands/fit_command.h"
-#include "cli/commands/gate_command.h"
-#include "cli/commands/keygen_command.h"
-#include "cli/commands/list_command.h"
-#include "cli/commands/node_command.h"
-#include "cli/commands/reconstruct_command.h"
-#include "cli/commands/record_command.h"
-#include "cli/commands/relay_command.h"
-#include "cli/commands/replay_command.h"
-#include "cli/commands/report_command.h"
-#include "cli/commands/run_command.h"
-#include "cli/commands/shell_commands.h"
-#include "cli/commands/sweep_command.h"
-#include "cli/commands/trace_command.h"
-#include "cli/commands/validate_command.h"
-#include "cli/commands/validate_model_command.h"
-#include "cli/exit_status.h"
-#include "cli/help_format.h"
-#include "cli/messages.h"
-#include "cli/mpi_launch.h"
-#include "cli/terminal.h"
-#include "cli/usage_error.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/help.h"
+#include "cli/process.h"
 #include "recording/recording_folder.h"
 #include "recording/rs_csv.h"
 #include "recording/version.h"
@@ -79,39 +56,29 @@ int explain(CLI::App& app, const CLI::ParseError& error) {
   return ExitStatus::kBadInput;
 }
 
-// The one place where commands are added; the help lists them in this order and under these
-// headings, completion and man pages follow.
-void add_commands(CLI::App& app, cli::Action& action, const std::vector<std::string>& arguments,
-                  const CommandLineExtras& extras) {
-  cli::add_run_command(app, action, arguments);
-  cli::add_sweep_command(app, action, extras.farm);
-  cli::add_reconstruct_command(app, action, arguments, extras.run_reconstruction);
-  cli::group_commands(app, "Run");
-  cli::add_report_command(app, action, arguments);
-  cli::add_trace_command(app, action);
-  cli::add_figure_command(app, action);
-  cli::group_commands(app, "Look at results");
-  cli::add_compare_command(app, action);
-  cli::add_gate_command(app, action);
-  cli::group_commands(app, "Compare results");
-  cli::add_record_command(app, action);
-  cli::add_replay_command(app, action, arguments);
-  cli::add_diagnose_command(app, action);
-  cli::add_fit_command(app, action);
-  cli::add_convert_ibl_command(app, action);
-  cli::group_commands(app, "Recordings");
-  cli::add_keygen_command(app, action);
-  cli::add_node_command(app, action);
-  cli::add_validate_model_command(app, action);
-  cli::add_relay_command(app, action);
-  cli::group_commands(app, "Real rigs");
-  cli::add_list_command(app, action);
-  cli::add_describe_command(app, action);
-  cli::add_validate_command(app, action);
-  cli::group_commands(app, "Scenarios and algorithms");
-  cli::add_completion_command(app, action);
-  cli::add_manual_command(app, action);  // last: it knows those before it
-  cli::group_commands(app, "The command line itself");
+struct CommandGroup {
+  const char* heading;
+  std::vector<void (*)(cli::CommandLine&)> commands;
+};
+
+// All commands, as the help lists them.
+const std::vector<CommandGroup>& command_groups() {
+  static const std::vector<CommandGroup> groups = {
+      {"Run", {cli::add_run_command, cli::add_sweep_command, cli::add_reconstruct_command}},
+      {"Look at results",
+       {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
+      {"Compare results", {cli::add_compare_command, cli::add_gate_command}},
+      {"Recordings",
+       {cli::add_record_command, cli::add_replay_command, cli::add_diagnose_command,
+        cli::add_fit_command, cli::add_convert_ibl_command}},
+      {"Real rigs",
+       {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
+        cli::add_relay_command}},
+      {"Scenarios and algorithms",
+       {cli::add_list_command, cli::add_describe_command, cli::add_validate_command}},
+      // Last: `manual` knows those before it.
+      {"The command line itself", {cli::add_completion_command, cli::add_manual_command}}};
+  return groups;
 }
 
 int parse_and_run(const std::vector<std::string>& arguments, const CommandLineExtras& extras) {
@@ -120,9 +87,12 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
   app.require_subcommand(1);
   app.footer(kProgramExamples);
-  app.formatter(std::make_shared<cli::HelpFormat>());
-  cli::Action action;
-  add_commands(app, action, arguments, extras);
+  cli::format_help(app);
+  cli::CommandLine line{.parser = app, .arguments = arguments, .extras = extras};
+  for (const CommandGroup& group : command_groups()) {
+    for (const auto add : group.commands) add(line);
+    cli::group_commands(app, group.heading);
+  }
 
   const std::vector<std::string> all = with_default_command(arguments);
   if (const auto problem = cli::unknown_command(app, all)) {
@@ -136,7 +106,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
   } catch (const CLI::ParseError& error) {
     return explain(app, error);
   }
-  return action();
+  return line.action();
 }
 
 int bad_input(const std::exception& error) {

@@ -7,7 +7,7 @@
 //   }
 //
 // Standard output carries the result and nothing else; messages go to standard error. Never throws;
-// returns the exit status (cli/exit_status.h). One call per process: it handles SIGINT while it
+// returns the exit status (cli/messages.h). One call per process: it handles SIGINT while it
 // runs.
 #ifndef SIMBENCH_CLI_COMMAND_LINE_H_
 #define SIMBENCH_CLI_COMMAND_LINE_H_

@@ -1,8 +1,9 @@
 #include "cli/command_table.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "cli/options.h"
+#include "cli/command.h"
 
 namespace simbench::cli {
 namespace {

@@ -4,10 +4,13 @@
 #ifndef SIMBENCH_CLI_COMMAND_TABLE_H_
 #define SIMBENCH_CLI_COMMAND_TABLE_H_
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace simbench::cli {
 

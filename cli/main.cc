@@ -1,5 +1,5 @@
 #include "cli/command_line.h"
-#include "cli/freed_memory.h"
+#include "cli/process.h"
 
 int main(int argc, char** argv) {
   simbench::cli::keep_freed_memory();

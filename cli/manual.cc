@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 #include <vector>
 
 #include "recording/version.h"
@@ -111,7 +112,8 @@ using Lines = std::vector<std::string>;
 
 std::vector<Lines> paragraphs(const std::string& text) {
   std::vector<Lines> found(1);
-  for (const std::string& line : CLI::detail::split(text, '\n')) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
     if (!line.empty()) {
       found.back().push_back(line);
     } else if (!found.back().empty()) {

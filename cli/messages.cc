@@ -1,8 +1,18 @@
 #include "cli/messages.h"
 
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
 
 namespace simbench::cli {
 namespace {
@@ -19,7 +29,20 @@ void print_line(const char* kind, const std::string& text) {
   }
 }
 
+std::string_view variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
 }  // namespace
+
+void print_result(const std::string& text) {
+  std::cout << text << std::flush;
+  if (!std::cout) {
+    throw std::runtime_error(fmt::format("the result could not be written to standard output: {}",
+                                         errno ? std::strerror(errno) : "write error"));
+  }
+}
 
 void choose_message_format(const std::vector<std::string>& arguments) {
   const auto end = std::find(arguments.begin(), arguments.end(), "--");
@@ -49,5 +72,23 @@ void print_internal_error(const std::string& text) { print_line("internal error"
 std::string event_line(const Json& event) {
   return event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
+
+std::optional<std::size_t> width_of_output() {
+  const std::string_view columns = variable("COLUMNS");
+  std::size_t width = 0;
+  const char* end = columns.data() + columns.size();
+  const auto [stop, error] = std::from_chars(columns.data(), end, width);
+  if (error == std::errc() && stop == end && width >= kNarrowest) return width;
+  winsize size = {};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
+  return std::max<std::size_t>(size.ws_col, kNarrowest);
+}
+
+bool takes_escapes() {
+  const std::string_view term = variable("TERM");
+  return !term.empty() && term != "dumb";
+}
+
+bool wants_colour() { return variable("NO_COLOR").empty() && variable("CLICOLOR") != "0"; }
 
 }  // namespace simbench::cli

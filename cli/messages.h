@@ -1,5 +1,6 @@
-// What a command says beside its result, on standard error: as text for people, or, with --json, as
-// JSON lines for scripts. One object a line:
+// What a command answers: the result on standard output, the exit status, and on standard error
+// everything else, as text for people, or, with --json, as JSON lines for scripts. One object a
+// line:
 //
 //   {"event":"warning","text":"..."}      also "note"
 //   {"event":"error","text":"...","next":"simbench run --help"}    "next" where it is known
@@ -11,11 +12,26 @@
 #ifndef SIMBENCH_CLI_MESSAGES_H_
 #define SIMBENCH_CLI_MESSAGES_H_
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace simbench::cli {
+
+// What the command's exit status means; part of its interface, scripts rely on it.
+enum ExitStatus : int {
+  kOk = 0,
+  kInternalError = 1,
+  kBadInput = 2,  // of the command line, of a file, of an output folder
+  kGateFailed = 3,
+  kBaselineMissing = 4,
+  kInterrupted = 130,
+};
+
+// Writes the result to standard output. Throws std::runtime_error if that fails (a full disk).
+void print_result(const std::string& text);
 
 // True once the arguments of the command line have --json (before any "--"): so that also a message
 // about the arguments themselves is JSON.
@@ -32,6 +48,18 @@ void print_internal_error(const std::string& text);
 
 // The event as a line of JSON, ended by '\n'. Bytes that are no UTF-8 are replaced.
 std::string event_line(const nlohmann::ordered_json& event);
+
+// How wide text on standard output may be, in columns: COLUMNS if it is a number of at least
+// kNarrowest, else the width of the terminal that standard output is; std::nullopt (as wide as need
+// be) for a file or a pipe.
+inline constexpr std::size_t kNarrowest = 20;
+std::optional<std::size_t> width_of_output();
+
+// Whether a terminal takes escape sequences: TERM is set and not "dumb".
+bool takes_escapes();
+
+// Whether colour is wanted: neither NO_COLOR (no-color.org) nor CLICOLOR=0 (bixense.com/clicolors).
+bool wants_colour();
 
 }  // namespace simbench::cli
 

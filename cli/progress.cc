@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "cli/messages.h"
-#include "cli/terminal.h"
 
 namespace simbench::cli {
 namespace {
@@ -147,6 +146,12 @@ void Progress::print_line(std::uint64_t done, std::uint64_t total) {
   }
   out_ << std::flush;
   next_quarter_ = quarter + 1;
+}
+
+void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total) {
+  if (messages_are_json()) return;
+  std::cerr << fmt::format("interrupted after {} of {} {}; {}\n", done,
+                           total ? std::to_string(total) : "all", watch.unit, watch.kept);
 }
 
 }  // namespace simbench::cli

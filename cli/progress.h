@@ -1,9 +1,9 @@
-// How far the work is, on standard error.
+// How far the work is, on standard error; and how long work is run, which may be interrupted.
 //
 // On a terminal: one line with a bar and the time still to go, redrawn at most ten times a second,
 // never wider than the terminal, erased at the end. Elsewhere (a file, a log): a line at the start
 // and one at every quarter. Colour only on a terminal that has it and where it is wanted
-// (cli/terminal.h).
+// (cli/messages.h).
 //
 // With --json (cli/messages.h) JSON lines, eight of progress a second at most; "eta_s" is null
 // while nothing is done:
@@ -26,9 +26,15 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <iostream>
+#include <optional>
 #include <ostream>
 #include <string>
+
+#include "app/interrupt.h"
+#include "evaluation/run/evaluate.h"
 
 namespace simbench::cli {
 
@@ -80,6 +86,51 @@ class Progress {
   bool drawn_ = false;
   bool finished_ = false;
 };
+
+// What watched() says about its work.
+struct Watch {
+  std::string unit = "runs";                   // what it counts, in the plural
+  std::uint64_t total = 0;                     // of them; 0: known only once it has begun
+  std::string kept = "no result was written";  // what an interruption leaves
+};
+
+// After the first Ctrl-C.
+void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total);
+
+// Runs work that reports its progress and may be interrupted, the way every long command does.
+//
+// After the first Ctrl-C the work ends at its next run; then a line says how far it got, and there
+// is no result. With --json all of it is JSON lines; a command needs to do nothing for that but run
+// its work in here.
+//
+//   const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+//     return evaluation::evaluate(scenario, make_source, options, progress);
+//   });
+//   if (!results) return kInterrupted;
+//
+// `work` returns a Result (or none: an empty std::optional). Everything that it throws passes
+// through, unless it was interrupted.
+template <class Result, class Work>
+std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
+  const app::InterruptHandler handler;
+  Progress progress(std::cerr, progress_style(), watch.unit);
+  std::uint64_t finished = 0;
+  std::uint64_t all = watch.total;
+  try {
+    std::optional<Result> result = work([&](std::uint64_t done, std::uint64_t total) {
+      finished = done;
+      all = total;
+      progress.update(done, total);
+    });
+    progress.finish();
+    return result;
+  } catch (const std::exception&) {
+    if (!app::InterruptHandler::raised()) throw;
+  }
+  progress.interrupt();
+  print_interruption(watch, finished, all);
+  return std::nullopt;
+}
 
 }  // namespace simbench::cli
 

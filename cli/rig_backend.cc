@@ -6,7 +6,6 @@
 #include <iostream>
 
 #include "app/interrupt.h"
-#include "cli/options.h"
 
 namespace simbench::cli {
 namespace {
@@ -21,19 +20,14 @@ bool ask_at_terminal(const std::string& text) {
 
 }  // namespace
 
-void add_backend_options(CLI::App& command, BackendOptions& options) {
-  command
-      .add_option("--backend", options.backend,
-                  "Where: in the simulator (sim), or on a real rig whose hosts run\n"
-                  "`simbench node` (hardware). Default: sim")
-      ->check(one_of({"sim", "hardware"}));
-  command.add_option("--rig", options.rig, "The rig file (with --backend hardware)")
-      ->type_name("FILE");
-  command
-      .add_option("--key-file", options.key_file,
-                  "The key that the rig's nodes have (see simbench keygen);\n"
-                  "without one only nodes of this machine are spoken to")
-      ->type_name("FILE");
+void add_backend_options(Command& command, BackendOptions& options) {
+  command.word("--backend", "TEXT", options.backend, {"sim", "hardware"},
+               "Where: in the simulator (sim), or on a real rig whose hosts run\n"
+               "`simbench node` (hardware). Default: sim");
+  command.text("--rig", "FILE", options.rig, "The rig file (with --backend hardware)");
+  command.text("--key-file", "FILE", options.key_file,
+               "The key that the rig's nodes have (see simbench keygen);\n"
+               "without one only nodes of this machine are spoken to");
 }
 
 bool is_hardware(const BackendOptions& options) {

@@ -2,15 +2,15 @@
 // RecordingSource (hardware/conductor/rig_source.h) that talks to the user of the command line.
 //
 //   BackendOptions backend;
-//   add_backend_options(*command, backend);
+//   add_backend_options(command, backend);
 //   if (is_hardware(backend)) source = make_rig_source(backend, scenario);
 #ifndef SIMBENCH_CLI_RIG_BACKEND_H_
 #define SIMBENCH_CLI_RIG_BACKEND_H_
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
+#include "cli/command.h"
 #include "hardware/conductor/rig_source.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
@@ -27,7 +27,7 @@ struct BackendOptions {
 };
 
 // --backend, --rig, --key-file.
-void add_backend_options(CLI::App& command, BackendOptions& options);
+void add_backend_options(Command& command, BackendOptions& options);
 
 // Throws scenarios::InputError: hardware without a rig, a rig without hardware.
 bool is_hardware(const BackendOptions& options);

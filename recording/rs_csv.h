@@ -77,6 +77,9 @@ class CsvRecordingReader {
   std::string key_;
 };
 
+// The streams of all files, in order. Throws CsvError, also for a file that is given twice.
+std::vector<CameraStream> read_recordings(const std::vector<std::string>& files);
+
 }  // namespace simbench
 
 #endif  // SIMBENCH_RECORDING_RS_CSV_H_

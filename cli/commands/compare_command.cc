@@ -1,10 +1,9 @@
-#include "cli/commands/compare_command.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "reports/comparison/comparison.h"
 
 namespace simbench::cli {
@@ -74,40 +73,29 @@ int compare(CompareOptions options) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "compare", "Compare two result archives, or pipelines of one, seed by seed");
+void add_compare_command(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
+  Command command(line, "compare",
+                  "Compare two result archives, or pipelines of one, seed by seed");
   command
-      ->add_option("archives", options->archives,
-                   "One or two archives that `simbench run --output` wrote, or results.json files")
-      ->type_name("DIR...")
-      ->required()
-      ->expected(1, 2);
-  command
-      ->add_option("--pipelines", options->comparison.pipelines,
-                   "Of one archive: the two to compare. Of two: only these")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command
-      ->add_option("--with-baseline", options->baseline,
-                   "Compare each other pipeline of the archive with this one")
-      ->type_name("PIPELINE");
-  command
-      ->add_option("--smallest-effect", options->smallest_effect_percent,
-                   "The smallest difference that matters, in percent of A's mean: decides between\n"
-                   "'no difference seen' and 'too few seeds'. Default: 5")
-      ->type_name("PERCENT")
-      ->check(number_within(0, 1000));
-  command->add_flag(
-      "--by-index", options->comparison.by_index,
-      "Pair the n-th seed of A with the n-th of B: for archives without common seeds");
-  command->add_flag("--different-scenarios", options->comparison.different_scenarios,
-                    "Compare although the worlds differ: what they make of the same pipelines");
-  add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
-  command->footer(kCompareExamples);
-  command->callback([options, &action] { action = [options] { return compare(*options); }; });
+      .texts("archives", "DIR...", options->archives,
+             "One or two archives that `simbench run --output` wrote, or results.json files")
+      .required()
+      .at_most(2);
+  command.list("--pipelines", "NAME,NAME", options->comparison.pipelines,
+               "Of one archive: the two to compare. Of two: only these");
+  command.text("--with-baseline", "PIPELINE", options->baseline,
+               "Compare each other pipeline of the archive with this one");
+  command.number("--smallest-effect", "PERCENT", options->smallest_effect_percent, 0, 1000,
+                 "The smallest difference that matters, in percent of A's mean: decides between\n"
+                 "'no difference seen' and 'too few seeds'. Default: 5");
+  command.flag("--by-index", options->comparison.by_index,
+               "Pair the n-th seed of A with the n-th of B: for archives without common seeds");
+  command.flag("--different-scenarios", options->comparison.different_scenarios,
+               "Compare although the worlds differ: what they make of the same pipelines");
+  command.format(options->format, {"table", "markdown", "csv", "json"});
+  command.footer(kCompareExamples);
+  command.runs([options] { return compare(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,9 +1,8 @@
-#include "cli/commands/convert_ibl_command.h"
-
 #include <memory>
 
 #include "app/ibl_recording.h"
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 
 namespace simbench::cli {
 namespace {
@@ -19,19 +18,15 @@ Example:
 
 }  // namespace
 
-void add_convert_ibl_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "convert-ibl", "Convert a recording of an IBL camera rig to the CSV of `simbench replay`");
+void add_convert_ibl_command(CommandLine& line) {
   auto file = std::make_shared<std::string>();
-  command->add_option("file", *file, "*.timestamps.ssv or *.frameData.bin")
-      ->type_name("FILE")
-      ->required();
-  command->footer(kExplanation);
-  command->callback([file, &action] {
-    action = [file] {
-      print_result(app::rs_csv_text(app::read_ibl_recording(*file)));
-      return static_cast<int>(kOk);
-    };
+  Command command(line, "convert-ibl",
+                  "Convert a recording of an IBL camera rig to the CSV of `simbench replay`");
+  command.text("file", "FILE", *file, "*.timestamps.ssv or *.frameData.bin").required();
+  command.footer(kExplanation);
+  command.runs([file] {
+    print_result(app::rs_csv_text(app::read_ibl_recording(*file)));
+    return kOk;
   });
 }
 

@@ -1,8 +1,7 @@
-#include "cli/commands/describe_command.h"
-
 #include <memory>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 
@@ -51,18 +50,18 @@ int describe(const DescribeOptions& options) {
 
 }  // namespace
 
-void add_describe_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "describe", "Print every parameter of a scenario with value, unit, meaning and source");
+void add_describe_command(CommandLine& line) {
   auto options = std::make_shared<DescribeOptions>();
+  Command command(line, "describe",
+                  "Print every parameter of a scenario with value, unit, meaning and source");
   command
-      ->add_option("scenario", options->scenario, "Name of a scenario or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  add_set_option(*command, options->sets);
-  add_format_option(*command, options->format, {"table", "json"});
-  command->footer(kDescribeExamples);
-  command->callback([options, &action] { action = [options] { return describe(*options); }; });
+      .text("scenario", "SCENARIO", options->scenario,
+            "Name of a scenario or path of a scenario file")
+      .required();
+  command.sets(options->sets);
+  command.format(options->format, {"table", "json"});
+  command.footer(kDescribeExamples);
+  command.runs([options] { return describe(*options); });
 }
 
 }  // namespace simbench::cli

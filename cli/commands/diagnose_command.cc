@@ -1,10 +1,8 @@
-#include "cli/commands/diagnose_command.h"
-
 #include <memory>
 #include <optional>
 
-#include "cli/exit_status.h"
-#include "cli/recordings.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/rigs/diagnose_report.h"
 
@@ -43,21 +41,17 @@ int run_diagnose(const DiagnoseOptions& options) {
 
 }  // namespace
 
-void add_diagnose_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("diagnose", "Is the hardware sync of a recorded rig working at all?");
+void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
-  command->add_option("files", options->files, "Recordings")->type_name("FILE.csv...")->required();
-  add_format_option(*command, options->format, {"table", "json"});
-  command
-      ->add_option("--rate-hz", options->rate_hz,
-                   "The trigger's rate. Default: that of most cameras")
-      ->type_name("HZ")
-      ->check(number_within(kLowestRateHz, kHighestRateHz));
-  command->add_flag("--one-host", options->one_host,
-                    "One computer stamped all arrivals, whatever the files say");
-  command->footer(kDiagnoseExamples);
-  command->callback([options, &action] { action = [options] { return run_diagnose(*options); }; });
+  Command command(line, "diagnose", "Is the hardware sync of a recorded rig working at all?");
+  command.texts("files", "FILE.csv...", options->files, "Recordings").required();
+  command.format(options->format, {"table", "json"});
+  command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
+                 "The trigger's rate. Default: that of most cameras");
+  command.flag("--one-host", options->one_host,
+               "One computer stamped all arrivals, whatever the files say");
+  command.footer(kDiagnoseExamples);
+  command.runs([options] { return run_diagnose(*options); });
 }
 
 }  // namespace simbench::cli

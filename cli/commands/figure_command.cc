@@ -1,18 +1,15 @@
-#include "cli/commands/figure_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "app/figure_source.h"
-#include "cli/exit_status.h"
-#include "cli/messages.h"
-#include "cli/watched.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/figures/figure_catalogue.h"
@@ -203,63 +200,43 @@ int run(const FigureCommand& command) {
 void check(const FigureCommand& command) {
   if (command.list) return;
   if (command.name.empty()) {
-    throw CLI::ValidationError("NAME", "is missing; `simbench figure --list` names the figures");
+    refuse("NAME", "is missing; `simbench figure --list` names the figures");
   }
   if (command.archive.empty() == command.scenario.empty()) {
-    throw CLI::ValidationError("DIR, --scenario", "one of them is needed, and not both");
+    refuse("DIR, --scenario", "one of them is needed, and not both");
   }
   if (!command.archive.empty() && !command.sets.empty()) {
-    throw CLI::ValidationError("--set", "goes with --scenario; an archive has its own");
+    refuse("--set", "goes with --scenario; an archive has its own");
   }
   if (command.output.empty()) {
-    throw CLI::ValidationError("--output", "is missing: FILE.svg, FILE.pdf or FILE.csv");
+    refuse("--output", "is missing: FILE.svg, FILE.pdf or FILE.csv");
   }
 }
 
 }  // namespace
 
-void add_figure_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("figure", "One figure as SVG, PDF or CSV");
+void add_figure_command(CommandLine& line) {
   auto options = std::make_shared<FigureCommand>();
-  command
-      ->add_option("name", options->name,
-                   "Which (see --list): its name, or the paper's number as fig8")
-      ->type_name("NAME");
-  command->add_option("archive", options->archive, "Folder that `simbench run --output` wrote")
-      ->type_name("DIR");
-  command->add_flag("--list", options->list, "List the figures");
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Instead of DIR: name of a scenario or path of a scenario file")
-      ->type_name("SCENARIO");
-  add_set_option(*command, options->sets);
-  command
-      ->add_option("--seed", options->seed,
-                   "Of figures of one seed. Default: the archive's first, 1 of a scenario")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command
-      ->add_option("--seeds", options->seeds,
-                   "Of figures over seeds, how many of a scenario's, and of budgets. Default: 32")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  command
-      ->add_option("--pipelines", options->pipelines,
-                   "Only these. Default: all; yoon2021_both, else the first, where a figure is\n"
-                   "of one pipeline")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command
-      ->add_option("-o,--output", options->output,
-                   "The file; its ending chooses: .svg, .pdf or .csv. An earlier one is replaced")
-      ->type_name("FILE");
-  add_json_messages_option(*command);
-  command->footer(kFigureExamples);
-  command->callback([options, &action] {
-    check(*options);
-    action = [options] { return run(*options); };
-  });
+  Command command(line, "figure", "One figure as SVG, PDF or CSV");
+  command.text("name", "NAME", options->name,
+               "Which (see --list): its name, or the paper's number as fig8");
+  command.text("archive", "DIR", options->archive, "Folder that `simbench run --output` wrote");
+  command.flag("--list", options->list, "List the figures");
+  command.text("--scenario", "SCENARIO", options->scenario,
+               "Instead of DIR: name of a scenario or path of a scenario file");
+  command.sets(options->sets);
+  command.seed("--seed", options->seed,
+               "Of figures of one seed. Default: the archive's first, 1 of a scenario");
+  command.count("--seeds", options->seeds,
+                "Of figures over seeds, how many of a scenario's, and of budgets. Default: 32");
+  command.list("--pipelines", "NAME,NAME", options->pipelines,
+               "Only these. Default: all; yoon2021_both, else the first, where a figure is\n"
+               "of one pipeline");
+  command.text("-o,--output", "FILE", options->output,
+               "The file; its ending chooses: .svg, .pdf or .csv. An earlier one is replaced");
+  command.json_messages();
+  command.footer(kFigureExamples);
+  command.runs([options] { return run(*options); }, [options] { check(*options); });
 }
 
 }  // namespace simbench::cli

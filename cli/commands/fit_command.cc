@@ -1,15 +1,14 @@
-#include "cli/commands/fit_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "cli/exit_status.h"
-#include "cli/recordings.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "evaluation/fit/fit_check.h"
 #include "recording/recording_folder.h"
 #include "reports/rigs/fit_report.h"
@@ -163,35 +162,29 @@ int run_fit(const FitOptions& options) {
 
 }  // namespace
 
-void add_fit_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "fit", "Make a scenario of a recording: the simulator with a rig's own numbers");
+void add_fit_command(CommandLine& line) {
   auto options = std::make_shared<FitOptions>();
-  command->add_option("inputs", options->inputs, "A recording folder, or CSV files")
-      ->type_name("INPUT...")
-      ->required();
+  Command command(line, "fit",
+                  "Make a scenario of a recording: the simulator with a rig's own numbers");
+  command.texts("inputs", "INPUT...", options->inputs, "A recording folder, or CSV files")
+      .required();
   command
-      ->add_option("-o,--output", options->output,
-                   "The scenario file to write. An earlier one is replaced as a whole")
-      ->type_name("FILE.json")
-      ->required();
-  command
-      ->add_option("--base", options->base,
-                   "Scenario, by name or file, that gives what is not fitted.\n"
-                   "Default: the recording's own; for CSV files a built-in one with their counts "
-                   "and rate")
-      ->type_name("SCENARIO");
-  command
-      ->add_option("--pipeline", options->pipeline,
-                   "Of a folder with several captures. Default: the first")
-      ->type_name("NAME");
-  command->add_option("--seed", options->seed, "Likewise: the seed, or the repetition of a rig")
-      ->type_name("K");
-  command->add_flag("--one-host", options->one_host,
-                    "One computer stamped all arrivals of the files, whatever they say");
-  add_format_option(*command, options->format, {"table", "json"});
-  command->footer(kFitExamples);
-  command->callback([options, &action] { action = [options] { return run_fit(*options); }; });
+      .text("-o,--output", "FILE.json", options->output,
+            "The scenario file to write. An earlier one is replaced as a whole")
+      .required();
+  command.text("--base", "SCENARIO", options->base,
+               "Scenario, by name or file, that gives what is not fitted.\n"
+               "Default: the recording's own; for CSV files a built-in one with their counts "
+               "and rate");
+  command.text("--pipeline", "NAME", options->pipeline,
+               "Of a folder with several captures. Default: the first");
+  command.whole_number("--seed", "K", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                       "Likewise: the seed, or the repetition of a rig");
+  command.flag("--one-host", options->one_host,
+               "One computer stamped all arrivals of the files, whatever they say");
+  command.format(options->format, {"table", "json"});
+  command.footer(kFitExamples);
+  command.runs([options] { return run_fit(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,11 +1,10 @@
-#include "cli/commands/gate_command.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "reports/comparison/gate.h"
 #include "reports/text/output_file.h"
 
@@ -30,7 +29,7 @@ struct GateOptions {
   std::string result;
   std::string baseline;
   std::string save_baseline;
-  std::string mode;
+  std::string mode = "exact";
   std::string format;
   std::string junit;
 };
@@ -77,30 +76,22 @@ int gate(const GateOptions& options) {
 
 }  // namespace
 
-void add_gate_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("gate", "Hold a result to a baseline: exit status 3 if it became worse");
+void add_gate_command(CommandLine& line) {
   auto options = std::make_shared<GateOptions>();
+  Command command(line, "gate", "Hold a result to a baseline: exit status 3 if it became worse");
   command
-      ->add_option("result", options->result,
-                   "An archive that `simbench run --output` wrote, or a results.json")
-      ->type_name("DIR")
-      ->required();
-  command->add_option("--baseline", options->baseline, "The baseline to hold it to")
-      ->type_name("FILE");
-  command
-      ->add_option("--save-baseline", options->save_baseline,
-                   "Write the result as a baseline, keeping the margins of an earlier one there")
-      ->type_name("FILE");
-  options->mode = "exact";
-  command->add_option("--mode", options->mode, "One of: exact, statistical. Default: exact")
-      ->type_name("MODE")
-      ->check(one_of({"exact", "statistical"}));
-  add_format_option(*command, options->format, {"text", "json", "junit"});
-  command->add_option("--junit", options->junit, "Write JUnit XML to this file as well")
-      ->type_name("FILE");
-  command->footer(kGateExamples);
-  command->callback([options, &action] { action = [options] { return gate(*options); }; });
+      .text("result", "DIR", options->result,
+            "An archive that `simbench run --output` wrote, or a results.json")
+      .required();
+  command.text("--baseline", "FILE", options->baseline, "The baseline to hold it to");
+  command.text("--save-baseline", "FILE", options->save_baseline,
+               "Write the result as a baseline, keeping the margins of an earlier one there");
+  command.word("--mode", "MODE", options->mode, {"exact", "statistical"},
+               "One of: exact, statistical. Default: exact");
+  command.format(options->format, {"text", "json", "junit"});
+  command.text("--junit", "FILE", options->junit, "Write JUnit XML to this file as well");
+  command.footer(kGateExamples);
+  command.runs([options] { return gate(*options); });
 }
 
 }  // namespace simbench::cli

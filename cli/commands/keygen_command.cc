@@ -1,11 +1,10 @@
-#include "cli/commands/keygen_command.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 #include <string>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "hardware/net/secret_key.h"
 
 namespace simbench::cli {
@@ -38,15 +37,14 @@ int make_key(const std::string& file) {
 
 }  // namespace
 
-void add_keygen_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("keygen", "Make the key that the hosts of a rig share");
+void add_keygen_command(CommandLine& line) {
   auto file = std::make_shared<std::string>();
-  command->add_option("file", *file, "Where to write it; a file that is there is not overwritten")
-      ->type_name("FILE")
-      ->required();
-  add_json_messages_option(*command);
-  command->footer(kKeygenExamples);
-  command->callback([file, &action] { action = [file] { return make_key(*file); }; });
+  Command command(line, "keygen", "Make the key that the hosts of a rig share");
+  command.text("file", "FILE", *file, "Where to write it; a file that is there is not overwritten")
+      .required();
+  command.json_messages();
+  command.footer(kKeygenExamples);
+  command.runs([file] { return make_key(*file); });
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,3 @@
-#include "cli/commands/list_command.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,12 +7,12 @@
 #include <vector>
 
 #include "algorithms/registry.h"
-#include "cli/commands/camera_list.h"
-#include "cli/exit_status.h"
-#include "cli/sweep_results.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
+#include "scenarios/study.h"
 
 namespace simbench::cli {
 namespace {
@@ -41,7 +39,7 @@ Any device_time but the oracle may be named with suffixes, as in hull_300_steady
 
 struct ListOptions {
   std::string what;
-  std::string scenario;
+  std::string scenario = "18cam_6host_45fps";
   std::string format;
 };
 
@@ -132,6 +130,68 @@ std::string pipelines_text(const std::string& scenario) {
   return plain(table);
 }
 
+constexpr std::size_t kIndent = 2;
+constexpr std::size_t kDeeper = 4;
+
+std::string stream_text(const scenarios::StreamProfile& stream) {
+  std::string text = reports::wrapped(
+      fmt::format("{}: {}, {} shutter, {} bytes a pixel [{}]", to_text(stream.kind), stream.format,
+                  to_text(stream.shutter), stream.bytes_per_pixel, stream.source),
+      kIndent);
+  for (const scenarios::ImageSize& size : stream.sizes) {
+    text += fmt::format("{:{}}{}x{} at {} Hz\n", "", kDeeper, size.width, size.height,
+                        fmt::join(size.rates_hz, ", "));
+  }
+  return text;
+}
+
+std::string sync_text(const scenarios::CameraProfile& camera) {
+  std::vector<std::string> modes;
+  for (const scenarios::SyncModeProfile& mode : camera.sync_modes) {
+    std::vector<std::string_view> triggered;
+    for (const scenarios::StreamKind kind : mode.triggered) triggered.push_back(to_text(kind));
+    modes.push_back(triggered.empty() ? fmt::format("{} (runs free)", to_text(mode.mode))
+                                      : fmt::format("{} (the trigger leads {})", to_text(mode.mode),
+                                                    fmt::join(triggered, " and ")));
+  }
+  return reports::wrapped(fmt::format("sync modes: {}. {} [{}]", fmt::join(modes, ", "),
+                                      camera.sync_wiring, camera.sync_source),
+                          kIndent);
+}
+
+std::string stamp_text(const scenarios::StampProfile& stamp) {
+  const std::string wrap =
+      stamp.wraps_after_s ? fmt::format(", wraps after {} s", *stamp.wraps_after_s) : "";
+  return reports::wrapped(fmt::format("stamp {}: {} clock, {}{}: {} [{}]", stamp.stamp, stamp.clock,
+                                      stamp.unit, wrap, stamp.meaning, stamp.source),
+                          kIndent);
+}
+
+std::string latency_text(const scenarios::CameraProfile& camera) {
+  if (camera.typical_latency_ms.empty()) {
+    return reports::wrapped(fmt::format("latency: {}", camera.latency_source), kIndent);
+  }
+  return reports::wrapped(
+      fmt::format("latency: {} ms [{}]", fmt::join(camera.typical_latency_ms, " to "),
+                  camera.latency_source),
+      kIndent);
+}
+
+// The profiles of camera models: streams with sizes and rates, sync modes, stamps, latency, each
+// with its source.
+std::string camera_list_text() {
+  std::string text;
+  for (const scenarios::CameraProfile& camera : scenarios::camera_profiles()) {
+    text += fmt::format("{}{}: {}, {}\n", text.empty() ? "" : "\n", camera.model, camera.name,
+                        camera.maker);
+    for (const scenarios::StreamProfile& stream : camera.streams) text += stream_text(stream);
+    text += sync_text(camera);
+    for (const scenarios::StampProfile& stamp : camera.stamps) text += stamp_text(stamp);
+    text += latency_text(camera);
+  }
+  return text;
+}
+
 std::string listing(const ListOptions& options) {
   if (options.format == "names") return bare_names(options);
   if (options.what == "scenarios") return scenarios_text();
@@ -152,34 +212,37 @@ std::string listing(const ListOptions& options) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("list", "List scenarios, and the algorithms of each stage");
+std::string study_list() {
+  std::string text = "studies\n";
+  for (const scenarios::Study& study : scenarios::studies()) {
+    text += fmt::format("  {}\n{}", study.name, reports::wrapped(study.summary, 6));
+  }
+  return text;
+}
+
+void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  command
-      ->add_option(
-          "what", options->what,
-          "scenarios, pipelines, algorithms (with parameters and sources), cameras or studies.\n"
-          "Default: scenarios and algorithms by name")
-      ->type_name("WHAT")
-      ->check(one_of({"scenarios", "pipelines", "algorithms", "cameras", "studies"}));
-  options->scenario = "18cam_6host_45fps";
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Whose pipelines to list. Default: " + options->scenario)
-      ->type_name("SCENARIO");
-  add_format_option(*command, options->format, {"text", "names", "json"});
-  command->footer(kListExamples);
-  command->callback([options, &action] {
+  Command command(line, "list", "List scenarios, and the algorithms of each stage");
+  command.word("what", "WHAT", options->what,
+               {"scenarios", "pipelines", "algorithms", "cameras", "studies"},
+               "scenarios, pipelines, algorithms (with parameters and sources), cameras or "
+               "studies.\nDefault: scenarios and algorithms by name");
+  command.text("--scenario", "SCENARIO", options->scenario,
+               "Whose pipelines to list. Default: " + options->scenario);
+  command.format(options->format, {"text", "names", "json"});
+  command.footer(kListExamples);
+  const auto check = [options] {
     if (options->format == "json" && options->what != "cameras") {
-      throw CLI::ValidationError("--format", "found 'json', allowed: with cameras only");
+      refuse("--format", "found 'json', allowed: with cameras only");
     }
-    action = [options] {
-      print_result(options->format == "text" ? reports::fitted(listing(*options))
-                                             : listing(*options));
-      return static_cast<int>(kOk);
-    };
-  });
+  };
+  command.runs(
+      [options] {
+        print_result(options->format == "text" ? reports::fitted(listing(*options))
+                                               : listing(*options));
+        return kOk;
+      },
+      check);
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,3 @@
-#include "cli/commands/node_command.h"
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -14,7 +12,8 @@
 #include <memory>
 #include <utility>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "cli/rig_backend.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/camera/drivers.h"
@@ -193,58 +192,42 @@ int run_node(const NodeOptions& options) {
 
 // A test's clock and the system's exclude each other; what is about setting needs
 // --set-system-clock.
-void add_clock_options(CLI::App& command, NodeOptions& options) {
-  CLI::Option* set =
-      command.add_flag("--set-system-clock", options.set_system_clock,
-                       "Synchronise the operating system's clock instead of one in software;\n"
-                       "needs the right to set it (CAP_SYS_TIME)");
+void add_clock_options(Command& command, NodeOptions& options) {
+  const Option set =
+      command.flag("--set-system-clock", options.set_system_clock,
+                   "Synchronise the operating system's clock instead of one in software;\n"
+                   "needs the right to set it (CAP_SYS_TIME)");
   command
-      .add_option("--max-step-ms", options.max_step_ms,
-                  "Refuse to step the system's clock by more. Default: 1000")
-      ->check(number_within(0, 1e9))
-      ->type_name("MS")
-      ->needs(set);
-  command.add_flag("--dry-run", options.dry_run, "Say what would be set, and set nothing")
-      ->needs(set);
+      .number("--max-step-ms", "MS", options.max_step_ms, 0, 1e9,
+              "Refuse to step the system's clock by more. Default: 1000")
+      .needs(set);
+  command.flag("--dry-run", options.dry_run, "Say what would be set, and set nothing").needs(set);
   command
-      .add_option("--clock-offset-ms", options.clock_offset_ms,
-                  "For tests: the node's clock starts ahead of the system's by this. Default: 0")
-      ->check(number_within(-1e7, 1e7))
-      ->type_name("MS")
-      ->excludes(set);
+      .number("--clock-offset-ms", "MS", options.clock_offset_ms, -1e7, 1e7,
+              "For tests: the node's clock starts ahead of the system's by this. Default: 0")
+      .excludes(set);
   command
-      .add_option("--clock-skew-ppm", options.clock_skew_ppm,
-                  "For tests: the node's oscillator runs fast by this. Default: 0")
-      ->check(number_within(-1000, 1000))
-      ->type_name("PPM")
-      ->excludes(set);
+      .number("--clock-skew-ppm", "PPM", options.clock_skew_ppm, -1000, 1000,
+              "For tests: the node's oscillator runs fast by this. Default: 0")
+      .excludes(set);
 }
 
 }  // namespace
 
-void add_node_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("node", "Serve one host of a real rig: its clock, network and cameras");
+void add_node_command(CommandLine& line) {
   auto options = std::make_shared<NodeOptions>();
-  command->add_option("--rig", options->rig, "The rig file, the same on every host")
-      ->type_name("FILE")
-      ->required();
-  command->add_option("--name", options->name, "Which of the rig's hosts this is")
-      ->type_name("HOST")
-      ->required();
-  command
-      ->add_option("--key-file", options->key_file,
-                   "The rig's key (see simbench keygen). Without one the node speaks\n"
-                   "to its own machine only")
-      ->type_name("FILE");
-  command
-      ->add_option("--journal", options->journal,
-                   "Where what is recorded is kept, the newest 100 sessions.\n"
-                   "Default: ~/.local/state/simbench/HOST")
-      ->type_name("DIR");
-  add_clock_options(*command, *options);
-  command->footer(kNodeExamples);
-  command->callback([options, &action] { action = [options] { return run_node(*options); }; });
+  Command command(line, "node", "Serve one host of a real rig: its clock, network and cameras");
+  command.text("--rig", "FILE", options->rig, "The rig file, the same on every host").required();
+  command.text("--name", "HOST", options->name, "Which of the rig's hosts this is").required();
+  command.text("--key-file", "FILE", options->key_file,
+               "The rig's key (see simbench keygen). Without one the node speaks\n"
+               "to its own machine only");
+  command.text("--journal", "DIR", options->journal,
+               "Where what is recorded is kept, the newest 100 sessions.\n"
+               "Default: ~/.local/state/simbench/HOST");
+  add_clock_options(command, *options);
+  command.footer(kNodeExamples);
+  command.runs([options] { return run_node(*options); });
 }
 
 }  // namespace simbench::cli

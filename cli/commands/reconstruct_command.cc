@@ -1,26 +1,25 @@
-#include "cli/commands/reconstruct_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "app/interrupt.h"
-#include "cli/exit_status.h"
-#include "cli/sibling_program.h"
-#include "cli/watched.h"
+#include "app/simulated.h"
+#include "cli/command.h"
+#include "cli/command_line.h"
+#include "cli/commands/commands.h"
+#include "cli/process.h"
+#include "cli/progress.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reconstruction/experiment.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/reconstruction/reconstruction_folder.h"
 #include "reports/reconstruction/reconstruction_json.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::cli {
 namespace {
@@ -108,7 +107,7 @@ std::string text_of(const ReconstructionResults& results, const std::string& for
 std::optional<ReconstructionResults> reconstruct(
     reconstruction::RunReconstruction run, const scenarios::Scenario& scenario,
     const reconstruction::ReconstructionOptions& options, reports::ReconstructionFolder* folder) {
-  const auto make_source = [&] { return app::interruptible(sim::make_simulation(scenario)); };
+  const auto make_source = [&] { return app::simulated_world(scenario); };
   const auto on_mesh = [folder](const reconstruction::ShownMesh& mesh) {
     if (folder != nullptr) folder->keep(mesh);
   };
@@ -116,7 +115,7 @@ std::optional<ReconstructionResults> reconstruct(
       [&](const evaluation::Progress& progress) {
         return run(scenario, make_source, options, on_mesh, progress);
       },
-      "frame sets");
+      {.unit = "frame sets"});
 }
 
 int run_reconstruct(const ReconstructOptions& options) {
@@ -152,89 +151,56 @@ int run_reconstruct(const ReconstructOptions& options) {
   return kOk;
 }
 
-void add_subject_options(CLI::App& command, ReconstructOptions& options) {
-  command
-      .add_option("--mesh", options.mesh,
-                  "A mesh as the subject, in metres: PLY, OBJ, OFF or STL. Short for\n"
-                  "--set /studio/subject/kind=mesh --set /studio/subject/mesh_file=FILE")
-      ->type_name("FILE");
-  command
-      .add_option("--motion", options.motion,
-                  "How the subject moves: stand, turn, walk, walk_and_turn, raise_arms. Short\n"
-                  "for --set /studio/subject/motion=NAME. Default: the scenario's")
-      ->type_name("NAME")
-      ->check(one_of(scenarios::all_texts<scenarios::MotionScript>()));
+void add_subject_options(Command& command, ReconstructOptions& options) {
+  command.text("--mesh", "FILE", options.mesh,
+               "A mesh as the subject, in metres: PLY, OBJ, OFF or STL. Short for\n"
+               "--set /studio/subject/kind=mesh --set /studio/subject/mesh_file=FILE");
+  command.word("--motion", "NAME", options.motion,
+               scenarios::all_texts<scenarios::MotionScript>(),
+               "How the subject moves: stand, turn, walk, walk_and_turn, raise_arms. Short\n"
+               "for --set /studio/subject/motion=NAME. Default: the scenario's");
 }
 
-void add_curve_options(CLI::App& command, ReconstructOptions& options) {
-  command
-      .add_option("--speed-factors", options.speed_factors,
-                  "Of the curve: factors on the speeds that the scenario states; the table has\n"
-                  "the speeds that result. Default: 0.5,1,1.5")
-      ->type_name("F,F")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(number_within(0, kMostSpeedFactor));
-  command
-      .add_option("--desync-ms", options.desync_ms,
-                  "Of the curve: how far apart the hosts are, in ms. Default:\n"
-                  "0,5,10,20,33,50,100,200,500")
-      ->type_name("MS,MS")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(number_within(0, kMostDesyncMs));
-  command.add_flag("--no-curve", options.no_curve,
-                   "The pipelines alone: no curve, and no search for the speed at which the\n"
-                   "published error comes about");
+void add_curve_options(Command& command, ReconstructOptions& options) {
+  command.number("--speed-factors", "F,F", options.speed_factors, 0, kMostSpeedFactor,
+                 "Of the curve: factors on the speeds that the scenario states; the table has\n"
+                 "the speeds that result. Default: 0.5,1,1.5");
+  command.number("--desync-ms", "MS,MS", options.desync_ms, 0, kMostDesyncMs,
+                 "Of the curve: how far apart the hosts are, in ms. Default:\n"
+                 "0,5,10,20,33,50,100,200,500");
+  command.flag("--no-curve", options.no_curve,
+               "The pipelines alone: no curve, and no search for the speed at which the\n"
+               "published error comes about");
 }
 
 }  // namespace
 
-void add_reconstruct_command(CLI::App& app, Action& action, std::vector<std::string> arguments,
-                             reconstruction::RunReconstruction run) {
-  CLI::App* command = app.add_subcommand(
-      "reconstruct", "Reconstruct a moving subject, and print what desynchronisation costs");
+void add_reconstruct_command(CommandLine& line) {
   auto options = std::make_shared<ReconstructOptions>();
-  options->command = std::move(arguments);
-  options->run = run;
+  options->command = line.arguments;
+  options->run = line.extras.run_reconstruction;
   reconstruction::ReconstructionOptions& experiment = options->reconstruction;
+  Command command(line, "reconstruct",
+                  "Reconstruct a moving subject, and print what desynchronisation costs");
   command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario with a studio (see `simbench list`) or path of its file")
-      ->type_name("SCENARIO")
-      ->required();
-  command
-      ->add_option("--pipelines", experiment.pipelines,
-                   "Only these pipelines of the scenario, in this order")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command
-      ->add_option("--frames", experiment.frames,
-                   "Frame sets to reconstruct of each pipeline and seed. Default: 10")
-      ->type_name("N")
-      ->check(whole_number(1, 100'000));
-  command->add_option("--seeds", experiment.seeds, "How many seeds. Default: 5")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  command->add_option("--first-seed", experiment.first_seed, "The first seed. Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command->add_option("--jobs", experiment.jobs, "Threads. Default: one for every core")
-      ->type_name("N")
-      ->check(whole_number(1, 4096));
-  add_set_option(*command, options->sets);
-  add_subject_options(*command, *options);
-  add_curve_options(*command, *options);
-  add_format_option(*command, options->format, {"table", "json", "csv"});
-  command
-      ->add_option("-o,--output", options->output,
-                   "Write everything to this folder, with meshes and pictures. An earlier result\n"
-                   "there is replaced")
-      ->type_name("DIR");
-  command->footer(kExamples);
-  command->callback(
-      [options, &action] { action = [options] { return run_reconstruct(*options); }; });
+      .text("--scenario", "SCENARIO", options->scenario,
+            "Name of a scenario with a studio (see `simbench list`) or path of its file")
+      .required();
+  command.pipelines(experiment.pipelines);
+  command.whole_number("--frames", "N", experiment.frames, 1, 100'000,
+                       "Frame sets to reconstruct of each pipeline and seed. Default: 10");
+  command.count("--seeds", experiment.seeds, "How many seeds. Default: 5");
+  command.seed("--first-seed", experiment.first_seed, "The first seed. Default: 1");
+  command.jobs(experiment.jobs);
+  command.sets(options->sets);
+  add_subject_options(command, *options);
+  add_curve_options(command, *options);
+  command.format(options->format, {"table", "json", "csv"});
+  command.text("-o,--output", "DIR", options->output,
+               "Write everything to this folder, with meshes and pictures. An earlier result\n"
+               "there is replaced");
+  command.footer(kExamples);
+  command.runs([options] { return run_reconstruct(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,12 +1,13 @@
-#include "cli/commands/record_command.h"
-
 #include <fmt/format.h>
 
-#include <limits>
 #include <memory>
+#include <optional>
 
 #include "app/interrupt.h"
-#include "cli/record_captures.h"
+#include "app/record_captures.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "cli/rig_backend.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/protocol.h"
@@ -88,46 +89,45 @@ int record(const RecordOptions& options) {
   check_collect_options(options, choices.size());
   const auto source = app::interruptible(source_of(options, scenario));
   RecordingWriter writer(options.output, description_of(scenario, options.backend.rig));
-  return record_captures(
-      choices, *source,
-      {.folder = options.output, .first_seed = options.seed, .seeds = options.repeats}, writer);
+  app::CapturesMade made;
+  const std::uint64_t wanted = choices.size() * options.repeats;
+  const auto finished = watched<bool>(
+      [&](const evaluation::Progress& progress) {
+        app::record_captures(choices, *source,
+                             {.first_seed = options.seed, .seeds = options.repeats}, writer, made,
+                             progress);
+        return std::optional(true);
+      },
+      {.unit = "captures", .total = wanted, .kept = options.output + " holds what was recorded"});
+  print_warnings(made.warnings);
+  if (!finished) return kInterrupted;
+  if (made.recorded == 0) {
+    print_error("no capture could be made");
+    return kBadInput;
+  }
+  print_note(
+      fmt::format("{} of {} captures recorded in {}", made.recorded, wanted, options.output));
+  return kOk;
 }
 
 }  // namespace
 
-void add_record_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("record", "Record captures of a scenario, to be replayed and studied");
+void add_record_command(CommandLine& line) {
   auto options = std::make_shared<RecordOptions>();
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  command->add_option("--seed", options->seed, "Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command
-      ->add_option("--pipelines", options->pipelines,
-                   "Only these pipelines of the scenario, in this order")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--repeats", options->repeats, "Captures of each pipeline. Default: 1")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  add_set_option(*command, options->sets);
-  add_backend_options(*command, options->backend);
-  command
-      ->add_option("--collect", options->backend.collect_session,
-                   "On a rig: no new capture, but what the nodes have of this session")
-      ->type_name("SESSION");
-  add_json_messages_option(*command);
-  command->add_option("-o,--output", options->output, "The folder, which must be new or empty")
-      ->type_name("DIR")
-      ->required();
-  command->footer(kRecordExamples);
-  command->callback([options, &action] { action = [options] { return record(*options); }; });
+  Command command(line, "record", "Record captures of a scenario, to be replayed and studied");
+  command.scenario(options->scenario);
+  command.seed("--seed", options->seed, "Default: 1");
+  command.pipelines(options->pipelines);
+  command.count("--repeats", options->repeats, "Captures of each pipeline. Default: 1");
+  command.sets(options->sets);
+  add_backend_options(command, options->backend);
+  command.text("--collect", "SESSION", options->backend.collect_session,
+               "On a rig: no new capture, but what the nodes have of this session");
+  command.json_messages();
+  command.text("-o,--output", "DIR", options->output, "The folder, which must be new or empty")
+      .required();
+  command.footer(kRecordExamples);
+  command.runs([options] { return record(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,3 @@
-#include "cli/commands/relay_command.h"
-
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -10,12 +8,12 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "hardware/relay/relay.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/loader.h"
@@ -87,30 +85,21 @@ int run_relay(const RelayOptions& options) {
 
 }  // namespace
 
-void add_relay_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "relay", "Be the network of a scenario between nodes on this machine (for tests)");
+void add_relay_command(CommandLine& line) {
   auto options = std::make_shared<RelayOptions>();
+  Command command(line, "relay",
+                  "Be the network of a scenario between nodes on this machine (for tests)");
+  command.scenario(options->scenario);
+  command.sets(options->sets);
   command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  add_set_option(*command, options->sets);
-  command
-      ->add_option("--nodes", options->nodes,
-                   "The rig file of each node, in the order of the hosts")
-      ->type_name("FILE,FILE...")
-      ->delimiter(',')
-      ->required();
-  command->add_option("--seed", options->seed, "Of latencies and losses. Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command->add_option("--for", options->for_s, "End after this time. Default: run on")
-      ->type_name("SECONDS")
-      ->check(number_within(0, 86400));
-  command->footer(kRelayExamples);
-  command->callback([options, &action] { action = [options] { return run_relay(*options); }; });
+      .list("--nodes", "FILE,FILE...", options->nodes,
+            "The rig file of each node, in the order of the hosts")
+      .required();
+  command.seed("--seed", options->seed, "Of latencies and losses. Default: 1");
+  command.number("--for", "SECONDS", options->for_s, 0, 86400,
+                 "End after this time. Default: run on");
+  command.footer(kRelayExamples);
+  command.runs([options] { return run_relay(*options); });
 }
 
 }  // namespace simbench::cli

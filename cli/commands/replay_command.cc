@@ -1,5 +1,3 @@
-#include "cli/commands/replay_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/exit_status.h"
-#include "cli/recordings.h"
-#include "cli/replay_folder.h"
+#include "app/recorded_run.h"
+#include "app/results.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "evaluation/replay/replay.h"
 #include "reports/archive/archive.h"
 #include "reports/rigs/replay_report.h"
@@ -86,6 +86,24 @@ int run_files(const ReplayOptions& options) {
   return kOk;
 }
 
+int run_folder(const std::string& folder, const ReplayOptions& options) {
+  app::RunArchive archive(options.command);
+  const app::RecordedRun run(folder);
+  const std::vector<std::string> pipelines = run.chosen(options.pipelines);
+  archive.open(options.output);
+  const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
+    return run.evaluate(pipelines, !options.output.empty(), progress);
+  });
+  if (!results) return kInterrupted;
+  print_warnings(results->warnings);
+  for (const std::string& note : app::capture_notes(*results)) print_note(note);
+  if (archive.write(*results, run.scenario())) {
+    print_note("results written to " + options.output);
+  }
+  print_result(app::results_text(*results, run.scenario(), options.format));
+  return kOk;
+}
+
 int run_replay(const ReplayOptions& options) {
   const auto folder =
       std::find_if(options.files.begin(), options.files.end(),
@@ -95,37 +113,26 @@ int run_replay(const ReplayOptions& options) {
     throw scenarios::InputError(
         fmt::format("{}: is a folder, allowed: one recording folder, or files only", *folder));
   }
-  return replay_folder({.folder = *folder,
-                        .pipelines = options.pipelines,
-                        .format = options.format,
-                        .output = options.output,
-                        .command = options.command});
+  return run_folder(*folder, options);
 }
 
 }  // namespace
 
-void add_replay_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
-  CLI::App* command = app.add_subcommand(
-      "replay", "Score a recording folder, or device_time and gathering on CSV of real cameras");
+void add_replay_command(CommandLine& line) {
   auto options = std::make_shared<ReplayOptions>();
-  options->command = std::move(arguments);
-  command->add_option("recordings", options->files, "A recording folder, or CSV files")
-      ->type_name("FILE.csv...|DIR")
-      ->required();
-  command
-      ->add_option("--pipelines", options->pipelines,
-                   "Of a folder: only these of the recorded pipelines, in this order")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_format_option(*command, options->format, {"table", "markdown", "json", "csv"});
-  command
-      ->add_option("--output", options->output,
-                   "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
-                   "hosts.csv) to this folder. An earlier result there is replaced")
-      ->type_name("DIR");
-  command->footer(kReplayExamples);
-  command->callback([options, &action] { action = [options] { return run_replay(*options); }; });
+  options->command = line.arguments;
+  Command command(line, "replay",
+                  "Score a recording folder, or device_time and gathering on CSV of real cameras");
+  command.texts("recordings", "FILE.csv...|DIR", options->files, "A recording folder, or CSV files")
+      .required();
+  command.list("--pipelines", "NAME,NAME", options->pipelines,
+               "Of a folder: only these of the recorded pipelines, in this order");
+  command.format(options->format, {"table", "markdown", "json", "csv"});
+  command.text("--output", "DIR", options->output,
+               "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
+               "hosts.csv) to this folder. An earlier result there is replaced");
+  command.footer(kReplayExamples);
+  command.runs([options] { return run_replay(*options); });
 }
 
 }  // namespace simbench::cli

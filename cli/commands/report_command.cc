@@ -1,5 +1,3 @@
-#include "cli/commands/report_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +7,9 @@
 #include <utility>
 
 #include "app/report_figures.h"
-#include "cli/exit_status.h"
-#include "cli/messages.h"
-#include "cli/watched.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "reports/archive/archive_reader.h"
 #include "reports/page/html_report.h"
 #include "reports/text/output_file.h"
@@ -96,40 +94,28 @@ int run(const ReportOptions& options) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
-  CLI::App* command =
-      app.add_subcommand("report", "Result archives as one HTML file: tables and figures");
+void add_report_command(CommandLine& line) {
   auto options = std::make_shared<ReportOptions>();
-  options->command = std::move(arguments);
+  options->command = line.arguments;
+  Command command(line, "report", "Result archives as one HTML file: tables and figures");
   command
-      ->add_option("archives", options->archives,
-                   "Folders that `simbench run --output` wrote, or a results.json alone")
-      ->type_name("DIR...")
-      ->required();
-  command->add_option("-o,--output", options->output, "The file; an earlier one is replaced")
-      ->type_name("FILE.html")
-      ->required();
-  command
-      ->add_option("--seeds-in-detail", options->detail.seeds,
-                   "How many seeds to show with stamps, clocks and single pulses.\n"
-                   "Default: 4, fewer where there are more than 8 pipelines")
-      ->type_name("N")
-      ->check(whole_number(1, kMostSeedsInDetail));
-  command
-      ->add_option("--budget-seeds", options->detail.budget_seeds,
-                   "Seeds of the error budgets (128 runs for each and every pipeline); 0: none.\n"
-                   "Default: 4, fewer where there are more than 8 pipelines")
-      ->type_name("N")
-      ->check(whole_number(0, kMostSeedsInDetail));
-  command
-      ->add_option("--pipelines", options->detail.pipelines,
-                   "Show only these pipelines in detail; the tables have all")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_json_messages_option(*command);
-  command->footer(kReportExamples);
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+      .texts("archives", "DIR...", options->archives,
+             "Folders that `simbench run --output` wrote, or a results.json alone")
+      .required();
+  command.text("-o,--output", "FILE.html", options->output, "The file; an earlier one is replaced")
+      .required();
+  command.whole_number("--seeds-in-detail", "N", options->detail.seeds, 1, kMostSeedsInDetail,
+                       "How many seeds to show with stamps, clocks and single pulses.\n"
+                       "Default: 4, fewer where there are more than 8 pipelines");
+  command.whole_number(
+      "--budget-seeds", "N", options->detail.budget_seeds, 0, kMostSeedsInDetail,
+      "Seeds of the error budgets (128 runs for each and every pipeline); 0: none.\n"
+      "Default: 4, fewer where there are more than 8 pipelines");
+  command.list("--pipelines", "NAME,NAME", options->detail.pipelines,
+               "Show only these pipelines in detail; the tables have all");
+  command.json_messages();
+  command.footer(kReportExamples);
+  command.runs([options] { return run(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,24 +1,21 @@
-#include "cli/commands/run_command.h"
-
 #include <fmt/format.h>
 
-#include <chrono>
-#include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/interrupt.h"
-#include "app/results_text.h"
-#include "cli/exit_status.h"
+#include "app/results.h"
+#include "app/simulated.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "cli/rig_backend.h"
-#include "cli/watched.h"
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
-#include "reports/archive/archive.h"
 #include "reports/results/budget_report.h"
 #include "reports/rigs/prediction_report.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::cli {
 namespace {
@@ -49,12 +46,6 @@ struct RunOptions {
   std::vector<std::string> command;
 };
 
-evaluation::WorldFactory make_world() {
-  return [](const scenarios::Scenario& scenario) {
-    return app::interruptible(sim::make_simulation(scenario));
-  };
-}
-
 std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
                                             const evaluation::SourceFactory& make_source,
                                             const evaluation::EvaluationOptions& options) {
@@ -66,7 +57,7 @@ std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
 std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
                                             const evaluation::EvaluationOptions& options) {
   return evaluate(
-      scenario, [&] { return make_world()(scenario); }, options);
+      scenario, [&] { return app::simulated_world(scenario); }, options);
 }
 
 // The rig is one: captures are made one after the other.
@@ -93,7 +84,7 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
        evaluation::choose_pipelines(scenario, options.evaluation.pipelines)) {
     std::optional<evaluation::Budget> budget =
         watched<evaluation::Budget>([&](const evaluation::Progress& progress) {
-          return evaluation::error_budget(scenario, choice.pipeline, make_world(),
+          return evaluation::error_budget(scenario, choice.pipeline, app::simulated_world,
                                           options.evaluation, progress);
         });
     if (!budget) return kInterrupted;
@@ -147,18 +138,13 @@ void check_anything_was_captured(const evaluation::Results& measured) {
 
 // The same pipelines on the rig, with the simulator's prediction beside them.
 int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
-               reports::Provenance provenance) {
-  std::unique_ptr<reports::OutputFolder> output;
-  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
+               app::RunArchive archive) {
+  archive.open(options.output);
   const std::optional<evaluation::Results> measured = measure_rig(scenario, options);
   if (!measured) return kInterrupted;
   check_anything_was_captured(*measured);
   print_warnings(measured->warnings);
-  provenance.finished = std::chrono::system_clock::now();
-  if (output) {
-    reports::write_archive(*output, *measured, scenario, provenance);
-    print_note("results written to " + options.output);
-  }
+  if (archive.write(*measured, scenario)) print_note("results written to " + options.output);
   const std::optional<evaluation::Results> predicted =
       simulate(scenario, {.pipelines = options.evaluation.pipelines});
   if (!predicted) return kInterrupted;
@@ -168,81 +154,55 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
 
 int run(const RunOptions& options) {
   check_budget_options(options);
-  reports::Provenance provenance;
-  provenance.command = options.command;
-  provenance.started = std::chrono::system_clock::now();
+  app::RunArchive archive(options.command);
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
-  if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(provenance));
+  if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(archive));
   if (options.budget) return run_budgets(options, scenario);
-  std::unique_ptr<reports::OutputFolder> output;
-  if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-
+  archive.open(options.output);
   evaluation::EvaluationOptions evaluation = options.evaluation;
-  evaluation.keep_pulses = output != nullptr;
+  evaluation.keep_pulses = !options.output.empty();
   const std::optional<evaluation::Results> results = simulate(scenario, evaluation);
   if (!results) return kInterrupted;
   print_warnings(results->warnings);
-  provenance.finished = std::chrono::system_clock::now();
-  if (output) {
-    reports::write_archive(*output, *results, scenario, provenance);
-    print_note("results written to " + options.output);
-  }
+  if (archive.write(*results, scenario)) print_note("results written to " + options.output);
   print_result(app::results_text(*results, scenario, options.format));
   return kOk;
 }
 
 }  // namespace
 
-void add_run_command(CLI::App& app, Action& action, std::vector<std::string> arguments) {
-  CLI::App* command = app.add_subcommand(
-      "run", "Run every pipeline of a scenario over many seeds and print the table");
+void add_run_command(CommandLine& line) {
   auto options = std::make_shared<RunOptions>();
-  options->command = std::move(arguments);
+  options->command = line.arguments;
   evaluation::EvaluationOptions& evaluation = options->evaluation;
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  CLI::Option* seeds =
-      command
-          ->add_option("--seeds", evaluation.seeds,
-                       "How many seeds: runs of each pipeline. Default: 32; on a real rig 1")
-          ->type_name("N")
-          ->check(whole_number(1, 1'000'000));
-  command->add_option("--first-seed", evaluation.first_seed, "The first seed. Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command->add_option("--jobs", evaluation.jobs, "Threads. Default: one for every core")
-      ->type_name("N")
-      ->check(whole_number(1, 4096));
-  command
-      ->add_option("--pipelines", evaluation.pipelines,
-                   "Only these pipelines of the scenario, in this order")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_set_option(*command, options->sets);
-  add_backend_options(*command, options->backend);
-  add_format_option(*command, options->format, {"table", "markdown", "csv", "json"});
-  command
-      ->add_option("--output", options->output,
-                   "Write a result archive to this folder: manifest.json, results.json,\n"
-                   "frames.csv, hosts.csv. An earlier archive there is replaced")
-      ->type_name("DIR");
-  command->add_flag("--budget", options->budget,
-                    "Instead of the table, divide each pipeline's error among the stages that\n"
-                    "cause it (128 runs for every seed)");
-  command->footer(kRunExamples);
-  command->callback([options, seeds, &action] {
-    if (options->backend.backend == "hardware" && seeds->count() == 0) {
-      options->evaluation.seeds = 1;
-    }
-    action = [options] { return run(*options); };
-  });
+  Command command(line, "run",
+                  "Run every pipeline of a scenario over many seeds and print the table");
+  command.scenario(options->scenario);
+  const Option seeds =
+      command.count("--seeds", evaluation.seeds,
+                    "How many seeds: runs of each pipeline. Default: 32; on a real rig 1");
+  command.seed("--first-seed", evaluation.first_seed, "The first seed. Default: 1");
+  command.jobs(evaluation.jobs);
+  command.pipelines(evaluation.pipelines);
+  command.sets(options->sets);
+  add_backend_options(command, options->backend);
+  command.format(options->format, {"table", "markdown", "csv", "json"});
+  command.text("--output", "DIR", options->output,
+               "Write a result archive to this folder: manifest.json, results.json,\n"
+               "frames.csv, hosts.csv. An earlier archive there is replaced");
+  command.flag("--budget", options->budget,
+               "Instead of the table, divide each pipeline's error among the stages that\n"
+               "cause it (128 runs for every seed)");
+  command.footer(kRunExamples);
+  command.runs([options] { return run(*options); },
+               [options, seeds] {
+                 if (options->backend.backend == "hardware" && !seeds.given()) {
+                   options->evaluation.seeds = 1;
+                 }
+               });
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,3 @@
-#include "cli/commands/shell_commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/command_table.h"
+#include "cli/commands/commands.h"
 #include "cli/completion.h"
-#include "cli/exit_status.h"
 #include "cli/manual.h"
 
 namespace simbench::cli {
@@ -58,38 +57,29 @@ struct ManualOptions {
 
 }  // namespace
 
-void add_completion_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("completion", "Print a script that completes command lines in a shell");
+void add_completion_command(CommandLine& line) {
   auto shell = std::make_shared<std::string>();
-  command->add_option("shell", *shell, "One of: bash, zsh, fish")
-      ->type_name("SHELL")
-      ->required()
-      ->check(one_of({"bash", "zsh", "fish"}));
-  command->footer(kCompletionExamples);
-  command->callback([shell, &app, &action] {
-    action = [shell, &app] {
-      print_result(script(app, *shell));
-      return static_cast<int>(kOk);
-    };
+  Command command(line, "completion", "Print a script that completes command lines in a shell");
+  command.word("shell", "SHELL", *shell, {"bash", "zsh", "fish"}, "One of: bash, zsh, fish")
+      .required();
+  command.footer(kCompletionExamples);
+  command.runs([shell, &app = line.parser] {
+    print_result(script(app, *shell));
+    return kOk;
   });
 }
 
-void add_manual_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("manual", "Print the man page of simbench or of a command");
+void add_manual_command(CommandLine& line) {
   auto options = std::make_shared<ManualOptions>();
-  command->add_option("command", options->command, "The command. Default: simbench itself")
-      ->type_name("COMMAND")
-      ->check(one_of(names_of(app)));
-  command->add_flag("--names", options->names, "Instead of a page, the names that have one");
-  command->footer(kManualExamples);
-  command->callback([options, &app, &action] {
-    action = [options, &app] {
-      print_result(options->names ? fmt::format("{}\n", fmt::join(names_of(app), "\n"))
-                                  : page(command_table(app), options->command));
-      return static_cast<int>(kOk);
-    };
+  Command command(line, "manual", "Print the man page of simbench or of a command");
+  command.word("command", "COMMAND", options->command, names_of(line.parser),
+               "The command. Default: simbench itself");
+  command.flag("--names", options->names, "Instead of a page, the names that have one");
+  command.footer(kManualExamples);
+  command.runs([options, &app = line.parser] {
+    print_result(options->names ? fmt::format("{}\n", fmt::join(names_of(app), "\n"))
+                                : page(command_table(app), options->command));
+    return kOk;
   });
 }
 

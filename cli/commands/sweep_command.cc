@@ -1,25 +1,22 @@
-#include "cli/commands/sweep_command.h"
-
 #include <fmt/format.h>
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "app/interrupt.h"
-#include "cli/exit_status.h"
-#include "cli/messages.h"
-#include "cli/sweep_results.h"
-#include "cli/watched.h"
+#include "app/results.h"
+#include "app/simulated.h"
+#include "cli/command.h"
+#include "cli/command_line.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_worker.h"
 #include "reports/sweep/sweep_folder.h"
 #include "reports/sweep/sweep_report.h"
 #include "scenarios/study.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::cli {
 namespace {
@@ -131,7 +128,7 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
 
   reports::SweepFolder folder(options.output, reports::sweep_manifest(plan, options.study),
                               plan.runs(), options.restart);
-  evaluation::ThreadFarm threads(simulated_sweep_workers());
+  evaluation::ThreadFarm threads(app::simulated_sweep_workers());
   if (!finish_runs(plan, folder.log(), options.jobs, farm != nullptr ? *farm : threads)) {
     print_note(fmt::format("{} of {} runs are kept in {}; the same command goes on from there",
                            folder.log().finished(), plan.runs(), options.output));
@@ -139,65 +136,39 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   }
   const std::vector<scenarios::StudyTable> tables =
       study != nullptr ? study->tables : std::vector{scenarios::StudyTable::kResponse};
-  print_result(write_sweep_results(plan, tables, folder));
+  const app::SweepText text = app::write_sweep_results(plan, tables, folder);
+  if (!text.not_drawn.empty()) print_warnings({text.not_drawn});
+  print_result(text.tables);
   return kOk;
 }
 
 }  // namespace
 
-evaluation::TaskWorkerFactory simulated_sweep_workers() {
-  return evaluation::sweep_workers([](const scenarios::Scenario& scenario) {
-    return app::interruptible(sim::make_simulation(scenario));
-  });
-}
-
-void add_sweep_command(CLI::App& app, Action& action, evaluation::TaskFarm* farm) {
-  CLI::App* command = app.add_subcommand(
-      "sweep", "Run a scenario with parameters varied, and print how each pipeline responds");
+void add_sweep_command(CommandLine& line) {
   auto options = std::make_shared<SweepOptions>();
-  command
-      ->add_option("--scenario", options->request.scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO");
-  command
-      ->add_option("--sweep", options->request.axes,
-                   "What to vary, repeatable: every combination is a point. Values are\n"
-                   "start:stop:step (stop included) or value,value,...; parameters that vary\n"
-                   "together are joined: /hosts/count=2:6:2+/cameras/count=6:18:6")
-      ->type_name("/POINTER=VALUES")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--study", options->study,
-                   "A ready-made sweep in place of --scenario and --sweep; `list` lists them")
-      ->type_name("STUDY");
-  command->add_option("--seeds", options->seeds, "How many seeds at each point. Default: 32")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  command->add_option("--first-seed", options->request.first_seed, "The first seed. Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command
-      ->add_option("--pipelines", options->request.pipelines,
-                   "Only these pipelines of the scenario, in this order")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_set_option(*command, options->sets);
-  command
-      ->add_option("--jobs", options->jobs,
-                   "Threads. Default: one for every core; under MPI one for every rank")
-      ->type_name("N")
-      ->check(whole_number(1, 4096));
-  command
-      ->add_option("-o,--output", options->output,
-                   "The folder of the sweep. One that was not finished is gone on with")
-      ->type_name("DIR");
-  command->add_flag("--restart", options->restart,
-                    "Remove the sweep that is in the folder, and start anew");
-  add_json_messages_option(*command);
-  command->footer(kSweepExamples);
-  command->callback(
-      [options, farm, &action] { action = [options, farm] { return sweep(*options, farm); }; });
+  evaluation::SweepRequest& request = options->request;
+  Command command(line, "sweep",
+                  "Run a scenario with parameters varied, and print how each pipeline responds");
+  command.text("--scenario", "SCENARIO", request.scenario,
+               "Name of a scenario (see `simbench list`) or path of a scenario file");
+  command.texts("--sweep", "/POINTER=VALUES", request.axes,
+                "What to vary, repeatable: every combination is a point. Values are\n"
+                "start:stop:step (stop included) or value,value,...; parameters that vary\n"
+                "together are joined: /hosts/count=2:6:2+/cameras/count=6:18:6");
+  command.text("--study", "STUDY", options->study,
+               "A ready-made sweep in place of --scenario and --sweep; `list` lists them");
+  command.count("--seeds", options->seeds, "How many seeds at each point. Default: 32");
+  command.seed("--first-seed", request.first_seed, "The first seed. Default: 1");
+  command.pipelines(request.pipelines);
+  command.sets(options->sets);
+  command.jobs(options->jobs, "Threads. Default: one for every core; under MPI one for every rank");
+  command.text("-o,--output", "DIR", options->output,
+               "The folder of the sweep. One that was not finished is gone on with");
+  command.flag("--restart", options->restart,
+               "Remove the sweep that is in the folder, and start anew");
+  command.json_messages();
+  command.footer(kSweepExamples);
+  command.runs([options, farm = line.extras.farm] { return sweep(*options, farm); });
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,3 @@
-#include "cli/commands/trace_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,20 +5,19 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <optional>
 
-#include "app/interrupt.h"
-#include "cli/exit_status.h"
-#include "cli/watched.h"
+#include "app/simulated.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reports/text/output_file.h"
 #include "reports/text/output_folder.h"
 #include "reports/timeline/trace_chrome.h"
 #include "reports/timeline/trace_csv.h"
 #include "reports/timeline/trace_recorder.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::cli {
 namespace {
@@ -127,7 +124,7 @@ int run_trace(const TraceCommandOptions& options) {
   print_warnings(scenarios::warnings(scenario));
   Output output(options.output);
   const auto trace = watched<reports::Trace>([&](const evaluation::Progress&) {
-    const auto source = app::interruptible(sim::make_simulation(scenario));
+    const auto source = app::simulated_world(scenario);
     return reports::record_trace(scenario, choice, options.seed, *source, wanted);
   });
   if (!trace) return kInterrupted;
@@ -139,52 +136,34 @@ int run_trace(const TraceCommandOptions& options) {
   return kOk;
 }
 
-void add_window_options(CLI::App& command, TraceCommandOptions& options) {
-  command
-      .add_option("--from-ms", options.from_ms,
-                  "Only what begins then or later, in true time: 0 is the start of host\n"
-                  "synchronisation. Default: from the start of the world")
-      ->type_name("MS")
-      ->check(number_within(-kFarthestMs, kFarthestMs));
-  command.add_option("--to-ms", options.to_ms, "Only what begins before that. Default: to the end")
-      ->type_name("MS")
-      ->check(number_within(-kFarthestMs, kFarthestMs));
-  command
-      .add_option("--max-events", options.max_events,
-                  "The most events in the file, names aside; what begins after the instant at\n"
-                  "which there are so many is left out, which is noted. Default: 200000")
-      ->type_name("N")
-      ->check(whole_number(1, 10'000'000));
+void add_window_options(Command& command, TraceCommandOptions& options) {
+  command.number("--from-ms", "MS", options.from_ms, -kFarthestMs, kFarthestMs,
+                 "Only what begins then or later, in true time: 0 is the start of host\n"
+                 "synchronisation. Default: from the start of the world");
+  command.number("--to-ms", "MS", options.to_ms, -kFarthestMs, kFarthestMs,
+                 "Only what begins before that. Default: to the end");
+  command.whole_number("--max-events", "N", options.max_events, 1, 10'000'000,
+                       "The most events in the file, names aside; what begins after the instant "
+                       "at\nwhich there are so many is left out, which is noted. Default: 200000");
 }
 
 }  // namespace
 
-void add_trace_command(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("trace", "One run as a timeline, for the Perfetto UI or PlotJuggler");
+void add_trace_command(CommandLine& line) {
   auto options = std::make_shared<TraceCommandOptions>();
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  command->add_option("--seed", options->seed, "Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command
-      ->add_option("--pipeline", options->pipeline,
-                   "One of the scenario's. Default: yoon2021_both, or its first if it has none")
-      ->type_name("NAME");
-  add_set_option(*command, options->sets);
-  add_format_option(*command, options->format, {"chrome", "csv"});
-  add_json_messages_option(*command);
-  add_window_options(*command, *options);
-  command
-      ->add_option("-o,--output", options->output,
-                   "The file, which appears whole or not at all. Default: -, standard output")
-      ->type_name("FILE");
-  command->footer(kTraceExamples);
-  command->callback([options, &action] { action = [options] { return run_trace(*options); }; });
+  Command command(line, "trace", "One run as a timeline, for the Perfetto UI or PlotJuggler");
+  command.scenario(options->scenario);
+  command.seed("--seed", options->seed, "Default: 1");
+  command.text("--pipeline", "NAME", options->pipeline,
+               "One of the scenario's. Default: yoon2021_both, or its first if it has none");
+  command.sets(options->sets);
+  command.format(options->format, {"chrome", "csv"});
+  command.json_messages();
+  add_window_options(command, *options);
+  command.text("-o,--output", "FILE", options->output,
+               "The file, which appears whole or not at all. Default: -, standard output");
+  command.footer(kTraceExamples);
+  command.runs([options] { return run_trace(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,10 +1,9 @@
-#include "cli/commands/validate_command.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "cli/exit_status.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
 #include "evaluation/run/evaluate.h"
 
 namespace simbench::cli {
@@ -39,12 +38,12 @@ int validate_all(const std::vector<std::string>& files) {
 
 }  // namespace
 
-void add_validate_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("validate", "Check scenario files without running them");
+void add_validate_command(CommandLine& line) {
   auto files = std::make_shared<std::vector<std::string>>();
-  command->add_option("files", *files, "Scenario files")->type_name("FILE...")->required();
-  command->footer(kValidateExamples);
-  command->callback([files, &action] { action = [files] { return validate_all(*files); }; });
+  Command command(line, "validate", "Check scenario files without running them");
+  command.texts("files", "FILE...", *files, "Scenario files").required();
+  command.footer(kValidateExamples);
+  command.runs([files] { return validate_all(*files); });
 }
 
 }  // namespace simbench::cli

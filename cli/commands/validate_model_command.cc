@@ -1,5 +1,3 @@
-#include "cli/commands/validate_model_command.h"
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
@@ -8,7 +6,6 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,14 +15,15 @@
 
 #include "app/experiment_source.h"
 #include "app/interrupt.h"
-#include "cli/exit_status.h"
-#include "cli/watched.h"
+#include "app/simulated.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/statistics.h"
 #include "hardware/experiment/network_sandbox.h"
 #include "reports/rigs/measured_study.h"
 #include "reports/rigs/model_gap_report.h"
-#include "sim/rig/simulation.h"
 
 namespace simbench::cli {
 namespace {
@@ -137,7 +135,7 @@ std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions
              .pipelines = options.pipelines},
             progress);
       },
-      "repetitions");
+      {.unit = "repetitions"});
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
   lateness.print();
@@ -183,7 +181,7 @@ int validate_model(const ValidateModelOptions& options) {
   }
   const auto simulated = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
     return evaluation::evaluate(
-        scenario, [&] { return app::interruptible(sim::make_simulation(scenario)); },
+        scenario, [&] { return app::simulated_world(scenario); },
         {.seeds = options.seeds, .pipelines = pipelines_of(*study, options)}, progress);
   });
   if (!simulated) return kInterrupted;
@@ -191,51 +189,32 @@ int validate_model(const ValidateModelOptions& options) {
   return kOk;
 }
 
-void add_measurement_options(CLI::App& command, ValidateModelOptions& options) {
-  command
-      .add_option("--repeats", options.repeats, "Repetitions of each pipeline measured. Default: 5")
-      ->type_name("N")
-      ->check(whole_number(1, 1000));
-  command
-      .add_option("--first-seed", options.first_seed,
-                  "Seed of the first repetition's clocks, cameras and relay. Default: 1")
-      ->type_name("K")
-      ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()));
-  command
-      .add_option("--measured", options.measured,
-                  "Instead of measuring now: a study that --save wrote")
-      ->type_name("FILE");
-  command
-      .add_option("--save", options.save,
-                  "Write what was measured to this file, with date and machine")
-      ->type_name("FILE");
+void add_measurement_options(Command& command, ValidateModelOptions& options) {
+  command.whole_number("--repeats", "N", options.repeats, 1, 1000,
+                       "Repetitions of each pipeline measured. Default: 5");
+  command.seed("--first-seed", options.first_seed,
+               "Seed of the first repetition's clocks, cameras and relay. Default: 1");
+  command.text("--measured", "FILE", options.measured,
+               "Instead of measuring now: a study that --save wrote");
+  command.text("--save", "FILE", options.save,
+               "Write what was measured to this file, with date and machine");
 }
 
 }  // namespace
 
-void add_validate_model_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "validate-model",
-      "Measure a scenario with real processes and compare the simulation with it");
+void add_validate_model_command(CommandLine& line) {
   auto options = std::make_shared<ValidateModelOptions>();
-  command
-      ->add_option("--scenario", options->scenario,
-                   "Name of a scenario (see `simbench list`) or path of a scenario file")
-      ->type_name("SCENARIO")
-      ->required();
-  add_set_option(*command, options->sets);
-  command->add_option("--pipelines", options->pipelines, "Only these pipelines of the scenario")
-      ->type_name("NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_measurement_options(*command, *options);
-  command->add_option("--seeds", options->seeds, "Seeds of each pipeline simulated. Default: 200")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  add_format_option(*command, options->format, {"table", "markdown", "json"});
-  command->footer(kValidateModelExamples);
-  command->callback(
-      [options, &action] { action = [options] { return validate_model(*options); }; });
+  Command command(line, "validate-model",
+                  "Measure a scenario with real processes and compare the simulation with it");
+  command.scenario(options->scenario);
+  command.sets(options->sets);
+  command.list("--pipelines", "NAME,NAME", options->pipelines,
+               "Only these pipelines of the scenario");
+  add_measurement_options(command, *options);
+  command.count("--seeds", options->seeds, "Seeds of each pipeline simulated. Default: 200");
+  command.format(options->format, {"table", "markdown", "json"});
+  command.footer(kValidateModelExamples);
+  command.runs([options] { return validate_model(*options); });
 }
 
 }  // namespace simbench::cli

@@ -1,5 +1,5 @@
 // simbench-mpi: the same command line as simbench, whose sweeps are worked on by all ranks of an
-// MPI job. `mpirun -n 64 simbench sweep ...` becomes this program (cli/mpi_launch.h).
+// MPI job. `mpirun -n 64 simbench sweep ...` becomes this program (cli/process.h).
 //
 // Rank 0 is the command: it reads the arguments, writes the folder and prints; it gives each rank a
 // run, and the next one for every answer, so that a rank which is faster does more; and it works
@@ -28,9 +28,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/simulated.h"
 #include "cli/command_line.h"
-#include "cli/commands/sweep_command.h"
-#include "cli/freed_memory.h"
+#include "cli/process.h"
 #include "evaluation/sweep/task_farm.h"
 
 namespace simbench {
@@ -112,7 +112,7 @@ class MpiFarm final : public evaluation::TaskFarm {
 
   void run(const evaluation::Tasks& tasks, const evaluation::AnswerKeeper& keep) override {
     const evaluation::AnswerKeeper keep_safely = evaluation::one_at_a_time(keep);
-    const evaluation::TaskWorkerFactory make_worker = cli::simulated_sweep_workers();
+    const evaluation::TaskWorkerFactory make_worker = app::simulated_sweep_workers();
     JobQueue queue(tasks.count);
     const unsigned threads = std::max(1U, tasks.threads);
     for (int rank = 1; rank < world_.size(); ++rank) {
@@ -217,7 +217,7 @@ void work(const std::string& setup, Exchange& exchange) {
   evaluation::TaskWorker worker;
   while (const std::optional<Message> task = exchange.next()) {
     try {
-      if (!worker) worker = cli::simulated_sweep_workers()(setup);
+      if (!worker) worker = app::simulated_sweep_workers()(setup);
       exchange.answer({kAnswer, {task->number, worker(task->text)}});
     } catch (const std::exception& error) {
       exchange.answer({kFailure, {task->number, error.what()}});

@@ -1,12 +1,251 @@
 #include "evaluation/diagnosis/diagnose.h"
 
-#include <algorithm>
-#include <cstddef>
+#include <fmt/format.h>
 
-#include "evaluation/diagnosis/diagnose_findings.h"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace simbench::evaluation {
 namespace {
+
+constexpr double kGapPeriods = 10;
+constexpr double kLeastGapS = 0.5;
+constexpr double kLateS = 1;        // a camera that starts or ends so much apart from the others
+constexpr double kUnsteady = 0.02;  // jitter as a share of the period
+constexpr std::size_t kMostJumps = 3;
+
+class Findings {
+ public:
+  explicit Findings(const Diagnosis& diagnosis) : diagnosis_(diagnosis) {
+    for (const CameraDiagnosis& camera : diagnosis.cameras) {
+      if (camera.facts.frames == 0) continue;
+      first_s_ = std::min(first_s_, camera.facts.first_arrival_s);
+      last_s_ = std::max(last_s_, camera.facts.last_arrival_s);
+    }
+  }
+
+  std::vector<Finding> all() {
+    for (const CameraDiagnosis& camera : diagnosis_.cameras) {
+      camera_ = &camera;
+      if (camera.facts.frames < 2 || !(camera.facts.period_ms > 0)) {
+        add_too_little();
+        continue;
+      }
+      add_standing();
+      add_lost();
+      add_stamps();
+      add_presence();
+    }
+    for (const PairDiagnosis& pair : diagnosis_.pairs) add_pair(pair);
+    return std::move(findings_);
+  }
+
+ private:
+  // The camera's name, with its stream where it has several.
+  std::string name() const {
+    const auto streams =
+        std::count_if(diagnosis_.cameras.begin(), diagnosis_.cameras.end(),
+                      [this](const CameraDiagnosis& c) { return c.camera == camera_->camera; });
+    return streams > 1 ? camera_->camera + " " + camera_->stream : camera_->camera;
+  }
+
+  void add(const char* kind, std::string_view text) {
+    findings_.push_back({.camera = camera_->camera,
+                         .stream = camera_->stream,
+                         .kind = kind,
+                         .text = fmt::format("camera {}: {}", name(), text)});
+  }
+
+  const GroupVerdict& group() const {
+    return *std::find_if(diagnosis_.groups.begin(), diagnosis_.groups.end(),
+                         [this](const GroupVerdict& g) { return g.stream == camera_->stream; });
+  }
+
+  // The camera whose period is the common one.
+  std::string standard() const {
+    const std::size_t index = group().standard.value_or(0);
+    std::size_t place = 0;
+    for (const CameraDiagnosis& camera : diagnosis_.cameras) {
+      if (camera.stream == camera_->stream && place++ == index) return camera.camera;
+    }
+    return "";
+  }
+
+  void add_too_little() {
+    const std::int64_t frames = camera_->facts.frames;
+    add("too_few_frames", frames == 1 ? "one frame: nothing can be told"
+                          : frames > 1
+                              ? fmt::format("{} frames, but their stamps do not advance", frames)
+                              : std::string("no frame"));
+  }
+
+  void add_standing() {
+    const Standing& standing = camera_->standing;
+    const double rate_hz = 1000 / camera_->facts.host_period_ms;
+    switch (standing.follows) {
+      case Follows::kOwnClock:
+        add("free_running", is_standard()
+                                ? std::string("free-running: no other camera has its period")
+                                : "free-running: its phase " + moves());
+        break;
+      case Follows::kOtherRate:
+        add("other_rate", fmt::format("runs at {:.3f} Hz, no part of the common rate", rate_hz));
+        break;
+      case Follows::kHostOrOwn:
+        add_host();
+        break;
+      case Follows::kUnknown:
+        if (std::isnan(camera_->facts.host_period_ms)) {
+          add("unknown_rate", "too few frames to tell its rate in host time");
+        } else if (group().standard) {  // else the verdict says it, of all
+          add("unknown_rate", "its rate in host time is not known well enough to compare");
+        }
+        break;
+      case Follows::kTrigger:
+        break;
+    }
+    if (standing.period_multiple > 1 && standing.follows != Follows::kOtherRate) {
+      const std::string part =
+          standing.period_multiple == 2 ? "half" : fmt::format("1/{} of", standing.period_multiple);
+      add("divided_rate",
+          fmt::format("{} the rate ({:.3f} Hz): it skips triggers that come while it is busy, as "
+                      "with too long an exposure or a trigger faster than half its mode's rate",
+                      part, rate_hz));
+    }
+  }
+
+  // One finding for all cameras of a host, as they move together.
+  void add_host() {
+    std::string names;
+    int count = 0;
+    for (const CameraDiagnosis& other : diagnosis_.cameras) {
+      if (other.stream != camera_->stream || other.host != camera_->host) continue;
+      if (count++ == 0 && &other != camera_) return;  // it was said with the first one
+      names += (names.empty() ? "" : ", ") + other.camera;
+    }
+    if (is_standard()) return;  // the others are compared with this host
+    const bool alone = count == 1;
+    findings_.push_back(
+        {.camera = camera_->camera,
+         .stream = camera_->stream,
+         .kind = "host_or_free_running",
+         .text = fmt::format(
+             "host {} ({} of camera{} {}): phase {}; this may be the host's clock as well as {}",
+             camera_->host, camera_->stream, alone ? "" : "s", names, moves(),
+             alone ? "the camera's" : "a trigger of their own")});
+  }
+
+  bool is_standard() const { return standard() == camera_->camera; }
+
+  std::string moves() const {
+    const Standing& standing = camera_->standing;
+    return fmt::format("moves {:.3g} ms per minute against camera {} ({:+.3g} ppm)",
+                       standing.moves_ms_per_minute, standard(), standing.rate_ppm);
+  }
+
+  void add_lost() {
+    const StreamFacts& facts = camera_->facts;
+    if (facts.lost_frames > 0) {
+      add("lost_frames",
+          fmt::format(
+              "{} frames lost after the camera had counted them: inside it, on USB or in the host",
+              facts.lost_frames));
+    }
+    if (facts.skipped_pulses > 0) {
+      add("skipped_pulses",
+          fmt::format("{} frames never exposed: periods without a frame that its counter does not "
+                      "know - it missed triggers, or they were missing",
+                      facts.skipped_pulses));
+    }
+    if (facts.counter_restarts > 0) {
+      add("counter_restarts", fmt::format("its frame counter stood still or went back {} times: it "
+                                          "was started again, or frames came twice",
+                                          facts.counter_restarts));
+    }
+  }
+
+  void add_stamps() {
+    const StreamFacts& facts = camera_->facts;
+    std::size_t shown = 0;
+    for (const StampJump& jump : facts.jumps) {
+      if (shown++ == kMostJumps) {
+        add("jumps", fmt::format("{} more jumps", facts.jumps.size() - kMostJumps));
+        break;
+      }
+      if (jump.periods != 0) {
+        add("period_slip",
+            fmt::format("at {:.1f} s its stamps slip by {} period{} against their "
+                        "arrivals, for good",
+                        jump.at_s, -jump.periods, std::abs(jump.periods) > 1 ? "s" : ""));
+      } else {
+        add("clock_step",
+            fmt::format("at {:.1f} s arrivals and stamps move apart by {:.3f} ms, for "
+                        "good: a clock was set",
+                        jump.at_s, jump.step_ms));
+      }
+    }
+    if (facts.interval_jitter_ms > kUnsteady * facts.period_ms) {
+      add("unsteady",
+          fmt::format("unsteady: its intervals are {:.3f} ms off whole periods of {:.3f} "
+                      "ms (standard deviation), {:.1f} % within a tenth of one",
+                      facts.interval_jitter_ms, facts.period_ms, facts.on_grid_share * 100));
+    }
+    if (facts.future_stamps > 0) {
+      add("future_stamps", fmt::format("{} stamps lie in the future: these frames arrived up to "
+                                       "{:.1f} ms sooner than all others after their stamp",
+                                       facts.future_stamps, facts.future_ms));
+    }
+    if (facts.backward_stamps > 0) {
+      add("backward_stamps", fmt::format("its stamps go back {} times", facts.backward_stamps));
+    }
+    if (facts.backward_arrivals > 0) {
+      add("backward_arrivals",
+          fmt::format("arrivals go back {} times: its host's clock was set back",
+                      facts.backward_arrivals));
+    }
+    if (facts.wraps > 0) {
+      add("register_wraps", fmt::format("its 32-bit microsecond register starts again {} time{} "
+                                        "(every 71.6 min): no fault, but programs must expect it",
+                                        facts.wraps, facts.wraps > 1 ? "s" : ""));
+    }
+  }
+
+  void add_presence() {
+    const StreamFacts& facts = camera_->facts;
+    if (facts.longest_gap_s > kLeastGapS &&
+        facts.longest_gap_s > kGapPeriods * facts.period_ms * 1e-3) {
+      add("stalled", fmt::format("no frame for {:.2f} s, {:.1f} s after its first",
+                                 facts.longest_gap_s, facts.gap_at_s));
+    }
+    if (facts.first_arrival_s - first_s_ > kLateS) {
+      add("late_start",
+          fmt::format("starts {:.1f} s after the first camera", facts.first_arrival_s - first_s_));
+    }
+    if (last_s_ - facts.last_arrival_s > kLateS) {
+      add("ended_early",
+          fmt::format("ends {:.1f} s before the last camera", last_s_ - facts.last_arrival_s));
+    }
+  }
+
+  void add_pair(const PairDiagnosis& pair) {
+    if (!pair.runs_free) return;
+    findings_.push_back(
+        {.camera = pair.camera,
+         .stream = pair.stream,
+         .kind = "stream_runs_free",
+         .text =
+             fmt::format("camera {}: {} does not follow {}: its offset moves {:.3g} ms per minute",
+                         pair.camera, pair.stream, pair.against, pair.moves_ms_per_minute)});
+  }
+
+  const Diagnosis& diagnosis_;
+  const CameraDiagnosis* camera_ = nullptr;
+  double first_s_ = 1e300;
+  double last_s_ = -1e300;
+  std::vector<Finding> findings_;
+};
 
 // Kinds of streams in order of occurrence, depth before all others: it is what triggers drive.
 std::vector<std::string> kinds_of(const std::vector<CameraStream>& streams) {
@@ -55,6 +294,26 @@ std::vector<PairDiagnosis> pairs_of(const std::vector<CameraStream>& streams,
     pairs.push_back(std::move(pair));
   }
   return pairs;
+}
+
+// In order of the cameras; faults of a rig first, then what is worth knowing.
+std::vector<Finding> findings_of(const Diagnosis& diagnosis) { return Findings(diagnosis).all(); }
+
+// What no stamp can tell about this rig.
+std::vector<std::string> cannot_know(const Diagnosis& diagnosis) {
+  std::vector<std::string> texts = {
+      "whether the exposures coincide: a constant delay (trigger cabling, exposure time, latency) "
+      "is "
+      "in no stamp. Film one flash with all cameras once.",
+      "which frames belong together: cameras with one period may still be whole periods apart."};
+  const std::string host = diagnosis.cameras.empty() ? "" : diagnosis.cameras.front().host;
+  if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),
+                  [&host](const CameraDiagnosis& camera) { return camera.host != host; })) {
+    texts.emplace_back(
+        "phases between hosts: they are as good as the hosts' common zero and clocks (--one-host: "
+        "all files are of one computer).");
+  }
+  return texts;
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 // Periods in host time are compared between cameras whose arrivals were stamped by one clock. Those
 // of different hosts can differ because the hosts' clocks do: then the stamps cannot tell.
 //
-// The steps: diagnose_stream.h (one stream of one camera), diagnose_group.h (the cameras that have
-// a kind of stream), diagnose_pair.h (two streams of one camera), and findings in words.
+// The steps: diagnose_stream.h (streams of one camera), diagnose_group.h (the cameras that have
+// a kind of stream), and findings in words.
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
 //
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "evaluation/diagnosis/diagnose_group.h"
-#include "evaluation/diagnosis/diagnose_pair.h"
 #include "evaluation/diagnosis/diagnose_stream.h"
 #include "recording/rs_csv.h"
 

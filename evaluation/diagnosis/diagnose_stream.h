@@ -1,4 +1,5 @@
-// What the stamps of one stream of one camera say by themselves (evaluation/diagnosis/diagnose.h).
+// What the stamps of one stream of one camera say by themselves, and those of two streams together
+// (evaluation/diagnosis/diagnose.h).
 //
 // Where the arrivals run on but the sensor stamps jump against them, or the other way round, for
 // good, that is a jump: of whole periods (the camera's stamps slipped) or of any length (a clock
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "recording/rs_csv.h"
@@ -60,6 +62,25 @@ struct StreamFacts {
 
 // `frames` as recorded, not unwrapped, in order of delivery.
 StreamFacts stream_facts(std::span<const StampedFrame> frames);
+
+// Two streams of one camera against each other, as depth and colour.
+//
+// Both have stamps of the camera's one clock. Each frame of the second stream is compared with the
+// nearest of the first; the offsets are continued over half a period, so that a stream that runs
+// free shows as a steady movement.
+struct PairDiagnosis {
+  std::string camera;
+  std::string stream;
+  std::string against;
+  double offset_ms = std::numeric_limits<double>::quiet_NaN();  // mean; later is positive
+  double spread_ms = std::numeric_limits<double>::quiet_NaN();  // sd about the movement
+  double moves_ms_per_minute = std::numeric_limits<double>::quiet_NaN();
+  bool runs_free = false;
+};
+
+// Both as recorded, with two frames or more; offsets and movement are NaN with fewer.
+PairDiagnosis compare_streams(std::span<const StampedFrame> frames,
+                              std::span<const StampedFrame> against);
 
 }  // namespace simbench::evaluation
 

@@ -4,10 +4,136 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
+#include <span>
+
+#include "algorithms/device_time/lower_hull.h"
+#include "evaluation/replay/replay_camera.h"
 
 namespace simbench::evaluation {
 namespace {
+
+constexpr std::size_t kParts = 8;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+void check_stamps(const std::string& camera, const FitStream& stream) {
+  const std::vector<StampedFrame>& frames = stream.frames;
+  if (frames.size() < kFewestFrames) {
+    throw FitError(fmt::format("camera {}, {}: found {} frames, a fit needs {} at least", camera,
+                               stream.kind, frames.size(), kFewestFrames));
+  }
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const bool device_back = frames[i].sensor <= frames[i - 1].sensor;
+    if (!device_back && frames[i].arrival >= frames[i - 1].arrival) continue;
+    const char* what = device_back ? "device stamp" : "arrival";
+    const auto step_ms = device_back ? to_ms(frames[i].sensor - frames[i - 1].sensor)
+                                     : to_ms(frames[i].arrival - frames[i - 1].arrival);
+    throw FitError(fmt::format(
+        "camera {}, {}: found {} {:.3f} ms after the one before it (frame counter {}), allowed "
+        "stamps that ascend; cut the recording there",
+        camera, stream.kind, what, step_ms, frames[i].counter));
+  }
+}
+
+// (device stamp, arrival less device stamp), both from the first frame on.
+std::vector<LinePoint> points_of(const std::vector<StampedFrame>& frames) {
+  std::vector<LinePoint> points;
+  points.reserve(frames.size());
+  for (const StampedFrame& frame : frames) {
+    const std::int64_t device_ns = (frame.sensor - frames.front().sensor).count();
+    const std::int64_t arrival_ns = (frame.arrival - frames.front().arrival).count();
+    points.push_back({.x = device_ns, .y = arrival_ns - device_ns});
+  }
+  return points;
+}
+
+// Of every `step`-th point from `first` on.
+SupportLine hull_line(std::span<const LinePoint> points, std::size_t first = 0,
+                      std::size_t step = 1) {
+  LowerHull hull;
+  for (std::size_t i = first; i < points.size(); i += step) hull.add(points[i]);
+  return middle_line(hull.vertices());
+}
+
+// From arrival / device - 1 to device / arrival - 1.
+double skew_of_slope_ppm(double slope) { return -slope / (1 + slope) * 1e6; }
+
+double skew_error_ppm(std::span<const LinePoint> points) {
+  std::vector<double> skews;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    skews.push_back(skew_of_slope_ppm(hull_line(points, part, kParts).slope));
+  }
+  return standard_deviation(skews) / std::sqrt(static_cast<double>(kParts));
+}
+
+double height_ms(const SupportLine& line, LinePoint point) {
+  return (static_cast<double>(point.y) - line.at(point.x)) * 1e-6;
+}
+
+double rise_ms(std::span<const LinePoint> points, const SupportLine& line) {
+  constexpr std::size_t kTenths = 10;
+  double worst = 0;
+  for (std::size_t i = 0; i < kTenths; ++i) {
+    const std::size_t begin = i * points.size() / kTenths;
+    const std::size_t end = (i + 1) * points.size() / kTenths;
+    double least = height_ms(line, points[begin]);
+    for (const LinePoint& point : points.subspan(begin, end - begin)) {
+      least = std::min(least, height_ms(line, point));
+    }
+    worst = std::max(worst, least);
+  }
+  return worst;
+}
+
+// Height above the hull of each frame's block.
+std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) {
+  const std::size_t by_frames = points.size() / kBlockFrames;
+  const auto by_time = static_cast<std::size_t>(span_s / kBlockS);
+  const std::size_t blocks = std::max<std::size_t>(1, std::min(by_frames, by_time));
+  std::vector<double> excess_ms;
+  excess_ms.reserve(points.size());
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t begin = i * points.size() / blocks;
+    const std::size_t end = (i + 1) * points.size() / blocks;
+    const std::span<const LinePoint> block = points.subspan(begin, end - begin);
+    const SupportLine line = hull_line(block);
+    for (const LinePoint& point : block) excess_ms.push_back(std::max(0.0, height_ms(line, point)));
+  }
+  return excess_ms;
+}
+
+// Ranks from 0 on; equal values share the mean of theirs.
+std::vector<double> ranks_of(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&values](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
+    const double rank = static_cast<double>(i + end - 1) / 2;
+    for (; i < end; ++i) ranks[order[i]] = rank;
+  }
+  return ranks;
+}
+
+// Pearson's.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const double mean_a = mean_of(a);
+  const double mean_b = mean_of(b);
+  double aa = 0;
+  double bb = 0;
+  double ab = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNaN;
+}
 
 constexpr std::int64_t kFewestPairs = 30;
 
@@ -45,6 +171,45 @@ std::vector<FittedValue> skews_of(const FitInput& input, const std::vector<Strea
 }
 
 }  // namespace
+
+double successive_rank_correlation(const std::vector<double>& values,
+                                   const std::vector<bool>& follows) {
+  const std::vector<double> ranks = ranks_of(values);
+  std::vector<double> before;
+  std::vector<double> after;
+  for (std::size_t i = 1; i < ranks.size(); ++i) {
+    if (!follows[i]) continue;
+    before.push_back(ranks[i - 1]);
+    after.push_back(ranks[i]);
+  }
+  return correlation(before, after);
+}
+
+StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
+  check_stamps(camera, stream);
+  const std::vector<StampedFrame>& frames = stream.frames;
+  const std::vector<LinePoint> points = points_of(frames);
+  const SupportLine line = hull_line(points);
+  const CameraStatistics statistics = camera_statistics(frames);
+  StreamFit fit;
+  fit.camera = stream.camera;
+  fit.kind = stream.kind;
+  fit.frames = statistics.frames;
+  fit.missing = statistics.missing_frames;
+  fit.span_s = statistics.span_s;
+  fit.skew_ppm = skew_of_slope_ppm(line.slope);
+  fit.skew_error_ppm = skew_error_ppm(points);
+  fit.least_squares_ppm = skew_of_slope_ppm(statistics.drift_ppm * 1e-6);
+  fit.excess_ms = excess_of(points, fit.span_s);
+  fit.rise_ms = rise_ms(points, line);
+  std::vector<bool> follows(frames.size(), false);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    follows[i] = frames[i].counter == frames[i - 1].counter + 1;
+    fit.pairs += follows[i] ? 1 : 0;
+  }
+  fit.rank_correlation = successive_rank_correlation(fit.excess_ms, follows);
+  return fit;
+}
 
 double RigFit::drop_share() const {
   return static_cast<double>(missing) / static_cast<double>(frames + missing);

@@ -6,8 +6,8 @@
 // latency table also what messages cost the hosts at both ends. Faults of the base are left out:
 // what they did is in the recording.
 //
-// "summary" says what each value rests on; evidence() gives the same line by line, not_identified()
-// what no fit to these stamps can give.
+// "summary" says what each value rests on; fit_evidence() gives the same line by line,
+// not_identified() what no fit to these stamps can give.
 //
 //   const FitModel model = fit_model(fit, input, base, "model.json");
 //   reports::write_file("model.json", model.text);
@@ -48,6 +48,18 @@ struct FitModel {
 // relative to it.
 FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base,
                    const std::string& path);
+
+// "/json/pointer: value and evidence" each.
+std::vector<std::string> fit_evidence(const RigFit& fit, const FitInput& input);
+
+// `base` gives what is not identified.
+std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input,
+                                        const scenarios::Scenario& base);
+
+// Of the rates of the hosts' oscillators, from those against the master's, which is one of them;
+// and of the first offsets. Nothing where no host has one.
+std::optional<double> host_skew_sigma_ppm(const NetworkFit& network);
+std::optional<double> initial_offset_sigma_ms(const NetworkFit& network);
 
 }  // namespace simbench::evaluation
 

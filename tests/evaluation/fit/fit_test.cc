@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "evaluation/fit/fit_check.h"
-#include "evaluation/fit/fit_evidence.h"
+#include "evaluation/fit/fit_model.h"
 #include "recording/event.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"

@@ -1,0 +1,124 @@
+#include "app/results.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+#include "evaluation/sweep/sweep_score.h"
+#include "reports/figures/gnuplot.h"
+#include "reports/results/csv.h"
+#include "reports/results/json.h"
+#include "reports/results/leaderboard_report.h"
+#include "reports/results/results_document.h"
+#include "reports/sweep/sweep_figure.h"
+#include "reports/sweep/sweep_report.h"
+#include "reports/text/output_folder.h"
+#include "reports/text/plain_text.h"
+
+namespace simbench::app {
+namespace {
+
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+using evaluation::SweepScore;
+using scenarios::StudyTable;
+
+std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan& plan) {
+  std::vector<SweepScore> scores;
+  scores.reserve(plan.runs());
+  for (std::size_t run = 0; run < plan.runs(); ++run) {
+    std::optional<SweepScore> score = evaluation::score_of(log.text(run));
+    SIMBENCH_ASSERT(score.has_value(), "the log's checksums hold, so its texts are scores");
+    scores.push_back(std::move(*score));
+  }
+  return scores;
+}
+
+std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                    const std::vector<StudyTable>& tables) {
+  reports::Document document;
+  for (const StudyTable table : tables) {
+    document.blocks.push_back(
+        table == StudyTable::kHostOrder     ? reports::host_order_block(plan, rows)
+        : table == StudyTable::kSeedsNeeded ? reports::seeds_needed_block(plan, rows)
+                                            : reports::response_block(plan, rows));
+  }
+  return plain(document);
+}
+
+std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          const std::vector<StudyTable>& tables) {
+  const reports::FilePage page;
+  return text_of(plan, rows, tables);
+}
+
+reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                          StudyTable table) {
+  if (table == StudyTable::kHostOrder) return reports::host_order_figure(plan, rows);
+  if (table == StudyTable::kSeedsNeeded) return reports::seeds_needed_figure(plan, rows);
+  return reports::response_figure(plan, rows);
+}
+
+// Without a picture a sweep is complete all the same: returns why it was not drawn.
+std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
+  constexpr const char* kName = "sweep.svg";
+  folder.remove(kName);
+  if (figure.panels.empty()) return "";
+  std::string svg;
+  try {
+    svg = reports::drawn_svg(figure);
+  } catch (const reports::OutputError& error) {
+    return fmt::format("{} was not drawn: {}", kName, error.what());
+  }
+  folder.write(kName, svg);
+  return "";
+}
+
+}  // namespace
+
+std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
+                         const std::string& format, const std::vector<reports::Block>& more) {
+  const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
+  if (format == "json") {
+    return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
+  }
+  if (format == "csv") return reports::csv(results);
+  reports::Document document = leaderboard
+                                   ? reports::leaderboard_document(results, scenario.summary)
+                                   : reports::results_document(results, scenario.summary);
+  document.blocks.insert(document.blocks.end(), more.begin(), more.end());
+  return format == "markdown" ? markdown(document) : plain(document);
+}
+
+RunArchive::RunArchive(std::vector<std::string> command) {
+  provenance_.command = std::move(command);
+  provenance_.started = std::chrono::system_clock::now();
+}
+
+void RunArchive::open(const std::string& folder) {
+  if (!folder.empty()) folder_ = std::make_unique<reports::OutputFolder>(folder);
+}
+
+bool RunArchive::write(const evaluation::Results& results, const scenarios::Scenario& scenario) {
+  if (!folder_) return false;
+  provenance_.finished = std::chrono::system_clock::now();
+  reports::write_archive(*folder_, results, scenario, provenance_);
+  return true;
+}
+
+SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTable>& tables,
+                              reports::SweepFolder& folder) {
+  const std::vector<SweepScore> scores = scores_in(folder.log(), plan);
+  const std::vector<ResponseRow> rows = evaluation::response(plan, scores);
+  folder.write("sweep.csv", reports::sweep_csv(plan, scores));
+  folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
+  folder.write("sweep.txt", text_for_file(plan, rows, tables));
+  std::string not_drawn = draw_figure(figure_of(plan, rows, tables.front()), folder);
+  folder.log().put_in_order();
+  return {.tables = text_of(plan, rows, tables), .not_drawn = std::move(not_drawn)};
+}
+
+}  // namespace simbench::app

@@ -1,0 +1,248 @@
+#include "cli/command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace simbench::cli {
+namespace {
+
+// The names of the checks, which CLI11 shows nowhere. The words of one_of() follow its name, a line
+// each.
+constexpr const char* kNumberCheck = "number";
+constexpr const char* kWordsCheck = "one of";
+
+// `kind`: what is allowed, "a whole number".
+template <class Number>
+CLI::Validator within(const char* kind, Number low, Number high) {
+  const auto check = [kind, low, high](const std::string& text) -> std::string {
+    Number value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && stop == end && low <= value && value <= high) return "";
+    return fmt::format("found '{}', allowed: {} from {} to {}", text, kind, low, high);
+  };
+  return {check, "", kNumberCheck};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& text) -> std::string {
+    if (std::find(words.begin(), words.end(), text) != words.end()) return "";
+    return fmt::format("found '{}', allowed: {}", text, fmt::join(words, ", "));
+  };
+  return {check, "", fmt::format("{}\n{}", kWordsCheck, fmt::join(words, "\n"))};
+}
+
+// The name of the option's first check; empty if it has none.
+std::string check_name(CLI::Option& option) {
+  try {
+    return option.get_validator(0)->get_name();
+  } catch (const CLI::OptionNotFound&) {
+    return "";
+  }
+}
+
+}  // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::at_most(int values) {
+  option_->expected(1, values);
+  return *this;
+}
+
+Option& Option::needs(const Option& other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+bool Option::given() const { return option_->count() > 0; }
+
+Command::Command(CommandLine& line, const std::string& name, const std::string& summary)
+    : line_(line), command_(line.parser.add_subcommand(name, summary)) {}
+
+Option Command::flag(const std::string& names, bool& value, const std::string& text) {
+  return Option(command_->add_flag(names, value, text));
+}
+
+Option Command::text(const std::string& names, const std::string& place, std::string& value,
+                     const std::string& text) {
+  return Option(command_->add_option(names, value, text)->type_name(place));
+}
+
+Option Command::texts(const std::string& names, const std::string& place,
+                      std::vector<std::string>& values, const std::string& text) {
+  CLI::Option* option = command_->add_option(names, values, text)->type_name(place);
+  if (names.starts_with("-")) option->allow_extra_args(false);
+  return Option(option);
+}
+
+Option Command::list(const std::string& names, const std::string& place,
+                     std::vector<std::string>& values, const std::string& text) {
+  return Option(command_->add_option(names, values, text)
+                    ->type_name(place)
+                    ->delimiter(',')
+                    ->allow_extra_args(false));
+}
+
+Option Command::word(const std::string& names, const std::string& place, std::string& value,
+                     const std::vector<std::string>& words, const std::string& text) {
+  return Option(command_->add_option(names, value, text)->type_name(place)->check(one_of(words)));
+}
+
+template <class Number>
+Option Command::number(const std::string& names, const std::string& place, Number& value,
+                       double low, double high, const std::string& text) {
+  CLI::Option* option = command_->add_option(names, value, text)->type_name(place);
+  if constexpr (std::is_same_v<Number, std::vector<double>>) {
+    option->delimiter(',')->allow_extra_args(false);
+  }
+  return Option(option->check(within("a number", low, high)));
+}
+
+template Option Command::number(const std::string&, const std::string&, double&, double, double,
+                                const std::string&);
+template Option Command::number(const std::string&, const std::string&, std::optional<double>&,
+                                double, double, const std::string&);
+template Option Command::number(const std::string&, const std::string&, std::vector<double>&,
+                                double, double, const std::string&);
+
+template <class Number>
+Option Command::whole_number(const std::string& names, const std::string& place, Number& value,
+                             std::uint64_t low, std::uint64_t high, const std::string& text) {
+  return Option(command_->add_option(names, value, text)
+                    ->type_name(place)
+                    ->check(within("a whole number", low, high)));
+}
+
+template <class Number>
+Option Command::seed(const std::string& names, Number& value, const std::string& text) {
+  return whole_number(names, "K", value, 0, std::numeric_limits<std::uint32_t>::max(), text);
+}
+
+template <class Number>
+Option Command::count(const std::string& names, Number& value, const std::string& text) {
+  return whole_number(names, "N", value, 1, 1'000'000, text);
+}
+
+template Option Command::whole_number(const std::string&, const std::string&, std::uint64_t&,
+                                      std::uint64_t, std::uint64_t, const std::string&);
+template Option Command::whole_number(const std::string&, const std::string&, std::int64_t&,
+                                      std::uint64_t, std::uint64_t, const std::string&);
+template Option Command::whole_number(const std::string&, const std::string&,
+                                      std::optional<std::uint64_t>&, std::uint64_t, std::uint64_t,
+                                      const std::string&);
+template Option Command::seed(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::seed(const std::string&, std::optional<std::uint64_t>&,
+                              const std::string&);
+template Option Command::count(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::count(const std::string&, std::optional<std::uint64_t>&,
+                               const std::string&);
+
+void Command::scenario(std::string& value) {
+  text("--scenario", "SCENARIO", value,
+       "Name of a scenario (see `simbench list`) or path of a scenario file")
+      .required();
+}
+
+void Command::pipelines(std::vector<std::string>& names) {
+  list("--pipelines", "NAME,NAME", names, "Only these pipelines of the scenario, in this order");
+}
+
+void Command::sets(std::vector<std::string>& values) {
+  const auto check = [](const std::string& text) -> std::string {
+    if (text.starts_with("/") && text.find('=') != std::string::npos) return "";
+    return fmt::format("found '{}', allowed: /json/pointer=value, as in /timeline/frames=100",
+                       text);
+  };
+  command_
+      ->add_option("--set", values,
+                   "Change a parameter of the scenario, repeatable;\n"
+                   "`simbench describe SCENARIO` names them all")
+      ->type_name("/POINTER=VALUE")
+      ->allow_extra_args(false)
+      ->check(CLI::Validator(check, ""));
+}
+
+void Command::jobs(unsigned& value, const std::string& text) {
+  whole_number("--jobs", "N", value, 1, 4096, text);
+}
+
+void Command::format(std::string& value, const std::vector<std::string>& formats) {
+  value = formats.front();
+  const Option option =
+      word("--format", "FORMAT", value, formats,
+           fmt::format("One of: {}. Default: {}", fmt::join(formats, ", "), value));
+  if (std::find(formats.begin(), formats.end(), "json") == formats.end()) return;
+  // Options are carried out in this order, so --format has been.
+  json_flag(
+      "For scripts: --format json, and progress, warnings and errors on\n"
+      "standard error as JSON lines",
+      [option, &value] {
+        if (option.given() && value != "json") {
+          refuse(
+              "--json",
+              fmt::format("found with --format {}, allowed: --format json, or no --format at all",
+                          value));
+        }
+        value = "json";
+      });
+}
+
+void Command::json_messages() {
+  json_flag(
+      "For scripts: progress, warnings and errors on standard error as\n"
+      "JSON lines",
+      [] {});
+}
+
+void Command::json_flag(const std::string& text, std::function<void()> action) {
+  command_->add_flag_callback("--json", std::move(action), text)->disable_flag_override();
+}
+
+void Command::footer(const std::string& text) { command_->footer(text); }
+
+void Command::runs(Action action, const std::function<void()>& check) {
+  command_->callback([&line = line_, action = std::move(action), check] {
+    if (check) check();
+    line.action = action;
+  });
+}
+
+std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values) {
+  std::vector<scenarios::Override> overrides;
+  for (const std::string& text : values) {
+    const std::size_t equals = text.find('=');
+    overrides.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return overrides;
+}
+
+void refuse(const std::string& option, const std::string& text) {
+  throw CLI::ValidationError(option, text);
+}
+
+std::vector<std::string> allowed_words(CLI::Option& option) {
+  std::vector<std::string> words = CLI::detail::split(check_name(option), '\n');
+  if (words.empty() || words.front() != kWordsCheck) return {};
+  words.erase(words.begin());
+  return words;
+}
+
+bool takes_number(CLI::Option& option) { return check_name(option) == kNumberCheck; }
+
+}  // namespace simbench::cli

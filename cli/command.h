@@ -1,0 +1,136 @@
+// What a subcommand is made of: its options, its help, and what it does. A thin layer over the
+// parser (CLI11), so that the messages of all commands are alike ("--seeds: found 'many', allowed:
+// a whole number from 1 to 1000000"), the shells can complete every value, and no command compiles
+// CLI11, which costs seconds in each file that includes it.
+//
+//   void add_validate_command(CommandLine& line) {
+//     auto files = std::make_shared<std::vector<std::string>>();
+//     Command command(line, "validate", "Check scenario files without running them");
+//     command.texts("files", "FILE...", *files, "Scenario files").required();
+//     command.footer(kValidateExamples);
+//     command.runs([files] { return validate_all(*files); });
+//   }
+//
+// Names: "--seed", "-o,--output", or "files" for an argument without a name, which help and
+// messages call by its place holder. A place holder tells the shells what to offer: SCENARIO, DIR
+// or FOLDER, else a file; words and numbers complete themselves. Help lists options in the order in
+// which they are added. What an option writes to must live as long as the action. Texts state the
+// default
+// ("Default: 32"); the value that is there is the default.
+#ifndef SIMBENCH_CLI_COMMAND_H_
+#define SIMBENCH_CLI_COMMAND_H_
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/messages.h"
+#include "scenarios/loader.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace simbench {
+struct CommandLineExtras;
+}
+
+namespace simbench::cli {
+
+// What a subcommand does once its options are parsed; returns the exit status.
+using Action = std::function<int()>;
+
+// A command line in the making, to which commands are added.
+struct CommandLine {
+  CLI::App& parser;
+  const std::vector<std::string>& arguments;  // as given, with the program's name
+  const CommandLineExtras& extras;            // cli/command_line.h
+  Action action{};                            // of the command that was parsed
+};
+
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option& required();
+  Option& at_most(int values);
+  Option& needs(const Option& other);
+  Option& excludes(const Option& other);
+  bool given() const;  // once the command line is parsed
+
+ private:
+  CLI::Option* option_;
+};
+
+class Command {
+ public:
+  Command(CommandLine& line, const std::string& name, const std::string& summary);
+
+  Option flag(const std::string& names, bool& value, const std::string& text);
+  Option text(const std::string& names, const std::string& place, std::string& value,
+              const std::string& text);
+  // An option that may be repeated, or all arguments that follow.
+  Option texts(const std::string& names, const std::string& place, std::vector<std::string>& values,
+               const std::string& text);
+  // "one,two", to be repeated as well.
+  Option list(const std::string& names, const std::string& place, std::vector<std::string>& values,
+              const std::string& text);
+  Option word(const std::string& names, const std::string& place, std::string& value,
+              const std::vector<std::string>& words, const std::string& text);
+  // Within [low, high]. Number: double or std::optional<double>, and std::vector<double> for "1,2".
+  template <class Number>
+  Option number(const std::string& names, const std::string& place, Number& value, double low,
+                double high, const std::string& text);
+  // Number: std::uint64_t, std::int64_t, unsigned, std::optional<std::uint64_t>.
+  template <class Number>
+  Option whole_number(const std::string& names, const std::string& place, Number& value,
+                      std::uint64_t low, std::uint64_t high, const std::string& text);
+
+  // What many commands have.
+  //
+  // --scenario, required.
+  void scenario(std::string& value);
+  // --pipelines of the scenario.
+  void pipelines(std::vector<std::string>& names);
+  // --set /json/pointer=value, repeatable; parsed by overrides_of().
+  void sets(std::vector<std::string>& values);
+  // --first-seed, --seed and the like.
+  template <class Number>
+  Option seed(const std::string& names, Number& value, const std::string& text);
+  // --seeds, --repeats and the like: from 1.
+  template <class Number>
+  Option count(const std::string& names, Number& value, const std::string& text);
+  // --jobs: threads.
+  void jobs(unsigned& value, const std::string& text = "Threads. Default: one for every core");
+  // --format with the first of `formats` as its default; where they include "json" also --json,
+  // which sets that and makes the messages on standard error JSON lines (cli/messages.h).
+  void format(std::string& value, const std::vector<std::string>& formats);
+  // --json for a command whose result is a file: messages as JSON lines only.
+  void json_messages();
+
+  // What help says below the options: explanation, examples, exit status (cli/manual.h divides it).
+  void footer(const std::string& text);
+  // `check` is called before, while parsing: it may refuse().
+  void runs(Action action, const std::function<void()>& check = {});
+
+ private:
+  void json_flag(const std::string& text, std::function<void()> action);
+
+  CommandLine& line_;
+  CLI::App* command_;
+};
+
+std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);
+
+// Ends parsing with the message "OPTION: text" and where to read more.
+[[noreturn]] void refuse(const std::string& option, const std::string& text);
+
+// What checks say to whoever completes a command line: the words of an option's word(), empty for
+// another; whether it has a number() or whole_number().
+std::vector<std::string> allowed_words(CLI::Option& option);
+bool takes_number(CLI::Option& option);
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_COMMAND_H_

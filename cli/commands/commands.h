@@ -1,0 +1,70 @@
+// The commands of simbench, a function each that adds one to a command line (cli/command.h).
+//
+// A new command is a file NAME_command.cc with such a function, its line here and its place in the
+// list of cli/command_line.cc; help, completion and man page follow.
+#ifndef SIMBENCH_CLI_COMMANDS_COMMANDS_H_
+#define SIMBENCH_CLI_COMMANDS_COMMANDS_H_
+
+#include <string>
+
+namespace simbench::cli {
+
+struct CommandLine;
+
+// Every pipeline of a scenario over many seeds, then the table.
+void add_run_command(CommandLine& line);
+// The response of every pipeline to parameters of the scenario.
+void add_sweep_command(CommandLine& line);
+// What desynchronisation costs a 3D reconstruction, the paper's Table 4. Goes on as
+// simbench-reconstruct where this program has no reconstruction in it.
+void add_reconstruct_command(CommandLine& line);
+
+// Result archives as one HTML file.
+void add_report_command(CommandLine& line);
+// One run of one pipeline as a timeline, for the Perfetto UI or PlotJuggler.
+void add_trace_command(CommandLine& line);
+// One figure as a file for a paper (SVG, PDF) or as data (CSV).
+void add_figure_command(CommandLine& line);
+
+// Two archives, or pipelines of one, seed by seed.
+void add_compare_command(CommandLine& line);
+// Holds a result to a baseline.
+void add_gate_command(CommandLine& line);
+
+// Captures of a scenario as a recording folder.
+void add_record_command(CommandLine& line);
+// The scores of a recording folder; device_time and gathering over CSV of real cameras.
+void add_replay_command(CommandLine& line);
+// Whether the hardware sync of a recorded rig works.
+void add_diagnose_command(CommandLine& line);
+// A scenario made of a recording.
+void add_fit_command(CommandLine& line);
+// Recordings of the IBL camera rigs as CSV for `simbench replay`.
+void add_convert_ibl_command(CommandLine& line);
+
+// The key that the hosts of a rig share.
+void add_keygen_command(CommandLine& line);
+// One host of a real rig.
+void add_node_command(CommandLine& line);
+// The real-network experiment beside its simulation.
+void add_validate_model_command(CommandLine& line);
+// The network of a scenario between nodes on this machine.
+void add_relay_command(CommandLine& line);
+
+// Scenarios, algorithms, cameras and studies.
+void add_list_command(CommandLine& line);
+// Every parameter of a scenario, with unit, meaning and source.
+void add_describe_command(CommandLine& line);
+// Scenario files checked without running them.
+void add_validate_command(CommandLine& line);
+
+// Texts about the command line itself. `manual` knows the commands that were added before it.
+void add_completion_command(CommandLine& line);
+void add_manual_command(CommandLine& line);
+
+// All studies by name, with the question that each answers: `list studies`, `sweep --study list`.
+std::string study_list();
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_COMMANDS_COMMANDS_H_

@@ -1,0 +1,387 @@
+#include "cli/completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace simbench::cli {
+namespace {
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// What stands in a script for the default command.
+std::string with_default_command(const char* script) {
+  return replaced(script, "DEFAULT", kDefaultCommand);
+}
+
+}  // namespace
+
+namespace {
+
+constexpr const char* kBashHead =
+    R"bash(# bash completion for simbench; made by `simbench completion bash`.
+
+)bash";
+
+// What is asked of the tables: the options of a command; what follows an option of a command; what
+// the argument at a place of a command may be. "-" is no value at all, as of a flag.
+constexpr const char* kBashBody = R"bash(
+# The candidates of a kind of value for the word being typed.
+_simbench_complete() {
+  local word=$2
+  case $1 in
+    word\ *) mapfile -t COMPREPLY < <(compgen -W "${1#word }" -- "$word") ;;
+    folder) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    file) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+    scenario)
+      compopt -o filenames
+      mapfile -t COMPREPLY < <(
+        compgen -W "$("$3" list scenarios --format names 2> /dev/null)" -- "$word"
+        compgen -f -- "$word"
+      )
+      ;;
+  esac
+}
+
+_simbench() {
+  local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} at=1 command option='' place=0 kind
+  local -a words=()
+  COMPREPLY=()
+  # bash breaks words at "=": --format=json is three of them.
+  while (( at < COMP_CWORD )); do
+    [[ ${COMP_WORDS[at]} == = ]] || words+=("${COMP_WORDS[at]}")
+    (( at += 1 ))
+  done
+  [[ $word != = ]] || word=
+  if (( ${#words[@]} == 0 )); then
+    kind="word $_simbench_commands"
+    [[ $word != -* ]] || kind="word $(_simbench_options '') $(_simbench_options DEFAULT)"
+    _simbench_complete "$kind" "$word"
+    return
+  fi
+  command=${words[0]}
+  if [[ $command == -* ]]; then command=DEFAULT; else words=("${words[@]:1}"); fi
+  for at in "${words[@]}"; do
+    if [[ -n $option ]]; then
+      option=
+    elif [[ $at == -* ]]; then
+      option=$at
+      [[ $(_simbench_value "$command" "$option") != - ]] || option=
+    else
+      (( place += 1 ))
+    fi
+  done
+  if [[ -n $option ]]; then
+    kind=$(_simbench_value "$command" "$option")
+  elif [[ $word == -* ]]; then
+    kind="word $(_simbench_options "$command")"
+  else
+    kind=$(_simbench_argument "$command" "$place")
+  fi
+  _simbench_complete "$kind" "$word" "$program"
+}
+
+complete -F _simbench simbench
+)bash";
+
+std::string kind_text(const OptionEntry& entry) {
+  switch (entry.value) {
+    case ValueKind::kNone:
+      return "-";
+    case ValueKind::kWord:
+      return fmt::format("word {}", fmt::join(entry.words, " "));
+    case ValueKind::kScenario:
+      return "scenario";
+    case ValueKind::kNumber:
+      return "number";
+    case ValueKind::kFolder:
+      return "folder";
+    case ValueKind::kFile:
+      break;
+  }
+  return "file";
+}
+
+std::string options_case(const CommandEntry& command) {
+  std::vector<std::string> names;
+  for (const OptionEntry& option : command.options) {
+    names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  return fmt::format("    '{}') echo '{}' ;;\n", command.name, fmt::join(names, " "));
+}
+
+std::string value_cases(const CommandEntry& command) {
+  std::string text;
+  for (const OptionEntry& option : command.options) {
+    std::vector<std::string> patterns;
+    for (const std::string& name : option.names) {
+      patterns.push_back(fmt::format("'{} {}'", command.name, name));
+    }
+    text += fmt::format("    {}) echo '{}' ;;\n", fmt::join(patterns, " | "), kind_text(option));
+  }
+  return text;
+}
+
+std::string argument_cases(const CommandEntry& command) {
+  std::string text;
+  for (std::size_t place = 0; place < command.arguments.size(); ++place) {
+    const OptionEntry& argument = command.arguments[place];
+    const std::string pattern = argument.repeatable ? fmt::format("'{} '*", command.name)
+                                                    : fmt::format("'{} {}'", command.name, place);
+    text += fmt::format("    {}) echo '{}' ;;\n", pattern, kind_text(argument));
+  }
+  return text;
+}
+
+std::string function(const char* name, const char* subject, const std::string& cases,
+                     const char* otherwise) {
+  return fmt::format("{}() {{\n  case {} in\n{}    *) echo '{}' ;;\n  esac\n}}\n\n", name, subject,
+                     cases, otherwise);
+}
+
+}  // namespace
+
+std::string bash_completion(const CommandTable& table) {
+  std::vector<std::string> names;
+  std::string options = options_case(table.program);
+  std::string values;
+  std::string arguments;
+  for (const CommandEntry& command : table.commands) {
+    names.push_back(command.name);
+    options += options_case(command);
+    values += value_cases(command);
+    arguments += argument_cases(command);
+  }
+  return fmt::format("{}_simbench_commands='{}'\n\n{}{}{}{}", kBashHead, fmt::join(names, " "),
+                     function("_simbench_options", "$1", options, ""),
+                     function("_simbench_value", "\"$1 $2\"", values, "-"),
+                     function("_simbench_argument", "\"$1 $2\"", arguments, "-"),
+                     with_default_command(kBashBody).substr(1));
+}
+
+namespace {
+
+constexpr const char* kZshHead = R"zsh(#compdef simbench
+# zsh completion for simbench; made by `simbench completion zsh`.
+
+_simbench_scenarios() {
+  local -a names
+  names=(${(f)"$(_call_program scenarios ${(q)_simbench_program} list scenarios --format names 2> /dev/null)"})
+  _alternative 'scenarios:scenario:compadd -a names' 'files:scenario file:_files'
+}
+
+)zsh";
+
+constexpr const char* kZshTail = R"zsh(
+# Options without a command are those of the default command.
+_simbench() {
+  local _simbench_program=$words[1] curcontext=$curcontext
+  if (( CURRENT == 2 )); then
+    if [[ $PREFIX == -* ]]; then
+      _arguments -S $_simbench_program_options $_simbench_DEFAULT
+    else
+      _describe -t commands command _simbench_commands
+    fi
+    return
+  fi
+  if [[ $words[2] == -* ]]; then
+    words=($words[1] DEFAULT "${(@)words[2,-1]}")
+    (( CURRENT += 1 ))
+  fi
+  local specs=_simbench_${words[2]//-/_}
+  (( ${(P)+specs} )) || return 1
+  shift words
+  (( CURRENT -= 1 ))
+  _arguments -S "${(@P)specs}"
+}
+
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
+  _simbench "$@"
+else
+  compdef _simbench simbench
+fi
+)zsh";
+
+std::string quoted_for_zsh(const std::string& text) {
+  return fmt::format("'{}'", replaced(text, "'", "'\\''"));
+}
+
+// Within the brackets of an option's explanation, and between colons.
+std::string escaped(std::string text) {
+  text = replaced(std::move(text), "\\", "\\\\");
+  for (const char* special : {"[", "]", ":"}) {
+    text = replaced(std::move(text), special, std::string("\\") + special);
+  }
+  return text;
+}
+
+std::string action(const OptionEntry& entry) {
+  switch (entry.value) {
+    case ValueKind::kWord:
+      return fmt::format("({})", fmt::join(entry.words, " "));
+    case ValueKind::kScenario:
+      return "_simbench_scenarios";
+    case ValueKind::kFolder:
+      return "_files -/";
+    case ValueKind::kFile:
+      return "_files";
+    case ValueKind::kNone:
+    case ValueKind::kNumber:
+      break;
+  }
+  return " ";
+}
+
+std::string option_specs(const OptionEntry& option) {
+  std::string text;
+  for (const std::string& name : option.names) {
+    std::string excluded = fmt::format("({})", fmt::join(option.names, " "));
+    if (option.repeatable) excluded = "*";
+    const bool value = option.value != ValueKind::kNone;
+    const std::string joined = value && name.starts_with("--") ? name + "=" : name;
+    text += fmt::format(
+        "  {}\n", quoted_for_zsh(fmt::format(
+                      "{}{}[{}]{}", excluded, joined, escaped(option.text),
+                      value ? fmt::format(":{}:{}", escaped(option.value_name), action(option))
+                            : std::string())));
+  }
+  return text;
+}
+
+std::string specs(const std::string& name, const CommandEntry& command) {
+  std::string text = fmt::format("_simbench_{}=(\n", replaced(name, "-", "_"));
+  for (const OptionEntry& option : command.options) text += option_specs(option);
+  for (const OptionEntry& argument : command.arguments) {
+    text += fmt::format(
+        "  {}\n", quoted_for_zsh(fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
+                                             escaped(argument.value_name), action(argument))));
+  }
+  return text + ")\n";
+}
+
+}  // namespace
+
+std::string zsh_completion(const CommandTable& table) {
+  std::string text = fmt::format("{}_simbench_commands=(\n", kZshHead);
+  for (const CommandEntry& command : table.commands) {
+    text += fmt::format("  {}\n",
+                        quoted_for_zsh(fmt::format("{}:{}", command.name, escaped(command.text))));
+  }
+  text += ")\n" + specs("program_options", table.program);
+  for (const CommandEntry& command : table.commands) text += specs(command.name, command);
+  return text + with_default_command(kZshTail);
+}
+
+namespace {
+
+constexpr const char* kFishHead =
+    R"(# fish completion for simbench; made by `simbench completion fish`.
+
+# The command of the line so far; empty while there is none.
+function __simbench_command
+    set -l words (commandline -opc)
+    set -e words[1]
+    if not set -q words[1]
+        return
+    end
+    switch $words[1]
+        case '-*'
+            echo DEFAULT
+        case '*'
+            echo $words[1]
+    end
+end
+
+function __simbench_is
+    test (count (__simbench_command)) -gt 0; and test (__simbench_command) = $argv[1]
+end
+
+# The options of the default command stand for it.
+function __simbench_starts
+    test (count (__simbench_command)) -eq 0
+end
+
+function __simbench_scenarios
+    set -l words (commandline -opc)
+    eval (string escape -- $words[1]) list scenarios --format names 2>/dev/null
+    __fish_complete_path (commandline -ct)
+end
+
+complete -c simbench -f
+)";
+
+std::string quoted_for_fish(std::string text) {
+  return fmt::format("'{}'", replaced(replaced(std::move(text), "\\", "\\\\"), "'", "\\'"));
+}
+
+// The options of `complete` that offer what a value may be.
+std::string candidates(const OptionEntry& entry) {
+  switch (entry.value) {
+    case ValueKind::kNone:
+      return "";
+    case ValueKind::kWord:
+      return " -x -a " + quoted_for_fish(fmt::format("{}", fmt::join(entry.words, " ")));
+    case ValueKind::kScenario:
+      return " -x -a '(__simbench_scenarios)'";
+    case ValueKind::kNumber:
+      return " -x";
+    case ValueKind::kFolder:
+      return " -x -a '(__fish_complete_directories (commandline -ct))'";
+    case ValueKind::kFile:
+      break;
+  }
+  return " -r -F";
+}
+
+std::string option_line(const std::string& condition, const OptionEntry& option) {
+  std::string names;
+  for (const std::string& name : option.names) {
+    names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  }
+  return fmt::format("complete -c simbench -n '{}'{}{} -d {}\n", condition, names,
+                     candidates(option), quoted_for_fish(option.text));
+}
+
+std::string argument_line(const std::string& condition, const OptionEntry& argument) {
+  // -x is about the value of an option; a plain file is what -F brings back after -f.
+  std::string offered = candidates(argument);
+  if (argument.value == ValueKind::kFile) offered = " -F";
+  if (argument.value == ValueKind::kNumber) return "";
+  if (offered.starts_with(" -x")) offered.erase(0, 3);
+  return fmt::format("complete -c simbench -n '{}'{} -d {}\n", condition, offered,
+                     quoted_for_fish(argument.value_name));
+}
+
+}  // namespace
+
+std::string fish_completion(const CommandTable& table) {
+  std::string text = with_default_command(kFishHead);
+  for (const OptionEntry& option : table.program.options) {
+    text += option_line("__simbench_starts", option);
+  }
+  for (const CommandEntry& command : table.commands) {
+    text += fmt::format("\ncomplete -c simbench -n __simbench_starts -a {} -d {}\n", command.name,
+                        quoted_for_fish(command.text));
+    const std::string is = "__simbench_is " + command.name;
+    const std::string condition =
+        command.name == kDefaultCommand ? fmt::format("{}; or __simbench_starts", is) : is;
+    for (const OptionEntry& option : command.options) {
+      // --help is simbench's own there.
+      const bool shared = option.names.back() == "--help";
+      text += option_line(shared ? is : condition, option);
+    }
+    for (const OptionEntry& argument : command.arguments) text += argument_line(is, argument);
+  }
+  return text;
+}
+
+}  // namespace simbench::cli
