@@ -49,7 +49,8 @@ struct SweepText {
 // Writes sweep.csv, hosts.csv, sweep.txt and, where gnuplot is, sweep.svg, and puts the log in
 // order. The first of `tables` is drawn. Throws reports::OutputError.
 SweepText write_sweep_results(const evaluation::SweepPlan& plan,
-                              const std::vector<scenarios::StudyTable>& tables, reports::SweepFolder& folder);
+                              const std::vector<scenarios::StudyTable>& tables,
+                              reports::SweepFolder& folder);
 
 }  // namespace simbench::app
 

@@ -155,8 +155,7 @@ void add_subject_options(Command& command, ReconstructOptions& options) {
   command.text("--mesh", "FILE", options.mesh,
                "A mesh as the subject, in metres: PLY, OBJ, OFF or STL. Short for\n"
                "--set /studio/subject/kind=mesh --set /studio/subject/mesh_file=FILE");
-  command.word("--motion", "NAME", options.motion,
-               scenarios::all_texts<scenarios::MotionScript>(),
+  command.word("--motion", "NAME", options.motion, scenarios::all_texts<scenarios::MotionScript>(),
                "How the subject moves: stand, turn, walk, walk_and_turn, raise_arms. Short\n"
                "for --set /studio/subject/motion=NAME. Default: the scenario's");
 }
