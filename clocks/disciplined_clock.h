@@ -28,7 +28,7 @@
 // Source: docs/design.md sections 4, 5 and 7; docs/reference/calibration.md section 2 ("Host
 // clock").
 //
-//   DisciplinedClock<NodeOscillator> clock(3, oscillator, now, os_time, 64);
+//   DisciplinedClock<hardware::NodeOscillator> clock(3, oscillator, now, os_time, 64);
 //   clock.slew(now, from_ms(2), 500'000);  // 2 ms at 500 ppm: takes 4 s
 //   HostTime reading = clock.read(kernel_stamp);
 #ifndef SIMBENCH_CLOCKS_DISCIPLINED_CLOCK_H_

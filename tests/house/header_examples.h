@@ -32,7 +32,7 @@ struct Given : T {
   operator U&() const;
 };
 
-extern const Whatever whatever, use, print, correct_the_clock;
+extern const Whatever whatever, use, print, correct_the_clock, oscillator, os_time, kernel_stamp;
 
 // algorithms/
 class Mine : public DeviceTimeEstimator {
@@ -58,7 +58,8 @@ std::int64_t key_of(std::uint32_t source);
 extern const Parameters parameters;
 extern ChronySourceStats stats;
 extern double now_s, left_s, offset_s, delay_s, dispersion_s, slope;
-extern const SteadyTime s, steady, seen, when, deadline, at, now;
+extern const SteadyTime s, steady, seen, when, deadline, at;
+extern const Given<SteadyTime> now;
 extern const Nanoseconds measured;
 extern const Whatever step;
 extern const HostTime m, t1;
