@@ -77,7 +77,7 @@ class RecordingDeathTest : public testing::Test {
   static void expect_part_of(const std::vector<RecordingEvent>& played,
                              const std::vector<RecordingEvent>& recorded) {
     std::size_t at = 0;
-    for (const RecordingEvent& event : nonempty(played)) {
+    for (const RecordingEvent& event : played) {
       while (at < recorded.size() && !same(recorded[at], event)) ++at;
       ASSERT_LT(at, recorded.size()) << "an event that was not recorded";
       ++at;

@@ -60,7 +60,7 @@ using FrameName = std::pair<std::uint32_t, std::int64_t>;  // source, number of 
 void expect_sound(const CollectedSets& out, const Gatherer& gatherer, const GatheringSetup& setup,
                   std::uint64_t pushed, const std::string& context) {
   std::set<FrameName> used;
-  for (const std::vector<GatherFrame>& set : nonempty(out.all)) {
+  for (const std::vector<GatherFrame>& set : out.all) {
     ASSERT_FALSE(set.empty()) << context;
     for (std::size_t i = 0; i < set.size(); ++i) {
       const std::int64_t number = set[i].sensor.time_since_epoch().count();
