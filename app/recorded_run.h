@@ -2,7 +2,7 @@
 // print.
 //
 //   const RecordedRun run("monday");
-//   const Results results = run.evaluate(run.chosen({}), false, progress);
+//   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);
 #ifndef SIMBENCH_APP_RECORDED_RUN_H_
 #define SIMBENCH_APP_RECORDED_RUN_H_
 

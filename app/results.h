@@ -2,7 +2,7 @@
 //
 //   RunArchive archive(arguments);              // the run begins
 //   archive.open("results/monday");             // refused before the work, not after it
-//   const Results results = evaluate(...);
+//   const evaluation::Results results = evaluation::evaluate(scenario, make_source, {}, progress);
 //   archive.write(results, scenario);
 #ifndef SIMBENCH_APP_RESULTS_H_
 #define SIMBENCH_APP_RESULTS_H_

@@ -7,17 +7,17 @@
 
 #include <gtest/gtest.h>
 
-#include <ranges>
-#include <source_location>
+#include <iterator>
 #include <utility>
 
 namespace simbench {
 
 // A named range is passed on; a temporary one is given back by value, so that it outlives the loop.
+// The failure names the caller's line (clang 14 has no std::source_location).
 template <typename Range>
-Range nonempty(Range&& range, std::source_location at = std::source_location::current()) {
-  if (std::ranges::begin(range) == std::ranges::end(range)) {
-    ADD_FAILURE_AT(at.file_name(), static_cast<int>(at.line())) << "nothing to check: empty range";
+Range nonempty(Range&& range, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (std::begin(range) == std::end(range)) {
+    ADD_FAILURE_AT(file, line) << "nothing to check: empty range";
   }
   return std::forward<Range>(range);
 }

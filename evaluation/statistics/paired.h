@@ -22,7 +22,7 @@
 // Cost: kResamples draws a pair; 1,000 pairs in about 5 ms.
 //
 //   const PairedComparison c = compare(pair_up(with.values, without.values), {});
-//   if (c.verdict == Verdict::kBetter) fmt::print("{:.1f} times\n", c.ratio.value);
+//   if (c.verdict == Verdict::kBetter) print(c.ratio.value);
 #ifndef SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
 #define SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
 

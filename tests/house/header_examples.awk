@@ -51,7 +51,7 @@ function is_definition(text) {
 function namespace_of(name,   line, found) {
   found = "simbench"
   while ((getline line < name) > 0) {
-    if (line ~ /^namespace [a-z_0-9:]+ \{/) { split(line, word, " "); found = word[2]; break }
+    if (line ~ /^namespace simbench[a-z_0-9:]* \{/) { split(line, word, " "); found = word[2] }
   }
   close(name)
   return found

@@ -94,16 +94,21 @@ namespace app {
 using evaluation::evaluate;
 using hardware::NetworkSandbox;
 using sim::make_simulation;
-extern const Whatever played, options, progress;
+extern const std::vector<evaluation::PipelineChoice> choices;
+extern const std::vector<std::string> arguments;
+extern const Whatever played, progress;
+extern const evaluation::EvaluationOptions options;
 extern const hardware::ExperimentRig rig;
 extern RecordingSource& rig_source;
 inline constexpr int kInterrupted = 130;
+extern const evaluation::SourceFactory make_source;
 }  // namespace app
 
 namespace cli {
 using evaluation::evaluate;
 extern const std::vector<evaluation::PipelineChoice> choices;
-extern CLI::App* command;
+extern Command& command;
+extern const Whatever kValidateExamples, validate_all;
 extern const evaluation::SourceFactory make_source;
 extern const evaluation::EvaluationOptions options;
 extern std::unique_ptr<RecordingSource> source;

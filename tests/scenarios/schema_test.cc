@@ -74,7 +74,8 @@ json changed(const json& value, const ordered_json& node) {
   if (value.is_boolean()) return !value.get<bool>();
   if (value.is_number()) return value.get<double>() + 1;
   if (!node.contains("enum")) return value.get<std::string>() + "x";
-  return node["enum"][0] == value ? node["enum"][1] : node["enum"][0];
+  const std::string word = value.get<std::string>();
+  return node["enum"][0].get<std::string>() == word ? node["enum"][1] : node["enum"][0];
 }
 
 // What the schema says of a leaf.
