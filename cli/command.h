@@ -28,7 +28,7 @@
 #include "cli/messages.h"
 #include "scenarios/loader.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the parser calls it so
 class App;
 class Option;
 }  // namespace CLI

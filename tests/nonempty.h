@@ -16,7 +16,9 @@ namespace simbench {
 // The failure names the caller's line (clang 14 has no std::source_location).
 template <typename Range>
 Range nonempty(Range&& range, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
-  if (std::begin(range) == std::end(range)) {
+  using std::begin;  // found beside those of the range's own namespace
+  using std::end;
+  if (begin(range) == end(range)) {
     ADD_FAILURE_AT(file, line) << "nothing to check: empty range";
   }
   return std::forward<Range>(range);
