@@ -227,6 +227,7 @@ Table sets_table(const std::vector<const Row*>& rows) {
     append(fields, metric_fields(*metric));
   }
   std::vector<std::reference_wrapper<const Row>> subjects;
+  subjects.reserve(rows.size());
   for (const Row* row : rows) subjects.emplace_back(*row);
   return table_of(fields, subjects);
 }

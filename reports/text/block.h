@@ -60,10 +60,12 @@ template <class Subject, class Subjects>
 Table table_of(const std::vector<Field<Subject>>& fields, const Subjects& subjects,
                std::size_t keys = 1) {
   std::vector<Column> columns;
+  columns.reserve(fields.size());
   for (const Field<Subject>& field : fields) columns.push_back(field.column);
   Table table(std::move(columns), keys);
   for (const Subject& subject : subjects) {
     std::vector<std::string> cells;
+    cells.reserve(fields.size());
     for (const Field<Subject>& field : fields) cells.push_back(field.cell(subject));
     table.add(std::move(cells));
   }
