@@ -1,4 +1,4 @@
-// A folder of a test's own, with the files in it, gone when the test is.
+// A folder of a test's own, with the files in it, gone when the test is; whole files as text.
 //
 //   const ScratchFolder folder;
 //   read_archive(folder.write("results.json", "{}"));
@@ -16,6 +16,14 @@
 #include <vector>
 
 namespace simbench {
+
+inline std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+inline void put(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 class ScratchFolder {
  public:
@@ -39,14 +47,11 @@ class ScratchFolder {
   std::string write(const std::string& name, const std::string& content) const {
     std::string file = *this / name;
     std::filesystem::create_directories(std::filesystem::path(file).parent_path());
-    std::ofstream(file + ".part", std::ios::binary) << content;
+    put(file + ".part", content);
     std::filesystem::rename(file + ".part", file);
     return file;
   }
-  std::string content(const std::string& name) const {
-    std::ifstream in(*this / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string content(const std::string& name) const { return simbench::content(*this / name); }
   // What is in it, or in a folder in it, in order.
   std::vector<std::string> names(const std::string& folder = ".") const {
     std::vector<std::string> found;

@@ -50,6 +50,12 @@ ScorerSetup arrival_setup();
 // The score of the capture.
 SeedScore score(const TestCapture& capture, const ScorerSetup& setup);
 
+// What scores may be off by: rounding alone.
+inline constexpr double kTolerance = 1e-9;
+
+// Cameras 0 .. n-1 arrive 0, 1, ... n-1 ms late.
+inline Nanoseconds staircase(std::uint32_t camera, std::int64_t) { return from_ms(camera); }
+
 }  // namespace simbench::evaluation
 
 #endif  // SIMBENCH_TESTS_EVALUATION_TEST_CAPTURE_H_

@@ -5,21 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "sim/engine/random.h"
+#include "tests/reconstruction/angles.h"
 
 namespace simbench::reconstruction {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
-
-scenarios::StudioSubject script(const std::string& motion) {
+scenarios::StudioSubject person_that(const std::string& motion) {
   scenarios::StudioSubject subject;
   subject.kind = scenarios::SubjectKind::kPerson;
   subject.height_m = 1.75;
@@ -50,7 +47,7 @@ void expect_on_floor(const MotionState& state) {
 }
 
 TEST(Motion, Stand) {
-  const Motion motion(script("stand"));
+  const Motion motion(person_that("stand"));
   for (const double t : {-3.0, 0.0, 0.1, 100.0}) {
     EXPECT_TRUE(motion.at(t).root.isApprox(Eigen::Isometry3d::Identity()));
     for (const double angle : angles(motion.at(t).posture)) EXPECT_EQ(angle, 0);
@@ -58,7 +55,7 @@ TEST(Motion, Stand) {
 }
 
 TEST(Motion, TurnIsCounterClockwiseOnTheSpot) {
-  const Motion motion(script("turn"));
+  const Motion motion(person_that("turn"));
   for (const double t : {-0.5, 0.0, 0.1, 1.0, 2.0}) {
     const MotionState state = motion.at(t);
     expect_on_floor(state);
@@ -69,7 +66,7 @@ TEST(Motion, TurnIsCounterClockwiseOnTheSpot) {
 }
 
 TEST(Motion, WalkGoesToAndFroAtItsSpeed) {
-  const Motion motion(script("walk"));
+  const Motion motion(person_that("walk"));
   const double period = 2 * kWalkLength / 1.2;
   const auto x = [&](double t) { return motion.at(t).root.translation().x(); };
   EXPECT_DOUBLE_EQ(x(0), 0);
@@ -94,7 +91,7 @@ TEST(Motion, WalkGoesToAndFroAtItsSpeed) {
 }
 
 TEST(Motion, WalkAndTurnGoesAlongACircleFacingAhead) {
-  const Motion motion(script("walk_and_turn"));
+  const Motion motion(person_that("walk_and_turn"));
   EXPECT_NEAR((motion.at(0).root.translation() - Vector3d(0, -0.8, 0)).norm(), 0, 1e-12);
   constexpr double kStep = 1e-5;
   for (double t = -5; t < 5; t += 0.0173) {
@@ -110,7 +107,7 @@ TEST(Motion, WalkAndTurnGoesAlongACircleFacingAhead) {
 }
 
 TEST(Motion, TurningBackwardsIsACircleToo) {
-  scenarios::StudioSubject subject = script("walk_and_turn");
+  scenarios::StudioSubject subject = person_that("walk_and_turn");
   subject.turn_rate_rad_per_s = -1.5;
   const Motion motion(subject);
   for (const double t : {0.0, 0.3, 2.0}) {
@@ -121,21 +118,21 @@ TEST(Motion, TurningBackwardsIsACircleToo) {
 }
 
 TEST(Motion, WalkAndTurnWithoutOneOfTheTwo) {
-  scenarios::StudioSubject straight = script("walk_and_turn");
+  scenarios::StudioSubject straight = person_that("walk_and_turn");
   straight.turn_rate_rad_per_s = 0;
-  scenarios::StudioSubject spot = script("walk_and_turn");
+  scenarios::StudioSubject spot = person_that("walk_and_turn");
   spot.walk_speed_m_per_s = 0;
   for (const double t : {-1.0, 0.0, 0.4, 1.7}) {
-    const MotionState walk = Motion(script("walk")).at(t);
+    const MotionState walk = Motion(person_that("walk")).at(t);
     EXPECT_TRUE(Motion(straight).at(t).root.isApprox(walk.root, 1e-15));
     EXPECT_EQ(angles(Motion(straight).at(t).posture), angles(walk.posture));
-    EXPECT_TRUE(Motion(spot).at(t).root.isApprox(Motion(script("turn")).at(t).root, 1e-15));
+    EXPECT_TRUE(Motion(spot).at(t).root.isApprox(Motion(person_that("turn")).at(t).root, 1e-15));
     for (const double angle : angles(Motion(spot).at(t).posture)) EXPECT_EQ(angle, 0);
   }
 }
 
 TEST(Motion, ArmsGoUpAndDownAtTheirMeanRate) {
-  const Motion motion(script("raise_arms"));
+  const Motion motion(person_that("raise_arms"));
   const auto raised = [&](double t) { return motion.at(t).posture.arms_raised; };
   const double up = kPi / 2.0;  // pi at a mean of 2 rad/s
   EXPECT_EQ(raised(0), 0);
@@ -161,8 +158,8 @@ TEST(Motion, ASpedUpScriptFollowsTheSamePath) {
     SCOPED_TRACE(name);
     for (int i = 0; i < 100; ++i) {
       const double t = instant();
-      const MotionState fast = Motion(script(name), 2.5).at(t);
-      const MotionState slow = Motion(script(name)).at(2.5 * t);
+      const MotionState fast = Motion(person_that(name), 2.5).at(t);
+      const MotionState slow = Motion(person_that(name)).at(2.5 * t);
       EXPECT_TRUE(fast.root.isApprox(slow.root, 1e-12));
       EXPECT_EQ(angles(fast.posture), angles(slow.posture));
     }
@@ -171,7 +168,7 @@ TEST(Motion, ASpedUpScriptFollowsTheSamePath) {
 
 TEST(Motion, ASpeedFactorOfZeroStandsStill) {
   for (const std::string& name : kScripts) {
-    const Motion motion(script(name), 0);
+    const Motion motion(person_that(name), 0);
     EXPECT_TRUE(motion.at(3).root.isApprox(motion.at(0).root));
     EXPECT_EQ(angles(motion.at(3).posture), angles(motion.at(0).posture));
   }
@@ -193,7 +190,7 @@ TEST(Motion, NothingJumps) {
                                          kPi};
   for (const std::string& name : kScripts) {
     SCOPED_TRACE(name);
-    const Motion motion(script(name));
+    const Motion motion(person_that(name));
     for (int i = 0; i < 2000; ++i) {
       const double t = instant();
       const MotionState before = motion.at(t);
@@ -216,7 +213,7 @@ TEST(Motion, LimbsAreContinuouslyDifferentiable) {
   constexpr double kStep = 1e-4;
   for (const std::string name : {"walk_and_turn", "raise_arms"}) {
     SCOPED_TRACE(name);
-    const Motion motion(script(name));
+    const Motion motion(person_that(name));
     for (double t = -4; t < 4; t += 0.00137) {
       const auto before = angles(motion.at(t - kStep).posture);
       const auto now = angles(motion.at(t).posture);
@@ -230,7 +227,7 @@ TEST(Motion, LimbsAreContinuouslyDifferentiable) {
 }
 
 TEST(Motion, AStrideSwingsLegsAndArmsAgainstEachOther) {
-  const Motion motion(script("walk_and_turn"));
+  const Motion motion(person_that("walk_and_turn"));
   const double stride = kStrideLength / 1.2;
   double widest = 0;
   double most_bent = 0;
@@ -257,7 +254,7 @@ TEST(Motion, AStrideSwingsLegsAndArmsAgainstEachOther) {
 // At 0 s the left leg passes the right one: bent, on its way ahead.
 TEST(Motion, TheSwingingLegIsTheBentOne) {
   for (const std::string name : {"walk", "walk_and_turn"}) {
-    const Motion motion(script(name));
+    const Motion motion(person_that(name));
     const Posture now = motion.at(0).posture;
     EXPECT_NEAR(now.hip_swing, 0, 1e-12);
     EXPECT_GT(motion.at(0.01).posture.hip_swing, 0);
@@ -268,7 +265,7 @@ TEST(Motion, TheSwingingLegIsTheBentOne) {
 
 TEST(Motion, StridesGrowWithTheSpeedUpToALimit) {
   const auto widest = [](double speed) {
-    scenarios::StudioSubject subject = script("walk_and_turn");
+    scenarios::StudioSubject subject = person_that("walk_and_turn");
     subject.walk_speed_m_per_s = speed;
     return Motion(subject).at(kStrideLength / 4 / speed).posture.hip_swing;
   };

@@ -8,19 +8,18 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "tests/nonempty.h"
+#include "tests/reconstruction/angles.h"
 
 namespace simbench::reconstruction {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-6;  // of a float, in m
 
 struct Corners {

@@ -3,28 +3,27 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "sim/engine/random.h"
 #include "tests/nonempty.h"
+#include "tests/reconstruction/angles.h"
 
 namespace simbench::reconstruction {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kHeight = 2.0;
+constexpr double kPersonHeight = 2.0;
 
 Eigen::Isometry3d pose(const Posture& posture, Segment segment) {
-  return segment_poses(posture, kHeight)[static_cast<std::size_t>(segment)];
+  return segment_poses(posture, kPersonHeight)[static_cast<std::size_t>(segment)];
 }
 
 Vector3d joint(const Posture& posture, Segment segment) {
-  return pose(posture, segment).translation() / kHeight;
+  return pose(posture, segment).translation() / kPersonHeight;
 }
 
-void expect_near(const Vector3d& found, const Vector3d& expected) {
+void expect_point(const Vector3d& found, const Vector3d& expected) {
   EXPECT_NEAR((found - expected).norm(), 0, 1e-9)
       << found.transpose() << " in place of " << expected.transpose();
 }
@@ -35,32 +34,32 @@ TEST(Skeleton, StandsUpright) {
        {Segment::kTrunk, Segment::kThighLeft, Segment::kShankRight, Segment::kFootLeft}) {
     EXPECT_TRUE(pose(standing, upright).linear().isIdentity(1e-12));
   }
-  expect_near(joint(standing, Segment::kTrunk), {0, 0, 0});
-  expect_near(joint(standing, Segment::kThighLeft), {0, 0.052, 0.530});
-  expect_near(joint(standing, Segment::kShankRight), {0, -0.052, 0.285});
-  expect_near(joint(standing, Segment::kFootLeft), {0, 0.052, 0.039});
-  expect_near(joint(standing, Segment::kUpperArmLeft), {0, 0.113, 0.812});
+  expect_point(joint(standing, Segment::kTrunk), {0, 0, 0});
+  expect_point(joint(standing, Segment::kThighLeft), {0, 0.052, 0.530});
+  expect_point(joint(standing, Segment::kShankRight), {0, -0.052, 0.285});
+  expect_point(joint(standing, Segment::kFootLeft), {0, 0.052, 0.039});
+  expect_point(joint(standing, Segment::kUpperArmLeft), {0, 0.113, 0.812});
   // Hanging arms are a little away from the body.
   const double out = 0.186 * std::sin(0.12);
-  expect_near(joint(standing, Segment::kForearmLeft),
-              {0, 0.113 + out, 0.812 - 0.186 * std::cos(0.12)});
-  expect_near(joint(standing, Segment::kForearmRight),
-              {0, -0.113 - out, 0.812 - 0.186 * std::cos(0.12)});
+  expect_point(joint(standing, Segment::kForearmLeft),
+               {0, 0.113 + out, 0.812 - 0.186 * std::cos(0.12)});
+  expect_point(joint(standing, Segment::kForearmRight),
+               {0, -0.113 - out, 0.812 - 0.186 * std::cos(0.12)});
 }
 
 TEST(Skeleton, HipsSwingAgainstEachOther) {
   const Posture posture{.hip_swing = kPi / 2};
-  expect_near(joint(posture, Segment::kShankLeft), {0.245, 0.052, 0.530});
-  expect_near(joint(posture, Segment::kShankRight), {-0.245, -0.052, 0.530});
-  expect_near(joint(posture, Segment::kFootLeft), {0.245 + 0.246, 0.052, 0.530});
+  expect_point(joint(posture, Segment::kShankLeft), {0.245, 0.052, 0.530});
+  expect_point(joint(posture, Segment::kShankRight), {-0.245, -0.052, 0.530});
+  expect_point(joint(posture, Segment::kFootLeft), {0.245 + 0.246, 0.052, 0.530});
 }
 
 TEST(Skeleton, KneesBendBackwards) {
   const Posture posture{.knee_left = kPi / 2};
-  expect_near(joint(posture, Segment::kFootLeft), {-0.246, 0.052, 0.285});
-  expect_near(joint(posture, Segment::kFootRight), {0, -0.052, 0.039});
+  expect_point(joint(posture, Segment::kFootLeft), {-0.246, 0.052, 0.285});
+  expect_point(joint(posture, Segment::kFootRight), {0, -0.052, 0.039});
   const Posture sitting{.hip_swing = kPi / 2, .knee_left = kPi / 2};
-  expect_near(joint(sitting, Segment::kFootLeft), {0.245, 0.052, 0.530 - 0.246});
+  expect_point(joint(sitting, Segment::kFootLeft), {0.245, 0.052, 0.530 - 0.246});
   EXPECT_TRUE(pose(sitting, Segment::kFootLeft).linear().isIdentity(1e-12));
 }
 
@@ -76,9 +75,9 @@ TEST(Skeleton, FeetStayLevelAtFirstAndFollowInTheEnd) {
 
 TEST(Skeleton, ArmsGoSidewaysUpToOverhead) {
   const double level = (kPi / 2 - kRestingArm) / (1 - kRestingArm / kPi);
-  expect_near(joint({.arms_raised = level}, Segment::kForearmLeft), {0, 0.113 + 0.186, 0.812});
-  expect_near(joint({.arms_raised = level}, Segment::kForearmRight), {0, -0.113 - 0.186, 0.812});
-  expect_near(joint({.arms_raised = kPi}, Segment::kForearmLeft), {0, 0.113, 0.812 + 0.186});
+  expect_point(joint({.arms_raised = level}, Segment::kForearmLeft), {0, 0.113 + 0.186, 0.812});
+  expect_point(joint({.arms_raised = level}, Segment::kForearmRight), {0, -0.113 - 0.186, 0.812});
+  expect_point(joint({.arms_raised = kPi}, Segment::kForearmLeft), {0, 0.113, 0.812 + 0.186});
 }
 
 TEST(Skeleton, ShouldersSwingAndElbowsBendForwards) {
@@ -99,7 +98,7 @@ TEST(Skeleton, BonesAreRigid) {
   const auto angle = [&] { return random.uniform(-1.5, 1.5); };
   for (int i = 0; i < 200; ++i) {
     const Posture posture{angle(), angle(), angle(), angle(), angle(), angle()};
-    for (const Eigen::Isometry3d& segment : nonempty(segment_poses(posture, kHeight))) {
+    for (const Eigen::Isometry3d& segment : nonempty(segment_poses(posture, kPersonHeight))) {
       EXPECT_NEAR(
           (segment.linear() * segment.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0,
           1e-12);

@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "tests/nonempty.h"
+#include "tests/reconstruction/angles.h"
 #include "tests/reconstruction/studio_scenario.h"
 
 namespace simbench::reconstruction {
@@ -19,8 +19,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<StudioCamera> cameras_of(const scenarios::Scenario& scenario, std::uint64_t seed) {
   return Studio(scenario, seed).cameras();

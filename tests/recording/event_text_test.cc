@@ -21,7 +21,7 @@ Time at(std::int64_t ns) {
   return Time(Nanoseconds(ns));
 }
 
-std::string error_of(const std::string& line) {
+std::string line_error(const std::string& line) {
   try {
     from_line(line);
   } catch (const EventTextError& error) {
@@ -125,47 +125,48 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 }
 
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
-  EXPECT_EQ(error_of("fraem,1"),
+  EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
             "outcome");
-  EXPECT_EQ(error_of("poll,1x,2,3,4,5,6"),
+  EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
-  EXPECT_EQ(error_of("poll,1,4294967296,3,4,5,6"),
+  EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),
             "column 3 (device_us): found '4294967296', allowed: a whole number from 0 to "
             "4294967295");
-  EXPECT_EQ(error_of("poll,1,2,3"), "column 5 (t1_ns): missing, the line ends before it");
-  EXPECT_EQ(error_of("poll,1,2,3,4,5,6,7"), "column 8: found '7', allowed: 7 columns");
-  EXPECT_EQ(error_of("frame,0,infrared,hardware_clock,1,1,1,1,1,1,1"),
+  EXPECT_EQ(line_error("poll,1,2,3"), "column 5 (t1_ns): missing, the line ends before it");
+  EXPECT_EQ(line_error("poll,1,2,3,4,5,6,7"), "column 8: found '7', allowed: 7 columns");
+  EXPECT_EQ(line_error("frame,0,infrared,hardware_clock,1,1,1,1,1,1,1"),
             "column 3 (stream): found 'infrared', allowed: depth, colour");
-  EXPECT_EQ(error_of("outcome,1,yes,0,"),
+  EXPECT_EQ(line_error("outcome,1,yes,0,"),
             "column 3 (synchronised): found 'yes', allowed: true, false");
-  EXPECT_THAT(error_of("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
-  EXPECT_THAT(error_of("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));
-  EXPECT_THAT(error_of("exchange,1,0,1,2,3"), HasSubstr("column 7 (t4_ns): missing"));
-  EXPECT_THAT(error_of(""), HasSubstr("column 1 (kind): found ''"));
+  EXPECT_THAT(line_error("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
+  EXPECT_THAT(line_error("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));
+  EXPECT_THAT(line_error("exchange,1,0,1,2,3"), HasSubstr("column 7 (t4_ns): missing"));
+  EXPECT_THAT(line_error(""), HasSubstr("column 1 (kind): found ''"));
 }
 
 TEST(EventTextTest, NumbersHaveOneWayToBeWritten) {
   for (const char* number : {"01", "-0", "+1", " 1", "1 ", "0x1", "1.0", "1e3", "", "-",
                              "9223372036854775808", "-9223372036854775809"}) {
-    EXPECT_THAT(error_of(std::string("poll,1,2,") + number + ",4,5,6"),
+    EXPECT_THAT(line_error(std::string("poll,1,2,") + number + ",4,5,6"),
                 HasSubstr("column 4 (t0_ns)"));
   }
   for (const char* number : {"nan", "inf", "-inf", "1e400", "0.10", "1.", ".5", "00", "+1", ""}) {
-    EXPECT_THAT(error_of(std::string("adjustment,1,2,3,4,") + number),
+    EXPECT_THAT(line_error(std::string("adjustment,1,2,3,4,") + number),
                 HasSubstr("column 6 (rate_ppb)"));
   }
 }
 
 TEST(EventTextTest, TextsHaveOneWayToBeWritten) {
-  EXPECT_THAT(error_of("outcome,1,true,0,a,b"), HasSubstr("column 5 (message): found 'a,b'"));
-  EXPECT_THAT(error_of("outcome,1,true,0,a\nb"), HasSubstr("column 5 (message): found 'a\\x0ab'"));
-  EXPECT_THAT(error_of("outcome,1,true,0,a\\"), HasSubstr("after a backslash"));
-  EXPECT_THAT(error_of("outcome,1,true,0,a\\t"), HasSubstr("after a backslash"));
+  EXPECT_THAT(line_error("outcome,1,true,0,a,b"), HasSubstr("column 5 (message): found 'a,b'"));
+  EXPECT_THAT(line_error("outcome,1,true,0,a\nb"),
+              HasSubstr("column 5 (message): found 'a\\x0ab'"));
+  EXPECT_THAT(line_error("outcome,1,true,0,a\\"), HasSubstr("after a backslash"));
+  EXPECT_THAT(line_error("outcome,1,true,0,a\\t"), HasSubstr("after a backslash"));
 }
 
 TEST(EventTextTest, AMessageStaysShortAndPrintable) {
-  const std::string text = error_of("poll," + std::string(100'000, '\xff'));
+  const std::string text = line_error("poll," + std::string(100'000, '\xff'));
   EXPECT_LT(text.size(), 300U);
   EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
 }

@@ -31,17 +31,6 @@ RigLayout layout() {
   return {.hosts = 2, .cameras = {{0}, {1}}, .frame_rate_hz = 45, .first_pulse = 0, .pulses = 100};
 }
 
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-void put(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
 std::size_t lines_in(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }

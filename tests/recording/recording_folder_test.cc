@@ -57,17 +57,6 @@ void expect_same(const std::vector<RecordingEvent>& played,
   }
 }
 
-std::string content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-void put(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
 template <class Work>
 std::string error_of(const Work& work) {
   try {

@@ -29,7 +29,7 @@ RecordingManifest manifest() {
   return {{"hardware", "{\n  \"a\": 0.1\n}\n", {"h0", "h1"}, {"c0", "c1"}}, {capture}};
 }
 
-std::string error_of(const std::string& text) {
+std::string manifest_error(const std::string& text) {
   try {
     parse_manifest(text, "m.json");
   } catch (const RecordingFolderError& error) {
@@ -72,18 +72,19 @@ TEST(RecordingManifestTest, AScenarioMayBeAbsent) {
 }
 
 TEST(RecordingManifestTest, MessagesNamePlaceFoundAndAllowed) {
-  EXPECT_EQ(error_of(changed("/format", "zip")),
+  EXPECT_EQ(manifest_error(changed("/format", "zip")),
             "m.json: /format: found '\"zip\"', allowed: 'simbench recording'");
-  EXPECT_EQ(error_of(changed("/format_version", 2)),
+  EXPECT_EQ(manifest_error(changed("/format_version", 2)),
             "m.json: /format_version: found '2', allowed: a whole number from 1 to 1");
-  EXPECT_EQ(error_of(changed("/captures/0/layout/camera_hosts/1", 2)),
+  EXPECT_EQ(manifest_error(changed("/captures/0/layout/camera_hosts/1", 2)),
             "m.json: /captures/0/layout/camera_hosts/1: found '2', allowed: a whole number from 0 "
             "to 1");
-  EXPECT_EQ(error_of(changed("/captures/0/cost", Json::object())),
+  EXPECT_EQ(manifest_error(changed("/captures/0/cost", Json::object())),
             "m.json: /captures/0/cost/events: missing");
-  EXPECT_EQ(error_of(changed("/captures", 5)),
+  EXPECT_EQ(manifest_error(changed("/captures", 5)),
             "m.json: /captures: found '5', allowed: an array of at most 1000000");
-  EXPECT_THAT(error_of("{\"format\": }"), HasSubstr("m.json: parse error at line 1, column 12"));
+  EXPECT_THAT(manifest_error("{\"format\": }"),
+              HasSubstr("m.json: parse error at line 1, column 12"));
 }
 
 TEST(RecordingManifestTest, NumbersBeyondWhatARigCanHaveAreRefused) {
@@ -111,24 +112,24 @@ TEST(RecordingManifestTest, NumbersBeyondWhatARigCanHaveAreRefused) {
            {"/captures/0/pipeline", nullptr},
            {"/scenario", 5},
            {"/hosts", nullptr}}) {
-    EXPECT_THAT(error_of(changed(pointer, value)), HasSubstr("m.json: /" + pointer.substr(1)))
+    EXPECT_THAT(manifest_error(changed(pointer, value)), HasSubstr("m.json: /" + pointer.substr(1)))
         << value;
   }
 }
 
 TEST(RecordingManifestTest, ANumberThatNoDoubleHoldsIsRefused) {
-  EXPECT_EQ(error_of("{\"format\": 1e999}"), "m.json: number overflow parsing '1e999'");
+  EXPECT_EQ(manifest_error("{\"format\": 1e999}"), "m.json: number overflow parsing '1e999'");
 }
 
 TEST(RecordingManifestTest, EachCaptureIsThereOnce) {
   RecordingManifest twice = manifest();
   twice.captures.push_back(twice.captures[0]);
-  EXPECT_EQ(error_of(manifest_text(twice)),
+  EXPECT_EQ(manifest_error(manifest_text(twice)),
             "m.json: /captures/1/seed: found '7', allowed: each pipeline and seed once");
 }
 
 TEST(RecordingManifestTest, ADeepDocumentIsRefused) {
-  EXPECT_THAT(error_of(std::string(1'000'000, '[')), HasSubstr("nested deeper than"));
+  EXPECT_THAT(manifest_error(std::string(1'000'000, '[')), HasSubstr("nested deeper than"));
 }
 
 TEST(RecordingManifestTest, AnyChangedByteIsSafe) {

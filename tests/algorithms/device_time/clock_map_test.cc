@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <limits>
 
+#include "tests/algorithms/device_time/streams.h"
+
 namespace simbench {
 namespace {
 
 constexpr std::int64_t kHostNs = 1'700'000'000'000'000'000;
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 ClockAdjustment adjustment(std::int64_t at_ns, std::int64_t before_ns, std::int64_t after_ns,
                            double rate_ppb) {

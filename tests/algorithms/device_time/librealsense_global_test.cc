@@ -16,11 +16,11 @@
 namespace simbench {
 namespace {
 
-constexpr std::uint32_t kSeed = 15360;
+constexpr std::uint32_t kPollSeed = 15360;
 constexpr double kRoundingMs = 2e-3;  // device stamps are whole microseconds
 
-ErrorStatistics errors_of(const std::function<PollDelay()>& delay_ms, double fast_ppm,
-                          double from_s, double to_s) {
+ErrorStatistics poll_statistics(const std::function<PollDelay()>& delay_ms, double fast_ppm,
+                                double from_s, double to_s) {
   const auto estimator = make_librealsense_global();
   return statistics(poll_errors_ms(*estimator, delay_ms, fast_ppm, from_s, to_s));
 }
@@ -29,7 +29,7 @@ ErrorStatistics errors_of(const std::function<PollDelay()>& delay_ms, double fas
 struct Jitter {
   double request_tail = 0;
   double reply_tail = 0;
-  boost::random::mt19937 random{kSeed};
+  boost::random::mt19937 random{kPollSeed};
 
   PollDelay operator()() {
     boost::random::exponential_distribution<double> excess_ms(1 / 0.3);
@@ -42,13 +42,13 @@ struct Jitter {
 };
 
 TEST(LibrealsenseGlobal, SymmetricDelayHasNoError) {
-  const ErrorStatistics errors = errors_of([] { return PollDelay{1, 1}; }, 20, 20, 120);
+  const ErrorStatistics errors = poll_statistics([] { return PollDelay{1, 1}; }, 20, 20, 120);
   EXPECT_NEAR(errors.least, 0, kRoundingMs);
   EXPECT_NEAR(errors.largest, 0, kRoundingMs);
 }
 
 TEST(LibrealsenseGlobal, ConstantAsymmetryLeavesHalf) {
-  const ErrorStatistics errors = errors_of([] { return PollDelay{0.3, 1.7}; }, 0, 0.1, 60);
+  const ErrorStatistics errors = poll_statistics([] { return PollDelay{0.3, 1.7}; }, 0, 0.1, 60);
   EXPECT_NEAR(errors.least, 0.7, kRoundingMs);
   EXPECT_NEAR(errors.largest, 0.7, kRoundingMs);
 }
@@ -58,7 +58,7 @@ void expect_among_runs(const ErrorStatistics& figures, Jitter jitter) {
   std::vector<ErrorStatistics> runs;
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     jitter.random.seed(seed);
-    runs.push_back(errors_of(jitter, 20, 20, 300));
+    runs.push_back(poll_statistics(jitter, 20, 20, 300));
   }
   for (const auto figure : {&ErrorStatistics::mean, &ErrorStatistics::deviation,
                             &ErrorStatistics::least, &ErrorStatistics::largest}) {
@@ -74,18 +74,18 @@ void expect_among_runs(const ErrorStatistics& figures, Jitter jitter) {
 TEST(LibrealsenseGlobal, ExponentialDelays) {
   expect_among_runs({0.304, 0.140, -0.108, 0.828}, Jitter{});
   // y is late by reply - d_min, in the mean 0.5 ms less the least half round trip.
-  const ErrorStatistics errors = errors_of(Jitter{}, 20, 20, 1200);
-  EXPECT_NEAR(errors.mean, 0.27, 0.04) << "seed " << kSeed;
-  EXPECT_NEAR(errors.deviation, 0.14, 0.03) << "seed " << kSeed;
+  const ErrorStatistics errors = poll_statistics(Jitter{}, 20, 20, 1200);
+  EXPECT_NEAR(errors.mean, 0.27, 0.04) << "seed " << kPollSeed;
+  EXPECT_NEAR(errors.deviation, 0.14, 0.03) << "seed " << kPollSeed;
 }
 
 TEST(LibrealsenseGlobal, TailsOfRequestsDoNotMatter) {
   Jitter jitter;
   jitter.request_tail = 0.05;
   expect_among_runs({0.277, 0.149, -0.061, 1.027}, jitter);
-  const ErrorStatistics errors = errors_of(jitter, 20, 20, 1200);
-  EXPECT_NEAR(errors.mean, 0.27, 0.04) << "seed " << kSeed;
-  EXPECT_NEAR(errors.deviation, 0.14, 0.03) << "seed " << kSeed;
+  const ErrorStatistics errors = poll_statistics(jitter, 20, 20, 1200);
+  EXPECT_NEAR(errors.mean, 0.27, 0.04) << "seed " << kPollSeed;
+  EXPECT_NEAR(errors.deviation, 0.14, 0.03) << "seed " << kPollSeed;
 }
 
 TEST(LibrealsenseGlobal, TailsOfRepliesDo) {
@@ -93,8 +93,8 @@ TEST(LibrealsenseGlobal, TailsOfRepliesDo) {
   jitter.reply_tail = 0.05;
   expect_among_runs({0.575, 1.009, -2.123, 6.257}, jitter);
   // A tail enters the fit as it is: 5 % of 15 ms more in the mean.
-  const ErrorStatistics errors = errors_of(jitter, 20, 20, 3600);
-  EXPECT_NEAR(errors.mean, 0.27 + 0.75, 0.25) << "seed " << kSeed;
+  const ErrorStatistics errors = poll_statistics(jitter, 20, 20, 3600);
+  EXPECT_NEAR(errors.mean, 0.27 + 0.75, 0.25) << "seed " << kPollSeed;
 }
 
 TEST(LibrealsenseGlobal, ALateFirstPollTiltsTheLineUntilItLeavesTheWindow) {
@@ -105,19 +105,19 @@ TEST(LibrealsenseGlobal, ALateFirstPollTiltsTheLineUntilItLeavesTheWindow) {
     first = false;
     return PollDelay{0.2 + late_ms, 0.2 + late_ms};
   };
-  const ErrorStatistics first_20s = errors_of(late_first, 20, 0, 20);
+  const ErrorStatistics first_20s = poll_statistics(late_first, 20, 0, 20);
   EXPECT_NEAR(first_20s.largest, 9.89, 0.15);
   EXPECT_NEAR(first_20s.mean, 1.10, 0.25);
   EXPECT_NEAR(first_20s.deviation, 2.53, 0.25);
   EXPECT_NEAR(first_20s.least, 0, kRoundingMs);
-  const ErrorStatistics then = errors_of(late_first, 20, 20, 120);
+  const ErrorStatistics then = poll_statistics(late_first, 20, 20, 120);
   EXPECT_NEAR(then.least, 0, kRoundingMs);
   EXPECT_NEAR(then.largest, 0, kRoundingMs);
 }
 
 TEST(LibrealsenseGlobal, FollowsTheSkewBetweenPolls) {
   // 100 ppm with clean polls: nothing is lost between two that lie a second apart.
-  const ErrorStatistics errors = errors_of([] { return PollDelay{0.2, 0.2}; }, 100, 5, 60);
+  const ErrorStatistics errors = poll_statistics([] { return PollDelay{0.2, 0.2}; }, 100, 5, 60);
   EXPECT_NEAR(errors.least, 0, kRoundingMs);
   EXPECT_NEAR(errors.largest, 0, kRoundingMs);
 }
@@ -178,7 +178,7 @@ TEST(LibrealsenseGlobal, AWrapOfTheRegisterMakesNoBackwardStep) {
       DeviceSample frame = sample_at(0, kHostZeroNs + now_ns);
       frame.sensor = read(exposed_ns);
       const std::int64_t stamp = nanoseconds_of(estimator->stamp(frame));
-      EXPECT_GT(stamp, newest[stream]) << i << ", seed " << kSeed;
+      EXPECT_GT(stamp, newest[stream]) << i << ", seed " << kPollSeed;
       newest[stream] = stamp;
       if (i > 30) {
         EXPECT_NEAR(1e-6 * static_cast<double>(stamp - kHostZeroNs - exposed_ns), 0.3, 1) << i;

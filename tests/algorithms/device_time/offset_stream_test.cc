@@ -12,8 +12,6 @@ namespace {
 
 using Sample = OffsetStream::Sample;
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-
 // A stream that has seen one sample: sensor at kDeviceZeroUs, arrival at kHostZeroNs.
 OffsetStream started() {
   OffsetStream stream;

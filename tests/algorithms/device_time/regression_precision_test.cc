@@ -15,11 +15,11 @@
 namespace simbench {
 namespace {
 
-constexpr std::uint32_t kSeed = 2021;
+constexpr std::uint32_t kNoiseSeed = 2021;
 
 // A device 200 ppm off, its stamps rounded to 1 us, arrivals 28 ms later with exponential excess.
 std::vector<DeviceSample> hours(double length_h, double rate_hz) {
-  boost::random::mt19937 random(kSeed);
+  boost::random::mt19937 random(kNoiseSeed);
   boost::random::exponential_distribution<double> excess_ns(1 / 0.3e6);
   std::vector<DeviceSample> samples;
   const auto frames = static_cast<std::int64_t>(length_h * 3600 * rate_hz);
@@ -62,7 +62,7 @@ TEST(RegressionPrecision, WindowAgreesWithTheReferenceForHours) {
         i == 0 ? static_cast<long double>(nanoseconds_of(samples[0].arrival) - kHostZeroNs)
                : reference_ns(std::span(samples).subspan(first, i + 1 - first));
     ASSERT_NEAR(error_ns(stamp, kHostZeroNs), static_cast<double>(expected), 1)
-        << "frame " << i << ", seed " << kSeed;
+        << "frame " << i << ", seed " << kNoiseSeed;
   }
 }
 
@@ -71,7 +71,7 @@ TEST(RegressionPrecision, OfflineAgreesWithTheReferenceOverHours) {
   const std::vector<GlobalTime> estimates = stamps(*make_offline_regression(), samples);
   EXPECT_NEAR(error_ns(estimates.back(), kHostZeroNs), static_cast<double>(reference_ns(samples)),
               1)
-      << "seed " << kSeed;
+      << "seed " << kNoiseSeed;
   // The slope: -200 ppm to a part in 1e8, from the first and the last stamp.
   const double host_s = error_ns(estimates.back(), nanoseconds_of(estimates.front())) * 1e-9;
   const double device_s =

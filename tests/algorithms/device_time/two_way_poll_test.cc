@@ -13,11 +13,11 @@
 namespace simbench {
 namespace {
 
-constexpr std::uint32_t kSeed = 77;
+constexpr std::uint32_t kDelaySeed = 77;
 
 // `base_ms` and Exp(mean_ms) each way.
 std::function<PollDelay()> jitter(double request_ms, double reply_ms, double mean_ms) {
-  return [=, random = boost::random::mt19937(kSeed)]() mutable {
+  return [=, random = boost::random::mt19937(kDelaySeed)]() mutable {
     boost::random::exponential_distribution<double> excess_ms(1 / mean_ms);
     const double request = request_ms + excess_ms(random);
     return PollDelay{request, reply_ms + excess_ms(random)};
@@ -55,8 +55,8 @@ TEST(TwoWayPoll, FindsTheLineBetweenTheHulls) {
   const auto estimator = make_two_way_poll({});
   const ErrorStatistics errors =
       statistics(poll_errors_ms(*estimator, jitter(0.2, 0.2, 0.3), 50, 30, 600));
-  EXPECT_NEAR(errors.mean, 0, 3e-3) << "seed " << kSeed;
-  EXPECT_LT(errors.deviation, 6e-3) << "seed " << kSeed;
+  EXPECT_NEAR(errors.mean, 0, 3e-3) << "seed " << kDelaySeed;
+  EXPECT_LT(errors.deviation, 6e-3) << "seed " << kDelaySeed;
 }
 
 TEST(TwoWayPoll, ALatePollChangesNothing) {

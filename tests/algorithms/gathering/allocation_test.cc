@@ -18,7 +18,7 @@ class Ignore final : public FrameSetSink {
 };
 
 // A frame in seven is lost, and the last source is silent for a third of the time.
-void push_pulses(Gatherer& gatherer, std::int64_t first, std::int64_t count) {
+void push_lossy_pulses(Gatherer& gatherer, std::int64_t first, std::int64_t count) {
   constexpr std::uint32_t kSources = 6;
   Ignore sink;
   std::int64_t frames = 0;
@@ -42,9 +42,9 @@ TEST(GatheringAllocations, NoneOnceWarm) {
       .sources = 6, .period = from_ms(20), .interval = from_ms(10), .queue_limit = 16};
   for (const GatheringEntry& entry : nonempty(gathering_algorithms())) {
     const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
-    push_pulses(*gatherer, 0, 900);
+    push_lossy_pulses(*gatherer, 0, 900);
     const std::uint64_t before = sim::allocations();
-    push_pulses(*gatherer, 900, 900);
+    push_lossy_pulses(*gatherer, 900, 900);
     EXPECT_EQ(sim::allocations() - before, 0U) << entry.info.name;
   }
 }

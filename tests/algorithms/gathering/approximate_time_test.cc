@@ -19,12 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double kPeriodMs = 22;
-
-GatheringSetup setup_of(std::uint32_t sources) {
-  return {.sources = sources, .period = from_ms(kPeriodMs), .interval = from_ms(kPeriodMs / 2)};
-}
-
 // The policy with a list per queue, copied for every virtual search.
 class NaiveApproximateTime {
  public:

@@ -1,4 +1,4 @@
-// What a gatherer emitted, kept for the tests of gathering.
+// What a gatherer emitted, and how gatherers are set up, for the tests of gathering.
 #ifndef SIMBENCH_TESTS_ALGORITHMS_GATHERING_COLLECTED_SETS_H_
 #define SIMBENCH_TESTS_ALGORITHMS_GATHERING_COLLECTED_SETS_H_
 
@@ -52,6 +52,22 @@ inline GatherFrame frame_at(std::uint32_t source, double stamp_ms, std::int64_t 
           .stamp = GlobalTime(from_ms(stamp_ms)),
           .sensor = DeviceTime(std::chrono::duration_cast<Microseconds>(from_ms(stamp_ms))),
           .tag = tag};
+}
+
+// The period of 45 Hz as the paper rounds it, and a shorter one that is no multiple of its half.
+inline constexpr double kPeriodMs = 22;
+inline constexpr double kShortPeriodMs = 20;
+
+// With an interval of half a period.
+inline GatheringSetup setup_of(std::uint32_t sources, std::uint32_t queue_limit = 64,
+                               double period_ms = kPeriodMs) {
+  return {.sources = sources,
+          .period = from_ms(period_ms),
+          .interval = from_ms(period_ms / 2),
+          .queue_limit = queue_limit};
+}
+inline GatheringSetup short_setup(std::uint32_t sources, std::uint32_t queue_limit = 16) {
+  return setup_of(sources, queue_limit, kShortPeriodMs);
 }
 
 }  // namespace simbench

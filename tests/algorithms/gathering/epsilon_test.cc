@@ -16,7 +16,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-GatheringSetup setup_of(std::uint32_t sources, double epsilon_ms, std::uint32_t queue_limit = 10) {
+GatheringSetup epsilon_setup(std::uint32_t sources, double epsilon_ms,
+                             std::uint32_t queue_limit = 10) {
   return {.sources = sources,
           .period = from_ms(22),
           .interval = from_ms(epsilon_ms),
@@ -25,7 +26,7 @@ GatheringSetup setup_of(std::uint32_t sources, double epsilon_ms, std::uint32_t 
 
 TEST(Epsilon, EpsilonItselfIsAllowed) {
   for (const double range_ms : {11.0, 11.000001}) {
-    const auto gatherer = make_epsilon_gatherer(setup_of(2, 11));
+    const auto gatherer = make_epsilon_gatherer(epsilon_setup(2, 11));
     CollectedSets out;
     gatherer->push(frame_at(0, 0, 0), out);
     gatherer->push(frame_at(1, range_ms, 0), out);
@@ -35,7 +36,7 @@ TEST(Epsilon, EpsilonItselfIsAllowed) {
 }
 
 TEST(Epsilon, GivesUpAllThatLieWithTheEarliest) {
-  const auto gatherer = make_epsilon_gatherer(setup_of(3, 11));
+  const auto gatherer = make_epsilon_gatherer(epsilon_setup(3, 11));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 0), out);
   gatherer->push(frame_at(1, 10, 0), out);  // Algorithm 3 would keep this one for 18 ms
@@ -48,7 +49,7 @@ TEST(Epsilon, GivesUpAllThatLieWithTheEarliest) {
 }
 
 TEST(Epsilon, SparesTheFrameBehindOneThatIsGivenUp) {
-  const auto gatherer = make_epsilon_gatherer(setup_of(2, 5));
+  const auto gatherer = make_epsilon_gatherer(epsilon_setup(2, 5));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 0), out);
   gatherer->push(frame_at(0, 4, 1), out);
@@ -64,7 +65,7 @@ TEST(Epsilon, EqualsTheNaiveImplementation) {
                                   .drop = 0.08 * (seed % 4),
                                   .delay_max_ms = 25.0 * (seed % 5),
                                   .quantum_ms = seed % 3 == 0 ? 4.0 : 0.0};
-    const GatheringSetup setup = setup_of(world.sources, seed % 12, 1 + seed % 9);
+    const GatheringSetup setup = epsilon_setup(world.sources, seed % 12, 1 + seed % 9);
     const auto gatherer = make_epsilon_gatherer(setup);
     CollectedSets out;
     CollectedSets expected;

@@ -20,15 +20,6 @@
 namespace simbench {
 namespace {
 
-constexpr double kPeriodMs = 20;
-
-GatheringSetup setup_of(std::uint32_t sources, std::uint32_t queue_limit = 16) {
-  return {.sources = sources,
-          .period = from_ms(kPeriodMs),
-          .interval = from_ms(kPeriodMs / 2),
-          .queue_limit = queue_limit};
-}
-
 class EveryGatherer : public testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<Gatherer> make(const GatheringSetup& setup) {
@@ -48,7 +39,7 @@ void push_pulses(Gatherer& gatherer, std::uint32_t sources, std::int64_t first, 
                  CollectedSets& out) {
   for (std::int64_t pulse = first; pulse < first + count; ++pulse) {
     for (std::uint32_t source = 0; source < sources; ++source) {
-      gatherer.push(frame_at(source, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+      gatherer.push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
     }
   }
 }
@@ -105,7 +96,7 @@ std::vector<GatherFrame> noisy_frames(std::uint32_t sources, std::int64_t pulses
     double last_ms = 0;
     double stamp_ms = -1000;
     for (std::int64_t pulse = 0; pulse < pulses; ++pulse) {
-      const double at_ms = static_cast<double>(pulse) * kPeriodMs;
+      const double at_ms = static_cast<double>(pulse) * kShortPeriodMs;
       stamp_ms = std::max(stamp_ms + 0.001, at_ms + noise_ms(random));
       last_ms = std::max(last_ms, at_ms + 8 + 20 * uniform(random));
       if (uniform(random) < drop) continue;
@@ -122,7 +113,7 @@ std::vector<GatherFrame> noisy_frames(std::uint32_t sources, std::int64_t pulses
 }
 
 TEST_P(EveryGatherer, FindsAllSetsOfACleanStream) {
-  const auto gatherer = make(setup_of(5));
+  const auto gatherer = make(short_setup(5));
   CollectedSets out;
   push_pulses(*gatherer, 5, 0, 100, out);
   EXPECT_GE(out.pure(), 98) << "one may wait for its proof, one may come out in parts";
@@ -133,7 +124,7 @@ TEST_P(EveryGatherer, FindsAllSetsOfACleanStream) {
 TEST_P(EveryGatherer, UsesEachFrameOnceInOrderAndBoundsItsMemory) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     const std::string context = GetParam() + ", seed " + std::to_string(seed);
-    const GatheringSetup setup = setup_of(1 + seed % 7, 1 + seed % 12);
+    const GatheringSetup setup = short_setup(1 + seed % 7, 1 + seed % 12);
     const auto gatherer = make(setup);
     CollectedSets out;
     const auto frames = noisy_frames(setup.sources, 100, seed % 5 * 1.5, 0.05 * (seed % 4), seed);
@@ -144,7 +135,7 @@ TEST_P(EveryGatherer, UsesEachFrameOnceInOrderAndBoundsItsMemory) {
 }
 
 TEST_P(EveryGatherer, EqualStampsAreSoundAndEndless) {
-  const GatheringSetup setup = setup_of(3);
+  const GatheringSetup setup = short_setup(3);
   const auto gatherer = make(setup);
   CollectedSets out;
   for (std::int64_t i = 0; i < 300; ++i) {
@@ -158,7 +149,7 @@ TEST_P(EveryGatherer, EqualStampsAreSoundAndEndless) {
 TEST_P(EveryGatherer, RandomStampsIncludingTheFurthestAreSound) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     boost::random::mt19937_64 random(seed);
-    const GatheringSetup setup = setup_of(1 + seed % 4, 1 + seed % 6);
+    const GatheringSetup setup = short_setup(1 + seed % 4, 1 + seed % 6);
     const auto gatherer = make(setup);
     CollectedSets out;
     for (std::int64_t i = 0; i < 500; ++i) {
@@ -176,7 +167,7 @@ TEST_P(EveryGatherer, RandomStampsIncludingTheFurthestAreSound) {
 }
 
 TEST_P(EveryGatherer, DecreasingStampsAreSound) {
-  const GatheringSetup setup = setup_of(3);
+  const GatheringSetup setup = short_setup(3);
   const auto gatherer = make(setup);
   CollectedSets out;
   for (std::int64_t i = 0; i < 300; ++i) {
@@ -189,7 +180,7 @@ TEST_P(EveryGatherer, DecreasingStampsAreSound) {
 }
 
 TEST_P(EveryGatherer, OneSourceIsASetPerFrame) {
-  const auto gatherer = make(setup_of(1));
+  const auto gatherer = make(short_setup(1));
   CollectedSets out;
   push_pulses(*gatherer, 1, 0, 50, out);
   EXPECT_EQ(out.sets.size(), 50U);
@@ -197,12 +188,12 @@ TEST_P(EveryGatherer, OneSourceIsASetPerFrame) {
 }
 
 TEST_P(EveryGatherer, ASilentSourceCostsItsSetsButNoMemory) {
-  const GatheringSetup setup = setup_of(3, 8);
+  const GatheringSetup setup = short_setup(3, 8);
   const auto gatherer = make(setup);
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 200; ++pulse) {
     for (std::uint32_t source = 0; source < 2; ++source) {
-      gatherer->push(frame_at(source, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+      gatherer->push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
     }
   }
   EXPECT_TRUE(out.sets.empty());
@@ -212,12 +203,12 @@ TEST_P(EveryGatherer, ASilentSourceCostsItsSetsButNoMemory) {
 }
 
 TEST_P(EveryGatherer, GoesOnAfterASourceWasSilent) {
-  const auto gatherer = make(setup_of(3));
+  const auto gatherer = make(short_setup(3));
   CollectedSets out;
   push_pulses(*gatherer, 3, 0, 30, out);
   for (std::int64_t pulse = 30; pulse < 130; ++pulse) {
     for (std::uint32_t source = 0; source < 2; ++source) {
-      gatherer->push(frame_at(source, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+      gatherer->push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
     }
   }
   const std::int64_t before = out.pure();
@@ -228,7 +219,7 @@ TEST_P(EveryGatherer, GoesOnAfterASourceWasSilent) {
 
 TEST_P(EveryGatherer, GoesOnAfterAGapOfHours) {
   constexpr std::int64_t kFiveHours = 5 * 3600 * 50;
-  const auto gatherer = make(setup_of(4));
+  const auto gatherer = make(short_setup(4));
   CollectedSets out;
   push_pulses(*gatherer, 4, 0, 30, out);
   const std::int64_t before = out.pure();
@@ -237,7 +228,7 @@ TEST_P(EveryGatherer, GoesOnAfterAGapOfHours) {
 }
 
 TEST_P(EveryGatherer, GoesOnAfterTheClockWasSetBack) {
-  const auto gatherer = make(setup_of(4));
+  const auto gatherer = make(short_setup(4));
   CollectedSets out;
   push_pulses(*gatherer, 4, 1'000'000, 30, out);
   const std::int64_t before = out.pure();
@@ -246,22 +237,22 @@ TEST_P(EveryGatherer, GoesOnAfterTheClockWasSetBack) {
 }
 
 TEST_P(EveryGatherer, AFrameOfTheFarFutureIsSurvived) {
-  const auto gatherer = make(setup_of(3));
+  const auto gatherer = make(short_setup(3));
   CollectedSets out;
   push_pulses(*gatherer, 3, 0, 30, out);
   // Its sensor stamp and pulse are right: a step of one host's clock does not touch these.
-  GatherFrame wild = frame_at(1, 30 * kPeriodMs, 30);
+  GatherFrame wild = frame_at(1, 30 * kShortPeriodMs, 30);
   wild.stamp += std::chrono::hours(3);
-  gatherer->push(frame_at(0, 30 * kPeriodMs, 30), out);
+  gatherer->push(frame_at(0, 30 * kShortPeriodMs, 30), out);
   gatherer->push(wild, out);
-  gatherer->push(frame_at(2, 30 * kPeriodMs, 30), out);
+  gatherer->push(frame_at(2, 30 * kShortPeriodMs, 30), out);
   push_pulses(*gatherer, 3, 31, 100, out);
   // Until its own queue overflows it may be waited for.
   EXPECT_GE(out.pure(), 30 + 100 - 20);
 }
 
 TEST_P(EveryGatherer, ASourceThatDoesNotExistIsAProgrammingError) {
-  const auto gatherer = make(setup_of(2));
+  const auto gatherer = make(short_setup(2));
   CollectedSets out;
   EXPECT_DEATH(gatherer->push(frame_at(2, 0, 0), out), "does not exist");
 }

@@ -16,12 +16,12 @@ namespace {
 using ::testing::ElementsAre;
 using Variant = GenlockOrder::Variant;
 
-constexpr double kPeriodMs = 1000.0 / 45;
+constexpr double kExactPeriodMs = 1000.0 / 45;
 
 std::unique_ptr<Gatherer> gatherer_for(std::uint32_t sources, Variant variant,
                                        std::uint32_t queue_limit = 64) {
   return make_genlock_gatherer(
-      {.sources = sources, .period = from_ms(kPeriodMs), .queue_limit = queue_limit}, variant);
+      {.sources = sources, .period = from_ms(kExactPeriodMs), .queue_limit = queue_limit}, variant);
 }
 
 // A frame of a camera with its own clock; the global stamp is of no use.
@@ -29,7 +29,7 @@ GatherFrame frame_of(std::uint32_t source, std::int64_t pulse, double period_err
   const double zero_us = 1e9 * (source + 1);
   // The cameras' clocks differ by 10 ppm from one to the next.
   const double rate = (1 - period_error) * (1 + 10e-6 * source);
-  const double us = zero_us + static_cast<double>(pulse) * kPeriodMs * 1e3 * rate;
+  const double us = zero_us + static_cast<double>(pulse) * kExactPeriodMs * 1e3 * rate;
   return {.source = source,
           .stamp = GlobalTime(from_ms(-5.0 * static_cast<double>(pulse))),
           .sensor = DeviceTime(Microseconds(std::llround(us))),

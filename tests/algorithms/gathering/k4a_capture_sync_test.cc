@@ -15,19 +15,13 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double kPeriodMs = 20;
-
-GatheringSetup setup_of(std::uint32_t sources, std::uint32_t queue_limit = 16) {
-  return {.sources = sources, .period = from_ms(kPeriodMs), .queue_limit = queue_limit};
-}
-
 TEST(K4a, TheWindowLeansToTheLateSide) {
   const struct {
     double offset_ms;
     bool pairs;
   } cases[] = {{-5.000001, false}, {-5, true}, {0, true}, {15, true}, {15.000001, false}};
   for (const auto& [offset_ms, pairs] : cases) {
-    const auto gatherer = make_k4a_gatherer(setup_of(2));
+    const auto gatherer = make_k4a_gatherer(short_setup(2));
     CollectedSets out;
     gatherer->push(frame_at(0, 100, 0), out);
     gatherer->push(frame_at(1, 100 + offset_ms, 0), out);
@@ -37,7 +31,7 @@ TEST(K4a, TheWindowLeansToTheLateSide) {
 }
 
 TEST(K4a, TheDelayMovesTheWindow) {
-  const auto gatherer = make_k4a_gatherer(setup_of(2), from_ms(10));
+  const auto gatherer = make_k4a_gatherer(short_setup(2), from_ms(10));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 0), out);
   gatherer->push(frame_at(1, 4, 1), out);   // before the window
@@ -46,7 +40,7 @@ TEST(K4a, TheDelayMovesTheWindow) {
 }
 
 TEST(K4a, EveryOtherSourceMustBeInItsWindow) {
-  const auto gatherer = make_k4a_gatherer(setup_of(3));
+  const auto gatherer = make_k4a_gatherer(short_setup(3));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 0), out);
   gatherer->push(frame_at(1, 1, 0), out);
@@ -59,11 +53,11 @@ TEST(K4a, EveryOtherSourceMustBeInItsWindow) {
 }
 
 TEST(K4a, NoiseOfAQuarterPeriodPairsNeighbours) {
-  const auto gatherer = make_k4a_gatherer(setup_of(2));
+  const auto gatherer = make_k4a_gatherer(short_setup(2));
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 20; ++pulse) {
-    gatherer->push(frame_at(0, static_cast<double>(pulse) * kPeriodMs, pulse), out);
-    gatherer->push(frame_at(1, static_cast<double>(pulse) * kPeriodMs - 6, pulse), out);
+    gatherer->push(frame_at(0, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
+    gatherer->push(frame_at(1, static_cast<double>(pulse) * kShortPeriodMs - 6, pulse), out);
   }
   EXPECT_EQ(out.pure(), 0);
   EXPECT_EQ(out.sets.size(), 19U);
@@ -75,11 +69,11 @@ TEST(K4a, EqualsTheNaiveImplementation) {
   std::size_t sets = 0;
   for (std::uint32_t seed = 1; seed <= 300; ++seed) {
     const GatheringWorld world = {.sources = 1 + seed % 6,
-                                  .period_ms = kPeriodMs,
+                                  .period_ms = kShortPeriodMs,
                                   .sigma_ms = 0.8 * (seed % 5),
                                   .drop = 0.05 * (seed % 5),
                                   .delay_max_ms = 25.0 * (seed % 4)};
-    const auto gatherer = make_k4a_gatherer(setup_of(world.sources, 100));
+    const auto gatherer = make_k4a_gatherer(short_setup(world.sources, 100));
     CollectedSets out;
     CollectedSets expected;
     std::vector<std::deque<GatherFrame>> queues(world.sources);
@@ -90,12 +84,12 @@ TEST(K4a, EqualsTheNaiveImplementation) {
       gatherer->push(frame, out);
       queues[frame.source].push_back(frame);
       while (complete()) {
-        const GlobalTime begin = queues[0].front().stamp - from_ms(kPeriodMs / 4);
+        const GlobalTime begin = queues[0].front().stamp - from_ms(kShortPeriodMs / 4);
         std::vector<GatherFrame> fronts;
         fronts.reserve(queues.size());
         for (const auto& queue : queues) fronts.push_back(queue.front());
         const auto late = [&](const GatherFrame& f) {
-          return f.source > 0 && f.stamp > begin + from_ms(kPeriodMs);
+          return f.source > 0 && f.stamp > begin + from_ms(kShortPeriodMs);
         };
         const auto early = [&](const GatherFrame& f) { return f.source > 0 && f.stamp < begin; };
         if (const auto found = std::ranges::find_if(fronts, early); found != fronts.end()) {

@@ -12,15 +12,9 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double kPeriodMs = 20;
-
-GatheringSetup setup_of(std::uint32_t sources, std::uint32_t queue_limit = 16) {
-  return {.sources = sources, .period = from_ms(kPeriodMs), .queue_limit = queue_limit};
-}
-
 // Two sources, `apart_ms` from each other, over `pulses` pulses of `period_ms`.
 CollectedSets two_sources(double apart_ms, double period_ms, std::int64_t pulses) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(2));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(2));
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < pulses; ++pulse) {
     const double at_ms = static_cast<double>(pulse) * period_ms;
@@ -31,41 +25,41 @@ CollectedSets two_sources(double apart_ms, double period_ms, std::int64_t pulses
 }
 
 TEST(PhaseBinning, HalfAPeriodFromTheMeanIsAllowed) {
-  EXPECT_EQ(two_sources(9.9, kPeriodMs, 100).pure(), 100);
-  EXPECT_EQ(two_sources(-9.9, kPeriodMs, 100).pure(), 100);
+  EXPECT_EQ(two_sources(9.9, kShortPeriodMs, 100).pure(), 100);
+  EXPECT_EQ(two_sources(-9.9, kShortPeriodMs, 100).pure(), 100);
 }
 
 TEST(PhaseBinning, AnOffsetOfAPeriodGivesWrongSetsSilently) {
-  const CollectedSets out = two_sources(kPeriodMs, kPeriodMs, 100);
+  const CollectedSets out = two_sources(kShortPeriodMs, kShortPeriodMs, 100);
   EXPECT_EQ(out.sets.size(), 99U);
   EXPECT_EQ(out.pure(), 0);
 }
 
 TEST(PhaseBinning, APeriodThatIsALittleWrongNeverAddsUp) {
   // 500 ppm over 20,000 pulses is ten periods.
-  EXPECT_EQ(two_sources(3, kPeriodMs * 1.0005, 20'000).pure(), 20'000);
-  EXPECT_EQ(two_sources(3, kPeriodMs * 0.9995, 20'000).pure(), 20'000);
+  EXPECT_EQ(two_sources(3, kShortPeriodMs * 1.0005, 20'000).pure(), 20'000);
+  EXPECT_EQ(two_sources(3, kShortPeriodMs * 0.9995, 20'000).pure(), 20'000);
 }
 
 TEST(PhaseBinning, ThePhaseForgetsAWrongBeginning) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(2));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(2));
   CollectedSets out;
   gatherer->push(frame_at(0, -9, 0), out);  // the first frame is off by nearly half a period
   for (std::int64_t pulse = 1; pulse < 100; ++pulse) {
-    gatherer->push(frame_at(0, static_cast<double>(pulse) * kPeriodMs, pulse), out);
-    gatherer->push(frame_at(1, static_cast<double>(pulse) * kPeriodMs + 6, pulse), out);
+    gatherer->push(frame_at(0, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
+    gatherer->push(frame_at(1, static_cast<double>(pulse) * kShortPeriodMs + 6, pulse), out);
   }
   EXPECT_GE(out.pure(), 98);
   EXPECT_EQ(out.pure(), static_cast<std::int64_t>(out.sets.size()));
 }
 
 TEST(PhaseBinning, ALostFrameCostsItsSlotAndNoMore) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(3));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(3));
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 100; ++pulse) {
     for (std::uint32_t source = 0; source < 3; ++source) {
       if (pulse == 40 && source == 1) continue;
-      gatherer->push(frame_at(source, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+      gatherer->push(frame_at(source, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
     }
   }
   EXPECT_EQ(out.pure(), 99);
@@ -73,7 +67,7 @@ TEST(PhaseBinning, ALostFrameCostsItsSlotAndNoMore) {
 }
 
 TEST(PhaseBinning, TheFirstFrameOfASourceInASlotCounts) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(2));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(2));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 10), out);
   gatherer->push(frame_at(0, 1, 11), out);
@@ -83,7 +77,7 @@ TEST(PhaseBinning, TheFirstFrameOfASourceInASlotCounts) {
 }
 
 TEST(PhaseBinning, TooLateForItsSlot) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(2));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(2));
   CollectedSets out;
   gatherer->push(frame_at(0, 0, 0), out);
   gatherer->push(frame_at(0, 20, 1), out);
@@ -95,29 +89,29 @@ TEST(PhaseBinning, TooLateForItsSlot) {
 }
 
 TEST(PhaseBinning, ASlotFarBehindGivesItsPlaceAway) {
-  const auto gatherer = make_phase_binning_gatherer(setup_of(2, 4));
+  const auto gatherer = make_phase_binning_gatherer(short_setup(2, 4));
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 6; ++pulse) {
-    gatherer->push(frame_at(0, static_cast<double>(pulse) * kPeriodMs, pulse), out);
+    gatherer->push(frame_at(0, static_cast<double>(pulse) * kShortPeriodMs, pulse), out);
   }
   EXPECT_EQ(gatherer->discarded(), 2U);
-  gatherer->push(frame_at(1, 2 * kPeriodMs, 2), out);
+  gatherer->push(frame_at(1, 2 * kShortPeriodMs, 2), out);
   EXPECT_EQ(out.pure(), 1);
 }
 
 TEST(PhaseBinning, WithoutDecayThePhaseIsTheLastStamp) {
   // Each frame moves the grid to itself: a walk of 6 ms per frame is followed.
-  const auto gatherer = make_phase_binning_gatherer(setup_of(1), 0);
+  const auto gatherer = make_phase_binning_gatherer(short_setup(1), 0);
   CollectedSets out;
   for (std::int64_t pulse = 0; pulse < 50; ++pulse) {
-    gatherer->push(frame_at(0, static_cast<double>(pulse) * (kPeriodMs + 6), pulse), out);
+    gatherer->push(frame_at(0, static_cast<double>(pulse) * (kShortPeriodMs + 6), pulse), out);
   }
   EXPECT_EQ(out.sets.size(), 50U);
 }
 
 TEST(PhaseBinningDeathTest, ContractIsChecked) {
-  EXPECT_DEATH(make_phase_binning_gatherer(setup_of(0)), "needs a source");
-  EXPECT_DEATH(make_phase_binning_gatherer(setup_of(2), 1), "weighs less");
+  EXPECT_DEATH(make_phase_binning_gatherer(short_setup(0)), "needs a source");
+  EXPECT_DEATH(make_phase_binning_gatherer(short_setup(2), 1), "weighs less");
   EXPECT_DEATH(make_phase_binning_gatherer({.sources = 1}), "a microsecond or more");
 }
 

@@ -66,8 +66,6 @@ struct World {
   double quantum_ms = 0;    // of the stamps: makes ties
 };
 
-constexpr double kPeriodMs = 22.0;
-
 // The frames of a world in order of arrival; the tag is the pulse.
 std::vector<GatherFrame> frames_of(const World& world, std::uint32_t seed) {
   boost::random::mt19937 random(seed);
@@ -96,7 +94,7 @@ std::vector<GatherFrame> frames_of(const World& world, std::uint32_t seed) {
   return frames;
 }
 
-GatheringSetup setup_of(const World& world, double interval_ms, std::uint32_t queue_limit) {
+GatheringSetup random_setup(const World& world, double interval_ms, std::uint32_t queue_limit) {
   return {.sources = world.sources,
           .period = from_ms(kPeriodMs),
           .interval = from_ms(interval_ms),
@@ -116,7 +114,7 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
     world.delay_max_ms = 100 * uniform(random);
     world.quantum_ms = seed % 2 == 0 ? 4 : 0;
     const auto limit = static_cast<std::uint32_t>(seed % 3 == 0 ? 1 + random() % 4 : 64);
-    const GatheringSetup setup = setup_of(world, 1 + 21 * uniform(random), limit);
+    const GatheringSetup setup = random_setup(world, 1 + 21 * uniform(random), limit);
     const auto gatherer = make_yoon2021_gatherer(setup);
     NaiveGatherer naive(setup);
     CollectedSets sets;
@@ -135,7 +133,7 @@ TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
     const World world = {
         .sources = 6, .sigma_ms = 4, .drop = 0.05, .outage = 0.2, .delay_max_ms = 60};
-    const GatheringSetup setup = setup_of(world, kPeriodMs / 2, 8);
+    const GatheringSetup setup = random_setup(world, kPeriodMs / 2, 8);
     const auto gatherer = make_yoon2021_gatherer(setup);
     CollectedSets out;
     const std::vector<GatherFrame> frames = frames_of(world, seed);
@@ -163,7 +161,7 @@ TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
 TEST(Yoon2021Random, CleanInputHasRecallOne) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const World world = {.sources = 18, .pulses = 200, .sigma_ms = 1, .delay_max_ms = 60};
-    const auto gatherer = make_yoon2021_gatherer(setup_of(world, kPeriodMs / 2, 64));
+    const auto gatherer = make_yoon2021_gatherer(random_setup(world, kPeriodMs / 2, 64));
     CollectedSets out;
     for (const GatherFrame& frame : frames_of(world, seed)) gatherer->push(frame, out);
     ASSERT_EQ(out.sets.size(), 200U) << "seed " << seed;
@@ -181,7 +179,7 @@ TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
   boost::random::uniform_01<double> uniform;
   int without = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const auto gatherer = make_yoon2021_gatherer(setup_of({.sources = 6}, kPeriodMs / 2, 64));
+    const auto gatherer = make_yoon2021_gatherer(random_setup({.sources = 6}, kPeriodMs / 2, 64));
     CollectedSets out;
     std::array<double, 6> phase_ms{};
     for (double& phase : phase_ms) phase = kPeriodMs * uniform(random);
@@ -198,7 +196,7 @@ TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
 
 TEST(Yoon2021Random, EighteenThousandSources) {
   const World world = {.sources = 18'000, .pulses = 4, .sigma_ms = 0.5, .drop = 2e-5};
-  const auto gatherer = make_yoon2021_gatherer(setup_of(world, kPeriodMs / 2, 8));
+  const auto gatherer = make_yoon2021_gatherer(random_setup(world, kPeriodMs / 2, 8));
   CollectedSets out;
   const std::vector<GatherFrame> frames = frames_of(world, 4);
   for (const GatherFrame& frame : frames) gatherer->push(frame, out);

@@ -13,15 +13,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double kPeriodMs = 22.0;
-
-GatheringSetup setup_of(std::uint32_t sources, std::uint32_t queue_limit = 64) {
-  return {.sources = sources,
-          .period = from_ms(kPeriodMs),
-          .interval = from_ms(kPeriodMs / 2),
-          .queue_limit = queue_limit};
-}
-
 // Two sources over `pulses` pulses, the second constantly `offset_ms` ahead of its true time.
 CollectedSets with_offset(double offset_ms, std::int64_t pulses) {
   const auto gatherer = make_yoon2021_gatherer(setup_of(2));

@@ -52,6 +52,14 @@ void ScriptWorld::set_latency(PeerId from, PeerId to, Nanoseconds latency) {
   script_link(from, to, [latency](std::size_t, const Bytes&) { return std::vector{latency}; });
 }
 
+ScriptWorld& ScriptWorld::connect(Nanoseconds latency) {
+  for (const PeerId slave : slaves()) {
+    set_latency(0, slave, latency);
+    set_latency(slave, 0, latency);
+  }
+  return *this;
+}
+
 void ScriptWorld::start(Task<void> task) {
   ++unfinished_;
   asio::co_spawn(context_, std::move(task), [this](std::exception_ptr error) {

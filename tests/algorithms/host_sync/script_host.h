@@ -41,6 +41,8 @@ class ScriptWorld {
 
   void script_link(PeerId from, PeerId to, LinkScript script);
   void set_latency(PeerId from, PeerId to, Nanoseconds latency);
+  // Between the master and each slave, both ways.
+  ScriptWorld& connect(Nanoseconds latency);
 
   // Runs coroutines until all have ended, or until `end`. Rethrows what they throw.
   void start(Task<void> task);

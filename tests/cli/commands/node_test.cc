@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tests/cli/program.h"
+#include "tests/free_port.h"
 
 namespace simbench {
 namespace {
@@ -21,19 +22,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
-
-// A port that was free a moment ago.
-int free_port() {
-  const int server = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = {};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  if (bind(server, reinterpret_cast<sockaddr*>(&address), size) != 0) return 0;
-  getsockname(server, reinterpret_cast<sockaddr*>(&address), &size);
-  close(server);
-  return ntohs(address.sin_port);
-}
 
 std::string csv() {
   std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";

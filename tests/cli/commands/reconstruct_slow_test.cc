@@ -12,7 +12,7 @@
 namespace simbench {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::StartsWith;
 using testing::UnorderedElementsAre;

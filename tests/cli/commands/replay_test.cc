@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/cli/commands/rs_csv_files.h"
 #include "tests/cli/program.h"
 #include "tests/data/test_data.h"
 
@@ -16,9 +17,6 @@ using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-const std::string kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
-const std::string kBody = test_data_path("ibl/_iblrig_bodyCamera.timestamps.ssv");
 
 class ReplayCommand : public ProgramTest {
  protected:

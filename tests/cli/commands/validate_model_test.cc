@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/cli/program.h"
+#include "tests/free_port.h"
 
 namespace simbench {
 namespace {
@@ -84,14 +85,6 @@ TEST_F(ValidateModelCommand, BadInputIsOneMessage) {
   result = run({"validate-model", "--scenario", "6node_relay", "--set", "/network/nagle=true"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("found true, allowed where a relay imitates the network"));
-}
-
-// Of loopback; the relay takes no port 0, since its nodes must know it beforehand.
-int free_port() {
-  using boost::asio::ip::tcp;
-  boost::asio::io_context context;
-  const tcp::acceptor acceptor(context, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
-  return acceptor.local_endpoint().port();
 }
 
 class RelayCommand : public ProgramTest {

@@ -39,7 +39,7 @@ Diagnosis diagnosed(const scenarios::Scenario& scenario, std::uint64_t seed = 1,
   return diagnose(recorded(scenario, seed), options);
 }
 
-std::vector<std::string> kinds(const Diagnosis& diagnosis) {
+std::vector<std::string> kinds_found(const Diagnosis& diagnosis) {
   std::vector<std::string> all;
   for (const Finding& finding : diagnosis.findings) all.push_back(finding.kind);
   return all;
@@ -59,7 +59,7 @@ TEST(DiagnoseSimulated, DefaultModeRunsFree) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Diagnosis found = diagnosed(scenario, seed);
     EXPECT_EQ(found.verdict.status, SyncStatus::kDoesNotWork) << "seed " << seed;
-    EXPECT_THAT(kinds(found), Contains("free_running")) << "seed " << seed;
+    EXPECT_THAT(kinds_found(found), Contains("free_running")) << "seed " << seed;
   }
 }
 
@@ -67,8 +67,8 @@ TEST(DiagnoseSimulated, TooLongAnExposureHalvesTheRate) {
   const scenarios::Scenario scenario = three_cameras({{"/cameras/exposure_ms", "34"}});
   const Diagnosis found = diagnosed(scenario, 1, {.rate_hz = 30});
   EXPECT_EQ(found.verdict.status, SyncStatus::kWorks) << found.verdict.reason;
-  EXPECT_THAT(kinds(found), SizeIs(3));
-  EXPECT_THAT(kinds(found), Each("divided_rate"));
+  EXPECT_THAT(kinds_found(found), SizeIs(3));
+  EXPECT_THAT(kinds_found(found), Each("divided_rate"));
 }
 
 TEST(DiagnoseSimulated, FramesThatTheCamerasLoseAreCounted) {
@@ -100,8 +100,8 @@ TEST(DiagnoseSimulated, AWrapChangesNothing) {
   }
   const Diagnosis after = diagnose(streams, {});
   EXPECT_EQ(after.verdict.reason, before.verdict.reason);
-  EXPECT_THAT(kinds(after), SizeIs(3));
-  EXPECT_THAT(kinds(after), Each("register_wraps"));
+  EXPECT_THAT(kinds_found(after), SizeIs(3));
+  EXPECT_THAT(kinds_found(after), Each("register_wraps"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kTolerance = 1e-6;
+constexpr double kRoundingMs = 1e-6;
 
 // A backend that plays one hand-made capture.
 class Played final : public RecordingSource {
@@ -83,7 +83,7 @@ TEST(ExposureSets, EqualClocksGiveTheSpreadOfTheExposures) {
   for (std::size_t i = 0; i < sets.sets.size(); ++i) {
     const ExposureSet& set = sets.sets[i];
     ASSERT_EQ(set.cameras.size(), 4U);
-    EXPECT_NEAR(set.spread_ms(), 3, kTolerance);
+    EXPECT_NEAR(set.spread_ms(), 3, kRoundingMs);
     for (std::size_t camera = 0; camera < 4; ++camera) {
       ASSERT_TRUE(set.cameras[camera].has_value());
       EXPECT_EQ(set.cameras[camera]->counter, 4 + i);
@@ -104,7 +104,7 @@ TEST(ExposureSets, ClocksOffByWholeFrames) {
   EXPECT_THAT(counters_of(sets, 0), ElementsAre(6, 7, 8, 9, 10, 11, 12)) << "where stamps overlap";
   EXPECT_THAT(counters_of(sets, 1), ElementsAre(6, 7, 8, 9, 10, 11, 12));
   EXPECT_THAT(counters_of(sets, 3), ElementsAre(3, 4, 5, 6, 7, 8, 9));
-  for (const ExposureSet& set : sets.sets) EXPECT_NEAR(set.spread_ms(), 60, kTolerance);
+  for (const ExposureSet& set : sets.sets) EXPECT_NEAR(set.spread_ms(), 60, kRoundingMs);
 }
 
 // A clock that is off by less than half a frame changes no set, by more than half takes the
@@ -117,7 +117,7 @@ TEST(ExposureSets, TheNearestStampDecides) {
     const ExposureSets sets = sets_of(capture, 3);
     ASSERT_EQ(sets.sets.size(), 3U);
     EXPECT_EQ(missing_in(sets), 0);
-    EXPECT_NEAR(mean_spread_ms(sets), spread_ms, kTolerance) << error_ms;
+    EXPECT_NEAR(mean_spread_ms(sets), spread_ms, kRoundingMs) << error_ms;
   }
 }
 
@@ -184,7 +184,8 @@ TEST(ExposureSets, SetsWhereAlgorithm3GivesNone) {
   EXPECT_EQ(sets.gathered_sets, 0);
   EXPECT_EQ(sets.sets.size(), 4U);
   EXPECT_EQ(missing_in(sets), 0);
-  EXPECT_NEAR(mean_spread_ms(sets), 20, kTolerance) << "the last host's nearest is a pulse earlier";
+  EXPECT_NEAR(mean_spread_ms(sets), 20, kRoundingMs)
+      << "the last host's nearest is a pulse earlier";
 }
 
 TEST(ExposureSets, NeedTheTruth) {
@@ -203,8 +204,8 @@ scenarios::Scenario studio(std::vector<scenarios::Override> more = {}) {
   return scenarios::load_scenario("18cam_6host_30fps_studio", more);
 }
 
-ExposureSets simulated(const scenarios::Scenario& scenario, const std::string& pipeline,
-                       std::uint64_t seed = 1) {
+ExposureSets simulated_sets(const scenarios::Scenario& scenario, const std::string& pipeline,
+                            std::uint64_t seed = 1) {
   const auto source = sim::make_simulation(scenario);
   return exposure_sets(scenario, choose_pipelines(scenario, {pipeline}).front(), seed, *source, 10);
 }
@@ -214,7 +215,7 @@ constexpr double kPeriodMs = 1e3 / 30;
 TEST(ExposureSetsSimulated, SynchronisedHostsGroupWhatThePulseExposed) {
   const scenarios::Scenario scenario = studio();
   for (const std::string pipeline : {"oracle", "two_way_hull", "yoon2021_both"}) {
-    const ExposureSets sets = simulated(scenario, pipeline);
+    const ExposureSets sets = simulated_sets(scenario, pipeline);
     ASSERT_EQ(sets.sets.size(), 10U) << pipeline;
     EXPECT_EQ(missing_in(sets), 0) << pipeline;
     // Hosts expose by up to 0.14 periods longer: half of that at mid-exposure.
@@ -228,7 +229,7 @@ TEST(ExposureSetsSimulated, UnsynchronisedHostsAreAsFarApartAsTheirClocks) {
   const scenarios::Scenario scenario = studio();
   int without_sets = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const ExposureSets sets = simulated(scenario, "ntp_last_set", seed);
+    const ExposureSets sets = simulated_sets(scenario, "ntp_last_set", seed);
     ASSERT_EQ(sets.sets.size(), 10U);
     EXPECT_EQ(missing_in(sets), 0);
     const auto [least, most] =
@@ -245,20 +246,20 @@ TEST(ExposureSetsSimulated, UnsynchronisedHostsAreAsFarApartAsTheirClocks) {
 TEST(ExposureSetsSimulated, OfflineAndRelativeEstimators) {
   scenarios::Scenario scenario = studio();
   scenario.pipelines[1].device_time = "regression_offline";
-  const ExposureSets offline = simulated(scenario, "yoon2021_both");
+  const ExposureSets offline = simulated_sets(scenario, "yoon2021_both");
   EXPECT_EQ(missing_in(offline), 0);
   EXPECT_NEAR(mean_spread_ms(offline), offline.score.exposure_spread_ms, 1e-3);
 
   const scenarios::Scenario genlock = scenarios::load_scenario(
       "18cam_6host_45fps", {{"/timeline/frames", "60"}, {"/cameras/exposure_host_periods", "0"}});
-  const ExposureSets relative = simulated(genlock, "genlock");
+  const ExposureSets relative = simulated_sets(genlock, "genlock");
   ASSERT_EQ(relative.sets.size(), 10U);
   EXPECT_EQ(missing_in(relative), 0);
-  EXPECT_NEAR(mean_spread_ms(relative), 0, kTolerance);
+  EXPECT_NEAR(mean_spread_ms(relative), 0, kRoundingMs);
 }
 
 TEST(ExposureSetsSimulated, FreeRunningCamerasAddTheirPhase) {
-  const ExposureSets sets = simulated(studio({{"/cameras/sync_mode", "default"}}), "oracle");
+  const ExposureSets sets = simulated_sets(studio({{"/cameras/sync_mode", "default"}}), "oracle");
   ASSERT_EQ(sets.sets.size(), 10U);
   EXPECT_EQ(missing_in(sets), 0);
   for (const ExposureSet& set : sets.sets) {
@@ -269,9 +270,9 @@ TEST(ExposureSetsSimulated, FreeRunningCamerasAddTheirPhase) {
 
 TEST(ExposureSetsSimulated, AVanishedCamera) {
   const ExposureSets sets =
-      simulated(studio({{"/faults", R"([{"kind": "camera_vanishes", "camera": 4, "at_ms": 6000,
+      simulated_sets(studio({{"/faults", R"([{"kind": "camera_vanishes", "camera": 4, "at_ms": 6000,
                                "duration_ms": 1500}])"}}),
-                "oracle");
+                     "oracle");
   ASSERT_EQ(sets.sets.size(), 10U);
   const std::size_t seen = counters_of(sets, 4).size();
   EXPECT_GT(seen, 2U);
@@ -284,8 +285,8 @@ TEST(ExposureSetsSimulated, IsTheRunThatIsEvaluatedEveryTime) {
   const Results results = evaluate(
       scenario, [&] { return sim::make_simulation(scenario); },
       {.first_seed = 3, .seeds = 1, .jobs = 1, .pipelines = {"yoon2021_both"}}, nullptr);
-  const ExposureSets once = simulated(scenario, "yoon2021_both", 3);
-  const ExposureSets again = simulated(scenario, "yoon2021_both", 3);
+  const ExposureSets once = simulated_sets(scenario, "yoon2021_both", 3);
+  const ExposureSets again = simulated_sets(scenario, "yoon2021_both", 3);
   EXPECT_EQ(once.score.amd_ms, results.rows.front().amd_ms.values.front());
   EXPECT_EQ(once.score.cost.trace_hash, results.rows.front().seeds.front().cost.trace_hash);
   ASSERT_EQ(once.sets.size(), again.sets.size());

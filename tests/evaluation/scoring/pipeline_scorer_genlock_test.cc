@@ -13,11 +13,6 @@ namespace {
 using ::testing::Each;
 using ::testing::IsNan;
 
-constexpr double kTolerance = 1e-9;
-
-// Cameras 0 .. n-1 arrive 0, 1, ... n-1 ms late.
-Nanoseconds staircase(std::uint32_t camera, std::int64_t) { return from_ms(camera); }
-
 ScorerSetup genlock_setup() {
   ScorerSetup setup;
   setup.genlock = true;

@@ -18,11 +18,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsNan;
 
-constexpr double kTolerance = 1e-9;
-
-// Cameras 0 .. n-1 arrive 0, 1, ... n-1 ms late.
-Nanoseconds staircase(std::uint32_t camera, std::int64_t) { return from_ms(camera); }
-
 TEST(PipelineScorerTest, PerfectStampsScoreZero) {
   const SeedScore seed = score(TestCapture(2, 3), arrival_setup());
   EXPECT_DOUBLE_EQ(seed.amd_ms, 0);

@@ -19,16 +19,11 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsNan;
 
-constexpr double kTolerance = 1e-9;
-
 TestCapture capture_without_truth(std::uint32_t hosts, std::uint32_t cameras_per_host) {
   TestCapture capture(hosts, cameras_per_host);
   capture.with_truth = false;
   return capture;
 }
-
-// Cameras 0 .. n-1 arrive 0, 1, ... n-1 ms late.
-Nanoseconds staircase(std::uint32_t camera, std::int64_t) { return from_ms(camera); }
 
 // Lets the test change each frame on its way.
 class Edited final : public ForwardingSink {

@@ -18,7 +18,7 @@ std::vector<std::string> values_of(const std::string& text) {
   return parse_axis("/a/b=" + text).values.front();
 }
 
-std::string problem_of(const std::string& text) {
+std::string axis_problem(const std::string& text) {
   try {
     parse_axis(text);
   } catch (const scenarios::InputError& error) {
@@ -83,19 +83,19 @@ TEST(SweepAxis, PointersInLockstep) {
 }
 
 TEST(SweepAxis, SaysWhatIsWrong) {
-  EXPECT_THAT(problem_of("hosts=1"), HasSubstr("found 'hosts=1', allowed: /json/pointer="));
-  EXPECT_THAT(problem_of("/a"), HasSubstr("found '/a', allowed: /json/pointer="));
-  EXPECT_THAT(problem_of("/a="), HasSubstr("found an empty value"));
-  EXPECT_THAT(problem_of("/a=1,,2"), HasSubstr("found an empty value"));
-  EXPECT_THAT(problem_of("/a=1,2,1.0"), HasSubstr("found the value 1 twice"));
-  EXPECT_THAT(problem_of("/a=1:2"), HasSubstr("found '1:2', allowed start:stop:step"));
-  EXPECT_THAT(problem_of("/a=1:x:2"), HasSubstr("found 'x' in a range"));
-  EXPECT_THAT(problem_of("/a=1:inf:2"), HasSubstr("found 'inf' in a range"));
-  EXPECT_THAT(problem_of("/a=1:5:0"), HasSubstr("has no end: its step is 0"));
-  EXPECT_THAT(problem_of("/a=5:1:1"), HasSubstr("is empty: from 5 steps of 1 do not lead to 1"));
-  EXPECT_THAT(problem_of("/a=0:1e9:1"), HasSubstr("allowed: at most 100000"));
-  EXPECT_THAT(problem_of("/a=[1,2]"), HasSubstr("found '[1', allowed: numbers, words"));
-  EXPECT_THAT(problem_of("/a=1,2+/b=1"),
+  EXPECT_THAT(axis_problem("hosts=1"), HasSubstr("found 'hosts=1', allowed: /json/pointer="));
+  EXPECT_THAT(axis_problem("/a"), HasSubstr("found '/a', allowed: /json/pointer="));
+  EXPECT_THAT(axis_problem("/a="), HasSubstr("found an empty value"));
+  EXPECT_THAT(axis_problem("/a=1,,2"), HasSubstr("found an empty value"));
+  EXPECT_THAT(axis_problem("/a=1,2,1.0"), HasSubstr("found the value 1 twice"));
+  EXPECT_THAT(axis_problem("/a=1:2"), HasSubstr("found '1:2', allowed start:stop:step"));
+  EXPECT_THAT(axis_problem("/a=1:x:2"), HasSubstr("found 'x' in a range"));
+  EXPECT_THAT(axis_problem("/a=1:inf:2"), HasSubstr("found 'inf' in a range"));
+  EXPECT_THAT(axis_problem("/a=1:5:0"), HasSubstr("has no end: its step is 0"));
+  EXPECT_THAT(axis_problem("/a=5:1:1"), HasSubstr("is empty: from 5 steps of 1 do not lead to 1"));
+  EXPECT_THAT(axis_problem("/a=0:1e9:1"), HasSubstr("allowed: at most 100000"));
+  EXPECT_THAT(axis_problem("/a=[1,2]"), HasSubstr("found '[1', allowed: numbers, words"));
+  EXPECT_THAT(axis_problem("/a=1,2+/b=1"),
               HasSubstr("/a has 2 values and /b has 1; in lockstep they need equally many"));
 }
 

@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr const char* kHeader =
+constexpr const char* kFramesHeader =
     "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),camera,host\n";
 
 FrameEvent frame(std::uint32_t camera, std::uint32_t counter, double arrival_ms) {
@@ -165,8 +165,8 @@ TEST(RecordedFrames, BadRecordingsAreOneClearError) {
   EXPECT_THAT([&] { load(folder.write("empty.csv", "")); },
               ThrowsMessage<CameraError>(
                   AllOf(HasSubstr("camera left: "), HasSubstr("empty.csv:1: the file is empty"))));
-  const std::string csv =
-      folder.write("two.csv", std::string(kHeader) + "Depth,0,1,10,20,a,h\nDepth,0,1,10,20,b,h\n");
+  const std::string csv = folder.write(
+      "two.csv", std::string(kFramesHeader) + "Depth,0,1,10,20,a,h\nDepth,0,1,10,20,b,h\n");
   EXPECT_THAT([&] { load(csv, "c"); },
               ThrowsMessage<CameraError>(
                   HasSubstr("found recorded_camera 'c', allowed a, b or a number below 2")));
@@ -185,7 +185,7 @@ TEST(RecordedFrames, FramesWithAndWithoutTruthDoNotMix) {
 TEST(RecordedFrames, ACsvsDepthIsPlayedElseItsFirstInfrared) {
   const ScratchFolder folder;
   const std::string csv = folder.write(
-      "a.csv", std::string(kHeader) +
+      "a.csv", std::string(kFramesHeader) +
                    "Infrared,1,10,10,20,both,h\nDepth,0,20,10,21,both,h\nColor,0,30,10,22,both,h\n"
                    "Infrared,1,40,10,23,mono,h\nInfrared,2,50,10,24,mono,h\n");
   const auto cameras = load_played_cameras(csv, {recorded("both", csv), recorded("mono", csv)});
@@ -201,7 +201,7 @@ TEST(RecordedFrames, ACsvsDepthIsPlayedElseItsFirstInfrared) {
 TEST(RecordedFrames, AStampBeyondTheRegisterIsWrapped) {
   const ScratchFolder folder;
   const std::string csv =
-      folder.write("a.csv", std::string(kHeader) + "Depth,0,1,4294968.296,20,a,h\n");
+      folder.write("a.csv", std::string(kFramesHeader) + "Depth,0,1,4294968.296,20,a,h\n");
   EXPECT_EQ(load_played_cameras(csv, {recorded("a", csv)})[0]->frames[0].sensor, DeviceStamp{1000});
 }
 

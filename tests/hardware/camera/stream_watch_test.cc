@@ -33,7 +33,7 @@ CameraSettings depth(const std::string& mode, double mode_rate_hz, double trigge
   return settings(mode, {stream("depth", mode_rate_hz)}, trigger_rate_hz);
 }
 
-CameraFrame frame(std::uint32_t counter, double ms, std::uint32_t zero_us = 0) {
+CameraFrame watched_frame(std::uint32_t counter, double ms, std::uint32_t zero_us = 0) {
   const auto us = static_cast<std::uint32_t>(static_cast<std::int64_t>(ms * 1000)) + zero_us;
   return {.counter = counter,
           .sensor = {us},
@@ -47,7 +47,7 @@ TEST(StreamWatch, ASteadyStreamIsNoEvent) {
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 300; ++i) {
-    watch.on_frame(frame(i, 33.3 * i), told.handler());
+    watch.on_frame(watched_frame(i, 33.3 * i), told.handler());
     watch.check(at_ms(33.3 * i + 30), told.handler());
   }
   EXPECT_THAT(told.events, IsEmpty());
@@ -58,7 +58,8 @@ TEST(StreamWatch, NeitherTheCountersNorTheStampsWrapIsAnEvent) {
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 100; ++i) {
-    watch.on_frame(frame(0xffffffffU - 50 + i, 33.3 * i, 0xffffffffU - 1'000'000), told.handler());
+    watch.on_frame(watched_frame(0xffffffffU - 50 + i, 33.3 * i, 0xffffffffU - 1'000'000),
+                   told.handler());
   }
   EXPECT_THAT(told.events, IsEmpty());
   EXPECT_EQ(watch.lost_frames(), 0U);
@@ -68,8 +69,8 @@ TEST(StreamWatch, AGapAtTheWrapIsCounted) {
   Told told;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(frame(0xfffffffeU, 0), told.handler());
-  watch.on_frame(frame(2, 133), told.handler());  // 0xffffffff, 0 and 1 are missing
+  watch.on_frame(watched_frame(0xfffffffeU, 0), told.handler());
+  watch.on_frame(watched_frame(2, 133), told.handler());  // 0xffffffff, 0 and 1 are missing
   EXPECT_EQ(watch.lost_frames(), 3U);
   ASSERT_EQ(told.kinds(), std::vector{Kind::kNote});
   EXPECT_THAT(told.events[0].text, HasSubstr("from 4294967294 to 2: 3 frames lost"));
@@ -79,7 +80,8 @@ TEST(StreamWatch, ManyGapsAreFewNotes) {
   Told told;
   StreamWatch watch(depth("default", 100), false);
   watch.start(at_ms(0));
-  for (std::uint32_t i = 0; i < 1000; ++i) watch.on_frame(frame(2 * i, 20.0 * i), told.handler());
+  for (std::uint32_t i = 0; i < 1000; ++i)
+    watch.on_frame(watched_frame(2 * i, 20.0 * i), told.handler());
   EXPECT_EQ(watch.lost_frames(), 999U);
   ASSERT_EQ(told.events.size(), 2U);  // 20 s: at the first, and 10 s after that
   EXPECT_THAT(told.events[1].text, HasSubstr("501 frames lost since the start"));
@@ -89,13 +91,13 @@ TEST(StreamWatch, AStallIsToldOnceAndItsEndToo) {
   Told told;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(frame(0, 10), told.handler());
+  watch.on_frame(watched_frame(0, 10), told.handler());
   watch.check(at_ms(1010), told.handler());
   EXPECT_THAT(told.events, IsEmpty());  // exactly 1 s
   watch.check(at_ms(1011), told.handler());
   watch.check(at_ms(5000), told.handler());
   EXPECT_EQ(told.kinds(), std::vector{Kind::kStalled});
-  watch.on_frame(frame(1, 6010), told.handler());
+  watch.on_frame(watched_frame(1, 6010), told.handler());
   ASSERT_EQ(told.kinds(), (std::vector{Kind::kStalled, Kind::kNote}));
   EXPECT_THAT(told.events[1].text, HasSubstr("after 6.0 s"));
   watch.check(at_ms(7020), told.handler());
@@ -107,7 +109,7 @@ TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
     Told told;
     StreamWatch watch(wanted, false);
     watch.start(at_ms(-5));
-    watch.on_frame(frame(0, 0), told.handler());
+    watch.on_frame(watched_frame(0, 0), told.handler());
     watch.check(at_ms(ms), told.handler());
     return !told.events.empty();
   };
@@ -135,7 +137,7 @@ TEST(StreamWatch, ACameraThatWaitsForTriggersIsWatchedFromItsFirstFrame) {
   watch.start(at_ms(0));
   watch.check(at_ms(60'000), told.handler());
   EXPECT_THAT(told.events, IsEmpty());
-  watch.on_frame(frame(0, 60'010), told.handler());
+  watch.on_frame(watched_frame(0, 60'010), told.handler());
   watch.check(at_ms(61'020), told.handler());
   EXPECT_EQ(told.kinds(), std::vector{Kind::kStalled});
 }
@@ -144,16 +146,16 @@ TEST(StreamWatch, ARestartedCameraIsTold) {
   Told told;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(frame(1000, 0), told.handler());
-  watch.on_frame(frame(0, 33), told.handler());
+  watch.on_frame(watched_frame(1000, 0), told.handler());
+  watch.on_frame(watched_frame(0, 33), told.handler());
   ASSERT_EQ(told.kinds(), std::vector{Kind::kNote});
   EXPECT_THAT(told.events[0].text, HasSubstr("frame counter jumped between frames 1000 and 0"));
   EXPECT_EQ(watch.lost_frames(), 0U);
 
   Told clock;
   watch.start(at_ms(0));
-  watch.on_frame(frame(0, 0), clock.handler());
-  watch.on_frame(frame(1, 33, 1'100'000), clock.handler());
+  watch.on_frame(watched_frame(0, 0), clock.handler());
+  watch.on_frame(watched_frame(1, 33, 1'100'000), clock.handler());
   ASSERT_EQ(clock.kinds(), std::vector{Kind::kNote});
   EXPECT_THAT(clock.events[0].text, HasSubstr("clock jumped between frames 0 and 1"));
 }
@@ -162,8 +164,8 @@ TEST(StreamWatch, AStampOfAnotherClockMayJump) {
   Told told;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  CameraFrame first = frame(0, 0);
-  CameraFrame second = frame(1, 33, 5'000'000);
+  CameraFrame first = watched_frame(0, 0);
+  CameraFrame second = watched_frame(1, 33, 5'000'000);
   first.domain = second.domain = StampDomain::kSystemTime;
   watch.on_frame(first, told.handler());
   watch.on_frame(second, told.handler());
@@ -175,9 +177,9 @@ TEST(StreamWatch, DepthAndColourCountForThemselves) {
   StreamWatch watch(settings("default", {stream("depth", 30), stream("colour", 30)}), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 60; ++i) {
-    watch.on_frame(frame(i, 33.3 * i), told.handler());
+    watch.on_frame(watched_frame(i, 33.3 * i), told.handler());
     if (i > 5) continue;
-    CameraFrame colour = frame(700 + i, 33.3 * i + 5);
+    CameraFrame colour = watched_frame(700 + i, 33.3 * i + 5);
     colour.stream = StreamKind::kColour;
     watch.on_frame(colour, told.handler());
   }

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "tests/free_port.h"
+
 namespace simbench::hardware {
 namespace {
 
@@ -73,13 +75,6 @@ class TickingDriver final : public CameraDriver {
  private:
   std::string serial_;
 };
-
-std::uint16_t free_port() {
-  boost::asio::io_context context;
-  const boost::asio::ip::tcp::acceptor acceptor(context,
-                                                {boost::asio::ip::address_v4::loopback(), 0});
-  return acceptor.local_endpoint().port();
-}
 
 std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario&, const std::string& pipeline) {
   if (pipeline != kTestPipeline) throw scenarios::InputError("no such pipeline: " + pipeline);

@@ -18,18 +18,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-json role(const std::string& name) { return {{"role", name}}; }
-json in_session(const std::string& session) { return {{"session", session}}; }
-
 CameraFrame arrived_now() {
   CameraFrame frame;
   frame.arrived = monotonic_now();
   return frame;
-}
-
-Bytes bytes(const std::string& text) {
-  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-  return {begin, begin + text.size()};
 }
 
 json with(json terms, const std::string& name, json value) {

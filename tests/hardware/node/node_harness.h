@@ -26,6 +26,14 @@
 
 namespace simbench::hardware {
 
+// Arguments of requests, and bytes that may be none.
+inline nlohmann::json role(const std::string& name) { return {{"role", name}}; }
+inline nlohmann::json in_session(const std::string& session) { return {{"session", session}}; }
+inline Bytes bytes(const std::string& text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
 // What the test says and sees of its cameras; any thread.
 class MadeUpCameras final : public CameraDriver {
  public:

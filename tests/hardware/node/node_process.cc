@@ -2,9 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
 #include <poll.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,23 +11,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/free_port.h"
+
 namespace simbench::hardware {
 namespace {
 
 constexpr int kReadyLimitMs = 20'000;
-
-// One that was free a moment ago.
-std::uint16_t free_port() {
-  const int server = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address = {};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  if (bind(server, reinterpret_cast<sockaddr*>(&address), size) != 0) return 0;
-  getsockname(server, reinterpret_cast<sockaddr*>(&address), &size);
-  close(server);
-  return ntohs(address.sin_port);
-}
 
 }  // namespace
 

@@ -14,8 +14,6 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-json role(const std::string& name) { return {{"role", name}}; }
-json in_session(const std::string& session) { return {{"session", session}}; }
 json place(const std::string& session, std::uint64_t offset) {
   return {{"session", session}, {"offset", offset}};
 }

@@ -4,15 +4,12 @@
 
 #include <random>
 
+#include "tests/hardware/node/node_harness.h"
+
 namespace simbench::hardware {
 namespace {
 
 using nlohmann::json;
-
-Bytes bytes(const std::string& text) {
-  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-  return {begin, begin + text.size()};
-}
 
 TEST(Protocol, ARequestIsReadBack) {
   const Request request = {7, "begin", {{"session", "0123456789abcdef"}, {"n", 3}}};

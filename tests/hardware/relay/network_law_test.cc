@@ -174,7 +174,7 @@ TEST(NetworkLaw, DrawsDependOnSeedDirectionAndIndexAlone) {
   EXPECT_NE(second_stream(1, 0, 1, 0), second_stream(1, 1, 0, 0));
 }
 
-std::string refusal(const std::string& pointer, const std::string& value) {
+std::string law_refusal(const std::string& pointer, const std::string& value) {
   const scenarios::Scenario scenario = scenarios::load_scenario(
       "18cam_6host_45fps", {{"/network/nagle", "false"}, {pointer, value}});
   try {
@@ -186,14 +186,15 @@ std::string refusal(const std::string& pointer, const std::string& value) {
 }
 
 TEST(NetworkLaw, WhatARelayCannotImitateIsRefused) {
-  EXPECT_EQ(refusal("/network/loss_probability", "0.5"), "");
-  EXPECT_THAT(refusal("/network/bandwidth_mbit_per_s", "100"),
+  EXPECT_EQ(law_refusal("/network/loss_probability", "0.5"), "");
+  EXPECT_THAT(law_refusal("/network/bandwidth_mbit_per_s", "100"),
               HasSubstr("/network/bandwidth_mbit_per_s=100: found 100, allowed"));
-  EXPECT_THAT(refusal("/network/burst/rate_hz", "1"), HasSubstr("/network/burst/rate_hz"));
-  EXPECT_THAT(refusal("/network/nagle", "true"), HasSubstr("/network/nagle=true: found true"));
-  EXPECT_THAT(refusal("/network/switch_clock", "boundary"), HasSubstr("found \"boundary\""));
-  EXPECT_THAT(refusal("/network/capture_traffic_share", "1"), HasSubstr("capture_traffic_share"));
-  EXPECT_THAT(refusal("/network/latency_session_exponential_ms", "1"),
+  EXPECT_THAT(law_refusal("/network/burst/rate_hz", "1"), HasSubstr("/network/burst/rate_hz"));
+  EXPECT_THAT(law_refusal("/network/nagle", "true"), HasSubstr("/network/nagle=true: found true"));
+  EXPECT_THAT(law_refusal("/network/switch_clock", "boundary"), HasSubstr("found \"boundary\""));
+  EXPECT_THAT(law_refusal("/network/capture_traffic_share", "1"),
+              HasSubstr("capture_traffic_share"));
+  EXPECT_THAT(law_refusal("/network/latency_session_exponential_ms", "1"),
               HasSubstr("latency_session_exponential_ms"));
 }
 

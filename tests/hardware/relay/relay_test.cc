@@ -15,6 +15,7 @@
 
 #include "hardware/net/wire.h"
 #include "scenarios/loader.h"
+#include "tests/free_port.h"
 
 namespace simbench::hardware {
 namespace {
@@ -24,12 +25,6 @@ using boost::asio::ip::udp;
 using testing::HasSubstr;
 
 const boost::asio::ip::address kLoopback = boost::asio::ip::address_v4::loopback();
-
-std::uint16_t free_port() {
-  boost::asio::io_context context;
-  const tcp::acceptor acceptor(context, tcp::endpoint(kLoopback, 0));
-  return acceptor.local_endpoint().port();
-}
 
 scenarios::Scenario scenario(const std::vector<scenarios::Override>& overrides = {}) {
   std::vector<scenarios::Override> all = {{"/network/latency_fixed_ms", "5"},

@@ -3,24 +3,23 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "reports/comparison/gate_commands.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_archive.h"
+#include "tests/reports/sample_results.h"
 
 namespace simbench::reports {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using scenarios::InputError;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::ThrowsMessage;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Baseline baseline_of(const Archive& archive) {
   Baseline baseline = make_baseline(archive);
@@ -208,7 +207,6 @@ TEST(GateCommands, OfAResultAloneAreMadeUpFromWhatItTells) {
 }
 
 TEST(GateJson, HoldsEveryCheck) {
-  using Json = nlohmann::ordered_json;
   const Json failed = Json::parse(gate_json(statistical(scaled(1.5))));
   EXPECT_EQ(failed["passed"], false);
   EXPECT_EQ(failed["mode"], "statistical");

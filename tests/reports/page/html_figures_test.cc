@@ -10,11 +10,12 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/reports/sample_results.h"
+
 namespace simbench::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string from_base64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

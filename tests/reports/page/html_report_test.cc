@@ -18,7 +18,7 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 ReportedArchive sample_archive() {
   Archive archive;

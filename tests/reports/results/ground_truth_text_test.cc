@@ -28,7 +28,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string table(const Results& results) { return plain(results_document(results, "")); }
+std::string table_of(const Results& results) { return plain(results_document(results, "")); }
 
 TEST(GroundTruthText, Labels) {
   evaluation::Row row = sample_results().rows[0];
@@ -44,7 +44,7 @@ TEST(GroundTruthText, SimulatedResultsLookAsTheyAlwaysDid) {
   const Results results = sample_results();
   EXPECT_FALSE(has_real_rows(results));
   for (const std::string& text :
-       {table(results), csv(results), markdown(results_document(results, "")),
+       {table_of(results), csv(results), markdown(results_document(results, "")),
         html(results_document(results, "").blocks)}) {
     EXPECT_THAT(text, AllOf(Not(HasSubstr("unverified")), Not(HasSubstr("truth,")),
                             Not(HasSubstr("GenLock order"))));
@@ -52,7 +52,7 @@ TEST(GroundTruthText, SimulatedResultsLookAsTheyAlwaysDid) {
 }
 
 TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
-  const std::string text = table(sample_rig_results());
+  const std::string text = table_of(sample_rig_results());
   EXPECT_THAT(text, HasSubstr("yoon2021_both  unverified      2.000"));
   EXPECT_THAT(text, HasSubstr("free_running   -                   -"));
   EXPECT_THAT(text, HasSubstr("What went wrong\n"
@@ -66,7 +66,7 @@ TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
 }
 
 TEST(GroundTruthText, GenlockCapturesAreVerified) {
-  const std::string text = table(sample_genlock_results());
+  const std::string text = table_of(sample_genlock_results());
   EXPECT_THAT(text, HasSubstr("GenLock order"));
   EXPECT_THAT(text, Not(HasSubstr("unverified")));
 }
@@ -74,7 +74,7 @@ TEST(GroundTruthText, GenlockCapturesAreVerified) {
 TEST(GroundTruthText, IndexErrorsOfUnverifiedSetsAreNotKnown) {
   Results results = sample_rig_results();
   results.rows[1].gathering = "epsilon";  // so that the sets are shown
-  EXPECT_THAT(table(results),
+  EXPECT_THAT(table_of(results),
               HasSubstr("yoon2021_both  yoon2021        720          -       -       -        4"));
 }
 

@@ -31,7 +31,7 @@ MeasuredStudy study() {
   return study;
 }
 
-evaluation::Results simulated() {
+evaluation::Results simulated_relay() {
   evaluation::Results results;
   results.scenario = "relay";
   results.seed_count = 4;
@@ -45,7 +45,8 @@ evaluation::Results simulated() {
 }
 
 TEST(ModelGapReport, JsonHasBothSidesAndTheDistance) {
-  const auto root = nlohmann::json::parse(model_gap_json(model_gap_report(study(), simulated())));
+  const auto root =
+      nlohmann::json::parse(model_gap_json(model_gap_report(study(), simulated_relay())));
   EXPECT_EQ(root["scenario"], "relay");
   EXPECT_EQ(root["measured_on"]["date"], "2026-11-21");
   EXPECT_EQ(root["measured_on"]["machine"], "2 cores, Linux 6.1");
@@ -72,7 +73,8 @@ TEST(ModelGapReport, JsonHasBothSidesAndTheDistance) {
 }
 
 TEST(ModelGapReport, JsonSaysWhatEachStageRestsOn) {
-  const auto root = nlohmann::json::parse(model_gap_json(model_gap_report(study(), simulated())));
+  const auto root =
+      nlohmann::json::parse(model_gap_json(model_gap_report(study(), simulated_relay())));
   ASSERT_EQ(root["evidence"].size(), 12);
   EXPECT_EQ(root["evidence"][0]["stage"], "trigger");
   for (const auto& stage : root["evidence"]) {
@@ -82,7 +84,7 @@ TEST(ModelGapReport, JsonSaysWhatEachStageRestsOn) {
 }
 
 TEST(ModelGapReport, TableForPeople) {
-  const std::string text = plain(model_gap_document(model_gap_report(study(), simulated())));
+  const std::string text = plain(model_gap_document(model_gap_report(study(), simulated_relay())));
   EXPECT_THAT(text, HasSubstr("relay: measured beside simulated\n"
                               "Measured 2026-11-21 on 2 cores, Linux 6.1 (simbench abc); "));
   EXPECT_THAT(text, HasSubstr("simulated with 4 seeds"));
@@ -97,14 +99,15 @@ TEST(ModelGapReport, TableForPeople) {
 }
 
 TEST(ModelGapReport, MarkdownHasTheSameTables) {
-  const std::string text = markdown(model_gap_document(model_gap_report(study(), simulated())));
+  const std::string text =
+      markdown(model_gap_document(model_gap_report(study(), simulated_relay())));
   EXPECT_THAT(text, HasSubstr("## relay: measured beside simulated"));
   EXPECT_THAT(text, HasSubstr("| both | amd_ms | 5/4 | 3.000 | [2.000, 4.000] |"));
   EXPECT_THAT(text, HasSubstr("| transport and kernel stamps |  | x |  |  |  |\n"));
 }
 
 TEST(ModelGapReport, WithoutCommonPipelinesThereAreNoRows) {
-  evaluation::Results others = simulated();
+  evaluation::Results others = simulated_relay();
   others.rows[0].pipeline = "another";
   const ModelGapReport report = model_gap_report(study(), others);
   EXPECT_TRUE(report.rows.empty());
@@ -115,7 +118,7 @@ TEST(ModelGapReport, WithoutCommonPipelinesThereAreNoRows) {
 TEST(ModelGapReport, NothingWentWrongIsNotSaid) {
   MeasuredStudy fine = study();
   fine.rows[0].notes.clear();
-  EXPECT_THAT(plain(model_gap_document(model_gap_report(fine, simulated()))),
+  EXPECT_THAT(plain(model_gap_document(model_gap_report(fine, simulated_relay()))),
               Not(HasSubstr("What went wrong")));
 }
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 AutoExposure stepping(std::size_t camera = 0) {
   return {{.step_interval_exponential_ms = 200, .min_ms = 2, .max_ms = 6},

@@ -4,12 +4,12 @@
 
 #include <vector>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
 constexpr double kModePeriod90 = 1e9 / 90;
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 ShutterSettings settings_of(ShutterMode mode, double mode_period_ns, double exposure_ms = 4) {
   return {.mode = mode,

@@ -8,7 +8,7 @@
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint64_t kSeed = 20210607;
+constexpr std::uint64_t kRunSeed = 20210607;
 
 scenarios::Oscillator noisy(double white_ppb, double walk_ppb) {
   return {.skew_sigma_ppm = 10,
@@ -49,17 +49,18 @@ TEST(OscillatorTest, SkewIsNormalWithTheConfiguredSigma) {
   double sum = 0;
   double squares = 0;
   for (int i = 0; i < kDraws; ++i) {
-    const double ppm = OscillatorModel(noisy(0, 0), kSeed, "host" + std::to_string(i)).skew() * 1e6;
+    const double ppm =
+        OscillatorModel(noisy(0, 0), kRunSeed, "host" + std::to_string(i)).skew() * 1e6;
     sum += ppm;
     squares += ppm * ppm;
   }
-  EXPECT_NEAR(sum / kDraws, 0, 5 * 10 / std::sqrt(kDraws)) << "seed " << kSeed;
+  EXPECT_NEAR(sum / kDraws, 0, 5 * 10 / std::sqrt(kDraws)) << "seed " << kRunSeed;
   EXPECT_NEAR(std::sqrt(squares / kDraws), 10, 5 * 10 / std::sqrt(2.0 * kDraws))
-      << "seed " << kSeed;
+      << "seed " << kRunSeed;
 }
 
 TEST(OscillatorTest, WithoutNoiseThePhaseIsTheSkewTimesTime) {
-  const OscillatorModel oscillator(noisy(0, 0), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(0, 0), kRunSeed, "host1");
   EXPECT_NE(oscillator.skew(), 0);
   EXPECT_DOUBLE_EQ(oscillator.deviation_ns(at_seconds(100)), oscillator.skew() * 1e11);
 }
@@ -68,30 +69,30 @@ TEST(OscillatorTest, WithoutNoiseThePhaseIsTheSkewTimesTime) {
 // (the second differences are correlated with their neighbours only); five of them are allowed.
 TEST(OscillatorTest, WhiteNoiseHasTheConfiguredAllanDeviation) {
   constexpr int kSamples = 10'000;
-  const OscillatorModel oscillator(noisy(3, 0), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(3, 0), kRunSeed, "host1");
   for (const double tau_s : {0.1, 1.0, 4.0}) {
     const double expected_ppb = 3 / std::sqrt(tau_s);
     EXPECT_NEAR(allan_deviation_ppb(oscillator, tau_s, kSamples), expected_ppb,
                 expected_ppb * 5 / std::sqrt(kSamples))
-        << "tau " << tau_s << " s, seed " << kSeed;
+        << "tau " << tau_s << " s, seed " << kRunSeed;
   }
 }
 
 TEST(OscillatorTest, RandomWalkHasTheConfiguredAllanDeviation) {
   constexpr int kSamples = 10'000;
-  const OscillatorModel oscillator(noisy(0, 2), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(0, 2), kRunSeed, "host1");
   for (const double tau_s : {0.1, 1.0, 4.0}) {
     const double expected_ppb = 2 * std::sqrt(tau_s / 3);
     EXPECT_NEAR(allan_deviation_ppb(oscillator, tau_s, kSamples), expected_ppb,
                 expected_ppb * 5 / std::sqrt(kSamples))
-        << "tau " << tau_s << " s, seed " << kSeed;
+        << "tau " << tau_s << " s, seed " << kRunSeed;
   }
 }
 
 TEST(OscillatorTest, ValuesDoNotDependOnTheOrderOfQueries) {
-  const OscillatorModel forwards(noisy(1, 1), kSeed, "host1");
-  const OscillatorModel backwards(noisy(1, 1), kSeed, "host1");
-  const OscillatorModel once(noisy(1, 1), kSeed, "host1");
+  const OscillatorModel forwards(noisy(1, 1), kRunSeed, "host1");
+  const OscillatorModel backwards(noisy(1, 1), kRunSeed, "host1");
+  const OscillatorModel once(noisy(1, 1), kRunSeed, "host1");
   const double first_ns = once.deviation_ns(at_seconds(-300.05));
   std::vector<double> seen;
   for (int i = -3001; i <= 3001; ++i) seen.push_back(forwards.deviation_ns(at_seconds(i / 10.0)));
@@ -102,7 +103,7 @@ TEST(OscillatorTest, ValuesDoNotDependOnTheOrderOfQueries) {
 }
 
 TEST(OscillatorTest, PhaseIsZeroAtZeroAndContinuousThroughIt) {
-  const OscillatorModel oscillator(noisy(5, 5), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(5, 5), kRunSeed, "host1");
   EXPECT_EQ(oscillator.deviation_ns(TrueTime{}), 0);
   for (int ns = -200; ns < 200; ++ns) {
     const TrueTime t{Nanoseconds(ns)};
@@ -111,7 +112,7 @@ TEST(OscillatorTest, PhaseIsZeroAtZeroAndContinuousThroughIt) {
 }
 
 TEST(OscillatorTest, BetweenGridPointsThePhaseIsLinear) {
-  const OscillatorModel oscillator(noisy(100, 100), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(100, 100), kRunSeed, "host1");
   for (const double s : {-7.3, -0.1, 0.0, 12.5}) {
     const double a = oscillator.deviation_ns(at_seconds(s));
     const double middle = oscillator.deviation_ns(at_seconds(s + 0.05));
@@ -121,7 +122,7 @@ TEST(OscillatorTest, BetweenGridPointsThePhaseIsLinear) {
 }
 
 TEST(OscillatorTest, NoiseBeforeZeroIsNotTheMirrorImageOfThatAfter) {
-  const OscillatorModel oscillator(noisy(10, 0), kSeed, "host1");
+  const OscillatorModel oscillator(noisy(10, 0), kRunSeed, "host1");
   const auto noise_ns = [&](double s) {
     return oscillator.deviation_ns(at_seconds(s)) - oscillator.skew() * s * 1e9;
   };
@@ -140,8 +141,8 @@ scenarios::Oscillator unsteady() {
 }
 
 TEST(OscillatorTest, FlickerDoesNotDependOnTheOrderOfQueries) {
-  const OscillatorModel forwards(unsteady(), kSeed, "host1");
-  const OscillatorModel backwards(unsteady(), kSeed, "host1");
+  const OscillatorModel forwards(unsteady(), kRunSeed, "host1");
+  const OscillatorModel backwards(unsteady(), kRunSeed, "host1");
   std::vector<double> seen;
   for (int i = -3001; i <= 3001; ++i) seen.push_back(forwards.deviation_ns(at_seconds(i / 7.0)));
   for (int i = 3001; i >= -3001; --i) {
@@ -158,7 +159,7 @@ TEST(OscillatorTest, FlickerGoesOnSmoothlyThroughZero) {
   double products = 0;
   double squares = 0;
   for (int i = 0; i < 1000; ++i) {
-    const OscillatorModel oscillator(parameters, kSeed, "host" + std::to_string(i));
+    const OscillatorModel oscillator(parameters, kRunSeed, "host" + std::to_string(i));
     const double before_ns = -oscillator.deviation_ns(at_seconds(-1));
     const double after_ns = oscillator.deviation_ns(at_seconds(1));
     products += before_ns * after_ns;
@@ -166,15 +167,15 @@ TEST(OscillatorTest, FlickerGoesOnSmoothlyThroughZero) {
   }
   // Allan variance at 1 s is squares - products per draw: 100^2 ppb^2 within the 4.5 % of 1000
   // draws, five times; the correlation is high since most of the power is slower than 1 s.
-  EXPECT_NEAR((squares - products) / 1000 / 1e4, 1, 5 * 0.045) << "seed " << kSeed;
-  EXPECT_GT(products / squares, 0.75) << "seed " << kSeed;
+  EXPECT_NEAR((squares - products) / 1000 / 1e4, 1, 5 * 0.045) << "seed " << kRunSeed;
+  EXPECT_GT(products / squares, 0.75) << "seed " << kRunSeed;
 }
 
 TEST(OscillatorTest, WhatIsNewMovesNoOldNumber) {
-  const OscillatorModel plain(noisy(1, 1), kSeed, "host1");
+  const OscillatorModel plain(noisy(1, 1), kRunSeed, "host1");
   scenarios::Oscillator parameters = noisy(1, 1);
   parameters.flicker_floor_ppb = 1e-9;
-  const OscillatorModel flickering(parameters, kSeed, "host1");
+  const OscillatorModel flickering(parameters, kRunSeed, "host1");
   for (const double s : {-500.0, 0.3, 700.0}) {
     EXPECT_NEAR(flickering.deviation_ns(at_seconds(s)), plain.deviation_ns(at_seconds(s)), 1e-5);
   }
@@ -183,7 +184,7 @@ TEST(OscillatorTest, WhatIsNewMovesNoOldNumber) {
 TEST(OscillatorTest, RampGrowsWithTheSquareOfTimeAfterZero) {
   scenarios::Oscillator parameters{};
   parameters.ramp_ppm_per_hour = 3.6;  // 1e-9 per second
-  const OscillatorModel oscillator(parameters, kSeed, "host1");
+  const OscillatorModel oscillator(parameters, kRunSeed, "host1");
   for (const double s : {1.0, 10.0, 3600.0}) {
     EXPECT_NEAR(oscillator.deviation_ns(at_seconds(s)), s * s / 2, 1e-6 * s) << s;
   }
@@ -195,7 +196,7 @@ TEST(OscillatorTest, SelfHeatingApproachesItsValueAfterSwitchingOn) {
   parameters.self_heating_ppm = -2;
   parameters.self_heating_time_constant_s = 50;
   const TrueTime on = at_seconds(20);
-  const OscillatorModel oscillator(parameters, kSeed, "camera1", on);
+  const OscillatorModel oscillator(parameters, kRunSeed, "camera1", on);
   EXPECT_EQ(oscillator.deviation_ns(at_seconds(-5)), 0);
   EXPECT_EQ(oscillator.deviation_ns(on), 0);
   // -2 ppm * (s - 50 s * (1 - exp(-s / 50 s))), in ns.
@@ -207,9 +208,9 @@ TEST(OscillatorTest, SelfHeatingApproachesItsValueAfterSwitchingOn) {
 }
 
 TEST(OscillatorTest, ComponentsAndSeedsDiffer) {
-  const double one = OscillatorModel(noisy(1, 1), kSeed, "host1").deviation_ns(at_seconds(5));
-  EXPECT_NE(one, OscillatorModel(noisy(1, 1), kSeed, "host2").deviation_ns(at_seconds(5)));
-  EXPECT_NE(one, OscillatorModel(noisy(1, 1), kSeed + 1, "host1").deviation_ns(at_seconds(5)));
+  const double one = OscillatorModel(noisy(1, 1), kRunSeed, "host1").deviation_ns(at_seconds(5));
+  EXPECT_NE(one, OscillatorModel(noisy(1, 1), kRunSeed, "host2").deviation_ns(at_seconds(5)));
+  EXPECT_NE(one, OscillatorModel(noisy(1, 1), kRunSeed + 1, "host1").deviation_ns(at_seconds(5)));
 }
 
 }  // namespace

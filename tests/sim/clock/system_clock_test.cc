@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "sim/clock/clock_interface.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 namespace {
 
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 HostTime host_ms(double ms) { return HostTime(from_ms(ms)); }
 
 // Whatever a simulated host may have.

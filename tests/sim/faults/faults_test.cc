@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "sim/network/network.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 namespace {
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 TEST(Outages, CountFromTheStartOfTheCapture) {
   Outages outages({scenarios::HostStops{.host = 2, .at_ms = 100, .duration_ms = 50},

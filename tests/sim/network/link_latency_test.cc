@@ -9,7 +9,7 @@
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint64_t kSeed = 17;
+constexpr std::uint64_t kLatencySeed = 17;
 
 // What a table replaces would be seen.
 scenarios::Network tabled(std::vector<double> table) {
@@ -23,13 +23,13 @@ scenarios::Network tabled(std::vector<double> table) {
 }
 
 double draw_ms(LinkLatency& latency, std::uint64_t message) {
-  RandomStream draw(kSeed, "test", message);
+  RandomStream draw(kLatencySeed, "test", message);
   return to_ms(latency.draw(draw, TrueTime{}));
 }
 
 TEST(LinkLatency, OfAConstantTableIsItsValue) {
   const scenarios::Network network = tabled({0.25, 0.25, 0.25});
-  LinkLatency latency(network, kSeed, 0, 1, 0);
+  LinkLatency latency(network, kLatencySeed, 0, 1, 0);
   for (std::uint64_t i = 0; i < 100; ++i) EXPECT_EQ(draw_ms(latency, i), 0.25);
   EXPECT_EQ(latency.cable(), from_ms(0.25));
 }
@@ -37,7 +37,7 @@ TEST(LinkLatency, OfAConstantTableIsItsValue) {
 TEST(LinkLatency, HasTheTablesDistribution) {
   constexpr std::uint64_t kDraws = 50'000;
   const scenarios::Network network = tabled({1, 2});
-  LinkLatency latency(network, kSeed, 0, 1, 0);
+  LinkLatency latency(network, kLatencySeed, 0, 1, 0);
   std::vector<double> values;
   for (std::uint64_t i = 0; i < kDraws; ++i) values.push_back(draw_ms(latency, i) - 1);
   std::sort(values.begin(), values.end());
@@ -46,14 +46,14 @@ TEST(LinkLatency, HasTheTablesDistribution) {
     const double below = static_cast<double>(i) / kDraws;
     worst = std::max({worst, values[i] - below, below + 1.0 / kDraws - values[i]});
   }
-  EXPECT_LT(worst, 1.95 / std::sqrt(kDraws)) << "Kolmogorov-Smirnov, seed " << kSeed;
+  EXPECT_LT(worst, 1.95 / std::sqrt(kDraws)) << "Kolmogorov-Smirnov, seed " << kLatencySeed;
 }
 
 TEST(LinkLatency, AsymmetryAndSessionAreAddedToATable) {
   scenarios::Network network = tabled({1, 1});
   network.asymmetry_sigma_ms = 0.2;
-  LinkLatency forward(network, kSeed, 0, 1, 3);
-  LinkLatency backward(network, kSeed, 1, 0, 3);
+  LinkLatency forward(network, kLatencySeed, 0, 1, 3);
+  LinkLatency backward(network, kLatencySeed, 1, 0, 3);
   const double there = draw_ms(forward, 0);
   const double back = draw_ms(backward, 0);
   EXPECT_NEAR(there + back, 2 * 4, 2e-6);

@@ -5,24 +5,24 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint64_t kSeed = 99;
+constexpr std::uint64_t kLoadSeed = 99;
 constexpr ComponentKey kLinkBursts("network: bursts");
 constexpr scenarios::Burst kBursts{.rate_hz = 4, .duration_exponential_ms = 50, .latency_ms = 1};
 
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
-
 TEST(BurstProcessTest, NoBurstsWithoutARate) {
-  BurstProcess bursts({.rate_hz = 0, .duration_exponential_ms = 50, .latency_ms = 1}, kSeed,
+  BurstProcess bursts({.rate_hz = 0, .duration_exponential_ms = 50, .latency_ms = 1}, kLoadSeed,
                       kLinkBursts, 0);
   for (int ms = -1000; ms < 1000; ++ms) EXPECT_FALSE(bursts.active(at_ms(ms)));
 }
 
 // Bursts that overlap make one: the process is busy for 1 - exp(-rate * duration) of the time.
 TEST(BurstProcessTest, IsActiveForTheShareOfABusyServer) {
-  BurstProcess bursts(kBursts, kSeed, kLinkBursts, 0);
+  BurstProcess bursts(kBursts, kLoadSeed, kLinkBursts, 0);
   constexpr int kSeconds = 4000;
   int active = 0;
   for (int i = 0; i < kSeconds * 100; ++i) active += bursts.active(at_ms(i * 10)) ? 1 : 0;
@@ -30,11 +30,11 @@ TEST(BurstProcessTest, IsActiveForTheShareOfABusyServer) {
   // About one independent sample in each cycle of idle and busy, some 0.3 s.
   EXPECT_NEAR(active / (kSeconds * 100.0), expected,
               5 * std::sqrt(expected * (1 - expected) / (kSeconds / 0.3)))
-      << "seed " << kSeed;
+      << "seed " << kLoadSeed;
 }
 
 TEST(BurstProcessTest, BeginsAtItsRate) {
-  BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 10, .latency_ms = 1}, kSeed,
+  BurstProcess bursts({.rate_hz = 0.5, .duration_exponential_ms = 10, .latency_ms = 1}, kLoadSeed,
                       kLinkBursts, 0);
   constexpr int kSeconds = 2000;
   int begins = 0;
@@ -46,12 +46,12 @@ TEST(BurstProcessTest, BeginsAtItsRate) {
   }
   // Bursts shorter than the step of 1 ms are missed with a probability of about 1 / 20.
   const double expected = 0.5 * kSeconds * 0.95;
-  EXPECT_NEAR(begins, expected, 5 * std::sqrt(expected)) << "seed " << kSeed;
+  EXPECT_NEAR(begins, expected, 5 * std::sqrt(expected)) << "seed " << kLoadSeed;
 }
 
 TEST(BurstProcessTest, DoesNotDependOnTheOrderOfQueries) {
-  BurstProcess forwards(kBursts, kSeed, kLinkBursts, 3);
-  BurstProcess backwards(kBursts, kSeed, kLinkBursts, 3);
+  BurstProcess forwards(kBursts, kLoadSeed, kLinkBursts, 3);
+  BurstProcess backwards(kBursts, kLoadSeed, kLinkBursts, 3);
   std::vector<bool> seen;
   for (int ms = -20'000; ms < 20'000; ms += 7) seen.push_back(forwards.active(at_ms(ms)));
   std::size_t i = seen.size();
@@ -61,8 +61,8 @@ TEST(BurstProcessTest, DoesNotDependOnTheOrderOfQueries) {
 }
 
 TEST(BurstProcessTest, LinksDiffer) {
-  BurstProcess one(kBursts, kSeed, kLinkBursts, 1);
-  BurstProcess two(kBursts, kSeed, kLinkBursts, 2);
+  BurstProcess one(kBursts, kLoadSeed, kLinkBursts, 1);
+  BurstProcess two(kBursts, kLoadSeed, kLinkBursts, 2);
   int different = 0;
   for (int ms = 0; ms < 20'000; ms += 7) {
     if (one.active(at_ms(ms)) != two.active(at_ms(ms))) ++different;

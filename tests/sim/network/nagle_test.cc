@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "sim/network/network.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 namespace {
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
-double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
 
 class NagleTest : public testing::Test {
  protected:

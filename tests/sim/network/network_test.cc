@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/sim/at_ms.h"
+
 namespace simbench::sim {
 namespace {
 
 constexpr std::uint64_t kSeed = 4242;
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
-double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
 
 // Latency 1 ms each way and nothing else.
 scenarios::Network plain_network() {

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "sim/network/network.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 namespace {
 
 using scenarios::SwitchClockKind;
-
-TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
 
 // A PTPv2 message of this type, with this in its correctionField.
 Bytes ptp(std::uint8_t type, std::int64_t correction = 0, std::size_t size = 44) {

@@ -1,8 +1,8 @@
 // What the world does must not change by accident, nor with the compiler, its flags or sanitizers:
-// a hash of a short run of every built-in scenario, over the events of the engine (what happened
-// when) and over the recording (every stamp, exchange and true value). Clocks that read something
-// else at the same instants change only the recording. A change that is meant changes these
-// numbers; say why in its commit.
+// a hash of a short run_golden of every built-in scenario, over the events of the engine (what
+// happened when) and over the recording (every stamp, exchange and true value). Clocks that read
+// something else at the same instants change only the recording. A change that is meant changes
+// these numbers; say why in its commit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ std::uint64_t hash_of(const RecordingCost& cost, const KeptRecording& recording)
 }
 
 // The same with the numbers that this build gives.
-Golden run(const Golden& golden) {
+Golden run_golden(const Golden& golden) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario(golden.scenario, brief(golden.scenario));
   const scenarios::Pipeline& pipeline = pipeline_of(scenario, golden.pipeline);
@@ -125,7 +125,7 @@ TEST(GoldenTrace, EveryScenarioDoesWhatItDid) {
     })) << builtin.name;
   }
   for (const Golden& golden : goldens()) {
-    const Golden now = run(golden);
+    const Golden now = run_golden(golden);
     EXPECT_TRUE(now.events == golden.events && now.hash == golden.hash)
         << "scenario " << golden.scenario << ", pipeline " << golden.pipeline
         << ", seed 1 now gives\n    {\"" << golden.scenario << "\", \"" << golden.pipeline << "\", "

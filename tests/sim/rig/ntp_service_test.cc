@@ -16,7 +16,7 @@
 namespace simbench::sim {
 namespace {
 
-class HostErrors final : public RecordingSink {
+class PulseErrors final : public RecordingSink {
  public:
   void on_start(const RigLayout&) override {}
   void on_frame(const FrameRecord&, const FrameTruth*) override {}
@@ -45,12 +45,12 @@ class HostErrors final : public RecordingSink {
   std::map<PeerId, int> outcomes;
 };
 
-HostErrors record(const std::string& name, std::uint64_t seed) {
+PulseErrors record_lan(const std::string& name, std::uint64_t seed) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario("18cam_6host_45fps_lan", {{"/timeline/frames", "10"}});
   const HostSyncEntry* entry = find_host_sync(name);
   const auto algorithm = entry->make(check_parameters(entry->info.parameters, {}));
-  HostErrors errors;
+  PulseErrors errors;
   make_simulation(scenario)->record({.seed = seed, .pipeline = name, .host_sync = algorithm.get()},
                                     errors);
   return errors;
@@ -73,7 +73,7 @@ TEST(NtpFamily, HostErrorsInTheLanAreWhatThePhysicsAllows) {
                               {"w32time_domain", 500, 50000}}) {
     std::vector<double> means_us;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const HostErrors errors = record(name, seed);
+      const PulseErrors errors = record_lan(name, seed);
       ASSERT_GT(errors.count, 0);
       means_us.push_back(errors.sum_us / errors.count);
       EXPECT_EQ(errors.outcomes.size(), 5U) << name << ", seed " << seed;
@@ -96,8 +96,8 @@ TEST(NtpFamily, EqualSeedsGiveEqualRuns) {
     const auto algorithm =
         entry->make(check_parameters(entry->info.parameters, {{"service_hours", 1.0}}));
     const RecordingRequest request{.seed = 3, .pipeline = name, .host_sync = algorithm.get()};
-    HostErrors first;
-    HostErrors again;
+    PulseErrors first;
+    PulseErrors again;
     const std::uint64_t hash = make_simulation(scenario)->record(request, first).trace_hash;
     EXPECT_EQ(make_simulation(scenario)->record(request, again).trace_hash, hash) << name;
     EXPECT_EQ(first.sum_us, again.sum_us) << name;

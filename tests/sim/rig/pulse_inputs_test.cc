@@ -110,7 +110,8 @@ TEST(PulseInput, LatencyAndReceiverErrorHaveTheirLaws) {
   EXPECT_NEAR(products / 1000, 0, 5 * variance / std::sqrt(1000.0)) << "hosts are independent";
 }
 
-Task<void> sleep_then_collect(Host& host, Nanoseconds pause, std::vector<PulseStamp>& stamps) {
+Task<void> sleep_then_collect_stamps(Host& host, Nanoseconds pause,
+                                     std::vector<PulseStamp>& stamps) {
   PulseInput* input = host.pulse_input(PulseLine::kPps);
   co_await host.sleep_for(pause);
   while (const auto stamp = co_await input->next(host.steady_clock().now())) {
@@ -124,8 +125,9 @@ TEST(PulseInput, KeepsTheLast1024PulsesAtNoCostMeanwhile) {
   s.cameras.cameras_per_host = 2;
   s.timeline.frames = 1;
   std::vector<PulseStamp> stamps;
-  Service service([&](Host& host) { return sleep_then_collect(host, 20'000 * kSecond, stamps); },
-                  20'000 * kSecond);
+  Service service(
+      [&](Host& host) { return sleep_then_collect_stamps(host, 20'000 * kSecond, stamps); },
+      20'000 * kSecond);
   KeptLists kept;
   const RecordingCost cost = run_world(s, &service, kept);
   ASSERT_EQ(stamps.size(), 1024u);
@@ -187,7 +189,7 @@ TEST(PulseInput, TheTriggerLineHasThePulsesOfTheCapture) {
   }
 }
 
-Task<void> give_up(Host& host, PulseLine line, std::vector<Nanoseconds>& waited) {
+Task<void> give_up_on_pulse(Host& host, PulseLine line, std::vector<Nanoseconds>& waited) {
   const SteadyTime begin = host.steady_clock().now();
   const auto none = co_await host.pulse_input(line)->next(begin + from_ms(40));
   EXPECT_FALSE(none.has_value());
@@ -197,7 +199,7 @@ Task<void> give_up(Host& host, PulseLine line, std::vector<Nanoseconds>& waited)
 TEST(PulseInput, AWaitEndsAtItsDeadlineAlsoBeforeThereIsATrigger) {
   for (const PulseLine line : {PulseLine::kPps, PulseLine::kTrigger}) {
     std::vector<Nanoseconds> waited;
-    Service service([&](Host& host) { return give_up(host, line, waited); });
+    Service service([&](Host& host) { return give_up_on_pulse(host, line, waited); });
     KeptLists kept;
     run_world(wired_scenario(), &service, kept);
     EXPECT_EQ(waited, std::vector<Nanoseconds>(2, from_ms(40)));

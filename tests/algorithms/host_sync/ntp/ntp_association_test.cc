@@ -16,12 +16,6 @@ namespace {
 constexpr Nanoseconds kLatency{2'000'000};
 constexpr Nanoseconds kTimeout{1'000'000'000};
 
-ScriptWorld& connect(ScriptWorld& world) {
-  world.set_latency(0, 1, kLatency);
-  world.set_latency(1, 0, kLatency);
-  return world;
-}
-
 Task<void> ask(Host& host, int times, std::vector<std::optional<NtpMeasurement>>& results) {
   NtpAssociation association(host, 0, NtpStamps::kApplication);
   for (int i = 0; i < times; ++i) {
@@ -70,7 +64,7 @@ NtpPacket good_reply(const NtpPacket& request) {
 
 std::optional<NtpMeasurement> result_with(const Reply& reply) {
   ScriptWorld world(2);
-  connect(world).host(1).offset = from_ms(50);
+  world.connect(kLatency).host(1).offset = from_ms(50);
   std::vector<std::optional<NtpMeasurement>> results;
   world.start(impersonate(world.host(0), reply));
   world.start(ask(world.host(1), 1, results));
@@ -80,7 +74,7 @@ std::optional<NtpMeasurement> result_with(const Reply& reply) {
 
 TEST(NtpAssociation, MeasuresOffsetAndDelay) {
   ScriptWorld world(2);
-  connect(world).host(0).offset = from_ms(350);
+  world.connect(kLatency).host(0).offset = from_ms(350);
   world.host(0).costs.send = from_ms(0.25);
   world.host(1).costs.send = from_ms(0.25);
   std::vector<std::optional<NtpMeasurement>> results;
@@ -96,7 +90,7 @@ TEST(NtpAssociation, MeasuresOffsetAndDelay) {
 
 TEST(NtpAssociation, UnequalLatenciesCountHalf) {
   ScriptWorld world(2);
-  connect(world).set_latency(0, 1, from_ms(7));
+  world.connect(kLatency).set_latency(0, 1, from_ms(7));
   std::vector<std::optional<NtpMeasurement>> results;
   world.start(serve_ntp(world.host(0), 1));
   world.start(ask(world.host(1), 1, results));
@@ -138,7 +132,7 @@ TEST(NtpAssociation, UsesAGoodReplyOnly) {
 
 TEST(NtpAssociation, LostDuplicatedAndLateRepliesAreNoneOfTheNextRequest) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(kLatency);
   // The first is lost, the second comes twice, the third after the timeout.
   world.script_link(0, 1, [](std::size_t index, const Bytes&) -> std::vector<Nanoseconds> {
     if (index == 0) return {};
@@ -175,7 +169,7 @@ TEST(NtpAssociation, ABroadcastLacksItsOwnDelay) {
   EXPECT_FALSE(world.host(2).exchanges[0].t1);
 }
 
-Bytes noise(boost::random::mt19937& engine) {
+Bytes association_noise(boost::random::mt19937& engine) {
   boost::random::uniform_int_distribution<int> byte(0, 255);
   boost::random::uniform_int_distribution<int> kind(0, 3);
   const bool is_packet = kind(engine) != 0;
@@ -190,14 +184,15 @@ TEST(NtpAssociation, NoiseHurtsNeitherSide) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     boost::random::mt19937 engine(seed);
     ScriptWorld world(2);
-    connect(world);
+    world.connect(kLatency);
     std::vector<std::optional<NtpMeasurement>> results;
     world.start(serve_ntp(world.host(0), 1));
     world.start(ask(world.host(1), 50, results));
     for (int i = 0; i < 500; ++i) {
       const PeerId to = i % 2 == 0 ? 0 : 1;
-      world.call_at(from_ms(i * 1.1),
-                    [&world, to, bytes = noise(engine)] { world.host(to).deliver(1 - to, bytes); });
+      world.call_at(from_ms(i * 1.1), [&world, to, bytes = association_noise(engine)] {
+        world.host(to).deliver(1 - to, bytes);
+      });
     }
     world.run(from_ms(60e3));
     ASSERT_EQ(results.size(), 50U) << "seed " << seed;
@@ -214,7 +209,8 @@ TEST(NtpAssociation, NoiseAsBroadcastIsStillATime) {
   std::vector<NtpBroadcast> heard;
   world.start(listen(world.host(1), from_ms(1000), heard));
   for (int i = 0; i < 200; ++i) {
-    world.call_at(from_ms(i), [&world, bytes = noise(engine)] { world.host(1).deliver(0, bytes); });
+    world.call_at(from_ms(i),
+                  [&world, bytes = association_noise(engine)] { world.host(1).deliver(0, bytes); });
   }
   world.run(from_ms(1001));
   EXPECT_FALSE(heard.empty());

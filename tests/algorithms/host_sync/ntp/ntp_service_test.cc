@@ -33,13 +33,6 @@ std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& g
   return nullptr;
 }
 
-void connect(ScriptWorld& world) {
-  for (const PeerId slave : world.slaves()) {
-    world.set_latency(0, slave, from_ms(1));
-    world.set_latency(slave, 0, from_ms(1));
-  }
-}
-
 TEST(NtpRegistration, EveryMemberIsAService) {
   for (const HostSyncEntry& entry : nonempty(ntp_host_syncs())) {
     const auto algorithm = entry.make(check_parameters(entry.info.parameters, {}));
@@ -62,7 +55,7 @@ TEST(NtpRegistration, ImpossibleParametersAreRefused) {
 TEST(NtpRegistration, ParametersReachTheAlgorithm) {
   // An offset that the step limit leaves to the slew.
   ScriptWorld world(2);
-  connect(world);
+  world.connect(from_ms(1));
   world.host(0).offset = from_ms(300);
   world.run(*make("ntp", {{"step_ms", 400.0}, {"iburst", true}}), from_ms(30e3));
   EXPECT_TRUE(world.host(1).steps.empty());
@@ -73,7 +66,7 @@ TEST(NtpRegistration, ParametersReachTheAlgorithm) {
 
 TEST(NtpService, AServerThatReturnsIsAskedInABurst) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(from_ms(1));
   world.script_link(0, 1, [](std::size_t index, const Bytes&) {
     const bool is_down = index >= 10 && index < 25;
     return is_down ? std::vector<Nanoseconds>{} : std::vector{from_ms(1)};
@@ -94,7 +87,7 @@ TEST(NtpService, AServerThatReturnsIsAskedInABurst) {
 }
 
 // A packet of a mode that is looked at, from a server that claims to be synchronised.
-Bytes noise(boost::random::mt19937& engine) {
+Bytes service_noise(boost::random::mt19937& engine) {
   boost::random::uniform_int_distribution<int> byte(0, 255);
   boost::random::uniform_int_distribution<int> mode(3, 5);
   Bytes bytes(kNtpPacketBytes);
@@ -109,13 +102,13 @@ TEST(NtpFamilyFuzz, NoisePacketsStopNoService) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       boost::random::mt19937 engine(seed);
       ScriptWorld world(3);
-      connect(world);
+      world.connect(from_ms(1));
       world.host(0).offset = from_ms(700);
       const auto algorithm = entry.make(check_parameters(entry.info.parameters, {}));
       for (int i = 0; i < 2000; ++i) {
         const PeerId to = static_cast<PeerId>(i % 3);
         const PeerId from = to == 0 ? 1 : 0;
-        world.call_at(from_ms(i * 1100.0), [&world, to, from, bytes = noise(engine)] {
+        world.call_at(from_ms(i * 1100.0), [&world, to, from, bytes = service_noise(engine)] {
           world.host(to).deliver(from, bytes);
         });
       }

@@ -45,17 +45,9 @@ TEST(W32TimeSpikes, ASmallOffsetEndsTheSuspicion) {
   EXPECT_TRUE(spikes.accept(from_ms(9e3), at_s(2800)));
 }
 
-ScriptWorld& connect(ScriptWorld& world) {
-  for (const PeerId slave : world.slaves()) {
-    world.set_latency(0, slave, from_ms(2));
-    world.set_latency(slave, 0, from_ms(2));
-  }
-  return world;
-}
-
 TEST(W32TimeDomain, FollowsAStepOfTheMasterAfterTheSpikeWatch) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(from_ms(2));
   W32TimeSettings settings = w32time_domain_settings();
   settings.poll_interval = from_ms(64e3);
   settings.start_spread = Nanoseconds{0};
@@ -77,7 +69,7 @@ TEST(W32TimeDomain, SlewsWhatAStandAloneMachineSets) {
 
 TEST(W32TimeDomain, AStandAloneMachineRefusesMoreThan15Hours) {
   ScriptWorld world(2);
-  connect(world).host(0).offset = from_ms(54001e3);
+  world.connect(from_ms(2)).host(0).offset = from_ms(54001e3);
   W32TimeSettings settings;
   settings.start_spread = Nanoseconds{0};
   W32Time stand_alone(settings);
@@ -88,7 +80,7 @@ TEST(W32TimeDomain, AStandAloneMachineRefusesMoreThan15Hours) {
   EXPECT_TRUE(world.host(1).steps.empty());
 
   ScriptWorld domain_world(2);
-  connect(domain_world).host(0).offset = from_ms(54001e3);
+  domain_world.connect(from_ms(2)).host(0).offset = from_ms(54001e3);
   settings = w32time_domain_settings();
   settings.start_spread = Nanoseconds{0};
   W32Time domain(settings);

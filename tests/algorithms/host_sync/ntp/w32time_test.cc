@@ -11,20 +11,13 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kLatency{2'000'000};
+constexpr Nanoseconds kOneWay{2'000'000};
 
 W32TimeSettings settings_with_poll(double poll_s) {
   W32TimeSettings settings;
   settings.poll_interval = from_ms(poll_s * 1e3);
   settings.start_spread = Nanoseconds{0};
   return settings;
-}
-
-void connect(ScriptWorld& world) {
-  for (const PeerId slave : world.slaves()) {
-    world.set_latency(0, slave, kLatency);
-    world.set_latency(slave, 0, kLatency);
-  }
 }
 
 TEST(W32TimeRule, TheDocumentedExampleIsSlewedAt47UnitsATick) {
@@ -62,7 +55,7 @@ TEST(W32TimeRule, BeyondHalfTheClockRateTheClockIsSet) {
 
 TEST(W32Time, SetsALargeOffsetAndSlewsASmallOne) {
   ScriptWorld world(3);
-  connect(world);
+  world.connect(kOneWay);
   world.host(0).offset = from_ms(10e3);
   world.host(1).offset = from_ms(-5e3);
   world.host(2).offset = from_ms(10.3e3);
@@ -84,7 +77,7 @@ TEST(W32Time, SetsALargeOffsetAndSlewsASmallOne) {
 
 TEST(W32Time, ReportsTheFourStamps) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(kOneWay);
   world.host(0).offset = from_ms(400);
   world.host(0).costs.send = from_ms(0.1);
   world.host(1).costs.send = from_ms(0.1);
@@ -101,7 +94,7 @@ TEST(W32Time, ReportsTheFourStamps) {
 
 TEST(W32Time, PollsAtItsIntervalAfterARandomStart) {
   ScriptWorld world(3);
-  connect(world);
+  world.connect(kOneWay);
   world.host(1).uniform = 0.25;
   world.host(2).uniform = 0.5;
   W32TimeSettings settings = settings_with_poll(1000);
@@ -112,15 +105,15 @@ TEST(W32Time, PollsAtItsIntervalAfterARandomStart) {
   ASSERT_EQ(world.host(2).exchanges.size(), 4U);
   EXPECT_EQ(*world.host(1).exchanges[0].t1, HostTime{from_ms(25e3)});
   EXPECT_EQ(*world.host(2).exchanges[0].t1, HostTime{from_ms(50e3)});
-  EXPECT_EQ(*world.host(1).exchanges[3].t1, HostTime{from_ms(3025e3) + 3 * 2 * kLatency});
+  EXPECT_EQ(*world.host(1).exchanges[3].t1, HostTime{from_ms(3025e3) + 3 * 2 * kOneWay});
   EXPECT_EQ(world.host(1).outcomes.size(), 1U);
 }
 
 TEST(W32Time, ALostReplyIsAskedForAgain) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(kOneWay);
   world.script_link(0, 1, [](std::size_t index, const Bytes&) {
-    return index == 0 ? std::vector<Nanoseconds>{} : std::vector{kLatency};
+    return index == 0 ? std::vector<Nanoseconds>{} : std::vector{kOneWay};
   });
   W32Time algorithm(settings_with_poll(1024));
   world.run(algorithm, from_ms(10e3));
@@ -130,7 +123,7 @@ TEST(W32Time, ALostReplyIsAskedForAgain) {
 
 TEST(W32Time, ASilentServerIsAnOutcomeAndAskedAtTheNextPoll) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(kOneWay);
   std::size_t requests = 0;
   world.script_link(1, 0, [&requests](std::size_t, const Bytes&) {
     ++requests;
@@ -163,7 +156,7 @@ bool takes_reply(Spoil spoil) {
     reply.receive = to_ntp(HostTime{from_ms(5000)});
     reply.transmit = reply.receive;
     spoil(reply);
-    world.call_at(world.now() + kLatency,
+    world.call_at(world.now() + kOneWay,
                   [&world, reply] { world.host(1).deliver(0, encode(reply)); });
     return std::vector<Nanoseconds>{};
   });
@@ -190,9 +183,9 @@ TEST(W32Time, BogusRepliesAreIgnored) {
 
 TEST(W32Time, ALateReplyToAnEarlierRequestIsIgnored) {
   ScriptWorld world(2);
-  connect(world);
+  world.connect(kOneWay);
   world.script_link(0, 1, [](std::size_t index, const Bytes&) {
-    return std::vector{index == 0 ? from_ms(1001) : kLatency};  // after the second request
+    return std::vector{index == 0 ? from_ms(1001) : kOneWay};  // after the second request
   });
   world.host(0).offset = from_ms(400);
   W32Time algorithm(settings_with_poll(1024));

@@ -43,9 +43,8 @@ TEST(PtpOffsetTest, ALateRequestDoesNotCountInTheMedian) {
 class PtpTest : public testing::TestWithParam<bool> {
  protected:
   PtpTest() {
+    world_.connect(kLatency);
     for (const PeerId slave : world_.slaves()) {
-      world_.set_latency(0, slave, kLatency);
-      world_.set_latency(slave, 0, kLatency);
       world_.host(slave).offset = from_ms(-400.0 * slave);
       world_.host(slave).uniform = 0.4;
     }

@@ -14,7 +14,7 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kPeriod{22'222'222};
+constexpr Nanoseconds kViewPeriod{22'222'222};
 constexpr Nanoseconds kAsymmetry{80'000};
 
 // Frames of one camera, all there from the beginning but shown when their time has come.
@@ -27,11 +27,11 @@ class ScriptFrames : public FrameFeed {
   Nanoseconds pulse_offset{0};
 
   Task<std::optional<FrameArrival>> next(SteadyTime) override {
-    const SteadyTime exposed = SteadyTime(from_ms(500) + pulse_offset + number_ * kPeriod);
+    const SteadyTime exposed = SteadyTime(from_ms(500) + pulse_offset + number_ * kViewPeriod);
     const std::uint32_t exposure_us = number_ % 2 == 0 ? 4000 : 1000;
     const SteadyTime arrival = exposed + Microseconds(exposure_us) + delay;
     if (arrival > host_.steady_clock().now()) co_return std::nullopt;
-    const auto stamp_us = static_cast<std::uint32_t>(number_ * kPeriod.count() / 1000);
+    const auto stamp_us = static_cast<std::uint32_t>(number_ * kViewPeriod.count() / 1000);
     ++number_;
     co_return FrameArrival{.camera = 3,
                            .counter = static_cast<std::uint32_t>(number_),

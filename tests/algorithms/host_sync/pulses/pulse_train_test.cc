@@ -9,30 +9,32 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kPeriod{22'222'222};
+constexpr Nanoseconds kTrainPeriod{22'222'222};
 
-SteadyTime pulse_at(std::int64_t number) { return SteadyTime(from_ms(1e6) + number * kPeriod); }
+SteadyTime train_pulse_at(std::int64_t number) {
+  return SteadyTime(from_ms(1e6) + number * kTrainPeriod);
+}
 
 double error_us(const Sighting& sighting, std::int64_t number) {
-  return to_ms(sighting.at - pulse_at(number)) * 1e3;
+  return to_ms(sighting.at - train_pulse_at(number)) * 1e3;
 }
 
 TEST(PulseTrainTest, WithoutDelayEveryPulseIsFoundExactly) {
   PulseTrain train({});
   EXPECT_FALSE(train.middle());
-  EXPECT_FALSE(train.nearest(pulse_at(0)));
-  for (std::int64_t i = 0; i < 200; ++i) train.add(kPeriod, pulse_at(i));
-  EXPECT_EQ(train.period(), kPeriod);
+  EXPECT_FALSE(train.nearest(train_pulse_at(0)));
+  for (std::int64_t i = 0; i < 200; ++i) train.add(kTrainPeriod, train_pulse_at(i));
+  EXPECT_EQ(train.period(), kTrainPeriod);
   const Sighting middle = *train.middle();
   EXPECT_NEAR(error_us(middle, 100), 0, 0.002);
   EXPECT_EQ(middle.sigma_ns, 0);
   for (const std::int64_t number : {5, 100, 190}) {
-    const SteadyTime near = pulse_at(number) + from_ms(10);
+    const SteadyTime near = train_pulse_at(number) + from_ms(10);
     EXPECT_NEAR(error_us(*train.nearest(near), number), 0, 0.002);
-    EXPECT_NEAR(error_us(*train.nearest(pulse_at(number) - from_ms(10)), number), 0, 0.002);
+    EXPECT_NEAR(error_us(*train.nearest(train_pulse_at(number) - from_ms(10)), number), 0, 0.002);
   }
-  EXPECT_FALSE(train.nearest(pulse_at(-5)));
-  EXPECT_FALSE(train.nearest(pulse_at(205)));
+  EXPECT_FALSE(train.nearest(train_pulse_at(-5)));
+  EXPECT_FALSE(train.nearest(train_pulse_at(205)));
 }
 
 TEST(PulseTrainTest, DelaysLeaveTheirMinimumAndTheUncertaintyIsMeasured) {
@@ -44,9 +46,9 @@ TEST(PulseTrainTest, DelaysLeaveTheirMinimumAndTheUncertaintyIsMeasured) {
   for (int run = 0; run < kRuns; ++run) {
     PulseTrain train({});
     for (std::int64_t i = 0; i < 400; ++i) {
-      train.add(kPeriod, pulse_at(i) + from_ms(8 + delay(engine)));
+      train.add(kTrainPeriod, train_pulse_at(i) + from_ms(8 + delay(engine)));
     }
-    const Sighting found = *train.nearest(pulse_at(200) + from_ms(8));
+    const Sighting found = *train.nearest(train_pulse_at(200) + from_ms(8));
     const double error = error_us(found, 200) - 8000;
     EXPECT_GE(error, 0) << "seed 2, run " << run;
     squares += error * error;
@@ -63,39 +65,40 @@ TEST(PulseTrainTest, LostPulsesAreCounted) {
   std::int64_t last = 0;
   for (std::int64_t i = 0; i < 400; ++i) {
     if (i % 7 == 3 || engine() % 3 == 0) continue;
-    train.add((i - last) * kPeriod + Nanoseconds(static_cast<std::int64_t>(engine() % 100'000)),
-              pulse_at(i));
+    train.add(
+        (i - last) * kTrainPeriod + Nanoseconds(static_cast<std::int64_t>(engine() % 100'000)),
+        train_pulse_at(i));
     last = i;
   }
-  EXPECT_NEAR(error_us(*train.nearest(pulse_at(200)), 200), 0, 0.01) << "seed 6";
+  EXPECT_NEAR(error_us(*train.nearest(train_pulse_at(200)), 200), 0, 0.01) << "seed 6";
 }
 
 TEST(PulseTrainTest, APeriodKnownToAPercentIsGoodEnough) {
   PulseTrain train({.window = from_ms(30e3), .period = Nanoseconds(22'000'000)});
-  for (std::int64_t i = 0; i < 1000; ++i) train.add(kPeriod, pulse_at(i));
+  for (std::int64_t i = 0; i < 1000; ++i) train.add(kTrainPeriod, train_pulse_at(i));
   for (const std::int64_t number : {10, 500, 990}) {
-    EXPECT_NEAR(error_us(*train.nearest(pulse_at(number) + from_ms(9)), number), 0, 0.01);
+    EXPECT_NEAR(error_us(*train.nearest(train_pulse_at(number) + from_ms(9)), number), 0, 0.01);
   }
 }
 
 TEST(PulseTrainTest, StampsThatStandStillOrGoBackAreIgnored) {
   PulseTrain train({});
   for (std::int64_t i = 0; i < 100; ++i) {
-    train.add(kPeriod, pulse_at(i));
-    train.add(Nanoseconds(0), pulse_at(i) - from_ms(5));
-    train.add(-kPeriod, pulse_at(i) - from_ms(5));
+    train.add(kTrainPeriod, train_pulse_at(i));
+    train.add(Nanoseconds(0), train_pulse_at(i) - from_ms(5));
+    train.add(-kTrainPeriod, train_pulse_at(i) - from_ms(5));
   }
-  EXPECT_NEAR(error_us(*train.nearest(pulse_at(50)), 50), 0, 0.01);
+  EXPECT_NEAR(error_us(*train.nearest(train_pulse_at(50)), 50), 0, 0.01);
 }
 
 TEST(PulseTrainTest, AnotherRateStartsTheTrainAgain) {
   PulseTrain train({});
-  for (std::int64_t i = 0; i < 100; ++i) train.add(kPeriod, pulse_at(i));
+  for (std::int64_t i = 0; i < 100; ++i) train.add(kTrainPeriod, train_pulse_at(i));
   const Nanoseconds period{33'333'333};
-  for (std::int64_t i = 1; i < 200; ++i) train.add(period, pulse_at(99) + i * period);
+  for (std::int64_t i = 1; i < 200; ++i) train.add(period, train_pulse_at(99) + i * period);
   EXPECT_EQ(train.period(), period);
-  EXPECT_FALSE(train.nearest(pulse_at(50)));
-  EXPECT_TRUE(train.nearest(pulse_at(99) + 150 * period));
+  EXPECT_FALSE(train.nearest(train_pulse_at(50)));
+  EXPECT_TRUE(train.nearest(train_pulse_at(99) + 150 * period));
 }
 
 }  // namespace

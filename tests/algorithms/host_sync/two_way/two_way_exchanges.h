@@ -20,6 +20,8 @@ inline TwoWayExchange exchange_at(const ClockLine& remote, SteadyTime sent, Nano
           .received = sent + out + stay + back};
 }
 
+inline SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
+
 }  // namespace simbench
 
 #endif  // SIMBENCH_TESTS_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_EXCHANGES_H_

@@ -11,8 +11,6 @@
 namespace simbench {
 namespace {
 
-SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
-
 double error_ns(const ClockLine& line, const ClockLine& truth, SteadyTime at) {
   return static_cast<double>((line.read(at) - truth.read(at)).count());
 }

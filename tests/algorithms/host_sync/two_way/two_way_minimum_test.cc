@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kMeanMs = 0.05;
 
-SteadyTime at_second(double seconds) { return SteadyTime(from_ms(seconds * 1e3)); }
-
 // The world of docs/reference/host_sync.md section 4, whose stamps are in steps of 100 ns.
 class ExponentialWorld {
  public:

@@ -26,9 +26,8 @@ TwoWay hull_sync(TwoWaySettings settings) {
 }
 
 void connect(ScriptWorld& world) {
+  world.connect(kLatency);
   for (const PeerId slave : world.slaves()) {
-    world.set_latency(0, slave, kLatency);
-    world.set_latency(slave, 0, kLatency);
     world.host(slave).offset = from_ms(300.0 * slave);
     world.host(slave).uniform = 0.5;
   }
