@@ -79,7 +79,7 @@ typename O::Instant instant_after(const O& oscillator, typename O::Instant ancho
   typename O::Instant t = anchor;
   for (int pass = 0; pass < kPasses; ++pass) {
     const double ahead_ns = oscillator.deviation_ns(t) - anchor_deviation_ns;
-    t = anchor + Nanoseconds(std::llround(local_ns - ahead_ns));
+    t = anchor + from_ns(local_ns - ahead_ns);
   }
   return t;
 }
@@ -132,7 +132,14 @@ class DisciplinedClock {
 
   const O& oscillator() const { return oscillator_; }
 
-  HostTime read(Instant t) const { return reading(setting_at(t), t).whole; }
+  // In place: a world reads its clocks several times a frame.
+  [[gnu::always_inline]] HostTime read(Instant t) const {
+    return read(t, oscillator_.deviation_ns(t));
+  }
+  // The same where the oscillator's deviation at `t` is known already.
+  [[gnu::always_inline]] HostTime read(Instant t, double deviation_ns) const {
+    return reading(setting_at(t), t, deviation_ns).whole;
+  }
   // The first instant, not before `now`, at which the clock reads `at` or more if nobody adjusts it
   // meanwhile.
   Instant when(HostTime at, Instant now) const;
@@ -188,13 +195,15 @@ class DisciplinedClock {
            (oscillator_.deviation_ns(t) - setting.anchor_deviation_ns);
   }
   Reading reading(const Setting& setting, Instant t) const {
+    return reading(setting, t, oscillator_.deviation_ns(t));
+  }
+  static Reading reading(const Setting& setting, Instant t, double deviation_ns) {
     const Nanoseconds elapsed = t - setting.anchor;
-    const double ahead_ns = oscillator_.deviation_ns(t) - setting.anchor_deviation_ns;
+    const double ahead_ns = deviation_ns - setting.anchor_deviation_ns;
     const double local_ns = static_cast<double>(elapsed.count()) + ahead_ns;
     const double extra_ns = setting.base_part_ns + ahead_ns + setting.rate() * local_ns;
-    const double floor_ns = std::floor(extra_ns);
-    return {setting.base + elapsed + Nanoseconds(static_cast<std::int64_t>(floor_ns)),
-            extra_ns - floor_ns};
+    const Nanoseconds whole = from_ns_down(extra_ns);
+    return {setting.base + elapsed + whole, extra_ns - static_cast<double>(whole.count())};
   }
   const Setting& setting_at(Instant t) const {
     const Setting& current = settings_[current_];

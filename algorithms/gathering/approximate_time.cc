@@ -249,7 +249,7 @@ const char* const kRos = "ros_comm message_filters sync_policies/approximate_tim
 
 // `share` of a duration.
 Nanoseconds scaled(Nanoseconds duration, double share) {
-  return Nanoseconds(std::llround(static_cast<double>(duration.count()) * share));
+  return from_ns(static_cast<double>(duration.count()) * share);
 }
 
 std::vector<ParameterSpec> approximate_time_parameters(double lower_bound_periods) {

@@ -48,7 +48,7 @@ struct ClockLine {
   HostTime read(SteadyTime when) const {
     const Nanoseconds since = when - at;
     const double gained_ns = static_cast<double>(since.count()) * rate_ppb * 1e-9;
-    return value + since + Nanoseconds(std::llround(gained_ns));
+    return value + since + from_ns(gained_ns);
   }
   // The instant at which it reads `reading`, to the nanosecond.
   SteadyTime when(HostTime reading) const {

@@ -22,7 +22,6 @@
 #define SIMBENCH_ALGORITHMS_PORTS_TIME_H_
 
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 
 namespace simbench {
@@ -60,8 +59,21 @@ struct DeviceStamp {
   friend bool operator==(DeviceStamp, DeviceStamp) = default;
 };
 
-// Milliseconds to the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
-inline Nanoseconds from_ms(double ms) { return Nanoseconds(std::llround(ms * 1e6)); }
+// The nearest whole nanosecond, halves away from zero as std::llround has them, and the next below
+// or equal, as std::floor has it: without a call of either. |ns| < 2^63.
+constexpr Nanoseconds from_ns(double ns) {
+  const auto whole = static_cast<std::int64_t>(ns);
+  const double rest = ns - static_cast<double>(whole);
+  if (rest >= 0.5) return Nanoseconds(whole + 1);
+  return Nanoseconds(rest <= -0.5 ? whole - 1 : whole);
+}
+constexpr Nanoseconds from_ns_down(double ns) {
+  const auto whole = static_cast<std::int64_t>(ns);
+  return Nanoseconds(ns < static_cast<double>(whole) ? whole - 1 : whole);
+}
+// To the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
+constexpr Nanoseconds from_ms(double ms) { return from_ns(ms * 1e6); }
+constexpr Nanoseconds from_us(double us) { return from_ns(us * 1e3); }
 constexpr double to_ns(Nanoseconds d) { return static_cast<double>(d.count()); }
 constexpr double to_ms(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
 constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }

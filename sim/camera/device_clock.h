@@ -7,7 +7,6 @@
 #ifndef SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
 #define SIMBENCH_SIM_CAMERA_DEVICE_CLOCK_H_
 
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -21,13 +20,12 @@ class DeviceClock {
  public:
   // The register reads `epoch_ms` at true time `zero`.
   DeviceClock(OscillatorModel oscillator, double epoch_ms, TrueTime zero)
-      : oscillator_(std::move(oscillator)), epoch_ns_(std::llround(epoch_ms * 1e6)), zero_(zero) {}
+      : oscillator_(std::move(oscillator)), epoch_ns_(from_ms(epoch_ms).count()), zero_(zero) {}
 
   // The register at `t`, with `noise_ns` of timing noise.
   DeviceStamp stamp(TrueTime t, double noise_ns) {
     const double wander_ns = oscillator_.deviation_ns(t) + noise_ns;
-    const std::int64_t ns =
-        epoch_ns_ + (t - zero_).count() + static_cast<std::int64_t>(std::floor(wander_ns));
+    const std::int64_t ns = epoch_ns_ + (t - zero_ + from_ns_down(wander_ns)).count();
     const std::int64_t us = ns >= 0 ? ns / 1000 : (ns - 999) / 1000;
     return DeviceStamp{static_cast<std::uint32_t>(us)};
   }

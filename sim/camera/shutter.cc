@@ -1,7 +1,6 @@
 #include "sim/camera/shutter.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace simbench::sim {
 
@@ -15,7 +14,7 @@ Shutter::Shutter(const ShutterSettings& settings, TrueTime start)
 }
 
 Nanoseconds Shutter::periods(double count) const {
-  return Nanoseconds(std::llround(count * settings_.mode_period_ns));
+  return from_ns(count * settings_.mode_period_ns);
 }
 
 Exposure Shutter::end_aligned(TrueTime period_start, std::int64_t pulse) const {

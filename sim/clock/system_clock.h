@@ -18,7 +18,6 @@
 #ifndef SIMBENCH_SIM_CLOCK_SYSTEM_CLOCK_H_
 #define SIMBENCH_SIM_CLOCK_SYSTEM_CLOCK_H_
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -37,9 +36,9 @@ struct HostOscillator {
   SteadyTime steady_epoch{};
 
   double deviation_ns(TrueTime t) const { return model.deviation_ns(t); }
-  SteadyTime steady(TrueTime t) const {
-    const double ahead_ns = std::floor(model.deviation_ns(t));
-    return steady_epoch + t.time_since_epoch() + Nanoseconds(static_cast<std::int64_t>(ahead_ns));
+  SteadyTime steady(TrueTime t) const { return steady(t, deviation_ns(t)); }
+  SteadyTime steady(TrueTime t, double deviation_ns) const {
+    return steady_epoch + t.time_since_epoch() + from_ns_down(deviation_ns);
   }
 };
 
@@ -60,6 +59,16 @@ class SystemClock {
   TrueTime when(SteadyTime at) const;
 
   HostTime read(TrueTime t) const { return clock_->read(t); }
+  // Both clocks at one instant, whose oscillator is looked at once.
+  struct Reading {
+    HostTime system;
+    SteadyTime steady;
+  };
+  Reading read_both(TrueTime t) const {
+    const HostOscillator& oscillator = clock_->oscillator();
+    const double deviation_ns = oscillator.deviation_ns(t);
+    return {clock_->read(t, deviation_ns), oscillator.steady(t, deviation_ns)};
+  }
   // The first instant, not before `now`, at which the clock reads `at` or more if nobody adjusts
   // it meanwhile.
   TrueTime when(HostTime at, TrueTime now) const;

@@ -1,7 +1,6 @@
 #include "sim/host/host_clocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "sim/clock/clock_interface.h"
@@ -13,8 +12,6 @@ namespace {
 constexpr double kEpochMaxMs = 3.6e6;
 
 const scenarios::Nic& nic_of(const SimHost& host) { return host.world().hosts.nic; }
-
-Nanoseconds from_ns(double ns) { return Nanoseconds(std::llround(ns)); }
 
 OscillatorModel oscillator_of(const SimHost& host) {
   RandomStream draw(host.world().run_seed, host.name("network card's oscillator"));

@@ -34,7 +34,6 @@
 #define SIMBENCH_SIM_NETWORK_NETWORK_H_
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -60,9 +59,7 @@ class LineRate {
   // 0: infinite, nothing waits.
   explicit LineRate(double mbit_per_s) : ns_per_byte_(mbit_per_s == 0 ? 0 : 8'000 / mbit_per_s) {}
   bool is_infinite() const { return ns_per_byte_ == 0; }
-  Nanoseconds duration(double bytes) const {
-    return Nanoseconds(std::llround(bytes * ns_per_byte_));
-  }
+  Nanoseconds duration(double bytes) const { return from_ns(bytes * ns_per_byte_); }
 
  private:
   double ns_per_byte_;

@@ -219,8 +219,8 @@ void Capture::deliver_later(std::uint32_t frame_id) {
   const TrueTime now = engine_.now();
   const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
   way.frame.transferred = now;
-  way.frame.copied = now + Nanoseconds(std::llround(way.kernel_copy_ns));
-  TrueTime arrival = way.frame.copied + Nanoseconds(std::llround(way.delivery_ns + host_jitter_ns));
+  way.frame.copied = now + from_ns(way.kernel_copy_ns);
+  TrueTime arrival = way.frame.copied + from_ns(way.delivery_ns + host_jitter_ns);
   arrival += host.load.delay(arrival, kLateFrame, way.stream, way.frame.record.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
   engine_.schedule(stream.last_arrival, id_, kDelivery, frame_id);
@@ -242,11 +242,13 @@ void Capture::on_delivery(std::uint32_t frame_id) {
 void Capture::stamp(CapturedFrame& frame) {
   SystemClock& clock = *clocks_[frame.host];
   const TrueTime middle = frame.truth.mid_exposure();
+  const SystemClock::Reading arrival = clock.read_both(frame.delivered);
+  const SystemClock::Reading exposed = clock.read_both(middle);
   frame.record.backend = round_down(clock.read(frame.copied), arrival_quantum_);
-  frame.record.arrival = round_down(clock.read(frame.delivered), arrival_quantum_);
-  frame.record.arrival_steady = round_down(clock.steady(frame.delivered), arrival_quantum_);
-  frame.truth.own_host = clock.read(middle);
-  frame.truth.own_steady = clock.steady(middle);
+  frame.record.arrival = round_down(arrival.system, arrival_quantum_);
+  frame.record.arrival_steady = round_down(arrival.steady, arrival_quantum_);
+  frame.truth.own_host = exposed.system;
+  frame.truth.own_steady = exposed.steady;
   frame.truth.reference = clocks_[0]->read(middle);
   frame.truth.delivered = clocks_[0]->read(frame.delivered);
 }

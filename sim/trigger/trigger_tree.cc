@@ -6,11 +6,6 @@
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
-namespace {
-
-Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
-
-}  // namespace
 
 TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras,
                          std::uint64_t seed)
@@ -35,7 +30,7 @@ void TriggerTree::start(TrueTime capture_start) {
 }
 
 TrueTime TriggerTree::due(std::int64_t slot) const {
-  return first_due_ + Nanoseconds(std::llround(static_cast<double>(slot) * period_ns_));
+  return first_due_ + from_ns(static_cast<double>(slot) * period_ns_);
 }
 
 std::optional<TrueTime> TriggerTree::pulse(std::int64_t slot) const {

@@ -104,7 +104,7 @@ class CommonViewSlave : public TwoWaySlave {
     co_await observer_.collect();
     const std::optional<CommonViewMessage::Pulse> pulse = co_await ask();
     if (pulse) take(line, *pulse);
-    line.value -= Nanoseconds(std::llround(correction_ns_));
+    line.value -= from_ns(correction_ns_);
     co_return line;
   }
 

@@ -97,7 +97,7 @@ std::optional<ClockLine> GnssEstimator::line() const {
   // Steady time runs 1 + slope while GNSS time runs 1.
   const auto seen_ns = static_cast<std::int64_t>(std::llround(a.x + a.y));
   return ClockLine{.at = zero_seen_ + Nanoseconds(seen_ns),
-                   .value = HostTime(zero_gnss_ + Nanoseconds(std::llround(a.x))),
+                   .value = HostTime(zero_gnss_ + from_ns(a.x)),
                    .rate_ppb = (1 / (1 + slope) - 1) * 1e9};
 }
 

@@ -117,8 +117,7 @@ std::optional<Sighting> PulseObserver::nearest(SteadyTime when) const {
     ++count;
   }
   if (count == 0) return std::nullopt;
-  return Sighting{.at = when + Nanoseconds(std::llround(sum_ns / count)),
-                  .sigma_ns = std::sqrt(variance) / count};
+  return Sighting{.at = when + from_ns(sum_ns / count), .sigma_ns = std::sqrt(variance) / count};
 }
 
 }  // namespace simbench

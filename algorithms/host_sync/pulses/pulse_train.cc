@@ -21,7 +21,7 @@ PulseTrain::PulseTrain(Settings settings)
 
 std::optional<Nanoseconds> PulseTrain::period() const {
   if (period_ns_ <= 0) return std::nullopt;
-  return Nanoseconds(std::llround(period_ns_));
+  return from_ns(period_ns_);
 }
 
 void PulseTrain::restart() {
@@ -101,8 +101,7 @@ std::optional<Sighting> PulseTrain::at_number(double number) const {
   const std::optional<double> even = even_.at(x);
   const std::optional<double> odd = odd_.at(x);
   if (!y || !even || !odd) return std::nullopt;
-  return Sighting{.at = zero_ + Nanoseconds(std::llround(x + *y)),
-                  .sigma_ns = std::abs(*even - *odd) / 2};
+  return Sighting{.at = zero_ + from_ns(x + *y), .sigma_ns = std::abs(*even - *odd) / 2};
 }
 
 }  // namespace simbench

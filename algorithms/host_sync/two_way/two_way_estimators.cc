@@ -1,7 +1,6 @@
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "algorithms/ports/assert.h"
 
@@ -181,8 +180,8 @@ std::optional<ClockLine> TwoWayHull::line() {
   if (span_ns() >= kLaterSpanNs) rate_is_known_ = true;
   corridor_ = corridor(rate_);
   const double offset_ns = (corridor_.above_ns + corridor_.below_ns) / 2 + rate_ * latest_ns_;
-  const SteadyTime at = *zero_ + Nanoseconds(std::llround(latest_ns_));
-  const Nanoseconds offset = zero_offset_ + Nanoseconds(std::llround(offset_ns));
+  const SteadyTime at = *zero_ + from_ns(latest_ns_);
+  const Nanoseconds offset = zero_offset_ + from_ns(offset_ns);
   return ClockLine{
       .at = at, .value = HostTime(at.time_since_epoch() + offset), .rate_ppb = rate_ * 1e9};
 }
@@ -190,7 +189,7 @@ std::optional<ClockLine> TwoWayHull::line() {
 std::optional<Nanoseconds> TwoWayHull::width() const {
   if (upper_bounds_.empty()) return std::nullopt;
   const Corridor widest = corridor(choose_rate());
-  return Nanoseconds(std::llround(widest.above_ns - widest.below_ns));
+  return from_ns(widest.above_ns - widest.below_ns);
 }
 
 namespace {
@@ -283,7 +282,7 @@ void TwoWayMinimum::add_round(RemoteReading reading) {
   const double limit = settings_.max_rate_ppm * 1e-6;
   const double rate = std::clamp(xy / xx, -limit, limit);
   line_->rate_ppb = rate * 1e9;
-  line_->value += Nanoseconds(std::llround(mean_y - rate * mean_x));
+  line_->value += from_ns(mean_y - rate * mean_x);
 }
 
 }  // namespace simbench

@@ -6,6 +6,7 @@
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
