@@ -14,15 +14,21 @@ set(SIMBENCH_PRECOMPILED
   <variant> <vector> <boost/asio/awaitable.hpp> <fmt/format.h> <fmt/ranges.h>)
 
 # As many files of a room are one translation unit: an edit of one is compiled in seconds, and two
-# cores share a folder.
-set(SIMBENCH_UNIT_FILES 8)
+# cores share a folder. The presets of the sanitizers have larger ones: nobody waits for an edit
+# there, and clang-tidy reads what all files of a unit include once.
+set(SIMBENCH_UNIT_FILES 8 CACHE STRING "Files of a room that are compiled together, at most")
 
-# simbench_fast_build(TARGET [SOURCES file...] [PRECOMPILE header...] [OPTIONS option...])
+# simbench_fast_build(TARGET [SOURCES file...] [UNIT_FILES n] [PRECOMPILE header...]
+#                     [OPTIONS option...])
 #
-# SOURCES are compiled room by room. OPTIONS are the target's own compile options: targets that agree
-# in these and in PRECOMPILE share one precompiled file.
+# SOURCES are compiled room by room, UNIT_FILES (SIMBENCH_UNIT_FILES) at a time. OPTIONS are the
+# target's own compile options: targets that agree in these and in PRECOMPILE share one precompiled
+# file.
 function(simbench_fast_build target)
-  cmake_parse_arguments(arg "" "" "SOURCES;PRECOMPILE;OPTIONS" ${ARGN})
+  cmake_parse_arguments(arg "" "UNIT_FILES" "SOURCES;PRECOMPILE;OPTIONS" ${ARGN})
+  if(NOT arg_UNIT_FILES)
+    set(arg_UNIT_FILES ${SIMBENCH_UNIT_FILES})
+  endif()
   target_compile_options(${target} PRIVATE ${arg_OPTIONS})
   if(NOT SIMBENCH_FAST_BUILD)
     return()
@@ -41,7 +47,7 @@ function(simbench_fast_build target)
     file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${room})
     string(MAKE_C_IDENTIFIER ${room} room)
     math(EXPR ${room}_files "0${${room}_files} + 1")
-    math(EXPR unit "(${${room}_files} - 1) / ${SIMBENCH_UNIT_FILES}")
+    math(EXPR unit "(${${room}_files} - 1) / ${arg_UNIT_FILES}")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${room}_${unit})
   endforeach()
   # g++ takes the unnamed namespace of an included file for that of a header.

@@ -40,9 +40,4 @@ if(SIMBENCH_SANITIZE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND SIMBENCH_SANITIZE MATCHES "undefined")
     simbench_build_options(-fno-sanitize=function)
   endif()
-  # g++ warns that its ThreadSanitizer does not follow Asio's fences. A world and its coroutines are
-  # one thread's, so no two threads meet at one.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND SIMBENCH_SANITIZE MATCHES "thread")
-    simbench_build_options(-Wno-tsan)
-  endif()
 endif()
