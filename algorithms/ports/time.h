@@ -1,9 +1,9 @@
-// The times a synchronisation algorithm may see, one type per time base.
+// The times that a synchronisation algorithm may see, one type per time base.
 //
 // Every stamp in simbench belongs to exactly one time base. Each base has its own
 // std::chrono::time_point type, so stamps of different bases neither compare nor subtract: a host's
-// reading minus a camera's is a compile-time error, not a wrong number. The one named exception is
-// offset_between(a, b), for the places that mean exactly that.
+// reading minus a camera's is a compile-time error. The one named exception is
+// offset_between(a, b).
 //
 //   HostTime    what a host's system clock reads: set, stepped and slewed by synchronisation
 //   SteadyTime  what a host's oscillator counts: never set, never stepped (deadlines, intervals)
@@ -60,8 +60,10 @@ struct DeviceStamp {
   friend bool operator==(DeviceStamp, DeviceStamp) = default;
 };
 
-// Milliseconds to the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
+// To the nearest nanosecond, and back. Exact for less than 104 days.
+inline Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
 inline Nanoseconds from_ms(double ms) { return Nanoseconds(std::llround(ms * 1e6)); }
+inline Nanoseconds from_seconds(double s) { return from_ms(s * 1e3); }
 constexpr double to_ns(Nanoseconds d) { return static_cast<double>(d.count()); }
 constexpr double to_ms(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
 constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
@@ -72,8 +74,7 @@ constexpr std::int64_t nanoseconds_of(std::chrono::time_point<Base, Duration> t)
   return std::chrono::duration_cast<Nanoseconds>(t.time_since_epoch()).count();
 }
 
-// Reading `a` minus reading `b`, taken at one instant on two different bases: the offset of a
-// against b. The only way to subtract across bases.
+// The offset of `a` against `b`, two readings of different bases at one instant.
 template <class BaseA, class DurationA, class BaseB, class DurationB>
 constexpr Nanoseconds offset_between(std::chrono::time_point<BaseA, DurationA> a,
                                      std::chrono::time_point<BaseB, DurationB> b) {

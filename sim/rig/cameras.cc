@@ -1,6 +1,5 @@
 #include "sim/rig/cameras.h"
 
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -8,8 +7,6 @@
 
 namespace simbench::sim {
 namespace {
-
-Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
 
 // 1 MB/s is 1e6 bytes in 1e9 ns.
 double bytes_per_ns(const scenarios::Usb& usb) { return usb.bandwidth_mb_per_s * 1e-3; }

@@ -6,11 +6,6 @@
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
-namespace {
-
-Nanoseconds from_us(double us) { return Nanoseconds(std::llround(us * 1e3)); }
-
-}  // namespace
 
 TriggerTree::TriggerTree(const scenarios::Trigger& settings, std::size_t cameras,
                          std::uint64_t seed)
