@@ -79,7 +79,7 @@ Parameters check_parameters(const std::vector<ParameterSpec>& specs, const Param
 
 const ParameterValue& Parameters::at(const std::string& name) const {
   const auto found = values_.find(name);
-  SIMBENCH_ASSERT(found != values_.end(), "the algorithm asks for a parameter it did not declare");
+  SIMBENCH_ASSERT(found != values_.end(), "the algorithm uses a parameter it did not declare");
   return found->second;
 }
 

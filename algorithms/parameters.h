@@ -32,7 +32,7 @@ struct ParameterSpec {
   std::string source;
 };
 
-// A value that a scenario may not give. `parameter` names it, for a JSON pointer.
+// A value that is not allowed. `parameter` names it, for a JSON pointer.
 class ParameterError : public std::invalid_argument {
  public:
   ParameterError(std::string parameter, const std::string& what)
@@ -43,7 +43,7 @@ class ParameterError : public std::invalid_argument {
   std::string parameter_;
 };
 
-// Checked values; asking for a name that was not declared is a programming error.
+// Checked values; a query for a name that was not declared is a programming error.
 class Parameters {
  public:
   Parameters() = default;
@@ -58,8 +58,8 @@ class Parameters {
   ParameterValues values_;
 };
 
-// The declared parameters with `given` over their defaults. Throws ParameterError, whose message
-// says what was found and what is allowed.
+// The declared parameters with `given` over their defaults. Throws ParameterError with what was
+// found and what is allowed.
 Parameters check_parameters(const std::vector<ParameterSpec>& specs, const ParameterValues& given);
 
 // Short forms for the parameters that an algorithm declares.

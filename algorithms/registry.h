@@ -28,8 +28,8 @@
 
 namespace simbench {
 
-// What an algorithm asks of the world beyond messages and clocks. A world that lacks it is refused
-// before anything runs.
+// What an algorithm needs of the world beyond messages and clocks. A run in a world that lacks it
+// is refused before it begins.
 enum class Need : std::uint8_t {
   kHardwareStamps,  // Host::hardware_clock() and the stamps of the network card
   kPps,             // Host::pulse_input(PulseLine::kPps)
@@ -45,7 +45,7 @@ struct AlgorithmInfo {
   std::string family;   // algorithms of one family share the scenario's parameters
   std::string summary;  // one line
   std::string source;
-  std::vector<ParameterSpec> parameters;
+  std::vector<ParameterSpec> parameters{};
   std::vector<Need> needs{};
 };
 
@@ -55,7 +55,7 @@ struct HostSyncEntry {
 };
 struct DeviceTimeEntry {
   AlgorithmInfo info;
-  // Empty for "oracle": it needs the truth, which only evaluation has.
+  // Empty for "oracle", which needs the truth that only evaluation has.
   std::function<std::unique_ptr<DeviceTimeEstimator>(const Parameters&)> make;
 };
 struct GatheringEntry {

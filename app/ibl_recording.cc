@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "algorithms/device_time/unwrap.h"
-#include "recording/decimal.h"
+#include "recording/text_fields.h"
 
 namespace simbench::app {
 namespace {

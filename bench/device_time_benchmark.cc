@@ -15,7 +15,7 @@
 
 #include "algorithms/device_time/hull.h"
 #include "algorithms/device_time/lower_hull.h"
-#include "algorithms/device_time/sample_anchor.h"
+#include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
 #include "bench/device_time_worlds.h"

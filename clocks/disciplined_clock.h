@@ -10,8 +10,9 @@
 //  - Adjustments come in order of time.
 //  - A slew ends by itself; a step or another slew before its end leaves the rest of it undone, a
 //    change of rate does not.
-//  - The observer is notified of each adjustment in order of time, also of the end of a slew: who
-//    wants that in time calls settle() at settles_at().
+//  - The observer is notified of each adjustment in order of time, also of the end of a slew, in
+//  time
+//    if settle() is called at settles_at().
 //  - Errors: ClockError for a rate that is not finite or not below 0.5, and for a slew without a
 //    positive rate; the clock is then as it was.
 //  - Used by one thread.
@@ -51,7 +52,7 @@
 
 namespace simbench::clocks {
 
-// What a clock refuses to do; one line for the user.
+// An adjustment that a clock refuses; one line for the user.
 class ClockError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -140,8 +141,8 @@ class DisciplinedClock {
   [[gnu::always_inline]] HostTime read(Instant t, double deviation_ns) const {
     return reading(setting_at(t), t, deviation_ns).whole;
   }
-  // The first instant, not before `now`, at which the clock reads `at` or more if nobody adjusts it
-  // meanwhile.
+  // The first instant, not before `now`, at which the clock reads `at` or more without a further
+  // adjustment.
   Instant when(HostTime at, Instant now) const;
 
   void set(Instant at, HostTime value);

@@ -1,11 +1,9 @@
-// The events of a recording as values: what a RecordingSink is notified of, a type each.
+// The events of a recording as values, a type for each call of a RecordingSink.
 //
 // A frame or a pulse has truth only if it was simulated (or measured where truth is known).
 //
 //   RecordingEvent event = FrameEvent{record, truth};
 //   notify(event, sink);
-//
-// A KeptRecording holds all of them in memory, to be played as often as needed.
 //
 //   KeptRecording kept;
 //   source.record(request, kept);
@@ -43,15 +41,15 @@ struct ExchangeEvent {
 using RecordingEvent =
     std::variant<FrameEvent, PulseEvent, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome>;
 
-// Calls the member of `sink` that is for this event.
+// Calls the member of `sink` for this event.
 void notify(const RecordingEvent& event, RecordingSink& sink);
 
-// Keeps everything that a backend hands over and gives it back in the same order, across all kinds
-// of events, with truth where there was truth. About 110 bytes a frame: for captures of many
-// cameras, score the stream itself instead of keeping it.
+// Keeps a whole recording in memory and plays it as often as needed, in the same order across all
+// kinds of events. About 110 bytes a frame: for captures of many cameras, score the stream itself
+// instead of keeping it.
 class KeptRecording final : public RecordingSink {
  public:
-  // Begins anew: what was kept before is forgotten.
+  // Discards what was kept before.
   void on_start(const RigLayout& layout) override;
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_pulse(const PulseTruth& truth) override;

@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 2> kStreams = {scenarios::to_text(StreamK
 constexpr std::array<std::string_view, 3> kDomains = {"hardware_clock", "system_time",
                                                       "global_time"};
 
-// The name of a value; its number if it has none, which does not read back.
+// The name of a value; its number if it has no name, which does not read back.
 template <std::size_t N, class Enum>
 void append_name(std::string& line, const std::array<std::string_view, N>& names, Enum value) {
   const auto index = static_cast<std::size_t>(value);
@@ -50,12 +50,17 @@ Time read_time(FieldReader& fields, const char* name) {
   return Time(typename Time::duration(fields.whole<std::int64_t>(name)));
 }
 
-void append_optional(std::string& line, const std::optional<HostTime>& time) {
+void append_field(std::string& line, const std::optional<HostTime>& time) {
   if (time) {
     append_field(line, *time);
   } else {
     line += ',';
   }
+}
+
+template <class... Values>
+void append_fields(std::string& line, const Values&... values) {
+  (append_field(line, values), ...);
 }
 
 std::optional<HostTime> read_optional(FieldReader& fields, const char* name) {
@@ -74,8 +79,7 @@ struct Appender {
   }
   void operator()(const PulseEvent& pulse) const {
     line += "pulse";
-    append_field(line, pulse.pulse);
-    append_field(line, pulse.at);
+    append_fields(line, pulse.pulse, pulse.at);
     line += ',';
     for (std::size_t i = 0; i < pulse.host_errors.size(); ++i) {
       if (i > 0) line += ';';
@@ -84,29 +88,19 @@ struct Appender {
   }
   void operator()(const ClockAdjustment& adjustment) const {
     line += "adjustment";
-    append_field(line, adjustment.host);
-    append_field(line, adjustment.at);
-    append_field(line, adjustment.before);
-    append_field(line, adjustment.after);
-    append_field(line, adjustment.rate_ppb);
+    append_fields(line, adjustment.host, adjustment.at, adjustment.before, adjustment.after,
+                  adjustment.rate_ppb);
   }
   void operator()(const DevicePoll& poll) const {
     line += "poll";
-    append_field(line, poll.camera);
-    append_field(line, poll.device.us);
-    append_field(line, poll.t0);
-    append_field(line, poll.t1);
-    append_field(line, poll.t0_steady);
-    append_field(line, poll.t1_steady);
+    append_fields(line, poll.camera, poll.device.us, poll.t0, poll.t1, poll.t0_steady,
+                  poll.t1_steady);
   }
   void operator()(const ExchangeEvent& event) const {
+    const Exchange& exchange = event.exchange;
     line += "exchange";
-    append_field(line, event.host);
-    append_field(line, event.exchange.peer);
-    append_optional(line, event.exchange.t1);
-    append_optional(line, event.exchange.t2);
-    append_optional(line, event.exchange.t3);
-    append_optional(line, event.exchange.t4);
+    append_fields(line, event.host, exchange.peer, exchange.t1, exchange.t2, exchange.t3,
+                  exchange.t4);
   }
   void operator()(const SyncOutcome& outcome) const {
     line += "outcome";
@@ -143,36 +137,31 @@ PulseEvent read_pulse(FieldReader& fields) {
   return event;
 }
 
+// The members of a braced list are read in their order.
 ClockAdjustment read_adjustment(FieldReader& fields) {
-  ClockAdjustment adjustment;
-  adjustment.host = fields.whole<std::uint32_t>("host");
-  adjustment.at = read_time<SteadyTime>(fields, "at_steady_ns");
-  adjustment.before = read_time<HostTime>(fields, "before_ns");
-  adjustment.after = read_time<HostTime>(fields, "after_ns");
-  adjustment.rate_ppb = fields.finite("rate_ppb");
-  return adjustment;
+  return {.host = fields.whole<std::uint32_t>("host"),
+          .at = read_time<SteadyTime>(fields, "at_steady_ns"),
+          .before = read_time<HostTime>(fields, "before_ns"),
+          .after = read_time<HostTime>(fields, "after_ns"),
+          .rate_ppb = fields.finite("rate_ppb")};
 }
 
 DevicePoll read_poll(FieldReader& fields) {
-  DevicePoll poll;
-  poll.camera = fields.whole<std::uint32_t>("camera");
-  poll.device.us = fields.whole<std::uint32_t>("device_us");
-  poll.t0 = read_time<HostTime>(fields, "t0_ns");
-  poll.t1 = read_time<HostTime>(fields, "t1_ns");
-  poll.t0_steady = read_time<SteadyTime>(fields, "t0_steady_ns");
-  poll.t1_steady = read_time<SteadyTime>(fields, "t1_steady_ns");
-  return poll;
+  return {.camera = fields.whole<std::uint32_t>("camera"),
+          .device = {fields.whole<std::uint32_t>("device_us")},
+          .t0 = read_time<HostTime>(fields, "t0_ns"),
+          .t1 = read_time<HostTime>(fields, "t1_ns"),
+          .t0_steady = read_time<SteadyTime>(fields, "t0_steady_ns"),
+          .t1_steady = read_time<SteadyTime>(fields, "t1_steady_ns")};
 }
 
 ExchangeEvent read_exchange(FieldReader& fields) {
-  ExchangeEvent event;
-  event.host = fields.whole<std::uint32_t>("host");
-  event.exchange.peer = fields.whole<PeerId>("peer");
-  event.exchange.t1 = read_optional(fields, "t1_ns");
-  event.exchange.t2 = read_optional(fields, "t2_ns");
-  event.exchange.t3 = read_optional(fields, "t3_ns");
-  event.exchange.t4 = read_optional(fields, "t4_ns");
-  return event;
+  return {.host = fields.whole<std::uint32_t>("host"),
+          .exchange = {.peer = fields.whole<PeerId>("peer"),
+                       .t1 = read_optional(fields, "t1_ns"),
+                       .t2 = read_optional(fields, "t2_ns"),
+                       .t3 = read_optional(fields, "t3_ns"),
+                       .t4 = read_optional(fields, "t4_ns")}};
 }
 
 SyncOutcome read_outcome(FieldReader& fields) {
@@ -229,50 +218,36 @@ void append_frame(std::string& line, const FrameRecord& record) {
   append_number(line, record.camera);
   append_name(line, kStreams, record.stream);
   append_name(line, kDomains, record.domain);
-  append_field(line, record.counter);
-  append_field(line, record.exposure_us);
-  append_field(line, record.sensor.us);
-  append_field(line, record.frame.us);
-  append_field(line, record.backend);
-  append_field(line, record.arrival);
-  append_field(line, record.arrival_steady);
+  append_fields(line, record.counter, record.exposure_us, record.sensor.us, record.frame.us,
+                record.backend, record.arrival, record.arrival_steady);
 }
 
 void append_truth(std::string& line, const FrameTruth& truth) {
-  append_field(line, truth.pulse);
-  append_field(line, truth.exposure_start);
-  append_field(line, truth.exposure_end);
-  append_field(line, truth.reference);
-  append_field(line, truth.own_host);
-  append_field(line, truth.own_steady);
-  append_field(line, truth.delivered);
+  append_fields(line, truth.pulse, truth.exposure_start, truth.exposure_end, truth.reference,
+                truth.own_host, truth.own_steady, truth.delivered);
 }
 
 FrameRecord read_frame(FieldReader& fields) {
-  FrameRecord record;
-  record.camera = fields.whole<std::uint32_t>("camera");
-  record.stream = read_name<StreamKind>(fields, "stream", kStreams);
-  record.domain = read_name<StampDomain>(fields, "domain", kDomains);
-  record.counter = fields.whole<std::uint32_t>("counter");
-  record.exposure_us = fields.whole<std::uint32_t>("exposure_us");
-  record.sensor.us = fields.whole<std::uint32_t>("sensor_us");
-  record.frame.us = fields.whole<std::uint32_t>("frame_us");
-  record.backend = read_time<HostTime>(fields, "backend_ns");
-  record.arrival = read_time<HostTime>(fields, "arrival_ns");
-  record.arrival_steady = read_time<SteadyTime>(fields, "arrival_steady_ns");
-  return record;
+  return {.camera = fields.whole<std::uint32_t>("camera"),
+          .stream = read_name<StreamKind>(fields, "stream", kStreams),
+          .domain = read_name<StampDomain>(fields, "domain", kDomains),
+          .counter = fields.whole<std::uint32_t>("counter"),
+          .exposure_us = fields.whole<std::uint32_t>("exposure_us"),
+          .sensor = {fields.whole<std::uint32_t>("sensor_us")},
+          .frame = {fields.whole<std::uint32_t>("frame_us")},
+          .backend = read_time<HostTime>(fields, "backend_ns"),
+          .arrival = read_time<HostTime>(fields, "arrival_ns"),
+          .arrival_steady = read_time<SteadyTime>(fields, "arrival_steady_ns")};
 }
 
 FrameTruth read_truth(FieldReader& fields) {
-  FrameTruth truth;
-  truth.pulse = fields.whole<std::int64_t>("pulse");
-  truth.exposure_start = read_time<TrueTime>(fields, "exposure_start_ns");
-  truth.exposure_end = read_time<TrueTime>(fields, "exposure_end_ns");
-  truth.reference = read_time<HostTime>(fields, "reference_ns");
-  truth.own_host = read_time<HostTime>(fields, "own_host_ns");
-  truth.own_steady = read_time<SteadyTime>(fields, "own_steady_ns");
-  truth.delivered = read_time<HostTime>(fields, "delivered_ns");
-  return truth;
+  return {.pulse = fields.whole<std::int64_t>("pulse"),
+          .exposure_start = read_time<TrueTime>(fields, "exposure_start_ns"),
+          .exposure_end = read_time<TrueTime>(fields, "exposure_end_ns"),
+          .reference = read_time<HostTime>(fields, "reference_ns"),
+          .own_host = read_time<HostTime>(fields, "own_host_ns"),
+          .own_steady = read_time<SteadyTime>(fields, "own_steady_ns"),
+          .delivered = read_time<HostTime>(fields, "delivered_ns")};
 }
 
 }  // namespace simbench

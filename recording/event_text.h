@@ -18,8 +18,8 @@
 // Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
 // does not write. Any bytes are safe to give to it. Complexity: linear in the line.
 //
-// The files of a recording folder begin their lines with a field of their own: they append an
-// event's fields to it and read them behind it, so that a message names the column of the file.
+// The lines of a recording folder's files begin with a field of their own, before the event's, so
+// that a message names the column of the file.
 //
 //   const std::string line = to_line(event);      // "poll,3,..."
 //   const RecordingEvent same = from_line(line);

@@ -1,4 +1,4 @@
-// A sink that hands everything on, for those that change or watch some of it on the way.
+// A sink that passes everything on, as a base of sinks that change or watch some of it.
 //
 //   class Doubled final : public ForwardingSink {
 //    public:

@@ -1,12 +1,11 @@
-// A recording: everything a capture leaves behind, as plain data, and the seam it comes through.
+// A recording: all results of a capture as plain data, and the interface that passes it on.
 //
-// This is the waist of simbench. Every backend (the simulator, a real rig, a replayed file) hands
-// over its capture through a RecordingSink, in order of delivery, and nothing after it can tell
-// which backend it was. Only the simulator also hands over truth; a real rig passes no FrameTruth
-// and no PulseTruth.
+// This is the waist of simbench. Every backend (the simulator, a real rig, a replayed file) passes
+// its capture to a RecordingSink, in order of delivery, and nothing after it depends on which
+// backend it was. Only the simulator passes truth (FrameTruth, PulseTruth).
 //
-// Streaming is deliberate: a capture of 18,000 cameras is scored without being held in memory.
-// KeptRecording (recording/event.h) keeps it all and can play itself back into another sink.
+// A capture is streamed, so that one of 18,000 cameras is scored without being held in memory.
+// KeptRecording (recording/event.h) holds all of it and can play it to another sink.
 //
 // Units: stamps in their own time base (algorithms/ports/time.h), exposure in microseconds.
 // Source: docs/design.md section 2; the four stamps: docs/reference/d455.md section 1.
@@ -52,12 +51,12 @@ struct FrameRecord {
   SteadyTime arrival_steady{};  // the same instant on the host's steady clock
 };
 
-// What really happened to a frame; simulated captures only.
+// The truth of a frame; simulated captures only.
 struct FrameTruth {
   std::int64_t pulse = -1;  // index of the trigger pulse that exposed it; -1: free-running
   TrueTime exposure_start{};
   TrueTime exposure_end{};
-  HostTime reference{};     // master's clock at mid-exposure: what the global stamp should be
+  HostTime reference{};     // master's clock at mid-exposure: the ideal global stamp
   HostTime own_host{};      // the camera's own host's clock at mid-exposure
   SteadyTime own_steady{};  // the same host's steady clock at mid-exposure
   HostTime delivered{};     // master's clock when the host had the frame
@@ -65,15 +64,15 @@ struct FrameTruth {
   TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
 };
 
-// What was true at a trigger pulse; simulated captures only.
+// The truth of a trigger pulse; simulated captures only.
 struct PulseTruth {
   std::int64_t pulse = 0;
   TrueTime at{};
   std::span<const Nanoseconds> host_errors;  // system clock minus the master's, per host; [0] is 0
 };
 
-// One reading of a camera's clock over its control interface, between two readings of the host's
-// clocks: it was read at some instant from t0 to t1.
+// A reading of a camera's clock over its control interface, at some instant between the readings t0
+// and t1 of the host's clocks.
 struct DevicePoll {
   std::uint32_t camera = 0;
   DeviceStamp device;
@@ -87,7 +86,7 @@ struct CameraLayout {
   std::uint32_t host = 0;
 };
 
-// What was captured, known before the first frame.
+// The rig and the capture, known before the first frame.
 struct RigLayout {
   std::uint32_t hosts = 0;
   std::vector<CameraLayout> cameras;
@@ -109,28 +108,28 @@ class RecordingSink {
   virtual void on_outcome(const SyncOutcome& outcome) = 0;
 };
 
-// What a capture is asked for: the pipeline decides which host_sync runs and which load is drawn.
+// Which capture to make: the pipeline decides which host_sync runs and which load is drawn.
 struct RecordingRequest {
   std::uint64_t seed = 1;
   std::string pipeline;           // by name, one of the scenario's
   HostSync* host_sync = nullptr;  // the algorithm to run; outlives the call; null: none runs
-  // Told what only a simulated world can show (world_observer.h); outlives the call. Never changes
-  // the recording; other backends have nothing to tell it.
+  // Notified of what only a simulated world can show (world_observer.h); outlives the call. Never
+  // changes the recording.
   WorldObserver* observer = nullptr;
 };
 
-// What making the recording cost; for the performance line.
+// The cost of the recording; for the performance line.
 struct RecordingCost {
   std::uint64_t events = 0;
   double simulated_seconds = 0;  // 0 on a real rig
   std::uint64_t trace_hash = 0;  // of the simulated events; 0 on a real rig
-  // What went wrong while it was made, a line each for the user: a host that was lost, a camera
-  // that was unplugged. The recording holds what there was until then.
+  // What went wrong, a line each for the user: a host that was lost, a camera that was unplugged.
+  // The recording holds what came before.
   std::vector<std::string> notes{};
 };
 
-// A capture that could not be made: what() is one line that says what is missing. Other captures of
-// the same source may succeed, so an evaluation goes on with those.
+// A capture that could not be made; what() is one line that says why. Other captures of the same
+// source may succeed, so an evaluation goes on with those.
 class RecordingFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

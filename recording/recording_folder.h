@@ -10,17 +10,17 @@
 // In the name of a pipeline's folder, bytes other than letters, digits, _ - and inner dots stand as
 // %XX.
 //
-// `order` counts the events of a capture across both files; playing merges by it, so a sink is told
+// `order` counts the events of a capture across both files; playing merges by it, so a sink gets
 // the same calls with the same values in the same order as when it was recorded, and scores of a
 // replay equal those of the run.
 //
-// Nothing that was recorded is lost when the writer dies: frames are written through to the kernel
-// at least every 100 ms or 1000 events, and a folder whose capture has no end is readable up to its
-// last whole line (Capture::complete is false then, and a note says so). A new recording never
+// When the writer dies, no more than 100 ms or 1000 events are lost: frames are written through to
+// the kernel that often, and a folder whose capture has no end is readable up to its last whole
+// line (RecordedCapture::complete is then false, and a note says so). A new recording never
 // overwrites: the folder must be new or empty.
 //
-// Errors: RecordingFolderError, "FILE:LINE: ..." with what was found and allowed; a disk that is
-// full is one of them, thrown by the call that noticed, and what was written stays readable.
+// Errors: RecordingFolderError, "FILE:LINE: ..." with what was found and allowed, also for a full
+// disk; it is thrown by the call that failed, and what was written stays readable.
 //
 //   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
 //   source.record(request, writer.begin("yoon2021_both", 1));
@@ -77,11 +77,11 @@ class RecordingWriter {
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   // The sink of a new capture, valid until end() or abandon(); one at a time, each pipeline and
-  // seed once. If it is given events without an on_start, nothing is written.
+  // seed once. Events without an on_start are not written.
   RecordingSink& begin(const std::string& pipeline, std::uint64_t seed);
   // The notes of `cost` and `notes` are kept.
   void end(const RecordingCost& cost, std::vector<std::string> notes = {});
-  // Without an end: what was recorded until now stays, as of a writer that died.
+  // Leaves the capture without an end: what was recorded until now stays.
   void abandon(std::vector<std::string> notes = {});
 
  private:
@@ -96,7 +96,7 @@ class RecordingFolder {
   const RecordingDescription& description() const { return description_; }
   const std::vector<RecordedCapture>& captures() const { return captures_; }
   std::optional<std::size_t> find(const std::string& pipeline, std::uint64_t seed) const;
-  // Streams a capture; its memory does not grow with it. Of a damaged one, the sink is told what
+  // Streams a capture; its memory does not grow with it. For a damaged one, the sink gets what
   // comes before the damage, then RecordingFolderError is thrown.
   void play(std::size_t capture, RecordingSink& sink) const;
 
@@ -106,9 +106,9 @@ class RecordingFolder {
   std::vector<RecordedCapture> captures_;
 };
 
-// A folder as a backend: a request for a pipeline and seed that was recorded is played, any other
-// throws RecordingFailed. The capture's notes, and its damage if it is damaged, are among the notes
-// of the cost. `folder` outlives it.
+// A folder as a backend: it plays the requested pipeline and seed, or throws RecordingFailed if
+// they were not recorded. The cost has the capture's notes, and one on its damage. `folder`
+// outlives it.
 std::unique_ptr<RecordingSource> make_recorded_source(const RecordingFolder& folder);
 
 }  // namespace simbench

@@ -1,9 +1,13 @@
 #include "recording/recording_manifest.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,7 +17,6 @@
 #include <system_error>
 #include <utility>
 
-#include "recording/append_file.h"
 #include "recording/text_fields.h"
 #include "recording/version.h"
 
@@ -62,8 +65,6 @@ std::string file_name(const std::string& pipeline) {
   return name;
 }
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kDeepest = 64;  // a scenario's depth is under 10
 constexpr std::int64_t kMostPulses = 1'000'000'000;
 constexpr double kLowestRate = 1e-6;
@@ -86,7 +87,7 @@ class Value {
   Value at(std::size_t index) const {
     return {json_[index], fmt::format("{}/{}", pointer_, index), path_};
   }
-  // Of an array.
+  // The value must be an array.
   std::size_t size(std::size_t most) const {
     if (!json_.is_array() || json_.size() > most) {
       fail(fmt::format("an array of at most {}", most));
@@ -283,6 +284,43 @@ RecordingManifest parse_manifest(const std::string& text, const std::string& pat
     }
   }
   return manifest;
+}
+
+AppendFile::AppendFile(std::string path) : path_(std::move(path)) {
+  file_ = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0) fail(errno);
+}
+
+AppendFile::~AppendFile() {
+  try {
+    if (!failed_) flush();
+  } catch (const RecordingFolderError&) {  // there is no caller to report it to
+  }
+  if (file_ >= 0) ::close(file_);
+}
+
+void AppendFile::flush() {
+  if (failed_) fail(EIO);
+  std::string_view rest = buffer_;
+  while (!rest.empty()) {
+    const ssize_t written = write(file_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail(written < 0 ? errno : ENOSPC);
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  buffer_.clear();
+}
+
+void AppendFile::close() {
+  flush();
+  const int file = std::exchange(file_, -1);
+  if (file >= 0 && ::close(file) != 0 && errno != EINTR) fail(errno);
+}
+
+void AppendFile::fail(int reason) {
+  failed_ = true;
+  throw RecordingFolderError(
+      fmt::format("{}: cannot be written: {}", path_, std::strerror(reason)));
 }
 
 }  // namespace simbench

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <utility>
 
-#include "recording/decimal.h"
+#include "recording/text_fields.h"
 
 namespace simbench {
 namespace {
@@ -29,7 +29,7 @@ struct Header {
   std::size_t cells_needed = 0;  // a line with fewer is truncated
 };
 
-// Where in the text the reader is, for messages.
+// A place in the text, for messages.
 struct Place {
   const std::string& path;
   std::size_t line = 0;
@@ -55,7 +55,7 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
   }
 }
 
-// What is in a damaged file may be anything: no control characters, not too much of it.
+// For messages: a damaged file may hold anything, so control characters and long texts are cut.
 std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string shown = "'";

@@ -8,11 +8,10 @@
 // before the header is skipped, a header may come again for each stream, columns may stand in any
 // order, and unknown ones are ignored. Gyro, Accel and Pose lines are no frames and are skipped.
 //
-// Two more columns make one file of several cameras: `camera` and `host` (names or numbers).
-// Without `camera`, a file is one camera with the name of the file; without `host`, a host of that
-// name. A camera that occurs in several files goes on in the order of the files. Stamps of several
-// cameras must count from one zero per host, and, for their spread to mean something, all hosts
-// from one.
+// Two more columns allow several cameras in one file: `camera` and `host` (names or numbers).
+// Without `camera`, a file is one camera with the name of the file; without `host`, the host has
+// that name. A camera in several files continues in the order of the files. Stamps of several
+// cameras must count from one zero per host, and, for a meaningful spread, from one for all hosts.
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
 // Complexity: linear in the text. Source: docs/reference/d455.md section 8.
@@ -50,13 +49,13 @@ struct CameraStream {
   std::vector<StampedFrame> frames;
 };
 
-// A file that is no such recording. what() is the whole message, for the user: "FILE:LINE: ...".
+// A file that is no such recording. what() is the message for the user, "FILE:LINE: ...".
 class CsvError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Largest stamp that is read, in milliseconds either way: 126 years.
+// Largest stamp, in milliseconds either way: 126 years.
 inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
 
 class CsvRecordingReader {

@@ -1,10 +1,4 @@
-// The fields of a comma-separated line, strictly: read back is exactly what was written.
-//
-// A whole number has no plus sign, no needless zero and no "-0"; a double is finite and in the
-// shortest form; a text has backslash, comma and line ends as \\ \, \n \r. So a line that is read
-// without an error is the one that would be written for the same values.
-//
-// Errors: TextFieldError, "column 5 (counter): found '1x', allowed: ...". Any bytes are safe.
+// The fields of a comma-separated line, strictly, and milliseconds as exact decimal numbers.
 //
 //   std::string line = "poll";
 //   append_field(line, poll.camera);
@@ -13,6 +7,8 @@
 //   fields.next("kind");
 //   const auto camera = fields.whole<std::uint32_t>("camera");
 //   fields.end();
+//
+//   parse_ms("12.3456789", 1000);   // 12'345'679 ns: digits beyond the sixth are rounded
 #ifndef SIMBENCH_RECORDING_TEXT_FIELDS_H_
 #define SIMBENCH_RECORDING_TEXT_FIELDS_H_
 
@@ -25,6 +21,8 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "algorithms/ports/time.h"
 
 namespace simbench {
 
@@ -61,6 +59,11 @@ bool read_whole(std::string_view text, Number& value) {
   return text[first] != '0' || text.size() == 1;
 }
 
+// Reads back exactly what was written: a whole number has no plus sign, no needless zero and no
+// "-0"; a double is finite and in the shortest form; a text has backslash, comma and line ends as
+// \\ \, \n \r. So a line that is read without an error is the one written for the same values.
+//
+// Errors: TextFieldError, "column 5 (counter): found '1x', allowed: ...". Any bytes are safe.
 class FieldReader {
  public:
   // `line` must outlive this.
@@ -95,7 +98,7 @@ class FieldReader {
   // Throws if there is another field.
   void end() const;
   bool at_end() const { return done_; }
-  // Takes the rest of the line if that is `count` empty fields.
+  // Reads the rest of the line if that is `count` empty fields.
   bool take_empty(std::size_t count) {
     if (done_ || rest_.size() + 1 != count) return false;
     if (rest_.find_first_not_of(',') != std::string_view::npos) return false;
@@ -125,6 +128,14 @@ class FieldReader {
   std::size_t column_ = 0;
   bool done_ = false;
 };
+
+// Exact to the nanosecond, where a double loses 0.2 us on stamps that count from 1970. Nothing if
+// the text is no number, or one of more than `largest_ms` (at most 9e12) either way. An exponent is
+// allowed.
+std::optional<Nanoseconds> parse_ms(std::string_view text, std::int64_t largest_ms);
+
+// With six decimals: "12.345679".
+std::string ms_text(Nanoseconds time);
 
 }  // namespace simbench
 

@@ -1,6 +1,6 @@
 // True time: the time of the simulated world, which no clock in it can read.
 //
-// Only sim/, the Truth part of a recording and evaluation/ know this type; algorithms never see it
+// Only sim/, the truth of a recording and evaluation/ use this type, never algorithms
 // (docs/design.md section 5: one type for each time base). Unit: integer nanoseconds. Zero is the
 // nominal start of host synchronisation; a world with a history (clocks set hours before) starts
 // below zero.

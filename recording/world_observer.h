@@ -1,11 +1,11 @@
-// What only a simulated world can show, beside its recording: when everything truly happened.
+// An observer of a simulated world: it is notified of when everything truly happened.
 //
-// For timelines and for figures of what no host can see. A recording is the same with and without
-// an observer; times are true (recording/true_time.h), zero at the start of synchronisation.
-// Calls come in order of the instant at which the world knows the thing (a frame when its way ends,
-// a message when it leaves), so `at`, `left` and the like of successive calls may go back a little.
+// For timelines and figures. A recording is the same with and without an observer; times are true
+// (recording/true_time.h), zero at the start of synchronisation. A frame is reported when it is
+// delivered or lost, a message when it leaves, so `at`, `left` and the like of successive calls may
+// go back a little.
 //
-// Cost: nothing without an observer but a test of a pointer per frame and message.
+// Cost without an observer: a test of a pointer per frame and message.
 //
 //   class Counter : public WorldObserver {
 //     void on_message(const ObservedMessage&) override { ++messages; }
@@ -52,7 +52,7 @@ struct ObservedFrame {
   TrueTime delivered{};    // to the program (time of arrival)
 };
 
-// A message between hosts. A stream's retransmissions are part of its way, not messages.
+// A message between hosts. A stream's retransmissions are no messages of their own.
 struct ObservedMessage {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
@@ -68,12 +68,12 @@ class WorldObserver {
  public:
   virtual ~WorldObserver() = default;
 
-  // The interval at which on_clocks is wanted, 0 for never; asked for once, at the start.
+  // The interval of on_clocks, 0 for never; called once, at the start.
   virtual Nanoseconds clock_interval() const { return Nanoseconds(0); }
 
-  // From `start` on there is a world: synchronisation, or a service's warm-up, begins.
+  // The world begins at `start`, with synchronisation or a service's warm-up.
   virtual void on_world(TrueTime start) = 0;
-  // The cameras are being started.
+  // The cameras are started.
   virtual void on_capture_start(TrueTime at) = 0;
   virtual void on_pulse(const ObservedPulse& pulse) = 0;
   virtual void on_frame(const ObservedFrame& frame) = 0;

@@ -1,5 +1,5 @@
-// The files of scenarios/*.json, scenarios/cameras/*.json and scenarios/studies/*.json as they are
-// built into the program (written by embed.cmake).
+// The files of scenarios/*.json, scenarios/cameras/*.json and scenarios/studies/*.json, built into
+// the program by embed.cmake.
 #ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 #define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 

@@ -10,7 +10,7 @@ namespace simbench::scenarios {
 
 using nlohmann::json;
 
-// A focal length that is not known is left out; the schema asks for the rest.
+// An unknown focal length is left out; the schema requires the rest.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ImageSize, width, height, focal_px, rates_hz)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamProfile, kind, format, shutter, readout_periods,
                                    bytes_per_pixel, sizes, source)
@@ -58,21 +58,18 @@ const ImageSize* StreamProfile::find_size(std::int64_t width, std::int64_t heigh
 }
 
 const StreamProfile* CameraProfile::stream(StreamKind kind) const {
-  const auto found = std::find_if(streams.begin(), streams.end(),
-                                  [&](const StreamProfile& each) { return each.kind == kind; });
+  const auto found = std::ranges::find(streams, kind, &StreamProfile::kind);
   return found == streams.end() ? nullptr : &*found;
 }
 
 const SyncModeProfile* CameraProfile::sync_mode(SyncMode mode) const {
-  const auto found = std::find_if(sync_modes.begin(), sync_modes.end(),
-                                  [&](const SyncModeProfile& each) { return each.mode == mode; });
+  const auto found = std::ranges::find(sync_modes, mode, &SyncModeProfile::mode);
   return found == sync_modes.end() ? nullptr : &*found;
 }
 
 bool CameraProfile::triggers(SyncMode mode, StreamKind kind) const {
   const SyncModeProfile* found = sync_mode(mode);
-  return found != nullptr && std::find(found->triggered.begin(), found->triggered.end(), kind) !=
-                                 found->triggered.end();
+  return found != nullptr && std::ranges::count(found->triggered, kind) > 0;
 }
 
 const std::vector<CameraProfile>& camera_profiles() {
@@ -87,8 +84,7 @@ const std::vector<CameraProfile>& camera_profiles() {
 
 const CameraProfile* find_camera_profile(std::string_view model) {
   const std::vector<CameraProfile>& all = camera_profiles();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const CameraProfile& each) { return each.model == model; });
+  const auto found = std::ranges::find(all, model, &CameraProfile::model);
   return found == all.end() ? nullptr : &*found;
 }
 

@@ -1,12 +1,13 @@
-// Camera models: what each can do, from one profile file per model (scenarios/cameras/*.json, whose
-// schema documents every member with its range; each section names its source).
+// Camera models: the modes and streams of each, from one profile file per model
+// (scenarios/cameras/*.json, whose schema documents every member with its range; each section names
+// its source).
 //
 // A scenario names its model in /cameras/model; its streams and sync mode are checked against the
-// profile, and the profile says which streams follow the trigger in which mode. The profiles are
-// built into the program. `simbench list cameras` prints them. What a vendor does not document a
-// profile does not promise: such a camera has the mode "default" alone, in which it runs free.
+// profile, which also has the streams that follow the trigger in each mode. The profiles are built
+// into the program; `simbench list cameras` prints them. A profile has only what the vendor
+// documents: a camera without sync modes has the mode "default" alone, in which it runs free.
 //
-// Another model is another file in that folder; nothing else needs to change.
+// A new model is a new file in that folder, without any other change.
 //
 //   const CameraProfile* camera = find_camera_profile("d455");
 //   camera->triggers(SyncMode::kSlave, StreamKind::kDepth);              // true
@@ -58,8 +59,8 @@ struct StampProfile {
 };
 
 struct CameraProfile {
-  std::string model;  // by which a scenario calls it
-  std::string name;   // the maker's
+  std::string model;  // its name in a scenario
+  std::string name;   // its maker's name for it
   std::string maker;
   std::vector<StreamProfile> streams;
   std::vector<SyncModeProfile> sync_modes;

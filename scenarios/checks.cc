@@ -1,5 +1,3 @@
-#include "scenarios/checks.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +14,7 @@
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
 #include "scenarios/loader.h"
+#include "scenarios/schema.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -131,7 +130,7 @@ void check_auto_exposure(const Scenario& scenario) {
   }
 }
 
-// That a fault states what its kind has, and no more.
+// A fault must state the members of its kind, and no others.
 void check_members(const Scenario& scenario, const std::string& pointer, std::string_view kind,
                    const std::vector<std::string_view>& members, const nlohmann::json& stated) {
   for (const std::string_view member : members) {
@@ -209,8 +208,8 @@ void check_pipelines(const Scenario& scenario) {
   }
 }
 
-// Slaves accept pulses in a window "so strict" that Intel's page on external synchronisation does
-// not give its size: 1 % is an assumption.
+// Slaves accept pulses in a window that Intel's page on external synchronisation calls "so strict"
+// without its size: 1 % is an assumption.
 constexpr double kRateTolerance = 0.01;
 constexpr double kRounding = 1e-9;
 
@@ -263,7 +262,7 @@ const CameraProfile& checked_profile(const Scenario& scenario) {
                       fmt::join(models, ", ")));
 }
 
-// Genlock takes a pulse every two frame times at most (librealsense #12560).
+// Genlock answers at most one pulse in two frame times (librealsense #12560).
 void check_genlock(const Scenario& scenario, const Stream& stream) {
   const double guard = scenario.cameras.genlock_guard_fraction;
   const double fastest = stream.mode_rate_hz / 2 / (1 - guard);
@@ -276,7 +275,7 @@ void check_genlock(const Scenario& scenario, const Stream& stream) {
 }
 
 // Slaves follow pulses close to their mode rate. An evaluated stream that runs free keeps its mode
-// rate, which must then be the rate that is evaluated.
+// rate, which must then be the evaluated rate.
 void check_full_rate(const Scenario& scenario, const CameraProfile& camera,
                      const std::string& pointer, const Stream& stream) {
   const std::vector<double>& rates = camera.sync_rates_hz;
@@ -319,7 +318,7 @@ void check_rates(const Scenario& scenario) {
 
 constexpr double kFullCircleDeg = 360;
 
-// The cameras see with their depth stream, whose profile must say how.
+// The depth stream's profile must have a focal length.
 void check_depth_stream(const Scenario& scenario) {
   const Stream* depth = scenario.cameras.stream(StreamKind::kDepth);
   if (depth == nullptr) {

@@ -1,15 +1,15 @@
 // The choices of a scenario: an enum for each member whose values are words, and its words.
 //
-// Each word stands once, in the table below its enum. The loader, descriptions and messages take it
-// from there, and a test holds the tables to the "enum" lists of scenarios/schema.json. Names of
-// algorithms, pipelines and camera models are open-ended and stay text.
+// Each word stands once, in the table below its enum, for the loader, descriptions and messages; a
+// test compares the tables with the "enum" lists of scenarios/schema.json. Names of algorithms,
+// pipelines and camera models are open-ended and stay text.
 //
 //   to_text(SyncMode::kFullSlave)         // "full_slave"
 //   from_text<SyncMode>("full_slave")     // SyncMode::kFullSlave
 //   from_text<SyncMode>("fullslave")      // nothing
 //   all_texts<SyncMode>()                 // "default", "master", "slave", "full_slave", "genlock"
 //
-// What each value means is said where the member is: scenarios/scenario.h.
+// The meaning of each value is documented at its member (scenarios/scenario.h).
 #ifndef SIMBENCH_SCENARIOS_CHOICES_H_
 #define SIMBENCH_SCENARIOS_CHOICES_H_
 
@@ -42,7 +42,7 @@ constexpr auto words_of(StampPoint) {
   return std::to_array<Word<StampPoint>>({{kApplication, "application"}, {kKernel, "kernel"}});
 }
 
-// What the switch knows of PTP.
+// The PTP support of the switch.
 enum class SwitchClockKind : std::uint8_t { kNone, kTransparent, kBoundary };
 constexpr auto words_of(SwitchClockKind) {
   using enum SwitchClockKind;
@@ -56,7 +56,7 @@ constexpr auto words_of(ShutterKind) {
   return std::to_array<Word<ShutterKind>>({{kGlobal, "global"}, {kRolling, "rolling"}});
 }
 
-// Inter Cam Sync Mode: what a pulse means to the camera.
+// Inter Cam Sync Mode: how the camera responds to a pulse.
 enum class SyncMode : std::uint8_t { kDefault, kMaster, kSlave, kFullSlave, kGenlock };
 constexpr auto words_of(SyncMode) {
   using enum SyncMode;
@@ -67,7 +67,7 @@ constexpr auto words_of(SyncMode) {
                                         {kGenlock, "genlock"}});
 }
 // Whether cameras in this mode wait for the pulses of the rig's trigger. Which of their streams
-// follow them is the model's: Cameras::follows_trigger().
+// follow the pulses depends on the model: Cameras::follows_trigger().
 constexpr bool waits_for_trigger(SyncMode mode) {
   return mode != SyncMode::kDefault && mode != SyncMode::kMaster;
 }
@@ -80,15 +80,14 @@ constexpr auto words_of(UsbSharing) {
       {{kDedicated, "dedicated"}, {kFair, "fair"}, {kFifo, "fifo"}});
 }
 
-// How the rows are shown: as listed, or sorted by absolute error.
+// The order of the rows: as listed, or sorted by absolute error.
 enum class TableKind : std::uint8_t { kPipelines, kLeaderboard };
 constexpr auto words_of(TableKind) {
   using enum TableKind;
   return std::to_array<Word<TableKind>>({{kPipelines, "pipelines"}, {kLeaderboard, "leaderboard"}});
 }
 
-// The median of an even number of values, which the paper does not define; of an odd number, both
-// are the middle one.
+// The median of an even number of values, which the paper does not define.
 enum class MedianKind : std::uint8_t {
   kUpperMiddle,      // sorted[n / 2]
   kMeanOfMiddleTwo,  // (sorted[n / 2 - 1] + sorted[n / 2]) / 2
@@ -105,7 +104,7 @@ constexpr auto words_of(SubjectKind) {
   return std::to_array<Word<SubjectKind>>({{kPerson, "person"}, {kMesh, "mesh"}});
 }
 
-// What the subject of a studio does.
+// The motion of a studio's subject.
 enum class MotionScript : std::uint8_t { kStand, kTurn, kWalk, kWalkAndTurn, kRaiseArms };
 constexpr auto words_of(MotionScript) {
   using enum MotionScript;

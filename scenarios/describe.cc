@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kLongestListed = 32;
 
-// Units stand last in names; longer endings come before those they end in.
+// Units stand last in names; an ending comes before the shorter ones that it ends in.
 std::string unit_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kUnits = {{
       {"_rad_per_s", "rad/s"},
@@ -58,7 +58,7 @@ std::string unit_of(std::string_view name) {
   return "";
 }
 
-// What the profile of the camera model says about a value below /cameras; "" if nothing.
+// The source of a value below /cameras in the profile of the camera model; "" if none.
 std::string profile_source(const Cameras& cameras, const std::string& pointer) {
   const CameraProfile* camera = find_camera_profile(cameras.model);
   if (camera == nullptr) return "";
@@ -122,7 +122,7 @@ class Walker {
     }
     const std::string profile = profile_source(cameras_, pointer);
     if (!profile.empty()) line.source = profile;
-    // The source of the distribution's own figures does not speak for the user's.
+    // The distribution's source does not hold for the user's values.
     const Place& place = places_.nearest(pointer);
     if (!place.is_builtin) {
       line.source =

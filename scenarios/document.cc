@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// Walks the text for nlohmann's lexer, which copies its iterators, and tells how far it has come.
+// Walks the text for nlohmann's lexer, which copies its iterators, and records how far it got.
 class WatchedIterator {
  public:
   using iterator_category = std::forward_iterator_tag;
@@ -58,7 +58,7 @@ std::string_view word_around(std::string_view text, std::size_t at) {
   return text.substr(begin, end - begin);
 }
 
-// nlohmann's reason in plain words; `word` is where it met the mistake.
+// nlohmann's reason in plain words; `word` is the place of the mistake.
 std::string plain_words(std::string message, std::string_view word) {
   const auto replace = [&message](std::string_view what, std::string_view with) {
     const std::size_t at = message.find(what);
@@ -183,7 +183,7 @@ class Builder : public json::json_sax_t {
     return true;
   }
 
-  // Puts the value where the parser is, notes its line, and gives its pointer.
+  // Inserts the value at the parser's place and records its line; `pointer` receives its pointer.
   json& insert(json value, std::string* pointer = nullptr) {
     std::string place;
     json* inserted = &document_.root;

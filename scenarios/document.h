@@ -1,9 +1,9 @@
 // JSON text with the position of every value, so that messages can name the line.
 //
 // Stricter than JSON where leniency would hide a mistake: a key may stand only once in an object,
-// and nesting is limited to kMaximumNesting, which also bounds the recursion of everything that
-// walks a document later. A byte order mark is skipped. Whole numbers are held as std::int64_t
-// however they are written (480, 480.0, 4.8e2), all others as double.
+// and nesting is limited to kMaximumNesting, which also bounds the recursion of later walks over
+// the document. A byte order mark is skipped. Whole numbers are std::int64_t however they are
+// written (480, 480.0, 4.8e2), all others double.
 #ifndef SIMBENCH_SCENARIOS_DOCUMENT_H_
 #define SIMBENCH_SCENARIOS_DOCUMENT_H_
 
@@ -25,7 +25,7 @@ struct Document {
   std::map<std::string, std::size_t> lines;  // by JSON pointer: of the key, of the array element
 };
 
-// Text that is no acceptable JSON; what() says why in plain words.
+// Text that is no acceptable JSON; what() is the reason in plain words.
 class DocumentError : public std::runtime_error {
  public:
   DocumentError(const std::string& problem, bool is_syntax, std::size_t line, std::size_t column)
@@ -49,7 +49,7 @@ std::string child_pointer(const std::string& parent, std::string_view key);
 // Whether the text is UTF-8, as all text in JSON must be.
 bool is_utf8(const std::string& text);
 
-// Where a value came from: which file and line, or which --set.
+// The source of a value: a file and line, or a --set.
 struct Place {
   std::string label;        // "FILE:LINE" or "--set /pointer=value"
   std::string set_pointer;  // of a --set: the pointer it names
@@ -71,9 +71,9 @@ class Places final : public Origin {
   void set(const std::string& pointer, Place place);
   // The highest level of `pointer` and everything below it.
   std::size_t latest_level(const std::string& pointer) const;
-  // Forgets `pointer` and everything below it.
+  // Removes `pointer` and everything below it.
   void erase(const std::string& pointer);
-  // Takes over from `other` the places of `pointer` and of everything below it.
+  // Copies from `other` the places of `pointer` and of everything below it.
   void adopt(const std::string& pointer, const Places& other);
 
  private:
@@ -82,7 +82,7 @@ class Places final : public Origin {
 
 // A value for a message: short, on one line, printable.
 std::string shown(const nlohmann::json& value);
-// Text for a message: no control characters, no broken UTF-8, shortened after some 60 characters.
+// Text for a message: without control characters and broken UTF-8, cut after 160 bytes.
 std::string shown_text(std::string_view text);
 
 }  // namespace simbench::scenarios

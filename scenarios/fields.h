@@ -1,8 +1,7 @@
 // The members of the scenario structs under their JSON keys, which are their names.
 //
-// Reading and writing come from the same list of names, so a value cannot be read under one key
-// and written under another. A test compares these lists with scenarios/schema.json and with the
-// structs themselves.
+// Reading and writing share one list of names. A test compares these lists with
+// scenarios/schema.json and with the structs themselves.
 #ifndef SIMBENCH_SCENARIOS_FIELDS_H_
 #define SIMBENCH_SCENARIOS_FIELDS_H_
 
@@ -55,8 +54,8 @@ void for_each_member(Kind& fault, Visit visit) {
 
 }  // namespace simbench::scenarios
 
-// A fault is its kind and the members that this kind has. One that is not stated is 0 until the
-// checks refuse it.
+// A fault is its kind and the members of this kind. A missing member is 0 until the checks refuse
+// it.
 template <>
 struct nlohmann::adl_serializer<simbench::scenarios::Fault> {
   static void to_json(json& out, const simbench::scenarios::Fault& fault) {
@@ -151,7 +150,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Studio, radius_m, azimuth_step_deg, heights_m
 
 }  // namespace simbench::scenarios
 
-// A studio that there is not is null, or left out.
+// A scenario without a studio has null, or no member.
 template <>
 struct nlohmann::adl_serializer<std::optional<simbench::scenarios::Studio>> {
   using Studio = simbench::scenarios::Studio;
@@ -169,7 +168,7 @@ struct nlohmann::adl_serializer<std::optional<simbench::scenarios::Studio>> {
 
 namespace simbench::scenarios {
 
-// With default, for the studio's sake; the schema asks for all else.
+// With default for the studio's sake; the schema requires all else.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Scenario, name, summary, timeline, hosts, network,
                                                 trigger, cameras, usb, faults, evaluation,
                                                 algorithms, pipelines, published, studio)

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "scenarios/builtin_files.h"
-#include "scenarios/checks.h"
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
 #include "scenarios/schema.h"
@@ -58,7 +57,7 @@ struct Source {
   bool is_builtin = false;
 };
 
-// Far above any scenario, and small enough to be read before it is refused.
+// Far above any scenario, and small enough to read before refusing.
 constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
 
 std::optional<Source> find_builtin(const std::string& name) {
@@ -105,7 +104,7 @@ Source read_file(const std::string& path, const std::string& prefix) {
   return {path, std::move(text), false};
 }
 
-// What the user named: a built-in scenario, else a file. Throws InputError.
+// The user's built-in scenario, else a file. Throws InputError.
 Source find_source(const std::string& name_or_path) {
   if (const auto builtin = find_builtin(name_or_path)) return *builtin;
   std::error_code ignored;
@@ -115,8 +114,8 @@ Source find_source(const std::string& name_or_path) {
   throw InputError("scenario: " + unknown_name(name_or_path));
 }
 
-// What `from` names as its base; a path is relative to the folder of `from`. A scenario built into
-// the program may only name another one. Throws InputError, whose message begins with `place`.
+// The base of `from`; a path is relative to the folder of `from`. A scenario built into the program
+// may only name another one. Throws InputError, whose message begins with `place`.
 Source find_base(const Source& from, const std::string& base, const std::string& place) {
   if (const auto builtin = find_builtin(base)) return *builtin;
   if (from.is_builtin || !looks_like_path(base)) {
@@ -131,7 +130,7 @@ Source find_base(const Source& from, const std::string& base, const std::string&
   return read_file(path, prefix);
 }
 
-// The keys of a pointer without its escapes.
+// The keys of a pointer, unescaped.
 std::vector<std::string> keys_of(const std::string& pointer, const std::string& label) {
   std::vector<std::string> keys;
   try {
@@ -182,14 +181,14 @@ json& element(json& array, const std::string& pointer, const std::string& key,
                                                shown_text(key), pointer, array.size() - 1));
 }
 
-// A parameter of an algorithm need not be there yet.
+// A parameter of an algorithm need not exist yet.
 bool is_algorithm_parameter(const std::vector<std::string>& keys) {
   return keys.size() == 3 && keys[0] == "algorithms" && !keys[1].empty() && !keys[2].empty();
 }
 
-// --set /json/pointer=value: replaces the value that the pointer names; null removes it. The
-// pointer must name something that is there, but for /algorithms/NAME/PARAMETER: the algorithms
-// know their parameters and defaults themselves. Throws InputError.
+// --set /json/pointer=value: replaces the value at the pointer; null removes it. The value must
+// exist, except for /algorithms/NAME/PARAMETER: the algorithms declare their own parameters and
+// defaults. Throws InputError.
 void apply_override(const Override& setting, std::size_t level, json& document, Places& places) {
   const std::string& pointer = setting.pointer;
   const std::string label =
@@ -291,7 +290,7 @@ std::vector<Layer> read_layers(Source source) {
   return layers;
 }
 
-// RFC 7386, with the places beside the values.
+// RFC 7386, for the values and their places.
 void merge(const std::string& pointer, const json& patch, const Places& patch_places, json& target,
            Places& places) {
   if (!patch.is_object()) {
@@ -322,7 +321,7 @@ struct Resolved {
   std::shared_ptr<Places> places = std::make_shared<Places>();
 };
 
-// A published result belongs to a pipeline: it does not outlive a base's pipelines.
+// A published result belongs to a pipeline: it goes with the base's pipelines.
 void drop_outlived_results(const std::string& published, Resolved& resolved) {
   const json::json_pointer at(published);
   if (!resolved.document.contains(at)) return;
@@ -343,10 +342,9 @@ void drop_outlived_results(const std::string& published, Resolved& resolved) {
   resolved.document[at] = std::move(kept);
 }
 
-// Every file is validated by itself, then merged over its base (RFC 7386: objects are merged,
-// anything else is replaced, null removes); then the overrides are applied in their order; then the
-// whole is validated. Published results inherited for pipelines that are no longer there are
-// dropped. Throws InputError.
+// Validates every file by itself, merges it over its base (RFC 7386: objects are merged, anything
+// else is replaced, null removes), applies the overrides in their order and validates the whole.
+// Drops inherited published results whose pipelines are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
   Resolved resolved;
   for (Layer& layer : read_layers(std::move(source))) {
@@ -404,7 +402,7 @@ std::vector<std::string> nearest(const std::string& name, const std::vector<std:
   std::vector<std::pair<std::size_t, std::string>> found;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);
-    // A name is similar if a third of it is wrong at most, or if it is a part of the candidate.
+    // A name is similar if at most a third of it is wrong, or if it is a part of the candidate.
     const bool is_part = name.size() >= 3 && candidate.find(name) != std::string::npos;
     if (is_part || distance <= std::max<std::size_t>(1, candidate.size() / 3)) {
       found.emplace_back(distance, candidate);

@@ -2,8 +2,8 @@
 //
 // A scenario is JSON. "base" names another scenario (built in, or a path relative to the file)
 // whose members it inherits by RFC 7386 merge; --set overrides apply last. The result is validated
-// against scenarios/schema.json and then checked for what a schema cannot say. The first thing that
-// is wrong is thrown as an InputError; nothing is guessed.
+// against scenarios/schema.json and then by the checks that a schema cannot express. The first
+// mistake is thrown as an InputError; nothing is guessed.
 //
 // The scenarios of the distribution are built into the program, so they need no installed files.
 //
@@ -20,20 +20,20 @@
 
 namespace simbench::scenarios {
 
-// Bad input, for the user: where, what was found, what is allowed. what() is the whole message:
-// "FILE:LINE: /json/pointer: found ..., allowed ...".
+// Bad input. what() is the message for the user: "FILE:LINE: /json/pointer: found ..., allowed
+// ...".
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// One --set /json/pointer=value. The value is JSON; what does not parse as JSON is taken as text.
+// One --set /json/pointer=value. A value that does not parse as JSON is text.
 struct Override {
   std::string pointer;
   std::string value;
 };
 
-// Where each JSON pointer of a resolved scenario came from: a file and line, or a --set.
+// The source of each JSON pointer of a resolved scenario: a file and line, or a --set.
 class Origin {
  public:
   virtual ~Origin() = default;
@@ -56,8 +56,8 @@ struct BuiltinScenario {
 // In alphabetical order.
 std::vector<BuiltinScenario> builtin_scenarios();
 
-// Settings that are possible but suspicious: more bytes than USB carries (with the drop rate to
-// expect), an exposure that makes the camera miss pulses, ...: one line each.
+// Settings that are possible but suspicious, one line each: more bytes than USB carries (with the
+// drop rate to expect), an exposure that makes the camera miss pulses, ...
 std::vector<std::string> warnings(const Scenario& scenario);
 
 // One line per parameter of the resolved scenario.
@@ -70,7 +70,7 @@ struct ParameterLine {
 };
 std::vector<ParameterLine> describe(const Scenario& scenario);
 
-// InputError about a place in a loaded scenario; for checks made by those who use it.
+// Throws InputError about a place in a loaded scenario; for checks of the scenario's users.
 [[noreturn]] void fail_at(const Scenario& scenario, const std::string& pointer,
                           const std::string& problem);
 

@@ -8,8 +8,7 @@
 namespace simbench::scenarios {
 
 const Stream* Cameras::stream(StreamKind kind) const {
-  const auto found = std::find_if(streams.begin(), streams.end(),
-                                  [kind](const Stream& each) { return each.kind == kind; });
+  const auto found = std::ranges::find(streams, kind, &Stream::kind);
   return found == streams.end() ? nullptr : &*found;
 }
 

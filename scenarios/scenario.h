@@ -4,8 +4,8 @@
 // overrides, schema validation and semantic checks; load it with scenarios/loader.h. Every member
 // has the name, the unit and the meaning of its JSON key; scenarios/schema.json documents each with
 // its allowed range and its source. There are no defaults (the zeros below never reach a loaded
-// scenario): what it does not inherit it must state, so that `simbench describe` prints every
-// number a result rests on. Members whose values are words are enums (scenarios/choices.h).
+// scenario): a scenario inherits or states every member, so that `simbench describe` prints every
+// number behind a result. Members whose values are words are enums (scenarios/choices.h).
 //
 // Conventions: *_sigma is a standard deviation of a zero-mean normal; *_exponential_ms the mean of
 // an exponential; *_log_sigma the sigma of exp(N(0, sigma)), a factor of median 1; a probability is
@@ -65,7 +65,7 @@ struct HostClock {
   double set_cost_ms = 0;                 // CPU time of a set call
   double set_cost_session_log_sigma = 0;  // factor per host and (seed, pipeline)
   double set_cost_call_log_sigma = 0;     // factor per call
-  double set_effective_fraction = 0;      // of the call's duration after which the new value counts
+  double set_effective_fraction = 0;      // of the call's duration until the new value counts
   double arrival_quantum_ms = 0;          // of the stamps that the host gives arriving frames
   LastSet last_set;
 };
@@ -89,7 +89,7 @@ struct Nic {
 // Electrical pulses wired into every host.
 struct PulseLines {
   bool pps = false;
-  bool gnss = false;  // the receiver also tells the time of its pulses
+  bool gnss = false;  // the receiver also sends the time of its pulses
   bool trigger = false;
   double pps_jitter_sigma_us = 0;
   double interrupt_latency_us = 0;
@@ -179,7 +179,7 @@ struct ClockPoll {
   double request_exponential_ms = 0;
   double reply_ms = 0;  // from the camera's reading to the host's second
   double reply_exponential_ms = 0;
-  double tail_probability = 0;  // of a request that takes U(0, tail_max_ms) longer
+  double tail_probability = 0;  // that a request takes U(0, tail_max_ms) longer
   double tail_max_ms = 0;
   double calibrated_asymmetry_ms = 0;  // request minus reply, as a user measured it once
 
@@ -200,7 +200,7 @@ struct Cameras {
   std::vector<std::int64_t> host_of_camera;  // this names a host for each camera (else empty)
   std::vector<double> skew_of_camera_ppm{};  // in place of the drawn skew (else empty)
   std::string model;                         // a profile of scenarios/cameras
-  SyncMode sync_mode{};                      // what a pulse means to the cameras
+  SyncMode sync_mode{};                      // how the cameras respond to a pulse
   // genlock: trigger off, start all, trigger on; else the cameras start one by one
   bool common_start = false;
   double start_spread_ms = 0;  // without a common start: each camera starts after U(0, this)
@@ -245,8 +245,8 @@ struct Usb {
   double delivery_correlation = 0;  // from frame to frame (Gaussian copula); 0 without the table
 };
 
-// What goes wrong during the capture: one type for each kind of fault. Times count from the start
-// of the capture; a duration lasts until the camera, host or link returns.
+// Faults during the capture, one type for each kind. Times count from the start of the capture; a
+// duration lasts until the camera, host or link returns.
 struct CameraVanishes {
   static constexpr std::string_view kKind = "camera_vanishes";
   std::int64_t camera = 0;
@@ -286,7 +286,7 @@ struct Pipeline {
   std::string gathering;
 };
 
-// A parameter of an algorithm as the scenario states it; the algorithm's registration checks it.
+// A parameter of an algorithm, which the algorithm's registration checks.
 using ParameterValue = std::variant<bool, double, std::string>;
 // Parameters by algorithm (its name or its family's), then by parameter name.
 using AlgorithmParameters = std::map<std::string, std::map<std::string, ParameterValue>>;
@@ -298,13 +298,13 @@ struct Evaluation {
   MedianKind rmdv_median{};
 };
 
-// A published result that a pipeline's row is put beside.
+// A published result for comparison with a pipeline's row.
 struct Published {
   double amd_ms = 0;
   double rmdv_ms = 0;
 };
 
-// What stands in a studio and how it moves; the scripts: reconstruction/motion.h.
+// The subject in a studio and its motion (reconstruction/motion.h).
 struct StudioSubject {
   SubjectKind kind{};
   std::string mesh_file;  // mesh: PLY, OBJ, OFF or STL; of a person ""
@@ -315,13 +315,13 @@ struct StudioSubject {
   double arm_rate_rad_per_s = 0;
 };
 
-// A published reconstruction that a pipeline's row is put beside.
+// A published reconstruction for comparison with a pipeline's row.
 struct PublishedReprojection {
   double mean_cm = 0;
   double std_cm = 0;
 };
 
-// What depth cameras look at, for `simbench reconstruct`. The cameras' depth stream sees it.
+// The scene of the cameras' depth streams, for `simbench reconstruct`.
 struct Studio {
   double radius_m = 0;          // of the circle on which the cameras stand
   double azimuth_step_deg = 0;  // camera j has the azimuth j / heights, the height j % heights
@@ -332,7 +332,7 @@ struct Studio {
   double calibration_rotation_sigma_deg = 0;    // likewise
   double stereo_baseline_mm = 0;
   double subpixel_error_px = 0;  // standard deviation of the disparity
-  double missing_share = 0;      // of the pixels that see the subject, by chance
+  double missing_share = 0;      // of the pixels on the subject, at random
   double max_incidence_deg = 0;  // steeper surfaces give no depth
   double min_distance_m = 0;
   double max_distance_m = 0;
@@ -372,7 +372,7 @@ struct Scenario {
   }
   // How many cameras each host has.
   std::vector<std::size_t> cameras_by_host() const;
-  // The stream that is scored; a loaded scenario has it.
+  // The scored stream; a loaded scenario has it.
   const Stream* scored_stream() const { return cameras.stream(evaluation.stream); }
   // The rate at which a stream delivers frames if none is lost.
   double frame_rate_hz(const Stream& stream) const {

@@ -53,7 +53,7 @@ namespace {
 
 using nlohmann::json;
 
-// Makes every property of every object required, but for those that the schema calls optional.
+// Makes every property of every object required, except those in the schema's "x-optional".
 void require_all(json& node) {
   if (node.contains("properties")) {
     const json optional = node.value("x-optional", json::array());
@@ -71,8 +71,8 @@ void require_all(json& node) {
   }
 }
 
-// Replaces each {"$ref": "#/definitions/NAME", ...} by that definition. What stands beside the
-// reference is merged into it: texts that say of this place what the definition cannot.
+// Replaces each {"$ref": "#/definitions/NAME", ...} by that definition, and merges the members
+// beside the reference into it (the texts for this place).
 template <class Json>
 void expand(Json& node, const Json& definitions) {
   if (node.is_object() && node.contains("$ref")) {
@@ -123,7 +123,7 @@ std::string range_of(const json& node) {
   return fmt::format(" from {} to {}", node["minimum"].dump(), node["maximum"].dump());
 }
 
-// What the schema allows at a place, in words.
+// The allowed values of a place, in words.
 std::string allowed(const json& node) {
   std::vector<std::string> kinds;
   if (node.contains("enum")) {
@@ -162,7 +162,7 @@ Problem unknown_key(const std::string& pointer, const std::string& key, const js
               : fmt::format("found an unknown key, did you mean {}?", fmt::join(similar, " or "))};
 }
 
-// What is wrong with a value itself, not counting what lies inside it.
+// The problems of a value itself, without those of its members.
 std::vector<Problem> problems_at(const std::string& pointer, const json& node, const json& value) {
   std::vector<Problem> problems;
   if (value.is_object() && has_type(node, "object")) {
@@ -187,7 +187,7 @@ std::vector<Problem> problems_at(const std::string& pointer, const json& node, c
   return problems;
 }
 
-// What is wrong where the schema refused the document.
+// The problems where the schema refused the document.
 std::vector<Problem> problems_of(const JsonSchema::Refusal& refusal, const json& schema,
                                  const json& document) {
   const json* node = &schema;

@@ -1,8 +1,6 @@
 // Validation against scenarios/schema.json (or another schema of its kind), with messages for
-// people.
-//
-// The validator gives the verdict and the place; the message is then made from the schema's own
-// words for that place: "found X, allowed Y".
+// people: the validator finds the place, and the schema's own words for that place make the
+// message, "found X, allowed Y".
 #ifndef SIMBENCH_SCENARIOS_SCHEMA_H_
 #define SIMBENCH_SCENARIOS_SCHEMA_H_
 
@@ -15,7 +13,7 @@
 
 namespace simbench::scenarios {
 
-// A JSON Schema (draft-07) as a validator. schema.cc is the one place that includes valijson.
+// A JSON Schema (draft-07) as a validator. Only schema.cc includes valijson.
 class JsonSchema {
  public:
   // A value that was refused, and after it the values around it.
@@ -24,7 +22,7 @@ class JsonSchema {
     std::string reason;
   };
 
-  // The schema must be one that valijson accepts; anything else is a programming error.
+  // A schema that valijson does not accept is a programming error.
   explicit JsonSchema(nlohmann::json text);
   ~JsonSchema();
   JsonSchema(const JsonSchema&) = delete;
@@ -32,8 +30,8 @@ class JsonSchema {
 
   const nlohmann::json& text() const { return text_; }
 
-  // All that is refused; empty if the document is valid. Types are strict: 1 is not "1". Safe to be
-  // called by several threads.
+  // All refusals; empty if the document is valid. Types are strict: 1 is not "1". Several threads
+  // may call this.
   std::vector<Refusal> validate(const nlohmann::json& document) const;
 
  private:
@@ -43,14 +41,17 @@ class JsonSchema {
 };
 
 enum class Completeness {
-  kDifferences,  // a file as written: what it states must be right
-  kResolved,     // every property of every object must be there, but for those in "x-optional"
+  kDifferences,  // a file as written: the members that it states must be valid
+  kResolved,     // every property of every object must be there, except those in "x-optional"
 };
 
-// Throws InputError about the first line that the schema refuses.
+// Throws InputError about the first line that the schema refuses, scenarios/schema.json or the
+// caller's.
 void validate(const nlohmann::json& document, Completeness completeness, const Places& places);
-// The same against a schema of the caller's.
 void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places);
+
+// What the schema cannot say: throws InputError about the first members that contradict each other.
+void check(const Scenario& scenario);
 
 // scenarios/schema.json with its references resolved and its properties in the order of the file.
 const nlohmann::ordered_json& ordered_schema();

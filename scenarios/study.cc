@@ -31,8 +31,7 @@ const std::vector<Study>& studies() {
 
 const Study* find_study(std::string_view name) {
   const std::vector<Study>& all = studies();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Study& study) { return study.name == name; });
+  const auto found = std::ranges::find(all, name, &Study::name);
   return found == all.end() ? nullptr : &*found;
 }
 

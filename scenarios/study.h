@@ -1,7 +1,7 @@
-// Ready-made sweeps: a question, the scenario and the parameters that answer it
+// Ready-made sweeps: a question, and the scenario and parameters that answer it
 // (scenarios/studies/*.json, whose schema documents every member; built into the program).
 //
-// Another study is another file in that folder; nothing else needs to change.
+// A new study is a new file in that folder, without any other change.
 //
 //   simbench sweep --study scalability -o results/scalability
 #ifndef SIMBENCH_SCENARIOS_STUDY_H_
@@ -27,7 +27,7 @@ constexpr auto words_of(StudyTable) {
 
 struct Study {
   std::string name;
-  std::string summary;  // the question it answers, and how it is to be read
+  std::string summary;  // the question it answers, and how to read the answer
   std::string scenario;
   std::vector<std::string> set;    // "/json/pointer=value", for all points
   std::vector<std::string> sweep;  // axes, as `simbench sweep --sweep` takes them

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "scenarios/camera_profile.h"
@@ -49,10 +48,11 @@ void warn_about_usb(Lines& lines, const Scenario& scenario) {
                      100 * (1 - usb.bandwidth_mb_per_s / offered)));
   } else if (sharers > kKnownToWork) {
     warn(lines, scenario, "/usb/cameras_per_controller",
-         fmt::format("{} cameras share a controller; with more than {} incomplete frames and drops "
-                     "are reported of real ones (librealsense #4627), which the model does not "
-                     "show",
-                     sharers, kKnownToWork));
+         fmt::format(
+             "{} cameras share a controller; real controllers with more than {} are reported "
+             "to give incomplete frames and drops (librealsense #4627), which the model does "
+             "not show",
+             sharers, kKnownToWork));
   }
 }
 
@@ -61,12 +61,10 @@ void warn_about_exposure(Lines& lines, const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const double period_ms = 1e3 / scenario.trigger.pulse_rate_hz();
   const double readout_ms =
-      std::max_element(cameras.streams.begin(), cameras.streams.end(),
-                       [](const Stream& a, const Stream& b) { return a.readout_ms < b.readout_ms; })
-          ->readout_ms;
-  const bool is_triggered =
-      std::any_of(cameras.streams.begin(), cameras.streams.end(),
-                  [&cameras](const Stream& stream) { return cameras.follows_trigger(stream); });
+      std::ranges::max_element(cameras.streams, {}, &Stream::readout_ms)->readout_ms;
+  const bool is_triggered = std::ranges::any_of(cameras.streams, [&cameras](const Stream& stream) {
+    return cameras.follows_trigger(stream);
+  });
   const double start_ms = is_triggered ? cameras.trigger_to_exposure_us * 1e-3 : 0;
   const auto warn_if_longer = [&](const std::string& pointer, double longest_ms) {
     if (start_ms + longest_ms <= period_ms) return;
@@ -97,7 +95,7 @@ void warn_about_shutters(Lines& lines, const Scenario& scenario) {
   }
 }
 
-// The cameras' frames on their way through the port of the busiest host.
+// Capture traffic through the port of the busiest host.
 void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
   const Network& network = scenario.network;
   if (network.bandwidth_mbit_per_s == 0) return;
@@ -135,7 +133,7 @@ void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
        fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
 }
 
-// How far the farthest camera is from the point that all look at, and the nearest.
+// The distances of the nearest and the farthest camera from the point that all look at.
 struct Sight {
   double nearest_m = 0;
   double farthest_m = 0;
@@ -151,16 +149,12 @@ Sight sight_of(const Studio& studio) {
   return sight;
 }
 
-std::vector<std::string> studio_warnings(const Scenario& scenario) {
-  std::vector<std::string> lines;
-  if (!scenario.studio) return lines;
+void warn_about_studio(Lines& lines, const Scenario& scenario) {
+  if (!scenario.studio) return;
   const Studio& studio = *scenario.studio;
-  const auto warn = [&](const std::string& pointer, const std::string& text) {
-    lines.push_back(scenario.origin->describe(pointer) + ": " + text);
-  };
   const Sight sight = sight_of(studio);
   if (sight.nearest_m < studio.min_distance_m || sight.farthest_m > studio.max_distance_m) {
-    warn("/studio/radius_m",
+    warn(lines, scenario, "/studio/radius_m",
          fmt::format("cameras are {:.3g} to {:.3g} m from the centre they look at and see from "
                      "{:g} to {:g} m",
                      sight.nearest_m, sight.farthest_m, studio.min_distance_m,
@@ -170,13 +164,12 @@ std::vector<std::string> studio_warnings(const Scenario& scenario) {
   if (subject.motion == MotionScript::kWalkAndTurn && subject.turn_rate_rad_per_s > 0) {
     const double circle_m = subject.walk_speed_m_per_s / subject.turn_rate_rad_per_s;
     if (circle_m >= studio.radius_m) {
-      warn("/studio/subject/walk_speed_m_per_s",
+      warn(lines, scenario, "/studio/subject/walk_speed_m_per_s",
            fmt::format("the subject walks on a circle of {:.3g} m, the cameras stand on one of "
                        "{:g} m",
                        circle_m, studio.radius_m));
     }
   }
-  return lines;
 }
 
 }  // namespace
@@ -189,7 +182,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
-  for (std::string& line : studio_warnings(scenario)) lines.push_back(std::move(line));
+  warn_about_studio(lines, scenario);
   return lines;
 }
 

@@ -8,7 +8,7 @@
 namespace simbench {
 namespace {
 
-// What a clock reads at `at` that read `reading` at `since`.
+// The reading at `at` of a clock that read `reading` at `since`.
 HostTime continued(HostTime reading, SteadyTime since, double rate_ppb, SteadyTime at) {
   const Int128 elapsed_ns = Int128{nanoseconds_of(at)} - nanoseconds_of(since);
   const std::int64_t gained_ns = saturate_round(to_double(elapsed_ns) * rate_ppb * 1e-9);

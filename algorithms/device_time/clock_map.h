@@ -1,9 +1,9 @@
 // A host's steady clock mapped to its system clock, from the log of its adjustments.
 //
 // Between two adjustments the system clock is a straight line over the steady clock, so the log
-// says what the system clock read at any steady time. Each steady time is mapped by the segment
-// that was valid then, also if a newer one has begun: a frame that was exposed just before a step
-// and delivered after it gets the reading from before the step.
+// gives its reading at any steady time. The segment that was valid at a steady time maps it, also
+// after a newer one has begun: a frame that was exposed just before a step and delivered after it
+// gets the reading from before the step.
 //
 // Memory: the newest kMaxSegments segments. Steady times before the oldest of them, or before the
 // log begins, lie on that segment's line continued back from its `before`. An adjustment that is

@@ -1,8 +1,8 @@
 // Stage 2, device_time: when, on the host clock, was this frame exposed?
 //
 // An estimator turns one camera's stream of (sensor stamp, arrival stamp) into global stamps. One
-// object per camera and stream; it sees the frames in order of delivery and knows no other camera,
-// no clock and no truth. It never waits and never allocates without bound.
+// object per camera and stream; it gets the frames in order of delivery and has no access to other
+// cameras, clocks or truth. It never waits, and its memory is bounded.
 //
 // Degenerate input (one frame, equal stamps, decreasing stamps) gives a documented fallback, never
 // a NaN: see each estimator's header.
@@ -41,20 +41,20 @@ class DeviceTimeEstimator {
   virtual ~DeviceTimeEstimator() = default;
   // The global stamp of the newest frame.
   virtual GlobalTime stamp(const DeviceSample& sample) = 0;
-  // True for an estimator that must see the whole recording before its first stamp (offline);
-  // it is then given to learn() once, in order, before stamp() is called for each frame again.
+  // True for an estimator that needs the whole recording before its first stamp (offline): learn()
+  // gets it once, in order, before stamp() is called for each frame.
   virtual bool offline() const { return false; }
   virtual void learn(std::span<const DeviceSample> /*recording*/) {}
-  // True for an estimator that is given the frames of the capture's warm-up too. The others begin
-  // with the first evaluated frame, as the paper's do: cameras that are still unsteady do not share
-  // the bus as they will later, and what is learned from their arrivals is wrong then.
+  // True for an estimator that gets the frames of the capture's warm-up too. The others begin with
+  // the first evaluated frame, as the paper's do: arrivals of cameras that are still unsteady and
+  // share the bus differently would spoil the estimate.
   virtual bool from_first_frame() const { return false; }
   // A poll of the camera's clock, or a change of its host's system clock, in order with the frames.
-  // An offline estimator is given all of them before learn().
+  // An offline estimator gets all of them before learn().
   virtual void on_poll(const PollSample& /*poll*/) {}
   virtual void on_adjustment(const ClockAdjustment& /*adjustment*/) {}
-  // True if stamps count from the camera's own first frame instead of a host's zero; whoever
-  // combines cameras adds one common anchor.
+  // True if stamps count from the camera's own first frame instead of a host's zero; to combine
+  // cameras, add one common anchor.
   virtual bool relative() const { return false; }
 };
 

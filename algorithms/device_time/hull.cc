@@ -1,6 +1,7 @@
 #include "algorithms/device_time/hull.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/lower_hull.h"
@@ -17,53 +18,38 @@ using Sample = OffsetStream::Sample;
 // Slopes are in ns per us.
 double slope_of_ppm(double ppm) { return ppm * 1e-3; }
 
-class WindowHullEstimator final : public DeviceTimeEstimator {
+// Adds a point to a hull of the newest ones; returns the hull's vertices.
+std::span<const LinePoint> extended(WindowHull& hull, LinePoint point) {
+  if (hull.full()) hull.pop();
+  hull.push(point);
+  return hull.hull();
+}
+std::span<const LinePoint> extended(SwitchingHull& hull, LinePoint point) {
+  hull.add(point);
+  return hull.current();
+}
+
+template <class Hull>
+class OnlineHullEstimator final : public DeviceTimeEstimator {
  public:
-  explicit WindowHullEstimator(WindowHullSettings settings)
-      : max_slope_(slope_of_ppm(settings.max_skew_ppm)), window_(settings.frames) {}
-
-  GlobalTime stamp(const DeviceSample& sample) override {
-    const Sample kind = stream_.push(sample);
-    if (kind == Sample::kFirst) window_.clear();
-    if (kind != Sample::kLate) {
-      if (window_.full()) window_.pop();
-      window_.push(stream_.point());
-      line_ = middle_line(window_.hull(), max_slope_);
-    }
-    return stream_.stamp(line_.at(stream_.point().x));
-  }
-
- private:
-  double max_slope_;
-  OffsetStream stream_;
-  WindowHull window_;
-  SupportLine line_;
-};
-
-class SwitchingHullEstimator final : public DeviceTimeEstimator {
- public:
-  explicit SwitchingHullEstimator(SwitchingHullSettings settings)
-      : max_slope_(slope_of_ppm(settings.max_skew_ppm)),
-        hull_(saturate_round(settings.period_s * 1e6)) {}
+  OnlineHullEstimator(Hull hull, double max_skew_ppm)
+      : max_slope_(slope_of_ppm(max_skew_ppm)), hull_(std::move(hull)) {}
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const Sample kind = stream_.push(sample);
     if (kind == Sample::kFirst) hull_.clear();
-    if (kind != Sample::kLate) {
-      hull_.add(stream_.point());
-      line_ = middle_line(hull_.current(), max_slope_);
-    }
+    if (kind != Sample::kLate) line_ = middle_line(extended(hull_, stream_.point()), max_slope_);
     return stream_.stamp(line_.at(stream_.point().x));
   }
 
  private:
   double max_slope_;
   OffsetStream stream_;
-  SwitchingHull hull_;
+  Hull hull_;
   SupportLine line_;
 };
 
-// A recording in which a clock was set or restarted is several, each with its own line.
+// A recording in which a clock was set or restarted counts as several, each with its own line.
 class OfflineHullEstimator final : public DeviceTimeEstimator {
  public:
   explicit OfflineHullEstimator(double max_skew_ppm) : max_slope_(slope_of_ppm(max_skew_ppm)) {}
@@ -110,12 +96,14 @@ class OfflineHullEstimator final : public DeviceTimeEstimator {
 }  // namespace
 
 std::unique_ptr<DeviceTimeEstimator> make_window_hull(WindowHullSettings settings) {
-  return std::make_unique<WindowHullEstimator>(settings);
+  return std::make_unique<OnlineHullEstimator<WindowHull>>(WindowHull(settings.frames),
+                                                           settings.max_skew_ppm);
 }
 
 std::unique_ptr<DeviceTimeEstimator> make_switching_hull(SwitchingHullSettings settings) {
   SIMBENCH_ASSERT(settings.period_s > 0, "a hull grows for some time");
-  return std::make_unique<SwitchingHullEstimator>(settings);
+  return std::make_unique<OnlineHullEstimator<SwitchingHull>>(
+      SwitchingHull(saturate_round(settings.period_s * 1e6)), settings.max_skew_ppm);
 }
 
 std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm) {

@@ -17,7 +17,7 @@ constexpr std::int64_t kSlowNs = 950'000'000;
 constexpr std::int64_t kFirstHalfRoundTripNs = 1'000'000'000;
 constexpr double kBlendUs = 1'000'000;
 
-// The line in use: offset in ns over device time in us, moving from one line to the next.
+// The line in use: offset in ns over device time in us, blended from one line to the next.
 class BlendedLine {
  public:
   void start(double level_ns) { from_ = to_ = {.slope = 0, .level_ns = level_ns}; }
@@ -76,7 +76,7 @@ class LibrealsenseGlobal final : public DeviceTimeEstimator {
   }
 
  private:
-  // A host clock that was set back is no reason to wait.
+  // A poll is due at once after the host clock was set back.
   bool is_due(HostTime t0) const {
     if (!polled_) return true;
     const Int128 since_ns = Int128{nanoseconds_of(t0)} - nanoseconds_of(*polled_);
@@ -122,7 +122,6 @@ std::vector<DeviceTimeEntry> device_time_librealsense_global() {
             .summary = "librealsense's global time over polls of the camera's clock",
             .source =
                 "librealsense src/global_timestamp_reader.cpp; docs/reference/d455.md section 5",
-            .parameters = {},
             .needs = {Need::kPolls}},
        .make = [](const Parameters&) { return make_librealsense_global(); }}};
 }

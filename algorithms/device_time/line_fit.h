@@ -5,7 +5,7 @@
 // so nothing accumulates, adding and removing a point leaves no trace, and doubles appear only in
 // the last division. Where x is counted from (a fixed anchor, say the first frame) does not matter.
 //
-// Reach: exact while |x| and |y| stay below 2^61 / capacity; larger values count as that. With x in
+// Exact while |x| and |y| stay below 2^61 / capacity; larger values count as that. With x in
 // microseconds and a capacity of 30 that is 2400 years, with 3.2 million (10 h at 90 Hz) 8 days.
 //
 // Complexity: add, remove, line: O(1). Source: docs/reference/paper.md section 3.
@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "algorithms/device_time/saturate.h"
+#include "algorithms/ports/assert.h"
 
 namespace simbench {
 
@@ -46,8 +47,12 @@ struct Line {
 
 class LineSums {
  public:
-  // At most `capacity` points (at least 1) will be in the sums at a time.
-  explicit LineSums(std::size_t capacity);
+  // At most `capacity` points (at least 1) will be in the sums at a time. The reach keeps every sum
+  // of x or y below 2^61, and so each product in line() within 2^123.
+  explicit LineSums(std::size_t capacity)
+      : reach_((std::int64_t{1} << 61) / static_cast<std::int64_t>(capacity)) {
+    SIMBENCH_ASSERT(reach_ > 0, "a line needs room for one point, and no more than 2^61");
+  }
 
   void add(LinePoint point) {
     point = within_reach(point);
@@ -66,7 +71,12 @@ class LineSums {
     sum_xx_ -= Int128{point.x} * point.x;
     sum_xy_ -= Int128{point.x} * point.y;
   }
-  Line line() const;
+  Line line() const {
+    const Int128 spread = count_ * sum_xx_ - Int128{sum_x_} * sum_x_;
+    const Int128 common = count_ * sum_xy_ - Int128{sum_x_} * sum_y_;
+    const double slope = spread == 0 ? 0.0 : to_double(common) / to_double(spread);
+    return {.slope = slope, .count = count_, .sum_x = sum_x_, .sum_y = sum_y_};
+  }
 
  private:
   LinePoint within_reach(LinePoint point) const {

@@ -7,7 +7,7 @@
 namespace simbench {
 namespace {
 
-// Leaves at most half of them and the two ends, none much closer together than another.
+// Keeps at most half of them and the two ends, at about equal distances.
 void thin(std::vector<LinePoint>& vertices) {
   const std::int64_t span = vertices.back().x - vertices.front().x;
   const std::int64_t gap = span / static_cast<std::int64_t>(LowerHull::kMaxVertices / 2);
@@ -19,6 +19,18 @@ void thin(std::vector<LinePoint>& vertices) {
   vertices.resize(kept);
 }
 
+// Drops the vertices that a point to the right of all takes the place of.
+void make_way(std::vector<LinePoint>& hull, LinePoint point) {
+  std::size_t size = hull.size();
+  while (size >= 2 && !is_vertex(hull[size - 2], hull[size - 1], point)) --size;
+  hull.resize(size);
+}
+
+void append(std::vector<LinePoint>& hull, LinePoint point) {
+  make_way(hull, point);
+  hull.push_back(point);
+}
+
 double slope_between(LinePoint a, LinePoint b) {
   return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
 }
@@ -28,10 +40,8 @@ double slope_between(LinePoint a, LinePoint b) {
 void LowerHull::add(LinePoint point) {
   SIMBENCH_ASSERT(vertices_.empty() || point.x > vertices_.back().x,
                   "points of a hull come in order");
-  std::size_t size = vertices_.size();
-  while (size >= 2 && !is_vertex(vertices_[size - 2], vertices_[size - 1], point)) --size;
-  vertices_.resize(size);
-  if (size == kMaxVertices) thin(vertices_);
+  make_way(vertices_, point);
+  if (vertices_.size() == kMaxVertices) thin(vertices_);
   vertices_.push_back(point);
 }
 
@@ -60,18 +70,6 @@ SupportLine support_line(std::span<const LinePoint> vertices, std::int64_t twice
   return {.touches = vertices[right - 1], .slope = slope};
 }
 
-namespace {
-
-// Adds a point to the right of a hull.
-void append(std::vector<LinePoint>& hull, LinePoint point) {
-  std::size_t size = hull.size();
-  while (size >= 2 && !is_vertex(hull[size - 2], hull[size - 1], point)) --size;
-  hull.resize(size);
-  hull.push_back(point);
-}
-
-}  // namespace
-
 WindowHull::WindowHull(std::size_t capacity) : capacity_(capacity), older_hull_(capacity) {
   SIMBENCH_ASSERT(capacity > 0, "a window holds a point");
   older_.reserve(capacity);
@@ -79,13 +77,13 @@ WindowHull::WindowHull(std::size_t capacity) : capacity_(capacity), older_hull_(
 }
 
 void WindowHull::push(LinePoint point) {
-  SIMBENCH_ASSERT(!full(), "take the oldest point out first");
+  SIMBENCH_ASSERT(!full(), "remove the oldest point first");
   newer_.push_back(point);
   append(newer_hull_, point);
 }
 
 void WindowHull::pop() {
-  SIMBENCH_ASSERT(!empty(), "no point to take out");
+  SIMBENCH_ASSERT(!empty(), "no point to remove");
   if (older_.empty()) rebuild_older();
   const Older& oldest = older_.back();
   older_hull_[older_vertices_ - 1] = oldest.displaced;

@@ -1,14 +1,14 @@
 // The lower convex hull of a growing set of points, and lines that lie under all of them.
 //
 // Delays are one-sided: an arrival is never early. So the line of a clock lies under all points
-// (sensor stamp, offset) and touches some of them, and the edge of the lower hull over the middle
-// of the data is the highest line there that does so. Moon's linear programme and Zhang's hull give
-// the same line.
+// (sensor stamp, offset) and touches some of them; the edge of the lower hull over the middle of
+// the data is the highest such line there. Moon's linear programme and Zhang's hull give the same
+// line.
 //
-// Points come with strictly increasing x; |x| and |y| up to 2^61. Arithmetic is exact. Points on an
-// edge are not kept. Only vertices are kept, about 2 ln n of n random points; data that is convex
-// all the way would keep every point, so at kMaxVertices those closer together than 1/2048 of the
-// span are thinned out, which lifts the hull by no more than a chord of that length does.
+// Points come with strictly increasing x; |x| and |y| up to 2^61. Arithmetic is exact. Only
+// vertices are kept, not points on an edge: about 2 ln n of n random points. Convex data would keep
+// every point, so at kMaxVertices those closer together than 1/2048 of the span are thinned out,
+// which lifts the hull by no more than a chord of that length does.
 //
 // Complexity: add amortised O(1), support_line O(log vertices).
 // Source: Zhang, Liu, Xia 2002; docs/reference/device_time.md section 1. The midpoint is taken anew
@@ -49,7 +49,7 @@ inline bool is_vertex(LinePoint a, LinePoint b, LinePoint c) {
   return Int128{c.y - a.y} * (b.x - a.x) > Int128{b.y - a.y} * (c.x - a.x);
 }
 
-// A line through a point, of a hull that it supports.
+// A line that supports a hull at a point.
 struct SupportLine {
   LinePoint touches;
   double slope = 0;
@@ -79,7 +79,7 @@ inline SupportLine middle_line(std::span<const LinePoint> vertices,
 //
 // Complexity: push and pop amortised O(1) (a rebuild of n points once in n pops), hull() O(number
 // of vertices). Memory: 3 * capacity points, allocated when made. Points and arithmetic as in
-// lower_hull.h, except that no vertex is ever dropped.
+// LowerHull, but no vertex is thinned out.
 //
 //   WindowHull window(300);
 //   if (window.full()) window.pop();
@@ -90,9 +90,9 @@ class WindowHull {
   // Room for `capacity` points, at least 1.
   explicit WindowHull(std::size_t capacity);
 
-  // x greater than that of all points within; not if full().
+  // x must be greater than that of all points within; not if full().
   void push(LinePoint point);
-  // Takes the oldest point out; not if empty().
+  // Removes the oldest point; not if empty().
   void pop();
   void clear();
 
@@ -122,7 +122,7 @@ class WindowHull {
   std::vector<LinePoint> joined_;
 };
 
-// Two lower hulls fed in parallel, so that a growing hull forgets (TICSync; the switching hull of
+// Two growing lower hulls fed in parallel, so that old points leave (TICSync; the switching hull of
 // cuckoo_time_translator): once the pending one is `period` old, the next point makes it the
 // current one and begins a new pending one. The current hull then spans one to two periods.
 //

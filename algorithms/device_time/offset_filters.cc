@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/lower_hull.h"
@@ -76,7 +77,7 @@ std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings
 
 namespace {
 
-// Reorders the values, of which there is one at least; the mean of the middle two if even.
+// Reorders the values, at least one; the mean of the middle two if their number is even.
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -183,7 +184,7 @@ class Filter {
     skew_variance_ += dt * squared(settings_.skew_sigma_ppm);
   }
 
-  // False, and nothing learned, if the gate rejects the measurement.
+  // False, and no change, if the gate rejects the measurement.
   bool update(double offset_us) {
     const double noise = squared(1e3 * settings_.offset_sigma_ms);
     const double innovation = offset_variance_ + noise;
@@ -251,28 +252,22 @@ namespace {
 
 constexpr const char* kSource = "docs/reference/device_time.md section 1";
 
-AlgorithmInfo clock_model_info(const char* name, const char* family, const char* summary,
-                               const char* source) {
-  return {.name = name, .family = family, .summary = summary, .source = source, .parameters = {}};
-}
-
 DeviceTimeEntry olson() {
-  AlgorithmInfo olson = clock_model_info(
-      "olson_50ppm", "olson", "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
-      "Olson, IROS 2010; docs/reference/device_time.md section 1");
-  olson.parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
-                                       "forgetting; must exceed the skew", kSource)};
-  return {.info = olson, .make = [](const Parameters& parameters) {
-            return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
-          }};
+  return {
+      .info = {.name = "olson_50ppm",
+               .family = "olson",
+               .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+               .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
+               .parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
+                                               "forgetting; must exceed the skew", kSource)}},
+      .make = [](const Parameters& parameters) {
+        return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
+      }};
 }
 
 DeviceTimeEntry kalman() {
   const KalmanSettings defaults;
-  AlgorithmInfo kalman = clock_model_info(
-      "kalman", "kalman", "Kalman filter of offset and skew; its gate cannot lock itself out",
-      "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1");
-  kalman.parameters = {
+  std::vector<ParameterSpec> specs = {
       number_parameter("initial_offset_sigma_ms", defaults.initial_offset_sigma_ms, 1e-3, 1e6,
                        "uncertainty of the first frame's offset", kSource),
       number_parameter("initial_skew_sigma_ppm", defaults.initial_skew_sigma_ppm, 1e-3, 1e5,
@@ -287,7 +282,14 @@ DeviceTimeEntry kalman() {
                        "so many in a row and the filter begins anew", "ours"),
   };
   return {
-      .info = kalman, .make = [](const Parameters& parameters) {
+      .info =
+          {.name = "kalman",
+           .family = "kalman",
+           .summary = "Kalman filter of offset and skew; its gate cannot lock itself out",
+           .source =
+               "cuckoo_time_translator KalmanOwt, tuned; docs/reference/device_time.md section 1",
+           .parameters = std::move(specs)},
+      .make = [](const Parameters& parameters) {
         return make_kalman({.initial_offset_sigma_ms = parameters.number("initial_offset_sigma_ms"),
                             .initial_skew_sigma_ppm = parameters.number("initial_skew_sigma_ppm"),
                             .offset_sigma_ms = parameters.number("offset_sigma_ms"),
@@ -303,13 +305,15 @@ DeviceTimeEntry kalman() {
 std::vector<DeviceTimeEntry> device_time_offset_filters() {
   return {
       olson(),
-      {.info = clock_model_info("minimum_1s", "minimum",
-                                "least offset of the last second: the best of the simple ones",
-                                kSource),
+      {.info = {.name = "minimum_1s",
+                .family = "minimum",
+                .summary = "least offset of the last second: the best of the simple ones",
+                .source = kSource},
        .make = [](const Parameters&) { return make_sliding_minimum({.window_s = 1}); }},
-      {.info = clock_model_info("theil_sen_300", "theil_sen",
-                                "median of slopes over the last 300 frames, a refit every 15",
-                                "Sen 1968; docs/reference/device_time.md section 1"),
+      {.info = {.name = "theil_sen_300",
+                .family = "theil_sen",
+                .summary = "median of slopes over the last 300 frames, a refit every 15",
+                .source = "Sen 1968; docs/reference/device_time.md section 1"},
        .make = [](const Parameters&) { return make_theil_sen({.frames = 300}); }},
       kalman(),
   };

@@ -1,8 +1,9 @@
-// device_time by filters of the offset arrival - sensor: small policies, each with a memory of its
-// own.
+// device_time by filters of the offset arrival - sensor, each with a memory of its own.
 //
 // They share the series of samples (offset_stream.h): the first frame, and the first after a clock
-// was set or restarted, is stamped with its arrival.
+// was set or restarted, is stamped with its arrival; a frame not later than the newest is stamped
+// and not used.
+// Source, if none is named: docs/reference/device_time.md section 1.
 //
 //   auto estimator = make_sliding_minimum({.window_s = 1});
 //   GlobalTime stamp = estimator->stamp(sample);
@@ -16,76 +17,65 @@
 
 namespace simbench {
 
-// device_time by Olson's passive synchronisation: the offset may only grow by alpha a second, and
-// falls at once to that of a frame that was delayed less.
+// Olson's passive synchronisation: the offset grows by alpha a second, and falls at once to that of
+// a frame that was delayed less.
 //
 //   est = q + (s - p) * (1 + alpha);  if est >= h: (p, q) = (s, h), est = h
 //
-// alpha must exceed the skew, or the estimate cannot follow; what exceeds it leaks into the stamps.
-// Two numbers of state, O(1). A downward step of the host is followed at once, an upward one at
-// alpha. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned.
+// alpha must exceed the skew, or the estimate cannot follow; the excess leaks into the stamps. Two
+// numbers of state, O(1). The estimate follows a downward step of the host at once, an upward one
+// at alpha.
 //
-// Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010;
-// docs/reference/device_time.md section 1.
+// Source: Olson, A Passive Solution to the Sensor Synchronization Problem, IROS 2010.
 struct OlsonSettings {
   double alpha_ppm = 50;
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_olson(OlsonSettings settings);
 
-// device_time by the sliding minimum: sensor stamp plus the least offset of the last W seconds of
-// sensor time. The best of the simple methods.
+// The sliding minimum: sensor stamp plus the least offset of the last W seconds of sensor time. The
+// best of the simple methods.
 //
-// A skew of r leaves up to r * W; a downward step of the host is followed at once, an upward one
-// after W. First frame, and the first after a clock was set or restarted (offset_stream.h): its
-// arrival; a frame not later than the newest is stamped and not learned.
+// A skew of r leaves an error of up to r * W. The estimate follows a downward step of the host at
+// once, an upward one after W.
 //
 // Complexity: amortised O(1) with a queue of increasing offsets. It holds at most kMaxQueued; if
-// offsets keep increasing for longer than that within W, the newest takes the place of the one
-// before, which can only matter W later, by what lies between two frames.
-//
-// Source: docs/reference/device_time.md section 1.
+// offsets keep increasing for longer than that within W, the newest replaces the one before, which
+// can only matter W later, by the difference of two frames.
 struct SlidingMinimumSettings {
   double window_s = 1;  // positive
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings settings);
 
-// device_time by Theil-Sen regression over the last n frames: the slope is the median of the slopes
-// of all pairs, the level the median of the residuals.
+// Theil-Sen regression over the last n frames: the slope is the median of the slopes of all pairs,
+// the level the median of the residuals.
 //
-// Robust against outliers; of one-sided delay its bias is about the median instead of the mean.
-// A refit takes O(n^2), 45,000 slopes of 300 frames, so there is one every n/20 frames (each frame,
-// while the window holds fewer than 40); in between frames are stamped from the last line.
+// Robust against outliers; with one-sided delay its bias is about the median instead of the mean.
+// A refit takes O(n^2), 45,000 slopes for 300 frames, so there is one every n/20 frames (each
+// frame, while the window holds fewer than 40); in between frames are stamped from the last line.
 // Memory: n frames and n^2/2 slopes.
 //
-// First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
-// frame not later than the newest is stamped and not learned.
-// Source: Sen 1968; docs/reference/device_time.md section 1 (refit every 15 of 300 frames there
-// too).
+// Source: Sen 1968; docs/reference/device_time.md section 1 (there too a refit every 15 of 300
+// frames).
 struct TheilSenWindow {
   std::size_t frames = 300;  // 1 to 10,000
 };
 
 std::unique_ptr<DeviceTimeEstimator> make_theil_sen(TheilSenWindow window);
 
-// device_time by a Kalman filter of offset and skew, after KalmanOwt of cuckoo_time_translator.
+// A Kalman filter of offset and skew, after KalmanOwt of cuckoo_time_translator.
 //
 //   x = [offset, skew],  F = [1 dt; 0 1],  Q = diag(0, skew_sigma^2) dt,  R = offset_sigma^2
 //
-// A frame whose residual exceeds `gate` standard deviations of the innovation is rejected. Such a
-// gate locks itself out after a bad start: a first frame 24 ms late leaves all others rejected, and
-// since Q adds nothing to the offset there is no way back (measured: 124 to 480 ms off for good).
-// So after `rejections_to_restart` in a row the filter begins anew from the frame at hand.
+// A frame whose residual exceeds `gate` standard deviations of the innovation is rejected. After a
+// bad start such a gate rejects for ever: with a first frame 24 ms late all others are rejected,
+// and as Q adds nothing to the offset the filter cannot recover (measured: 124 to 480 ms off for
+// good). So after `rejections_to_restart` in a row it begins anew from the present frame.
 //
 // Delay is one-sided, so its mean within the gate stays in the stamps as a bias (0.28 ms for
 // Exp(0.3 ms)). The defaults are the reference page's "tuned" row, not cuckoo's, whose cooldown and
-// wide sigmas do worse on frames.
-//
-// First frame, and the first after a clock was set or restarted (offset_stream.h): its arrival; a
-// frame not later than the newest is stamped from the state and not learned. O(1).
-// Source: docs/reference/device_time.md section 1.
+// wide sigmas do worse on frames. O(1).
 struct KalmanSettings {
   double initial_offset_sigma_ms = 2;
   double initial_skew_sigma_ppm = 1000;

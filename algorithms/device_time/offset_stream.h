@@ -1,19 +1,4 @@
-// A camera's samples as a clean series of (sensor stamp, offset) for the estimators that assume
-// one: strictly increasing sensor stamps and two clocks that are nearly alike.
-//
-// Each sample is one of
-//   kFirst  the first, or the first after a clock was set or restarted: forget all before it
-//   kNext   later than all before: learn it
-//   kLate   not later than the newest (reordered, or equal): stamp it, do not learn it
-//
-// A sample begins anew if its sensor stamp lies more than 1 s before the newest (the camera was
-// restarted), or if its offset differs from the newest's by more than 1 s + 0.1 % of the sensor
-// time in between (a clock was set). Smaller steps go to the estimator, which has its own memory.
-// Gaps of any length are no reason: a drift of up to 1000 ppm stays within the bound.
-//
-//   OffsetStream stream;
-//   switch (stream.push(sample)) {...}
-//   return stream.stamp(offset_ns);
+// A camera's samples as exact points (sensor stamp, offset), and as a clean series of them.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_OFFSET_STREAM_H_
 
@@ -21,10 +6,64 @@
 #include <cstdint>
 #include <optional>
 
-#include "algorithms/device_time/sample_anchor.h"
+#include "algorithms/device_time/device_time.h"
+#include "algorithms/device_time/line_fit.h"
+#include "algorithms/device_time/saturate.h"
 
 namespace simbench {
 
+// Counts samples from a first one: estimators fit the offset arrival - sensor over the sensor
+// stamp, in small exact integers, so that hours and dates cost no precision.
+//
+//   SampleAnchor anchor(first);
+//   LinePoint p = anchor.point(sample);              // us, ns
+//   GlobalTime t = anchor.stamp(sample.sensor, offset_ns);
+class SampleAnchor {
+ public:
+  explicit SampleAnchor(const DeviceSample& first)
+      : sensor_us_(first.sensor.time_since_epoch().count()),
+        arrival_ns_(nanoseconds_of(first.arrival)) {}
+
+  // x: sensor stamp in us; y: offset of arrival to sensor in ns; both from the first sample's.
+  LinePoint point(const DeviceSample& sample) const {
+    const Int128 x = elapsed_us(sample.sensor);
+    const Int128 y = Int128{nanoseconds_of(sample.arrival)} - arrival_ns_ - 1000 * x;
+    return {saturate(x), saturate(y)};
+  }
+
+  std::int64_t x(DeviceTime sensor) const { return saturate(elapsed_us(sensor)); }
+
+  // The host's reading at sensor stamp `sensor` when the offset is `offset_ns`.
+  GlobalTime stamp(DeviceTime sensor, double offset_ns) const {
+    return GlobalTime(
+        Nanoseconds(saturate(arrival_ns_ + 1000 * elapsed_us(sensor) + saturate_round(offset_ns))));
+  }
+
+ private:
+  Int128 elapsed_us(DeviceTime sensor) const {
+    return Int128{sensor.time_since_epoch().count()} - sensor_us_;
+  }
+
+  std::int64_t sensor_us_;
+  std::int64_t arrival_ns_;
+};
+
+// A clean series for the estimators that assume one: strictly increasing sensor stamps and two
+// clocks that are nearly alike.
+//
+// Each sample is one of
+//   kFirst  the first, or the first after a clock was set or restarted: discard all before it
+//   kNext   later than all before: use it for the estimate
+//   kLate   not later than the newest (reordered, or equal): stamp it, do not use it
+//
+// A series begins anew if the sensor stamp lies more than 1 s before the newest (the camera was
+// restarted), or if the offset differs from the newest by more than 1 s + 0.1 % of the sensor time
+// in between (a clock was set). Smaller steps go to the estimator, which has its own memory. A gap
+// alone, however long, begins no series: a drift of up to 1000 ppm stays within the bound.
+//
+//   OffsetStream stream;
+//   switch (stream.push(sample)) {...}
+//   return stream.stamp(offset_ns);
 class OffsetStream {
  public:
   enum class Sample : std::uint8_t { kFirst, kNext, kLate };
@@ -47,7 +86,7 @@ class OffsetStream {
 
   bool empty() const { return !anchor_.has_value(); }
 
-  // Of the sample pushed last: x the sensor stamp in us, y the offset in ns, from kFirst's.
+  // The sample pushed last: x the sensor stamp in us, y the offset in ns, from kFirst's.
   LinePoint point() const { return point_; }
 
   // The global stamp of the sample pushed last if its offset is `offset_ns`.

@@ -15,8 +15,8 @@ namespace simbench {
 
 // A camera's clock polls as a clean series, and the frames they are for.
 //
-// Built on offset_stream.h with the poll's end as its arrival. Left out are polls that end before
-// they begin or take more than a second, and those not later on the camera than the newest.
+// The poll's end takes the place of a sample's arrival (offset_stream.h). Polls that end before
+// they begin, take more than a second or are not later on the camera than the newest are left out.
 class PollStream {
  public:
   enum class Poll : std::uint8_t { kFirst, kNext, kLeftOut };
@@ -41,12 +41,12 @@ class PollStream {
 
   bool empty() const { return stream_.empty(); }
 
-  // Of the poll pushed last: x its reading in us, y the offset of its end in ns, from kFirst's.
+  // The poll pushed last: x its reading in us, y the offset of its end in ns, from kFirst's.
   LinePoint end() const { return stream_.point(); }
   std::int64_t round_trip_ns() const { return round_trip_ns_; }
 
-  // The global stamp of a frame by offset(x) in ns, where x is its sensor stamp from kFirst's; its
-  // arrival if there are no polls or the frame is of other clocks than they.
+  // The global stamp of a frame by offset(x) in ns, where x is its sensor stamp from kFirst's. Its
+  // arrival if there are no polls, or if one of the clocks was restarted since.
   template <class Offset>
   GlobalTime stamp(const DeviceSample& frame, Offset offset) const {
     if (!empty()) {
@@ -65,27 +65,25 @@ class PollStream {
   std::int64_t round_trip_ns_ = 0;
 };
 
-// device_time from polls of the camera's clock: two-way convex hulls (MOOS, TICSync).
+// Two-way convex hulls over polls (MOOS, TICSync).
 //
-// A poll sent at t0 and answered at t1 read the camera's clock as d in between, so t0 - d and
-// t1 - d bound the offset of the host's clock to the camera's from below and above. The upper hull
-// of the lower bounds and the lower hull of the upper bounds are lines; the estimate is the mean of
-// the two edges over the middle of the window, for any sensor stamp. Frames only bring stamps:
-// their arrivals are not used, so delivery latency is not in the result, and load does not matter.
+// A poll sent at t0 with its reply at t1 read the camera's clock as d in between, so t0 - d and
+// t1 - d bound the offset of the host's clock to the camera's from below and above. The estimate is
+// the mean of two edges over the middle of the window: of the upper hull of the lower bounds and of
+// the lower hull of the upper bounds. The frames' arrivals are not used, so delivery latency is not
+// in the result, and load does not matter.
 //
-// Error: half of the difference of the least request and reply delay (asymmetry), which no two-way
-// method can see; the hulls' noise as in hull.h, with the polls of the window for n. With 10 polls
-// a second of 0.3 ms + Exp(0.1 ms) each way, a window of 20 s leaves 1.3 us, and 2.8 us under a
-// skew that wanders by 5 ppm in 300 s; 10 s leave 2.5 and 2.6, 30 s leave 0.8 and 5.0.
+// Error: half the difference of the least request and reply delays (asymmetry), which no two-way
+// method can measure; the hulls' noise as in hull.h, with n polls in the window. With 10 polls a
+// second of 0.3 ms + Exp(0.1 ms) each way, a window of 20 s leaves 1.3 us, and 2.8 us under a skew
+// that wanders by 5 ppm in 300 s; 10 s leave 2.5 and 2.6, 30 s leave 0.8 and 5.0.
 //
-// Before the first poll, and where a frame's arrival lies more than 1 s + 0.1 % of the time since
-// the newest poll away from the line (its camera was restarted): the arrival. Polls that end before
-// they begin, take more than a second or are not later on the camera than the newest are left out;
-// a clock that was set or restarted forgets all polls before (offset_stream.h). Slopes are limited
-// as in hull.h.
+// The stamp is the arrival before the first poll, and where the arrival lies more than 1 s + 0.1 %
+// of the time since the newest poll away from the line (its camera was restarted). After a clock
+// was set or restarted all older polls are discarded. Slopes are limited as in hull.h.
 //
-// Needs polls (Need::kPolls). Given the warm-up. Complexity: a poll O(vertices), a frame O(1).
-// Memory: the polls of the window, at most kMaxPolls.
+// Gets the warm-up. Complexity: a poll O(vertices), a frame O(1). Memory: the polls of the window,
+// at most kMaxPolls.
 // Source: docs/reference/host_sync.md section 1 (two-way convex hull); Harrison, Newman: TICSync,
 // 2011.
 struct TwoWayPollSettings {
@@ -97,27 +95,27 @@ struct TwoWayPollSettings {
 
 std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settings);
 
-// device_time as librealsense's global time does it: its published algorithm over the recorded
-// polls of the camera's clock.
+// librealsense's global time: its published algorithm over the recorded polls.
 //
-//   poll     every 100 ms until the window is full, then every second; of the polls given, those
-//            that come too early for this are left out (5 % of the interval is tolerated)
-//   sample   (d, y), y = t1 - d_min, d_min the least half round trip ever: all extra delay is taken
+//   poll     every 100 ms until the window is full, then every second; earlier polls are left out
+//            (5 % of the interval is tolerated)
+//   sample   (d, y), y = t1 - d_min, d_min the least half round trip ever: all extra delay is
+//   assumed
 //            to lie before the camera's reading. When d_min falls, the stored y move by (new - old)
 //   fit      least squares of y on d over the last 16 samples
 //   blend    a new line replaces the one in use linearly over one second of device time
 //
-// The constants are librealsense's and therefore no parameters. Compared with TwoWayPoll it
-// keeps half of the asymmetry too, but also takes reply delays and a late first poll into the fit:
-// constant 0.3 ms out and 1.7 ms back give +0.700 ms exactly; a first poll that takes 20 ms longer,
-// half each way, gives up to +9.9 ms within the first seconds (all in the request: twice that).
+// The constants are librealsense's and therefore no parameters. Like TwoWayPoll it keeps half of
+// the asymmetry, but reply delays and a late first poll also enter the fit: constant 0.3 ms out and
+// 1.7 ms back give +0.700 ms exactly; a first poll that takes 20 ms longer, half each way, gives up
+// to +9.9 ms within the first seconds (all in the request: twice that).
 //
-// Ours, not librealsense's: before the first poll, and for a frame of other clocks than the polls,
-// the arrival; bad polls and clocks that were set by more than a second as in PollStream (there,
-// such a step stays in the fit for 16 s; here smaller ones do); the fit is in exact integers, as
-// theirs loses some microseconds within hours.
+// Unlike librealsense: PollStream handles the frames before the first poll, bad polls and clocks
+// that were set by more than a second (librealsense keeps such a step in the fit for 16 s; here
+// only smaller ones stay); the fit is in exact integers, as librealsense's loses some microseconds
+// within hours.
 //
-// Needs polls (Need::kPolls). Given the warm-up. Complexity: a poll O(16), a frame O(1).
+// Gets the warm-up. Complexity: a poll O(16), a frame O(1).
 // Source: librealsense src/global_timestamp_reader.{h,cpp}; docs/reference/d455.md section 5.
 std::unique_ptr<DeviceTimeEstimator> make_librealsense_global();
 

@@ -1,7 +1,7 @@
-// Integer arithmetic on stamps that cannot overflow: 128 bits in between, 64 at the ends.
+// Integer arithmetic on stamps that cannot overflow: 128 bits within, 64 for the results.
 //
-// Stamps of a real recording may be anything, and a difference of two of them need not fit 64 bits.
-// A result beyond the range becomes the end of the range.
+// Stamps of a real recording may be anything, and the difference of two need not fit 64 bits. A
+// result beyond the range becomes the end of the range.
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_
 
@@ -12,7 +12,7 @@
 
 namespace simbench {
 
-// Not `using`: only a typedef takes the mark that silences -Wpedantic.
+// Not `using`: only a typedef can have the mark that silences -Wpedantic.
 __extension__ typedef __int128 Int128;  // NOLINT(modernize-use-using)
 
 inline std::int64_t saturate(Int128 value) {

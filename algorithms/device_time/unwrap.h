@@ -1,11 +1,11 @@
-// Unwraps a counter that starts again at zero: each reading becomes the number nearest to the
-// previous one that the counter would show as this reading (half-range rule).
+// Unwraps a counter: each reading becomes the number nearest to the previous one that equals the
+// reading modulo the counter's range (half-range rule).
 //
-// Frames may be delivered out of order, so a smaller reading alone is no wrap: it is one only if
-// the decrease is more than half of the modulus, and a reading from before the wrap that comes
-// after it goes back. Consecutive readings must lie less than half a modulus apart (for a D455's
-// register 35 min); one that is exactly half apart counts as earlier. The first reading is taken as
-// it is, so results may become negative if it was delivered ahead of earlier frames near zero.
+// Frames may be delivered out of order, so a smaller reading is a wrap only if the decrease is more
+// than half of the modulus; a reading from before the wrap that comes after it goes back.
+// Consecutive readings must lie less than half a modulus apart (for a D455's register 35 min); one
+// that is exactly half apart counts as earlier. The first reading stays as it is, so results may
+// become negative if it was delivered ahead of earlier frames near zero.
 //
 // Source: docs/reference/device_time.md section 1 (Unwrapping), docs/reference/d455.md section 1
 // (Wrap).

@@ -9,7 +9,7 @@
 namespace simbench {
 namespace {
 
-// Gives the inner estimator other samples than it is given.
+// Changes the samples on their way to the inner estimator.
 class Adapter : public DeviceTimeEstimator {
  public:
   explicit Adapter(std::unique_ptr<DeviceTimeEstimator> inner) : inner_(std::move(inner)) {}
@@ -107,7 +107,7 @@ class DelayCorrected final : public Adapter {
   CalibratedDelays delays_;
 };
 
-// Takes `suffix` off the end of `name` unless it was taken before.
+// Removes `suffix` from the end of `name`, once.
 bool take(std::string_view& name, std::string_view suffix, bool& taken) {
   if (taken || !name.ends_with(suffix)) return false;
   name.remove_suffix(suffix.size());

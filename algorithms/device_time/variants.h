@@ -1,12 +1,12 @@
-// Variants of any device_time estimator, made by wrapping it, and the names that ask for them.
+// Variants of any device_time estimator, made by wrapping it, and their names.
 //
 //   <base>_steady               works on the host's steady clock, where no step or slew of the
-//                               system clock can enter a fit; its result is mapped to the system
-//                               clock by the host's log of adjustments (clock_map.h)
-//   <base>_exposure_corrected   takes half of each frame's exposure from its arrival first
-//   <base>_calibrated           the same, and what a user has measured once for this model and
-//                               profile: the delay from exposure's end to arrival, and by how much
-//                               a poll's request takes longer than its reply
+//                               system clock can enter a fit; the host's log of adjustments maps
+//                               its result to the system clock (clock_map.h)
+//   <base>_exposure_corrected   subtracts half of each frame's exposure from its arrival first
+//   <base>_calibrated           also subtracts delays that a user has measured once for this model
+//                               and profile: from exposure's end to arrival, and of a poll's
+//                               request minus that of its reply
 //
 // Suffixes combine in any order; "calibrated" includes the exposure. A wrapper passes everything
 // else on: learn(), polls, adjustments, offline(), relative() and from_first_frame().
@@ -24,13 +24,13 @@
 
 namespace simbench {
 
-// The inner estimator sees steady times as arrivals and polls. Until the log of adjustments has
-// begun, its result moves to the system clock by the offset of the frame's own two arrivals. A
-// relative() inner estimator's stamps are on no host's clock and stay as they are.
+// The inner estimator gets steady times as arrivals and polls. Until the log of adjustments begins,
+// the offset of the frame's own two arrivals maps its result to the system clock. The stamps of a
+// relative() inner estimator are on no host's clock and stay as they are.
 std::unique_ptr<DeviceTimeEstimator> on_steady_clock(std::unique_ptr<DeviceTimeEstimator> inner);
 
-// Arrivals, on both clocks, less half of the exposure: what remains of the latency does not depend
-// on the exposure if the camera stamps mid-exposure and delivers a fixed time after its end.
+// Subtracts half of the exposure from the arrivals on both clocks: the remaining latency does not
+// depend on the exposure if the camera stamps mid-exposure and delivers a fixed time after its end.
 std::unique_ptr<DeviceTimeEstimator> exposure_corrected(std::unique_ptr<DeviceTimeEstimator> inner);
 
 // Constants of a model and profile, never of one camera.
@@ -39,8 +39,8 @@ struct CalibratedDelays {
   Nanoseconds poll_asymmetry{};  // fixed delay of a poll's request minus that of its reply
 };
 
-// The same, less `delays.arrival` too; polls later by half of the asymmetry, so that the camera's
-// reading lies in the middle of what remains.
+// Also subtracts `delays.arrival`, and moves polls later by half of the asymmetry, so that the
+// camera's reading lies in their middle.
 std::unique_ptr<DeviceTimeEstimator> delay_corrected(std::unique_ptr<DeviceTimeEstimator> inner,
                                                      const CalibratedDelays& delays);
 
@@ -52,11 +52,11 @@ struct DeviceTimeName {
   friend bool operator==(const DeviceTimeName&, const DeviceTimeName&) = default;
 };
 
-// Takes the suffixes off the end, each once: a second "_steady" stays in the base, which then is no
-// registered name.
+// Removes the suffixes from the end, each once: a second "_steady" stays in the base, which then is
+// no registered name.
 DeviceTimeName parse_device_time_name(std::string_view name);
 
-// `inner` with the variants that `name` asks for; `delays` count only if it is calibrated.
+// `inner` with the variants of `name`; `delays` count only if it is calibrated.
 std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
                                                   std::unique_ptr<DeviceTimeEstimator> inner,
                                                   const CalibratedDelays& delays);

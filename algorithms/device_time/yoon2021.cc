@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "algorithms/device_time/line_fit.h"
-#include "algorithms/device_time/sample_anchor.h"
+#include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/saturate.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
@@ -117,7 +117,7 @@ class Equation1 final : public DeviceTimeEstimator {
     const Int128 dx_us = Int128{sample.sensor.time_since_epoch().count()} -
                          previous.sensor.time_since_epoch().count();
     const Int128 dy_ns = Int128{nanoseconds_of(sample.arrival)} - nanoseconds_of(previous.arrival);
-    // Fitted is dy - dx over dx: the same line, less its slope of one.
+    // The fit is of dy - dx over dx: the same line, less its slope of one.
     const std::int64_t x = saturate(dx_us);
     window_.push({.x = x, .y = saturate(dy_ns - 1000 * dx_us)});
     const Line line = window_.line();
@@ -195,7 +195,7 @@ constexpr const char* kEquation1Source =
     "Yoon et al. 2021, eq. (1); docs/reference/paper.md section 3";
 
 AlgorithmInfo info(const char* name, const char* family, const char* summary, const char* source) {
-  return {.name = name, .family = family, .summary = summary, .source = source, .parameters = {}};
+  return {.name = name, .family = family, .summary = summary, .source = source};
 }
 
 DeviceTimeEntry equation1(const char* name, Equation1Reading reading, const char* summary) {

@@ -15,22 +15,22 @@
 
 namespace simbench {
 
-// device_time by linear regression of arrival on sensor stamp: eq. (1) read as base-sample
-// regression (R3), the reading that averages arrival jitter down. The default.
+// Linear regression of arrival on sensor stamp: eq. (1) read as base-sample regression (R3), the
+// reading that averages arrival jitter down. The default.
 //
 //   t_g = slope * (t_s - t_s[0]) + intercept + t_h[0]
 //
-// Fitted is the offset arrival - sensor over the sensor stamp, which is the same line with small
-// numbers. Online, over the last n frames including the current one (until n exist, all so far);
-// expanding, over all frames so far; offline, over all frames of the recording.
+// The fit is of the offset arrival - sensor over the sensor stamp, which is the same line with
+// small numbers. Online, over the last n frames including the current one (until n exist, all so
+// far); expanding, over all frames so far; offline, over all frames of the recording.
 //
 // Properties: white arrival noise of standard deviation sigma leaves 2*sigma/sqrt(n) in an online
 // stamp; a constant latency stays in the stamp, as it does in every one-way method. Fewer than two
 // frames, or all with one sensor stamp: sensor stamp plus the mean offset. Decreasing stamps are
 // points like any others. Stamps stay finite and within 64 bits for any input.
 //
-// Arrivals are those on the system clock. O(1) and no allocation per frame. Sums are exact
-// (line_fit.h) or of deviations from the mean, so hours cost no precision.
+// Arrivals are on the system clock. O(1) and no allocation per frame. Sums are exact (line_fit.h)
+// or of deviations from the mean, so hours cost no precision.
 //
 // Source: docs/reference/paper.md section 3 (R3); docs/reference/device_time.md section 2.
 struct RegressionWindow {
@@ -42,8 +42,8 @@ std::unique_ptr<DeviceTimeEstimator> make_expanding_regression();
 // Must be given the recording with learn() before the first stamp().
 std::unique_ptr<DeviceTimeEstimator> make_offline_regression();
 
-// device_time by eq. (1) of the paper in its interval readings: as printed (R0), and with the
-// coefficients the right way round on the previous (R1) or the current (R2) host stamp.
+// Eq. (1) of the paper in its interval readings: as printed (R0), and with the coefficients in the
+// right order on the previous (R1) or the current (R2) host stamp.
 //
 // With dx the intervals of the sensor stamps and dy those of the arrivals, least squares over the
 // last n intervals including the current one gives dy = slope*dx + intercept. Then
@@ -57,7 +57,7 @@ std::unique_ptr<DeviceTimeEstimator> make_offline_regression();
 // two of them fit 64 bits. Fewer than two intervals, or all alike: slope 1, intercept
 // mean(dy - dx). The first frame of a camera has no interval: its arrival is its stamp.
 //
-// Arrivals are those on the system clock. O(1) and no allocation per frame.
+// Arrivals are on the system clock. O(1) and no allocation per frame.
 // Source: docs/reference/paper.md section 3.
 enum class Equation1Reading : std::uint8_t {
   kPrinted,           // R0
@@ -69,17 +69,17 @@ enum class Equation1Reading : std::uint8_t {
 std::unique_ptr<DeviceTimeEstimator> make_equation1(Equation1Reading reading,
                                                     std::size_t intervals = 30);
 
-// device_time without any: the arrival on the system clock is the global stamp (R4).
+// No estimation: the arrival on the system clock is the global stamp (R4).
 //
 // The baseline that every estimator must beat: it keeps the full jitter and latency of delivery.
 // Source: docs/reference/paper.md section 3 (R4).
 std::unique_ptr<DeviceTimeEstimator> make_raw_arrival();
 
-// device_time of the GenLock ground truth: the sensor stamp minus the camera's first sensor stamp.
+// The stamps of the GenLock ground truth: the sensor stamp minus the camera's first sensor stamp.
 //
 // All cameras start with one common trigger pulse, so these stamps count from one instant; they are
-// relative() and know nothing of any host. Each still runs at its own camera's rate: 20 ppm of
-// difference is 20 us per second. A camera that loses its first frame is off by a period.
+// relative() and depend on no host. Each still runs at its own camera's rate: 20 ppm of difference
+// is 20 us per second. A camera that loses its first frame is off by a period.
 // Source: docs/reference/paper.md sections 5 and 8.
 std::unique_ptr<DeviceTimeEstimator> make_sensor_normalised();
 

@@ -102,8 +102,8 @@ class ApproximateTimeGatherer final : public Gatherer {
     return later_by(end) >= static_cast<double>(candidate_->pivot_time - candidate_->start);
   }
 
-  // Goes on as if every frame to come came as early as it can. True if the candidate is the best
-  // even so; else all steps are taken back.
+  // Continues as if each frame to come came as early as it can. True if the candidate is the best
+  // even so; else all steps are undone.
   bool search_virtually() {
     const std::size_t real_steps = steps_.size();
     note_virtual_front(steps_.back());
@@ -120,7 +120,7 @@ class ApproximateTimeGatherer final : public Gatherer {
     return false;
   }
 
-  // The earliest stamp that the source's next frame can have, as far as the search is concerned.
+  // The earliest stamp of the source's next frame that matters to the search.
   std::int64_t virtual_key(std::uint32_t source) const {
     const std::int64_t newest = gather_key(queues_.at(source, queues_.size(source) - 1));
     return std::max(std::min(newest + lower_bounds_[source], kFarthestKey), candidate_->pivot_time);
@@ -130,9 +130,9 @@ class ApproximateTimeGatherer final : public Gatherer {
     if (!has_front(source)) fronts_.set(source, virtual_key(source));
   }
 
-  // A virtual search that decided nothing would take the same steps again and decide nothing, as
-  // long as frames come no earlier than it took them to come, and no later than its latest front:
-  // steps are of fronts before the pivot, and the end of every one of its ranges stays what it was.
+  // A virtual search that decided nothing would repeat the same steps and decide nothing, as long
+  // as frames come no earlier than it assumed and no later than its latest front: steps are of
+  // fronts before the pivot, and the end of each of its ranges stays the same.
   bool may_decide(const GatherFrame& frame) const {
     SIMBENCH_ASSERT(frame.source < sources_, "a frame of a source that does not exist");
     const std::int64_t key = gather_key(frame);
@@ -206,8 +206,7 @@ class ApproximateTimeGatherer final : public Gatherer {
     search(sink);
   }
 
-  // Sources other than the one with the latest front have shown that no frame they dropped was a
-  // better one: these may be pivots again.
+  // No frame that sources other than `latest` dropped was a better one: they may be pivots again.
   void forgive_drops(std::uint32_t latest) {
     if (dropped_.empty()) return;
     const bool keep = has_dropped_[latest] != 0;

@@ -45,7 +45,7 @@ class EpsilonGatherer final : public Gatherer {
     for (std::uint32_t source = 0; source < queues_.sources(); ++source) note_front(source);
   }
 
-  // The fronts as they are now: one that comes up behind another is spared, near as it may be.
+  // Discards the present fronts only, not those that come up behind them, however near.
   void give_up_near(std::int64_t earliest) {
     for (;;) {
       const std::uint32_t source = fronts_.earliest();
@@ -82,15 +82,14 @@ std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup) {
 }
 
 std::vector<GatheringEntry> gathering_epsilon() {
-  return {
-      {.info = {.name = "epsilon",
-                .family = "epsilon",
-                .summary = "fronts within T_int are a set, else all near the earliest are given up",
-                .source = "ros2/message_filters sync_policies/approximate_epsilon_time",
-                .parameters = {}},
-       .make = [](const Parameters&, const GatheringSetup& setup) {
-         return make_epsilon_gatherer(setup);
-       }}};
+  return {{.info = {.name = "epsilon",
+                    .family = "epsilon",
+                    .summary =
+                        "fronts within T_int are a set, else all near the earliest are discarded",
+                    .source = "ros2/message_filters sync_policies/approximate_epsilon_time"},
+           .make = [](const Parameters&, const GatheringSetup& setup) {
+             return make_epsilon_gatherer(setup);
+           }}};
 }
 
 }  // namespace simbench

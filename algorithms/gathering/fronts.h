@@ -1,5 +1,5 @@
-// What policies that compare the fronts of n queues are made of: the queues, the matcher of
-// Algorithm 3, and the tournament of the earliest and latest front.
+// Parts of the policies that compare the fronts of n queues: the queues, the matcher of Algorithm
+// 3, and the tournament of the earliest and latest front.
 #ifndef SIMBENCH_ALGORITHMS_GATHERING_FRONTS_H_
 #define SIMBENCH_ALGORITHMS_GATHERING_FRONTS_H_
 
@@ -16,8 +16,8 @@ namespace simbench {
 
 // Frames waiting to be gathered: a bounded queue per source, in one slab of memory.
 //
-// The store under the policies that compare fronts. It keeps order and counts; what is given up and
-// when is the policy's business. Nothing is allocated after construction.
+// It keeps order and counts; the policy decides which frames it discards. Nothing is allocated
+// after construction.
 //
 // gather_key() is a frame's stamp as the integer that policies compare: nanoseconds, where stamps
 // further than 146 years from zero count as that far, so that two of them always subtract.
@@ -92,15 +92,15 @@ class FrameQueues {
 // The rule of Algorithm 3 over integer keys: match the fronts of n queues, or drop the earliest.
 //
 // While no queue is empty: if the keys of the fronts lie less than `tolerance` apart, the fronts
-// are a set and all are popped; else the front with the smallest key is given up (of equal ones,
+// are a set and all are popped; else the front with the smallest key is discarded (of equal ones,
 // that of the lowest source). With stamps for keys this is Algorithm 3; with frame indices and
 // tolerance 1 it is gathering by GenLock order.
 //
 // Keys of a source normally increase; if they do not, frames still leave in the order they came.
 //
-// Complexity: O(1) amortised per frame while all frames match, O(log n) per frame given up: the
-// fronts lie side by side in order of source, and a heap over them is made only when one must be
-// dropped. Memory: one slab of n * queue_limit frames, allocated when made; nothing per frame.
+// Complexity: O(1) amortised per frame while all frames match, O(log n) per discarded frame: the
+// fronts lie side by side in order of source, and a heap over them is made only to discard one.
+// Memory: one slab of n * queue_limit frames, allocated when made; nothing per frame.
 //
 // Source: docs/reference/paper.md section 5.
 class FrontMatcher {
@@ -144,7 +144,7 @@ class FrontMatcher {
   std::int64_t latest_ = 0;  // of the fronts, while a set is being searched
 };
 
-// Which of n fronts is the earliest, and which the latest, while single ones change.
+// The earliest and the latest of n fronts, while single ones change.
 //
 // A tournament tree over one integer key per source. Of equal keys the lowest source is the
 // earliest and the highest source the latest.
@@ -154,7 +154,7 @@ class FrontMatcher {
 // and a key, allocated when made.
 //
 //   FrontTournament fronts(sources);
-//   fronts.set(3, key);              // of all sources, before the first question
+//   fronts.set(3, key);              // for all sources, before the first query
 //   auto range = key_of(fronts.latest()) - key_of(fronts.earliest());
 class FrontTournament {
  public:
@@ -166,7 +166,7 @@ class FrontTournament {
   }
   std::int64_t key(std::uint32_t source) const { return keys_[source]; }
 
-  // Until the next question, set() only notes keys.
+  // Until the next query, set() only stores keys.
   void forget() { played_ = false; }
 
   std::uint32_t earliest() { return champions().earliest; }

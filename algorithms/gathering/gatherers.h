@@ -1,4 +1,4 @@
-// The gathering policies, each with what to expect of it; gathering.h has their interface.
+// The gathering policies; gathering.h has their interface.
 //
 //   auto gatherer = make_yoon2021_gatherer({.sources = 18, .period = from_ms(22)});
 //   gatherer->push(frame, set_sink);
@@ -18,12 +18,12 @@ namespace simbench {
 //
 // A queue of global stamps per source. While no queue is empty: if the fronts' range is less than
 // T_int (GatheringSetup::interval, which must be positive), they are a set and all are popped; else
-// the earliest front is given up. Of equal fronts the one of the lowest source is given up.
+// the earliest front is discarded, of equal ones that of the lowest source.
 //
 // What to expect: no set has a range of T_int or more; a missing frame never blocks, but its whole
-// instant is given up, as there are no partial sets; a set waits for the slowest source. A constant
+// instant is lost, as there are no partial sets; a set waits for the slowest source. A constant
 // offset of T_int or more between two sources gives no set at all, and one of about a period gives
-// wrong sets silently: T_int of half a period or less, and stamps better than that.
+// wrong sets silently: T_int should be half a period or less, and stamps better than that.
 //
 // Complexity and memory: gathering/fronts.h. Source: docs/reference/paper.md section 5.
 std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup);
@@ -32,8 +32,8 @@ std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup);
 //
 // The ground truth of the paper. Each source's frames get the index of their pulse from their
 // sensor stamps (gathering/genlock_order.h); a set is emitted as soon as every source has delivered
-// its frame of one index, and older, incomplete indices are given up. Global stamps are not looked
-// at. Needs a capture whose cameras all start with one pulse.
+// its frame of one index, and older, incomplete indices are discarded. Global stamps are ignored.
+// Needs a capture whose cameras all start with one pulse.
 //
 // GatheringSetup::period is the nominal frame period. Complexity and memory:
 // gathering/fronts.h. Source: docs/reference/paper.md sections 5 and 8.
@@ -43,13 +43,13 @@ std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
 // Gathering by the ApproximateTime policy of ROS: the narrowest sets, whatever their width.
 //
 // A candidate is the fronts of all queues, from its earliest to its latest stamp. The source with
-// the latest front of the first candidate is the pivot: every set found in this search holds that
+// the latest front of the first candidate is the pivot: every set found in this search has that
 // frame. The earliest front steps aside again and again; the fronts replace the candidate if they
 // are narrower by more than the penalty for being later,
 //   (end - candidate end) * (1 + age_penalty) < start - candidate start,
 // and the candidate is emitted once no later one can do that: when the pivot itself would step
-// aside, or (end - candidate end) * (1 + age_penalty) >= pivot - candidate start. Where a queue has
-// run empty the search goes on with the earliest stamp its next frame can have, which is that of
+// aside, or (end - candidate end) * (1 + age_penalty) >= pivot - candidate start. For an empty
+// queue the search continues with the earliest stamp that its next frame can have, which is that of
 // its last frame plus `lower_bound`, or the pivot's if that is later; if this decides nothing, it
 // is undone until a frame comes. A full queue drops its oldest frame and with it the candidate;
 // until a candidate without that source as pivot has passed, the source is no pivot.
@@ -60,8 +60,8 @@ std::unique_ptr<Gatherer> make_genlock_gatherer(const GatheringSetup& setup,
 // Stamps of a source should increase; if they do not, its frames still leave in order of arrival,
 // and no search is endless.
 //
-// Complexity: O(log n) per frame that steps aside, O(n) per set; steps that decided nothing are not
-// taken again until a frame comes that may change that. Memory: n * (queue + 1) frames.
+// Complexity: O(log n) per frame that steps aside, O(n) per set; steps that decided nothing are
+// repeated only after a frame that may change that. Memory: n * (queue + 1) frames.
 // Source: ros_comm message_filters sync_policies/approximate_time.h; docs/reference/gathering.md.
 //
 //   auto gatherer = make_approximate_time_gatherer(setup, {.lower_bound = setup.period / 2});
@@ -70,7 +70,7 @@ struct ApproximateTimeOptions {
   Nanoseconds lower_bound{};   // between two frames of a source; 0: none is known
   Nanoseconds max_interval{};  // of a set, itself allowed; 0: any
   std::uint32_t queue = 10;    // frames per source, if setup.queue_limit is not smaller
-  // By source, in place of lower_bound; empty: that holds for all.
+  // By source, in place of lower_bound; empty: lower_bound holds for all.
   std::vector<Nanoseconds> lower_bounds{};
 };
 
@@ -81,63 +81,60 @@ std::unique_ptr<Gatherer> make_approximate_time_gatherer(const GatheringSetup& s
 //
 // While every source has a front: if all fronts are within epsilon (GatheringSetup::interval,
 // itself allowed) of the earliest, they are a set; else every front within epsilon of the earliest
-// is given up.
+// is discarded.
 //
-// What to expect: as Algorithm 3 (gathering/gatherers.h), but where that gives up one frame, this
-// gives up all that lie with it, which costs a good set now and then when stamps are noisy. Sets do
-// not cross, each frame is used at most once, there are no partial sets. A full queue drops its
-// oldest frame.
+// What to expect: as Algorithm 3, but where that discards one frame, this discards all within
+// epsilon of it, which sometimes costs a good set when stamps are noisy. Sets do not cross, each
+// frame is used at most once, there are no partial sets. A full queue drops its oldest frame.
 //
-// Complexity: O(log n) per frame given up, O(n) per set. Memory: n * queue_limit frames.
+// Complexity: O(log n) per discarded frame, O(n) per set. Memory: n * queue_limit frames.
 // Source: ros2/message_filters sync_policies/approximate_epsilon_time; docs/reference/gathering.md.
 std::unique_ptr<Gatherer> make_epsilon_gatherer(const GatheringSetup& setup);
 
 // Gathering like the default matcher of librealsense's syncer, here for any number of sources.
 //
 // Two stamps are equivalent if they are less than half a gap apart; the gap is the frame period.
-// When a frame arrives, the earliest front and all fronts equivalent to it are a group. If a later
-// front waits beside the group, the group is emitted at once. Else it waits for every source that
-// has no front but may still belong to it: one whose next frame - expected a gap after its last -
-// is equivalent to the group's earliest, or overdue against the newest arrival by less than seven
-// gaps. A source overdue by more, or one that has delivered nothing yet, is inactive: nobody waits
-// for it until it delivers again. Groups of all sources are sets, smaller ones are partial sets
+// When a frame arrives, the earliest front and all fronts equivalent to it are a group. If there is
+// a later front, the group is emitted at once. Else it waits for every source without a front that
+// may still belong to it: one whose next frame - expected a gap after its last - is equivalent to
+// the group's earliest, or overdue against the newest arrival by less than seven gaps. A source
+// overdue by more, or without a frame so far, is inactive: no group waits for it until it delivers
+// again. Groups of all sources are sets, smaller ones are partial sets
 // (FrameSetSink::on_partial_set), singles included.
 //
-// What to expect: frames are never held long and hardly any is given up (only by a full queue);
-// partial sets are the rule where frames are lost. The first frames come out alone, as no source is
-// known before its first. Between hosts it pairs neighbouring exposures as soon as the stamps are
-// half a period apart. Sets do not cross and are less than half a gap wide.
+// What to expect: frames never wait long and only a full queue discards any; partial sets are
+// common where frames are lost. The first frames come out alone, as no source is active before its
+// first. Between hosts it pairs neighbouring exposures as soon as the stamps are half a period
+// apart. Sets do not cross and are less than half a gap wide.
 //
-// Not taken over: the original makes one such matcher per device and never pairs two devices; it
-// knows each stream's own rate, where this one has one period for all; it compares fronts in the
-// order of addresses in memory, which only matters from three sources on and here is by time.
+// Unlike the original, which makes one such matcher per device and never pairs two devices, has
+// each stream's own rate where this one has one period for all, and compares fronts in the order of
+// addresses in memory, which only matters from three sources on and here is by time.
 //
 // Complexity: O(1) per frame that waits, O(n) per set, partial or not. Memory: n * queue_limit.
+// Uses GatheringSetup::period, not interval.
 // Source: librealsense src/sync.cpp (timestamp_composite_matcher); docs/reference/d455.md
 // section 6.
-
-// Uses GatheringSetup::period, not interval.
 std::unique_ptr<Gatherer> make_librealsense_gatherer(const GatheringSetup& setup);
 
 // Gathering like the Azure Kinect's pairing of colour and depth, here for any number of sources.
 //
 // Source 0 is the reference. Its front at t opens a window for every other source,
 //   [t - P/4 + delay, t + 3P/4 + delay],
-// ends included. A front later than the window's end: the reference's front is given up. Earlier
-// than its begin: that front is given up. All in their windows: they are a set. `delay` is how much
-// later than the reference the others are exposed on purpose. A full queue drops its oldest frame.
+// ends included. If a front is later than the window's end, the reference's front is discarded; if
+// it is earlier than its begin, that front is discarded; if all are in their windows, they are a
+// set. `delay` is how much later than the reference the others are exposed on purpose. A full queue
+// drops its oldest frame.
 //
 // What to expect: a pair forms as soon as both are there. The window is a whole period long but
 // leans to the late side: frames that should be equal pair with their neighbours as soon as one is
 // P/4 early, so the stamps' noise must stay below that. Sets do not cross; no partial sets.
 //
-// Not taken over: the original's stamps start near 0 and are unsigned, so that its first windows
-// are cut at 0; stamps here have no such end.
+// The original cuts its first windows at 0, as its stamps start near 0 and are unsigned; not here.
 //
 // Complexity: O(1) amortised per frame, O(n) per frame of the reference. Memory: n * queue_limit.
-// Source: Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c; docs/reference/gathering.md.
-
 // Uses GatheringSetup::period, not interval.
+// Source: Azure-Kinect-Sensor-SDK src/capturesync/capturesync.c; docs/reference/gathering.md.
 std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
                                             Nanoseconds delay = Nanoseconds::zero());
 
@@ -146,29 +143,28 @@ std::unique_ptr<Gatherer> make_k4a_gatherer(const GatheringSetup& setup,
 // The stamps of all sources together define a grid, phase + k * period: a frame belongs to slot
 // k = round((t - phase) / period), and a slot that has a frame of every source is a set. The phase
 // is the running circular mean of the stamps modulo the period, in which a frame weighs `decay`
-// times its successor. The grid is
-// carried on from frame to frame, so a period that is a little wrong never adds up.
+// times its successor. The grid moves from frame to frame, so a small error of the period never
+// adds up.
 //
 // What to expect: the best policy for noisy stamps, as up to half a period from the *mean* is
-// allowed and no frame is compared with another; but it needs a rig whose sources really share one
-// stable phase, and sources whose constant offsets differ by half a period give mixed sets. A
-// frame whose source already has one in the slot is given up, as are slots older than the last set
-// (sets do not cross while a source's stamps increase) and frames that come for them. No partial
-// sets. At most queue_limit slots are open; the frame that needs another one's place gets it.
-// Stamps that fall back by queue_limit periods or more begin anew: nothing is too old then.
+// allowed and no frame is compared with another; but it needs a rig whose sources share one stable
+// phase, and sources whose constant offsets differ by half a period give mixed sets. It discards a
+// second frame of a source in a slot, slots older than the last set (sets do not cross while a
+// source's stamps increase), and frames for these. No partial sets. At most queue_limit slots are
+// open; a new one takes the place of an old one. Stamps that fall back by queue_limit periods or
+// more begin anew.
 //
-// Complexity: O(1) per frame, O(n) per slot. Memory: n * queue_limit frames.
+// Complexity: O(1) per frame, O(n) per slot. Memory: n * queue_limit frames. Uses
+// GatheringSetup::period (at least a microsecond), not interval. `decay` is in [0, 1).
 // Source: practice of genlock rigs; docs/reference/gathering.md.
-
-// Uses GatheringSetup::period (at least a microsecond), not interval. `decay` is in [0, 1).
 std::unique_ptr<Gatherer> make_phase_binning_gatherer(const GatheringSetup& setup,
                                                       double decay = 0.98);
 
-// Gathering by the truth: the frames of one trigger pulse, known by the pulse that exposed them.
+// Gathering by the truth: a set is the frames that one trigger pulse exposed.
 //
-// GatherFrame::tag must be the true pulse, which only a simulation can tell (Need::kTruth); a frame
-// of no pulse (tag below 0) is given up. A set is emitted as soon as every source has delivered its
-// frame of one pulse, and older, incomplete pulses are given up then. Nothing can gather better:
+// GatherFrame::tag must be the true pulse, known in a simulation only (Need::kTruth); a frame of no
+// pulse (tag below 0) is discarded. A set is emitted as soon as every source has delivered its
+// frame of one pulse, and older, incomplete pulses are then discarded. No policy can gather better:
 // its recall is 1 unless a queue overflows.
 //
 // Complexity and memory: gathering/fronts.h.

@@ -1,8 +1,8 @@
 // Stage 3, gathering: which frames belong together?
 //
-// A gatherer sees the frames of n sources (a source is one stream of one camera) in order of
-// arrival and emits sets of frames taken at the same instant, one frame per source. It never
-// reorders a source's frames and uses each at most once; frames it gives up are counted.
+// A gatherer gets the frames of n sources (a source is one stream of one camera) in order of
+// arrival and emits sets of frames exposed at the same instant, one frame per source. It never
+// reorders a source's frames and uses each at most once; it counts the frames that it discards.
 //
 // Memory is bounded: at most `queue_limit` frames wait per source, an overflow drops the oldest.
 //
@@ -46,10 +46,10 @@ class Gatherer {
  public:
   virtual ~Gatherer() = default;
   virtual void push(const GatherFrame& frame, FrameSetSink& sink) = 0;
-  // Frames given up so far: they will be in no set.
+  // Frames discarded so far: they will be in no set.
   virtual std::uint64_t discarded() const = 0;
-  // True for a gatherer that counts from a camera's first frame: it is given the warm-up too, in
-  // which `stamp` is the bare arrival unless the estimator runs there as well.
+  // True for a gatherer that counts from a camera's first frame: it gets the warm-up too, in which
+  // `stamp` is the bare arrival unless the estimator runs there as well.
   virtual bool from_first_frame() const { return false; }
 };
 

@@ -39,8 +39,7 @@ GatheringEntry genlock(const char* name, GenlockOrder::Variant variant, const ch
   return {.info = {.name = name,
                    .family = "genlock",
                    .summary = summary,
-                   .source = "Yoon et al. 2021, GenLock; docs/reference/paper.md section 8",
-                   .parameters = {}},
+                   .source = "Yoon et al. 2021, GenLock; docs/reference/paper.md section 8"},
           .make = [variant](const Parameters&, const GatheringSetup& setup) {
             return make_genlock_gatherer(setup, variant);
           }};

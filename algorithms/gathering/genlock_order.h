@@ -1,10 +1,9 @@
-// The index of a frame in a GenLock capture, from its sensor stamp: which trigger pulse made it.
+// The index of a frame's trigger pulse in a GenLock capture, from its sensor stamp.
 //
 // All cameras of a GenLock capture start with one common pulse, so a camera's first frame has index
 // 0 and later ones follow from the time since then in periods. Two variants:
 //
-//   kReanchored   adds round((s - s_previous) / period) for every frame. The rate difference
-//   between
+//   kReanchored   adds round((s - s_previous) / period) for every frame. The rate difference of
 //                 camera and trigger counts over one interval only, so it never adds up.
 //   kFirstStamp   round((s - s_first) / period), as the paper has it: at a rate difference of e it
 //                 is off by one after period / (2 e) - with 575 ppm (trigger 500, camera 75) after
@@ -12,7 +11,7 @@
 //
 // Re-anchored indices are exact while, for every two consecutive frames, the change of stamp error
 // plus gap * period * e is below half a period: with jitter below a quarter of a period less that,
-// and gaps of lost frames up to 1 / (2 e). A camera that loses its first frame is off by that.
+// and gaps of lost frames up to 1 / (2 e). A camera that loses its first frame is off by one.
 //
 // Source: docs/reference/paper.md section 8, docs/design.md section 8.
 //

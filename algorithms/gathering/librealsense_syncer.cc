@@ -52,7 +52,7 @@ class LibrealsenseGatherer final : public Gatherer {
   }
 
   // Whether a source without a front may still deliver a member of the group. The search begins
-  // with the source that was waited for last, so that it goes once around per set, not per frame.
+  // with the source awaited last, so that it goes around once per set, not once per frame.
   bool must_wait() {
     for (std::uint32_t looked_at = 0; looked_at < queues_.sources(); ++looked_at) {
       if (queues_.empty(awaited_) && is_expected(awaited_)) return true;
@@ -104,7 +104,7 @@ class LibrealsenseGatherer final : public Gatherer {
   std::int64_t earliest_ = 0;           // of the fronts
   std::int64_t latest_ = 0;
   std::int64_t newest_ = 0;    // stamp of the last arrival
-  std::uint32_t awaited_ = 0;  // source that was waited for last
+  std::uint32_t awaited_ = 0;  // the source awaited last
   std::vector<GatherFrame> group_;
   std::uint64_t discarded_ = 0;
 };
@@ -119,8 +119,7 @@ std::vector<GatheringEntry> gathering_librealsense() {
   return {{.info = {.name = "librealsense",
                     .family = "librealsense",
                     .summary = "half a period around the earliest front; emits partial sets",
-                    .source = "librealsense src/sync.cpp; docs/reference/d455.md section 6",
-                    .parameters = {}},
+                    .source = "librealsense src/sync.cpp; docs/reference/d455.md section 6"},
            .make = [](const Parameters&, const GatheringSetup& setup) {
              return make_librealsense_gatherer(setup);
            }}};

@@ -35,7 +35,6 @@ std::vector<GatheringEntry> gathering_oracle() {
                     .family = "oracle",
                     .summary = "frames of one true pulse",
                     .source = "limit: no policy can find more sets",
-                    .parameters = {},
                     .needs = {Need::kTruth}},
            .make = [](const Parameters&, const GatheringSetup& setup) {
              return make_oracle_gatherer(setup);

@@ -34,13 +34,13 @@ double direction(double x, double y) {
 
 // phase + k * period, following the stamps.
 //
-// The circular mean is the direction of a sum of unit vectors, one per frame. The grid is turned to
-// that direction after each frame, so that only the length of the sum need be kept.
+// The circular mean is the direction of a sum of unit vectors, one per frame. The grid turns to
+// that direction after each frame, so that only the length of the sum must be kept.
 class PhaseGrid {
  public:
   PhaseGrid(std::int64_t period, double decay) : period_(period), decay_(decay) {}
 
-  // The slot of a stamp, which then has its part in the phase.
+  // Returns the slot of a stamp, and moves the phase by it.
   std::int64_t slot_of(std::int64_t key) {
     if (length_ == 0) point_ = key;
     std::int64_t slots = (key - point_) / period_;
@@ -58,7 +58,7 @@ class PhaseGrid {
   }
 
  private:
-  // Adds a frame that is `residual` from the grid; by how much this moves the grid.
+  // Adds a frame at `residual` from the grid; returns by how much this moves the grid.
   std::int64_t turn(std::int64_t residual) {
     const auto period = static_cast<double>(period_);
     const double turns = static_cast<double>(residual) / period;

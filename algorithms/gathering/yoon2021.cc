@@ -26,14 +26,14 @@ std::unique_ptr<Gatherer> make_yoon2021_gatherer(const GatheringSetup& setup) {
 }
 
 std::vector<GatheringEntry> gathering_yoon2021() {
-  return {{.info = {.name = "yoon2021",
-                    .family = "yoon2021",
-                    .summary = "fronts within T_int are a set, else the earliest front is given up",
-                    .source = "Yoon et al. 2021, Algorithm 3; docs/reference/paper.md section 5",
-                    .parameters = {}},
-           .make = [](const Parameters&, const GatheringSetup& setup) {
-             return make_yoon2021_gatherer(setup);
-           }}};
+  return {
+      {.info = {.name = "yoon2021",
+                .family = "yoon2021",
+                .summary = "fronts within T_int are a set, else the earliest front is discarded",
+                .source = "Yoon et al. 2021, Algorithm 3; docs/reference/paper.md section 5"},
+       .make = [](const Parameters&, const GatheringSetup& setup) {
+         return make_yoon2021_gatherer(setup);
+       }}};
 }
 
 }  // namespace simbench

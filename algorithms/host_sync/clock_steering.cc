@@ -123,16 +123,17 @@ Task<void> SteeredClock::step_to(ClockLine line) {
   co_await look();
 }
 
-std::vector<ParameterSpec> steering_parameters() {
-  return {
+void append_steering_parameters(std::vector<ParameterSpec>& parameters) {
+  parameters.push_back(
       number_parameter("step_threshold_ms", 5, 0, 1e9,
                        "the clock is stepped if it is further off than this, else slewed",
-                       "assumption: what takes 10 s to slew at 500 ppm"),
-      number_parameter("max_slew_ppm", 500, 1, 1e5, "fastest slew", "adjtime(3) on Linux: 500 ppm"),
+                       "assumption: what takes 10 s to slew at 500 ppm"));
+  parameters.push_back(number_parameter("max_slew_ppm", 500, 1, 1e5, "fastest slew",
+                                        "adjtime(3) on Linux: 500 ppm"));
+  parameters.push_back(
       number_parameter("steer_interval_ms", 1000, 1, 1e7,
                        "time between two corrections of the clock, each slewed within that time",
-                       "assumption: short against the wander, long against a call"),
-  };
+                       "assumption: short against the wander, long against a call"));
 }
 
 SteeringSettings steering_settings(const Parameters& parameters) {

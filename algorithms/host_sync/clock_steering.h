@@ -1,20 +1,20 @@
-// The own system clock: knowing it better than one reading tells, and steering it along a line.
+// The own system clock: estimating it from coarse readings, and steering it along a line.
 //
-// Knowing. A reading is rounded down to the clock's granularity (100 ns to 15.6 ms), but between
+// Estimating. A reading is rounded down to the clock's granularity (100 ns to 15.6 ms), but between
 // adjustments the clock is an exact line over the steady clock, and this object makes all the
-// adjustments itself. Of many readings, the one that lies highest above the predicted line is
-// the one that was rounded least: N readings find a line that is late by 1 / N of the granularity.
-// The highest of the last kMemory to 2 kMemory counts. Somebody else's step is noticed at once: a
-// forward one is a higher reading, a backward one a reading that falls further below than rounding
-// has been seen to explain (twice that and kSmallestFall; kLargestGranularity for a start).
+// adjustments itself. The reading that lies highest above the predicted line was rounded least: N
+// readings find a line that is late by 1 / N of the granularity. The highest of the last kMemory to
+// 2 kMemory counts. A step by another program is detected at once: a forward one as a higher
+// reading, a backward one as a reading that falls below by more than rounding explains (twice the
+// largest fall seen and kSmallestFall; kLargestGranularity at first).
 //
 // Steering. steer() makes the clock follow a ClockLine: it steps if the clock is further off than
-// step_threshold (the step aims at the instant at which the last set call took effect, and what is
-// left is slewed the next time), else sets the rate to the line's and slews the rest within
-// `settle`, at most at max_slew_ppm. So offset and rate are both right, without a loop gain. Less
-// than kIgnored is left alone: each adjustment is a call that costs time.
+// step_threshold (the step allows for the delay of the last set call; the rest is slewed the next
+// time), else sets the rate to the line's and slews the rest within `settle`, at most at
+// max_slew_ppm. So offset and rate are both right, without a loop gain. Less than kIgnored is left
+// alone: each adjustment is a call that costs time.
 //
-// Not for two coroutines at a time to steer; observing meanwhile is fine.
+// Only one coroutine at a time may steer; others may observe meanwhile.
 // Complexity: O(1). Source: docs/design.md section 4; docs/reference/calibration.md section 2
 // (coarse read, cost of set).
 //
@@ -33,10 +33,10 @@
 
 namespace simbench {
 
-// Where another clock is, as a straight line over one's own steady clock.
+// Another clock as a straight line over the own steady clock.
 //
-// What an estimator of a remote clock gives and what the steering of a system clock takes: neither
-// end depends on how the own system clock was set or slewed meanwhile.
+// Estimators of a remote clock return it and the steering of a system clock takes it: neither
+// depends on how the own system clock was set or slewed meanwhile.
 //
 //   ClockLine line{.at = s, .value = m, .rate_ppb = 12'000};   // at s it read m, and gains 12 ppm
 //   HostTime then = line.read(s + from_ms(1000));              // m + 1.000012 s
@@ -81,8 +81,8 @@ class SteeredClock {
   // Reads both clocks.
   Task<void> look();
   bool is_known() const { return is_known_; }
-  // The system clock at a recent or near instant, and back; before the first observation they take
-  // the two clocks for the same.
+  // The system clock at a recent or near instant, and back; before the first observation both
+  // clocks count as equal.
   HostTime at(SteadyTime when) const;
   SteadyTime when(HostTime reading) const;
 
@@ -126,8 +126,8 @@ class SteeredClock {
   Nanoseconds set_delay_{0};
 };
 
-// The parameters of clock_steering.h, as every algorithm that steers a clock by it declares them.
-std::vector<ParameterSpec> steering_parameters();
+// The parameters that every algorithm with a SteeredClock declares.
+void append_steering_parameters(std::vector<ParameterSpec>& parameters);
 SteeringSettings steering_settings(const Parameters& parameters);
 
 }  // namespace simbench

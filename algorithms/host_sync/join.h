@@ -1,8 +1,8 @@
 // Runs several coroutines at the same time and waits for all of them.
 //
-// They run on the executor of the caller, interleaved, never in parallel threads. If one throws,
-// the others are cancelled (their pending waits must honour cancellation) and, once they have
-// ended, the exception of the first that failed is thrown. Cancelling the caller cancels them all.
+// They run interleaved on the executor of the caller, never in parallel threads. If one throws, the
+// others are cancelled (their pending waits must honour cancellation); once they have ended, the
+// exception of the first that failed is thrown. Cancelling the caller cancels them all.
 //
 //   std::vector<Task<void>> tasks;
 //   for (PeerId peer : peers) tasks.push_back(serve(host, peer));

@@ -1,4 +1,4 @@
-// What host_sync is compared with: the rows in which no protocol runs.
+// The limits that host_sync is compared with: rows in which no protocol runs.
 //
 //   free_running  every system clock keeps its arbitrary initial offset
 //   ntp_last_set  the clocks were right hours ago and have run free since: the paper's row "None",
@@ -6,7 +6,7 @@
 //                 (docs/reference/paper.md section 8, docs/reference/calibration.md section 2)
 //   oracle        every host reads the master's clock: the limit that no protocol can pass
 //
-// They differ in the clocks they start from alone; both sides return at once.
+// They differ only in the initial clocks; both sides return at once.
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,17 +29,15 @@ class NoHostSync : public HostSync {
   InitialClocks initial_clocks_;
 };
 
-HostSyncEntry limit(std::string name, std::string summary, std::string source,
+HostSyncEntry limit(const std::string& name, std::string summary, std::string source,
                     InitialClocks initial_clocks) {
-  HostSyncEntry entry;
-  entry.info.family = name;
-  entry.info.name = std::move(name);
-  entry.info.summary = std::move(summary);
-  entry.info.source = std::move(source);
-  entry.make = [initial_clocks](const Parameters&) {
-    return std::make_unique<NoHostSync>(initial_clocks);
-  };
-  return entry;
+  return {.info = {.name = name,
+                   .family = name,
+                   .summary = std::move(summary),
+                   .source = std::move(source)},
+          .make = [initial_clocks](const Parameters&) {
+            return std::make_unique<NoHostSync>(initial_clocks);
+          }};
 }
 
 }  // namespace

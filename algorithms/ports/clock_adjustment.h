@@ -1,6 +1,6 @@
-// A change of a host's system clock, as the host's log of adjustments has it.
+// A change of a host's system clock, an entry of the host's log of adjustments.
 //
-// It read `before`, and from that instant on reads `after` and runs at `rate_ppb` against the
+// At `at` the clock read `before`; from then on it reads `after` and runs at `rate_ppb` against the
 // host's steady clock. The log begins with an adjustment that changes nothing, so the log alone
 // maps steady time to system time at any instant (algorithms/device_time/clock_map.h).
 // Source: docs/design.md section 2.

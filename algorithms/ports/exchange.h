@@ -1,7 +1,7 @@
-// What a host synchronisation puts on record: its exchanges, and how each slave's session ended.
+// What a host synchronisation reports: its exchanges, and how each slave's session ended.
 //
-// Algorithms report each through Host::report_exchange, so that a recording holds them and other
-// estimators can be run on them afterwards. Stamps an algorithm does not have are absent.
+// A recording holds the exchanges (Host::report_exchange), so that other estimators can be run on
+// them afterwards. Stamps that an algorithm does not have are absent.
 //
 // Convention (RFC 5905 section 8): t1 leaves the client, t2 reaches the server, t3 leaves the
 // server, t4 reaches the client; t1 and t4 on the client's clock, t2 and t3 on the server's.

@@ -1,12 +1,12 @@
-// What a conversing algorithm may ask of the host it runs on: its clocks, its CPU, its network.
+// The host as a protocol's coroutines use it: its clocks, its CPU, its network.
 //
 // Algorithms 1 and 2, NTP and the like are written once, as coroutines over these interfaces. The
 // simulator implements them on virtual time, the hardware backend with sockets and the operating
-// system's clocks; an algorithm cannot tell which, and there is no way to ask.
+// system's clocks; an algorithm cannot find out which.
 //
 // Contract
-//  - Calls that take time on a real host are awaitable, and take time in the simulator too: that
-//    time is what the paper measures. A host has one CPU; the cost of calls and sends queues on it.
+//  - Calls that take time on a real host are awaitable, and take time in the simulator too, as the
+//    paper measures that time. A host has one CPU; the cost of calls and sends queues on it.
 //  - Deadlines and intervals are steady time. Only sleep_until(HostTime) follows the system clock,
 //    and is re-armed when that is set or slewed.
 //  - Objects returned by reference live as long as the Host; the Host outlives every coroutine.
@@ -84,9 +84,9 @@ class MessageChannel {
   virtual Task<MessageId> send(Bytes message) = 0;
   // The next message, or nothing once the deadline has passed.
   virtual Task<std::optional<ReceivedMessage>> receive(SteadyTime deadline) = 0;
-  // When message `id` left, if the host can tell; asking does not change any timing.
+  // When message `id` left, if the host stamps; the call changes no timing.
   virtual Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime deadline) = 0;
-  // The same on the network card's clock, taken where the message passed the card.
+  // When it passed the network card, on the card's clock.
   virtual Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId id,
                                                                     SteadyTime deadline) = 0;
 };
@@ -118,20 +118,20 @@ enum class PulseLine : std::uint8_t {
 struct PulseStamp {
   HostTime system{};
   SteadyTime steady{};
-  // What the receiver's message says the time was at the pulse (kPps only); GNSS time has a zero of
-  // its own, the same for all hosts.
+  // The time of the pulse by the receiver's message (kPps only); GNSS time has a zero of its own,
+  // the same for all hosts.
   std::optional<Nanoseconds> gnss{};
 };
 
 class PulseInput {
  public:
   virtual ~PulseInput() = default;
-  // The next pulse, or nothing once the deadline has passed. Pulses that came while nobody waited
-  // are kept, the last 1024 of them.
+  // The next pulse, or nothing once the deadline has passed. The last 1024 pulses that came while
+  // no coroutine waited are kept.
   virtual Task<std::optional<PulseStamp>> next(SteadyTime deadline) = 0;
 };
 
-// A frame that one of the host's own cameras delivered, as the host sees it.
+// A frame that one of the host's own cameras delivered.
 struct FrameArrival {
   std::uint32_t camera = 0;
   std::uint32_t counter = 0;
@@ -144,8 +144,8 @@ struct FrameArrival {
 class FrameFeed {
  public:
   virtual ~FrameFeed() = default;
-  // The next frame, or nothing once the deadline has passed. Frames that came while nobody waited
-  // are kept, the last 1024 of them. Only the scored stream of each camera.
+  // The next frame of a camera's scored stream, or nothing once the deadline has passed. The last
+  // 1024 frames that came while no coroutine waited are kept.
   virtual Task<std::optional<FrameArrival>> next(SteadyTime deadline) = 0;
 };
 
@@ -155,18 +155,18 @@ class Host {
   virtual PeerId id() const = 0;
   virtual HostClock& clock() = 0;
   virtual const SteadyClock& steady_clock() const = 0;
-  // What the host has beyond that; null if it has not. Asking again returns the same object, and
-  // at most one coroutine may wait on it at a time.
+  // Null if the host has none. Each call returns the same object, on which one coroutine may wait
+  // at a time.
   virtual HardwareClock* hardware_clock() { return nullptr; }
   virtual PulseInput* pulse_input(PulseLine /*line*/) { return nullptr; }
   virtual FrameFeed* frame_feed() { return nullptr; }
-  // The channel to `peer`; both ends open it. Asking again returns the same channel.
+  // The channel to `peer`; both ends open it. Each call returns the same channel.
   virtual MessageChannel& open_channel(PeerId peer, Transport transport) = 0;
   virtual Task<void> sleep_for(Nanoseconds interval) = 0;
   virtual Task<void> sleep_until(HostTime at) = 0;
   // A number in [0, 1) for algorithms that spread their polls; seeded where runs must repeat.
   virtual double random_uniform() = 0;
-  // Puts an exchange, or how the synchronisation of a host ended, on record.
+  // Reports an exchange, or how the synchronisation of a host ended, to the recording.
   virtual void report_exchange(const Exchange& exchange) = 0;
   virtual void report_outcome(const SyncOutcome& outcome) = 0;
 };

@@ -22,11 +22,11 @@
 
 namespace simbench {
 
-// What the slaves' system clocks are when the run begins.
+// The slaves' system clocks when the run begins.
 enum class InitialClocks : std::uint8_t {
-  kUnsynchronised,  // some arbitrary offset
+  kUnsynchronised,  // have arbitrary offsets
   kLastSet,         // were right hours ago and have run free since
-  kMaster,          // are the master's own clock: the limit no protocol can pass
+  kMaster,          // are the master's own clock: the limit that no protocol can pass
 };
 
 class HostSync {

@@ -1,9 +1,9 @@
-// The times a synchronisation algorithm may see, one type per time base.
+// The times that a synchronisation algorithm may see, one type per time base.
 //
 // Every stamp in simbench belongs to exactly one time base. Each base has its own
 // std::chrono::time_point type, so stamps of different bases neither compare nor subtract: a host's
-// reading minus a camera's is a compile-time error, not a wrong number. The one named exception is
-// offset_between(a, b), for the places that mean exactly that.
+// reading minus a camera's is a compile-time error. The one named exception is
+// offset_between(a, b).
 //
 //   HostTime    what a host's system clock reads: set, stepped and slewed by synchronisation
 //   SteadyTime  what a host's oscillator counts: never set, never stepped (deadlines, intervals)
@@ -74,6 +74,7 @@ constexpr Nanoseconds from_ns_down(double ns) {
 // To the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
 constexpr Nanoseconds from_ms(double ms) { return from_ns(ms * 1e6); }
 constexpr Nanoseconds from_us(double us) { return from_ns(us * 1e3); }
+constexpr Nanoseconds from_seconds(double s) { return from_ms(s * 1e3); }
 constexpr double to_ns(Nanoseconds d) { return static_cast<double>(d.count()); }
 constexpr double to_ms(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
 constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
@@ -84,8 +85,7 @@ constexpr std::int64_t nanoseconds_of(std::chrono::time_point<Base, Duration> t)
   return std::chrono::duration_cast<Nanoseconds>(t.time_since_epoch()).count();
 }
 
-// Reading `a` minus reading `b`, taken at one instant on two different bases: the offset of a
-// against b. The only way to subtract across bases.
+// The offset of `a` against `b`, two readings of different bases at one instant.
 template <class BaseA, class DurationA, class BaseB, class DurationB>
 constexpr Nanoseconds offset_between(std::chrono::time_point<BaseA, DurationA> a,
                                      std::chrono::time_point<BaseB, DurationB> b) {

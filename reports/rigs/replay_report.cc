@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "recording/decimal.h"
+#include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
 #include "reports/text/block.h"

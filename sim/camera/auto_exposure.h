@@ -3,7 +3,7 @@
 // Steps come as a Poisson process in true time from the camera's start, and each goes to a value
 // that depends on nothing before it, U(min_ms, max_ms). Before the first step the exposure is the
 // configured one. All streams of a camera share its exposure, and its steps are drawn from a random
-// stream of its own: values are a function of time, whatever is asked and in which order.
+// stream of its own: values are a function of time, whatever the order of the queries.
 //
 // Source: docs/design.md section 7; the process is an assumption (scenarios/schema.json).
 // Complexity: O(log steps so far).

@@ -30,8 +30,8 @@ class DeviceClock {
     return DeviceStamp{static_cast<std::uint32_t>(us)};
   }
 
-  // How many nanoseconds of true time one device nanosecond lasts, by the constant skew alone: what
-  // the camera's own frame period is stretched by.
+  // Nanoseconds of true time per device nanosecond, by the constant skew alone: the stretch of the
+  // camera's own frame period.
   double true_per_device() const { return 1.0 / (1.0 + oscillator_.skew()); }
 
  private:

@@ -24,7 +24,7 @@ Exposure Shutter::end_aligned(TrueTime period_start, std::int64_t pulse) const {
 
 std::optional<Exposure> Shutter::on_pulse(TrueTime at, std::int64_t pulse) {
   if (settings_.mode == ShutterMode::kFreeRunning || at < start_) return std::nullopt;
-  // A pulse that cannot be answered still ends free running: the next one finds the shutter ready.
+  // An ignored pulse still ends free running, so that the shutter is ready for the next one.
   last_pulse_ = at;
   if (at < ignore_until_) return std::nullopt;
   const double unguarded = 1.0 - settings_.guard_fraction;

@@ -14,15 +14,15 @@
 //
 // A rolling shutter exposes its rows one after the other, each for the exposure time; the last row
 // begins `readout` after the first. An Exposure then lasts from the first row's start to the last
-// row's end, so that its middle is that of the middle row, and "start" and "end" above are these
-// two. While it lasts, reading out included, genlock ignores pulses; a slave does so for its mode
-// period as ever. A global shutter has readout 0.
+// row's end ("start" and "end" above), so that its middle is that of the middle row. Genlock
+// ignores pulses during all of it; a slave still does so for its mode period. A global shutter has
+// readout 0.
 //
 // A frame of a free-running exposure belongs to no pulse (kNoPulse).
 //
 //   Shutter shutter(settings, camera_start);
 //   if (auto exposure = shutter.on_pulse(at, slot)) expose(*exposure);
-//   // and, unless next_timer() is never: call on_timer(t) at t = next_timer(), again and again.
+//   // and, unless next_timer() is never: call on_timer(t) at each t = next_timer().
 #ifndef SIMBENCH_SIM_CAMERA_SHUTTER_H_
 #define SIMBENCH_SIM_CAMERA_SHUTTER_H_
 
@@ -55,7 +55,7 @@ struct Exposure {
 
 class Shutter {
  public:
-  // The stream is started at `start`, and knows nothing of pulses before that.
+  // The stream starts at `start` and ignores pulses before that.
   Shutter(const ShutterSettings& settings, TrueTime start);
 
   ShutterMode mode() const { return settings_.mode; }
@@ -66,9 +66,9 @@ class Shutter {
   // A pulse reaches the camera at `at`: the exposure it causes, if any.
   std::optional<Exposure> on_pulse(TrueTime at, std::int64_t pulse);
 
-  // When on_timer wants to be called next; TrueTime::max() means never.
+  // When to call on_timer next; TrueTime::max() means never.
   TrueTime next_timer() const { return next_timer_; }
-  // Time has come to next_timer(): the free-running exposure that begins, if any.
+  // At next_timer(): the free-running exposure that begins, if any.
   std::optional<Exposure> on_timer(TrueTime now);
 
  private:

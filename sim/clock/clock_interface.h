@@ -1,9 +1,9 @@
-// The granularity of a system clock as programs see it through the operating system's calls.
+// The granularity of a system clock behind the operating system's calls.
 //
-// Two steps, both of which round down: the clock itself advances in ticks of some phase (15.625 ms
-// on a Windows host without a high-resolution timer, 0 for a continuous clock), and the interface
-// passes readings and settings in units of its resolution (1 ms for SYSTEMTIME). A setting is not
-// rounded to a tick: only readings are taken from the ticking counter.
+// It rounds down twice: the clock itself advances in ticks of some phase (15.625 ms on a Windows
+// host without a high-resolution timer, 0 for a continuous clock), and the interface passes
+// readings and settings in units of its resolution (1 ms for SYSTEMTIME). A setting is not rounded
+// to a tick, as only readings come from the ticking counter.
 //
 // Source: docs/reference/calibration.md section 2 ("Host clock").
 //
@@ -33,11 +33,11 @@ class ClockInterface {
   constexpr ClockInterface(Nanoseconds tick, Nanoseconds tick_phase, Nanoseconds resolution)
       : tick_(tick), tick_phase_(tick_phase), resolution_(resolution) {}
 
-  // The reading of the clock's own counter, which stamps made by the kernel are taken from.
+  // The reading of the clock's own counter, used for the kernel's stamps.
   constexpr HostTime tick_of(HostTime exact) const { return round_down(exact, tick_, tick_phase_); }
   // The reading that a get call returns.
   constexpr HostTime read(HostTime exact) const { return round_down(tick_of(exact), resolution_); }
-  // What the clock is set to by a set call with this value.
+  // The setting after a set call with this value.
   constexpr HostTime set_to(HostTime value) const { return round_down(value, resolution_); }
 
  private:

@@ -1,8 +1,8 @@
 // A random phase that is sampled step by step on a fixed grid of true time, in both directions from
 // true zero, where it is 0; between grid points it is linear.
 //
-// The caller's step function says how the state changes and what the phase gains in one step of the
-// grid. It is asked for every step once, outwards from zero, and must take its random numbers from
+// The caller's step function changes the state over one step of the grid and returns the phase's
+// gain. It is called once for every step, outwards from zero, and must take its random numbers from
 // the step's index alone: then values depend neither on the order of the queries nor on when the
 // world starts.
 //
@@ -30,9 +30,9 @@ class GridWalk {
 
   std::int64_t step_ns() const { return step_ns_; }
 
-  // `step(state, index, sign)` takes the state over the step that begins at grid point `index`,
-  // forwards in time if sign is 1 and backwards if it is -1, and returns by how much the phase
-  // grows from that grid point to the next.
+  // `step(state, index, sign)` moves the state over the step that begins at grid point `index`,
+  // forwards in time if sign is 1 and backwards if it is -1, and returns the phase's growth from
+  // that grid point to the next.
   template <class Step>
   double phase_ns(std::int64_t since_zero_ns, const Step& step) const {
     std::int64_t index = since_zero_ns / step_ns_;

@@ -2,11 +2,11 @@
 // of that, read at instants of true time.
 //
 // The system clock is a disciplined clock (clocks/disciplined_clock.h has its contract) that keeps
-// all its settings, so that it can be read at any instant, also a past one. Readings are exact
-// here, rounded down to 1 ns; what a program sees of them is sim/clock/clock_interface.h.
+// all its settings, so that it can be read at any instant, also a past one. Readings are exact,
+// rounded down to 1 ns; programs read it through sim/clock/clock_interface.h.
 //
 // The clock of an oracle's slave follows the master's: both its clocks are the master's at every
-// instant, adjustments of its own have no effect, and it reports the master's adjustments.
+// instant, its own adjustments have no effect, and it reports the master's adjustments.
 //
 // Source: docs/design.md sections 4, 5 and 7; docs/reference/calibration.md section 2 ("Host
 // clock").
@@ -69,15 +69,15 @@ class SystemClock {
     const double deviation_ns = oscillator.deviation_ns(t);
     return {clock_->read(t, deviation_ns), oscillator.steady(t, deviation_ns)};
   }
-  // The first instant, not before `now`, at which the clock reads `at` or more if nobody adjusts
-  // it meanwhile.
+  // The first instant, not before `now`, at which the clock reads `at` or more without a further
+  // adjustment.
   TrueTime when(HostTime at, TrueTime now) const;
 
   void set(TrueTime at, HostTime value);
   void adjust_frequency(TrueTime at, double ppb);
   void slew(TrueTime at, Nanoseconds offset, double max_rate_ppb);
 
-  // When the planned end of a slew will be reached, if there is one that was not yet reported.
+  // The planned end of a slew, if there is one that was not yet reported.
   std::optional<TrueTime> settles_at() const { return own_.settles_at(); }
   // Reports the end of a slew that was reached at or before `now`.
   void settle(TrueTime now) { own_.settle(now); }

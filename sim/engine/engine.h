@@ -1,12 +1,12 @@
-// The engine of the simulated world: virtual time, and what happens in it in which order.
+// The engine of the simulated world: virtual time, and its events in their order.
 //
-// Events happen in the total order (time, order of scheduling); nothing else decides. Virtual time
-// moves only when an event is taken and never decreases. The engine is single-threaded: one world,
-// one thread, any number of worlds side by side.
+// Events are executed in the total order (time, order of scheduling). Virtual time moves only when
+// an event is taken and never decreases. The engine is single-threaded: one world, one thread, any
+// number of worlds side by side.
 //
-// Two ways to make something happen, both without allocation in steady state:
+// There are two kinds of event, both without allocation in steady state:
 //
-//   schedule()  a typed event for an attached EventHandler: the way of models on hot paths
+//   schedule()  a typed event for an attached EventHandler, for models on hot paths
 //   call_at()   a callback with a capture of up to 48 bytes, which can be cancelled
 //
 // Coroutines wait on the engine through virtual_executor.h.
@@ -24,11 +24,11 @@
 //   };
 //
 // Every executed event enters the trace hash, a 64-bit hash of (time, handler, kind, subject) that
-// depends on the order: two runs with the same hash did the same things. Callbacks enter with a
-// fixed mark in place of handler, kind and subject.
+// depends on the order: two runs with the same hash executed the same events. Callbacks enter with
+// a fixed mark in place of handler, kind and subject.
 //
 // Errors: scheduling before now() is a programming error and stops the program. A run that does
-// not end by itself ends with EngineLimitReached. What a handler or callback throws leaves run();
+// not end by itself ends with EngineLimitReached. Exceptions of handlers and callbacks leave run();
 // the engine stays usable and the event counts as executed.
 //
 // Complexity: see event_queue.h. Times: integer nanoseconds of true time.
@@ -52,14 +52,14 @@
 
 namespace simbench::sim {
 
-// What a run may take before it is taken for one that never ends. The defaults are far beyond any
-// scenario: some minutes of computing, a year of virtual time.
+// The limits of a run, for those that never end. The defaults are far beyond any scenario: some
+// minutes of computing, a year of virtual time.
 struct EngineLimits {
   std::uint64_t max_events = 10'000'000'000;
   TrueTime max_time = TrueTime(std::chrono::hours(24 * 365));  // events at max_time still happen
 };
 
-// The message says which limit, the virtual time, the events executed and pending, and what live
+// The message has the limit, the virtual time, the events executed and pending, and what live
 // coroutines wait for.
 class EngineLimitReached : public std::runtime_error {
  public:
@@ -92,8 +92,8 @@ class Engine {
   // Gives the handler its number. The handler must outlive the engine's runs. Up to 65535.
   HandlerId attach(EventHandler& handler);
 
-  // Schedules an event at `at`, not before now(). It cannot be cancelled: a handler that has lost
-  // interest ignores it.
+  // Schedules an event at `at`, not before now(). It cannot be cancelled, only ignored by its
+  // handler.
   void schedule(TrueTime at, HandlerId handler, std::uint16_t kind, std::uint32_t subject) {
     SIMBENCH_ASSERT(at >= now_, "an event cannot be scheduled in the past");
     SIMBENCH_ASSERT(handler < handlers_.size(), "the handler is not attached to this engine");
@@ -129,8 +129,8 @@ class Engine {
   std::size_t pending() const { return queue_.size() - cancelled_; }
   std::uint64_t trace_hash() const { return trace_hash_; }
 
-  // Who can say what live coroutines wait for, a line each, for the message of EngineLimitReached
-  // (virtual_executor.h does). An empty function takes the reporter away.
+  // Reports what live coroutines wait for, a line each, for the message of EngineLimitReached
+  // (virtual_executor.h sets it). An empty function removes the reporter.
   using WaitReporter = std::function<std::vector<std::string>()>;
   void set_wait_reporter(WaitReporter reporter) { wait_reporter_ = std::move(reporter); }
 

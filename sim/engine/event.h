@@ -1,8 +1,8 @@
 // The typed event of the simulation engine and the interface that receives it.
 //
-// An event is sixteen plain bytes: when, who handles it, and two numbers whose meaning is the
-// handler's own (what happened, to which of its objects). Models schedule events instead of
-// closures on their hot paths, because an event costs no allocation and one virtual call.
+// An event is sixteen plain bytes: its time, its handler, and two numbers with a meaning of the
+// handler's own (the kind of event, one of its objects). Models schedule events instead of closures
+// on their hot paths, because an event costs no allocation and one virtual call.
 #ifndef SIMBENCH_SIM_ENGINE_EVENT_H_
 #define SIMBENCH_SIM_ENGINE_EVENT_H_
 

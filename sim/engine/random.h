@@ -1,19 +1,18 @@
 // Random numbers of the simulated world: one stream per component.
 //
 // A stream is derived from the run's seed and the component's name, so a component that draws more,
-// or a new one, moves nobody else's numbers. Where the order of draws is up to the algorithm under
-// test (messages on a link), a stream is keyed instead: one short-lived stream per (link and
-// direction, message index), so that extra messages move nobody's numbers either.
+// or a new one, changes no other's numbers. Where the algorithm under test decides the order of
+// draws (messages on a link), a stream is keyed instead: one short-lived stream per (link and
+// direction, message index), so that extra messages change no other's numbers either.
 //
-// Within one stream the draws do depend on each other's number: normal(0) and exponential(0) give
-// exactly 0 but still draw. A model whose parameter may be 0 keeps its other draws in place that
-// way; components cannot disturb each other at all.
+// Within one stream, later draws depend on the number of earlier ones: normal(0) and exponential(0)
+// give exactly 0 but still draw, so that a model whose parameter may be 0 keeps its other draws.
 //
 // Generator: xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number
 // generators", ACM TOMS 47(4), 2021), seeded by splitmix64 (Steele, Lea and Flood, OOPSLA 2014).
 // Distributions: Boost.Random's ziggurats, which give the same numbers with every compiler.
-// Cost: a raw draw about 1 ns, a normal one about 4 ns, making a stream a few nanoseconds when its
-// name's ComponentKey is at hand (docs/reference/event_engine.md section 5).
+// Cost: a raw draw about 1 ns, a normal one about 4 ns, a new stream a few nanoseconds with a ready
+// ComponentKey (docs/reference/event_engine.md section 5).
 //
 //   RandomStream jitter(run_seed, "camera 3: transfer");
 //   const Nanoseconds delay = from_ms(2.0 + jitter.exponential(0.3));
@@ -99,7 +98,7 @@ class RandomStream {
   RandomStream(std::uint64_t run_seed, ComponentKey component)
       : generator_(expand(root_of(run_seed, component))) {}
 
-  // The stream of one thing that happens to a component, e.g. (link and direction, message index).
+  // The stream of one event of a component, e.g. (link and direction, message index).
   // Differs from the component's own stream for every a and b.
   RandomStream(std::uint64_t run_seed, std::string_view component, std::uint64_t a,
                std::uint64_t b = 0)

@@ -1,11 +1,11 @@
-// Objects under way, each known by a number that is used again when it is done: frames on their way
-// to the host, segments on the network.
+// Objects under way by number, with released numbers reused: frames on their way to the host,
+// segments on the network.
 //
 // Numbers fit into the subject of an event (sim/engine/event.h). A released object stays as it is
-// until its number is given out again, so what it has allocated can be used again too.
+// until its number is reused, so its allocations are reused too.
 //
-// Cost: O(1); memory for the most objects that were ever under way at once, none allocated beyond
-// that. add() may move the objects: a reference does not outlive it.
+// Cost: O(1); memory for the largest number of objects under way at once. add() may move the
+// objects: a reference does not outlive it.
 //
 //   Slots<FrameArrival> frames;
 //   const std::uint32_t id = frames.add();
@@ -23,7 +23,7 @@ namespace simbench::sim {
 template <class Object>
 class Slots {
  public:
-  // An object as its predecessor of the same number left it, or a new one.
+  // The number of an object that is as its predecessor left it, or new.
   std::uint32_t add() {
     if (free_.empty()) {
       objects_.emplace_back();

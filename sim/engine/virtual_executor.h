@@ -1,9 +1,9 @@
 // Coroutines in virtual time: an Asio execution context over the engine.
 //
-// The conversations of the project are boost::asio::awaitable<T> coroutines. In the simulated world
+// The protocols of the project are boost::asio::awaitable<T> coroutines. In the simulated world
 // they run on this context, whose queue is the engine's event queue and whose time moves only when
-// an event is taken. Everything that Asio offers for coroutines works: awaitable<T> with its
-// default any_io_executor, co_spawn, completion handlers, and the || and && of awaitable_operators.
+// an event is taken. All of Asio's features for coroutines work: awaitable<T> with its default
+// any_io_executor, co_spawn, completion handlers, and the || and && of awaitable_operators.
 //
 // Posted work runs at the current virtual time, in the order of posting, never inside the call that
 // posts it. Waits end with the event of their deadline or with an event of their own, so resuming
@@ -155,15 +155,15 @@ void VirtualExecutor::execute(Work&& work) const {
   context_->post(std::forward<Work>(work));
 }
 
-// Waits until virtual time `at`; if that is past, until what is already due now has happened.
-// `label` says what for and must outlive the wait (a literal).
+// Waits until virtual time `at`; if that is past, until after the events already due now. `label`
+// names the purpose and must outlive the wait (a literal).
 boost::asio::awaitable<void> sleep_until(VirtualContext& context, TrueTime at,
                                          std::string_view label);
 
-// Where one coroutine at a time waits for something to happen, e.g. for a message in a mailbox.
+// One coroutine at a time waits here for an event, e.g. for a message in a mailbox.
 //
-// notify() ends the wait that is under way; without one it does nothing and is not remembered, so
-// look before waiting and again afterwards:
+// notify() ends the present wait; without one it does nothing and is not remembered, so check
+// before waiting and again afterwards:
 //
 //   while (messages.empty()) {
 //     const bool notified = co_await arrived.wait(deadline);
@@ -171,16 +171,16 @@ boost::asio::awaitable<void> sleep_until(VirtualContext& context, TrueTime at,
 //   }
 class WaitPoint {
  public:
-  // `label` says who waits for what, e.g. "host3: receive from host0".
+  // `label` names the waiting coroutine and the event, e.g. "host3: receive from host0".
   WaitPoint(VirtualContext& context, std::string label);
   WaitPoint(const WaitPoint&) = delete;
   WaitPoint& operator=(const WaitPoint&) = delete;
   // A wait that is under way ends as if cancelled.
   ~WaitPoint();
 
-  // True when notified, false when the deadline came first; of a notify() and a deadline at the
-  // same instant, whichever happens first counts. The point must outlive the wait. That nobody
-  // else waits here is the caller's duty.
+  // True when notified, false when the deadline came first; for a notify() and a deadline at the
+  // same instant, the earlier event counts. The point must outlive the wait, and no other coroutine
+  // may wait here.
   boost::asio::awaitable<bool> wait(std::optional<TrueTime> deadline = std::nullopt);
 
   void notify();

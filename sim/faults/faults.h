@@ -1,12 +1,12 @@
-// What a scenario makes go wrong during a capture (/faults), asked by those it happens to.
+// The faults of a scenario during a capture (/faults), for queries by the parts that they affect.
 //
 //  - Outages: hosts and links that stop for a while. A stopped host gets no frames, no pulses and
-//    no polls, and its messages are neither sent nor received; its clocks go on, and so do its
-//    programs, which talk to nobody. Of a stopped link only the messages are lost.
+//    no polls, and its messages are neither sent nor received; its clocks and programs go on. A
+//    stopped link only loses the messages.
 //  - CameraFaults: cameras that vanish for a while, and first frames that are delivered late.
 // A fault clock_step is an event of the capture (sim/rig/capture.h).
 //
-// Times count from the start of the capture: before start() nothing goes wrong.
+// Times count from the start of the capture: before start() there are no faults.
 //
 // Complexity: linear in the number of such faults, a comparison without any.
 //
@@ -62,8 +62,8 @@ class CameraFaults {
   // The camera takes no frames and answers no polls.
   bool vanished(std::uint32_t camera, TrueTime at) const;
 
-  // How much later than others a frame of the camera is delivered. A fault delays one frame, the
-  // first of its camera that is asked about.
+  // The extra delay of a frame of the camera. A fault delays one frame: that of the first call for
+  // its camera.
   double take_delay_ns(std::uint32_t camera);
 
  private:

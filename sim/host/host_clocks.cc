@@ -41,33 +41,30 @@ Task<HostTime> ClockPort::now() {
   co_return interface_.read(parts_.clock.read(turn.start));
 }
 
-Task<void> ClockPort::set(HostTime value) {
+template <class Apply>
+Task<void> ClockPort::change(Apply apply) {
   const Change change = begin_change();
   if (change.effective > true_now()) {
     co_await sleep_until(parts_.context, change.effective, set_label_);
   }
-  parts_.clock.set(true_now(), interface_.set_to(value));
+  apply(parts_.clock, true_now());
+  settle_in_time();
   if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+}
+
+Task<void> ClockPort::set(HostTime value) {
+  const HostTime rounded = interface_.set_to(value);
+  return change([rounded](SystemClock& clock, TrueTime at) { clock.set(at, rounded); });
 }
 
 Task<void> ClockPort::adjust_frequency(double ppb) {
-  const Change change = begin_change();
-  if (change.effective > true_now()) {
-    co_await sleep_until(parts_.context, change.effective, set_label_);
-  }
-  parts_.clock.adjust_frequency(true_now(), ppb);
-  settle_in_time();
-  if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+  return change([ppb](SystemClock& clock, TrueTime at) { clock.adjust_frequency(at, ppb); });
 }
 
 Task<void> ClockPort::slew(Nanoseconds offset, double max_rate_ppb) {
-  const Change change = begin_change();
-  if (change.effective > true_now()) {
-    co_await sleep_until(parts_.context, change.effective, set_label_);
-  }
-  parts_.clock.slew(true_now(), offset, max_rate_ppb);
-  settle_in_time();
-  if (change.end > true_now()) co_await sleep_until(parts_.context, change.end, set_label_);
+  return change([offset, max_rate_ppb](SystemClock& clock, TrueTime at) {
+    clock.slew(at, offset, max_rate_ppb);
+  });
 }
 
 ClockPort::Change ClockPort::begin_change() {

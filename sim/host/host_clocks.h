@@ -1,4 +1,4 @@
-// A simulated host's clocks as its programs reach them: through calls that take time on its CPU.
+// A simulated host's clocks behind the calls of its programs, which take time on its CPU.
 //
 //  - Cpu: whatever costs time is served one after the other.
 //  - ClockPort: the system clock. SteadyPort: the steady clock, read at no cost and exactly.
@@ -31,7 +31,7 @@ namespace simbench::sim {
 
 class SimHost;
 
-// The one CPU of a host; turns are given in order of asking.
+// The one CPU of a host; it serves requests in their order.
 class Cpu {
  public:
   struct Turn {
@@ -41,7 +41,7 @@ class Cpu {
 
   explicit Cpu(const Engine& engine) : engine_(engine) {}
 
-  // The next `cost` of CPU time that is free.
+  // Reserves the next free `cost` of CPU time.
   Turn reserve(Nanoseconds cost) {
     const TrueTime start = std::max(engine_.now(), free_at_);
     free_at_ = start + cost;
@@ -69,7 +69,7 @@ class ClockPort final : public HostClock {
     const scenarios::HostClock& parameters;
   };
 
-  // All parts must outlive the port. `draws` gives the factors of the calls; `host_name` labels
+  // All parts must outlive the port. `draws` is for the factors of the calls; `host_name` labels
   // waits.
   ClockPort(const Parts& parts, const ClockInterface& interface, double set_cost_factor,
             RandomStream draws, const std::string& host_name);
@@ -87,7 +87,10 @@ class ClockPort final : public HostClock {
 
   TrueTime true_now() const { return parts_.context.engine().now(); }
   Change begin_change();
-  // Has the end of a slew reported when it comes.
+  // Makes a change by `apply(clock, now)`.
+  template <class Apply>
+  Task<void> change(Apply apply);
+  // Schedules the report of a slew's end.
   void settle_in_time();
 
   Parts parts_;
@@ -113,10 +116,10 @@ class SteadyPort final : public SteadyClock {
 // hour at true zero. Every reading has noise N(stamp_jitter_sigma_ns) and is rounded down to
 // stamp_resolution_ns.
 //
-// A call occupies the host's CPU for cross_stamp_cost_ms and touches the card in the middle of
-// that: there it is read, stepped or adjusted. The system clock of a cross stamp is read at the
-// beginning and at the end, as the kernel does, on its ticks but not rounded to the interface's
-// resolution. Changes of rate must stay below 5e8 ppb.
+// A call occupies the host's CPU for cross_stamp_cost_ms and reads, steps or adjusts the card in
+// the middle of that. The system clock of a cross stamp is read at the beginning and at the end, as
+// the kernel does, on its ticks but not rounded to the interface's resolution. Changes of rate must
+// stay below 5e8 ppb.
 //
 // Messages are stamped by their last bit at both ends: when it passes the sender's port, behind
 // what was queued there, and when it reaches the receiver, before anything wakes up.
@@ -129,7 +132,7 @@ class NicClock final : public HardwareClock {
   Task<void> step(Nanoseconds offset) override;
   Task<void> adjust_frequency(double ppb) override;
 
-  // The stamp of what happened at `at`, with noise from `draw`.
+  // The stamp of an event at `at`, with noise from `draw`.
   HardwareTime stamp(TrueTime at, RandomStream& draw) const;
 
  private:

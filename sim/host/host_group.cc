@@ -16,7 +16,7 @@ std::string component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
 }
 
-// How far a slave's clock is off when nothing has synchronised it yet.
+// The offset of a slave's clock before synchronisation.
 double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
                  InitialClocks initial_clocks, std::size_t host, double skew_against_master) {
   if (initial_clocks == InitialClocks::kLastSet) {

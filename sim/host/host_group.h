@@ -6,12 +6,12 @@
 //                    being independent of the present one, plus the present rate difference to the
 //                    master times minutes_since_baseline
 //   kMaster          the master's own, at every instant.
-// Steady clocks start from an arbitrary reading within an hour, each host's another one, so that
-// nothing can mistake one host's for another's.
+// Each host's steady clock starts from an arbitrary reading of its own within an hour, so that a
+// mix of two hosts' steady times shows.
 //
-// Everything random but the load is drawn from streams named after the hosts alone: all pipelines
-// of a seed, and all scenarios that differ in something else, have the same oscillators and
-// offsets.
+// All random numbers but those of the load come from streams named after the hosts alone: all
+// pipelines of a seed, and all scenarios that differ in other members, have the same oscillators
+// and offsets.
 //
 // Source: docs/reference/calibration.md section 2 ("Host clock", "None row").
 //
@@ -45,8 +45,8 @@ namespace simbench::sim {
 
 class HostGroup {
  public:
-  // `load_key` names the run whose load is drawn: "<pipeline>@<scenario>". What is referred to must
-  // outlive the group, and the engine must not run after the group is gone.
+  // `load_key` names the run whose load is drawn: "<pipeline>@<scenario>". The references must
+  // outlive the group, and the engine must not run after the group is destroyed.
   HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed, std::string_view load_key,
             InitialClocks initial_clocks, VirtualContext& context, RecordingSink& sink);
   HostGroup(const HostGroup&) = delete;
@@ -57,13 +57,14 @@ class HostGroup {
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
 
-  // The capture begins now: its trigger has pulses up to slot `last`, and faults count from here.
+  // The capture begins now: its trigger has pulses up to slot `last`, and the times of faults count
+  // from now.
   void on_capture_start(const TriggerTree& trigger, std::int64_t last);
 
   Network& network() { return network_; }
   const Outages& outages() const { return outages_; }
 
-  // Puts the present setting of every clock on record, which all later adjustments start from.
+  // Reports the present setting of every clock, as the beginning of its log of adjustments.
   void report_clocks();
 
  private:

@@ -1,8 +1,8 @@
-// The pulse lines of a host: where pulses come from, and how the host stamps them.
+// The pulse lines of a host: the sources of pulses, and how the host stamps them.
 //
 //  - PulseSource: a GNSS receiver beside the host (PpsReceiver), or the trigger (TriggerLine).
-//    Pulses are numbered and each is a function of its number, so nobody has to generate them: a
-//    line that no one looks at costs nothing, however long it is connected.
+//    Pulses are numbered and each is a function of its number, so they need no generation: an
+//    unused line costs nothing, however long it is connected.
 //  - SimPulseInput: the line at the host. A pulse interrupts it, and the interrupt reads its
 //  clocks.
 //
@@ -43,7 +43,7 @@ class PulseSource {
   virtual std::int64_t last() const { return std::numeric_limits<std::int64_t>::max(); }
   // When the pulse reaches the host; nothing if it is missing.
   virtual std::optional<TrueTime> pulse(std::int64_t number) const = 0;
-  // What the time was at the pulse, if the source announces it.
+  // The time at the pulse, if the source announces it.
   virtual std::optional<Nanoseconds> announced_time(std::int64_t /*number*/) const {
     return std::nullopt;
   }
@@ -53,8 +53,8 @@ class PulseSource {
 // (half a week and a quarter of a second) at true zero.
 inline constexpr Nanoseconds kGnssTimeAtTrueZero = std::chrono::milliseconds(302'400'250);
 
-// A receiver's pulse k is at k full seconds of GNSS time, with an error N(pps_jitter_sigma_us) of
-// its own per pulse and host; its message says k seconds.
+// A receiver's pulse k is at k full seconds of GNSS time, with an error N(pps_jitter_sigma_us) per
+// pulse and host; its message announces k seconds.
 class PpsReceiver final : public PulseSource {
  public:
   PpsReceiver(const scenarios::PulseLines& lines, std::uint64_t run_seed, PeerId host);
@@ -88,13 +88,12 @@ class TriggerLine final : public PulseSource {
 
 // A pulse is stamped interrupt_latency_us + Exp(interrupt_latency_exponential_us) after it came,
 // drawn per line, host and pulse; stamps are the kernel's, on the system clock's ticks but not
-// rounded to the interface's resolution. Interrupts are served in the order of the pulses. They are
-// not delayed by the CPU's other work, and next() returns at the instant of the stamp.
+// rounded to the interface's resolution. Interrupts are served in the order of the pulses, without
+// delay by the CPU's other work, and next() returns at the instant of the stamp.
 //
-// Pulses are kept from the host's first pulse_input() for this line on. They need not be generated
-// meanwhile: pulses and clocks can be asked about the past, so what came while nobody waited is
-// worked out when somebody asks, as far as the last 1024 pulses reach. Cost: an event per pulse
-// that is waited for; none otherwise.
+// Pulses are kept from the host's first pulse_input() for this line on. They are not generated
+// meanwhile: pulses and clocks can be read in the past, so those that came while no coroutine
+// waited are computed at the next call, up to the last 1024. Cost: an event per awaited pulse.
 class SimPulseInput final : public PulseInput {
  public:
   // `host` and `source` must outlive the line, `name` tells the lines of a host apart.
@@ -102,11 +101,11 @@ class SimPulseInput final : public PulseInput {
 
   Task<std::optional<PulseStamp>> next(SteadyTime deadline) override;
 
-  // The source knows more than before.
+  // The source has other pulses than before.
   void source_changed() { changed_.notify(); }
 
  private:
-  // When the next pulse that was not yet given out is stamped; makes number_ its number.
+  // When the next pulse that next() has not returned is stamped; sets number_ to its number.
   std::optional<TrueTime> next_interrupt();
   PulseStamp stamp(std::int64_t number, TrueTime interrupt) const;
 

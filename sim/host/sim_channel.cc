@@ -64,7 +64,7 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
   if (wake_up.count() > 0) {
     co_await sleep_until(host_.world().context, host_.true_now() + wake_up, "receive: wake up");
   }
-  // Taken only now, so that a receive that is cancelled while it wakes up loses nothing.
+  // Taken only now, so that a receive cancelled during the wake-up loses no message.
   ArrivedMessage message = std::move(inbox.front());
   inbox.pop_front();
   const SystemClock& clock = host_.system_clock();

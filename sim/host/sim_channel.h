@@ -1,24 +1,24 @@
 // A simulated host's channel to one peer.
 //
 // send() occupies the host's CPU for
-//   send_cost_ms + Exp(send_cost_exponential_ms) + what the session's load adds:
+//   send_cost_ms + Exp(send_cost_exponential_ms) + the session's load:
 // the message leaves, and the call returns, at the end of that. The random part is keyed by (link,
 // direction, transport, number of the message).
 //
 // receive() returns receive_wake_up_ms after the message was available and the call was waiting for
-// it: a message that is there when receive() is called costs the wake-up too. A message that
-// arrives before the deadline is returned even if the wake-up ends after it.
+// it: a message that had arrived before the call costs the wake-up too. A message that arrives
+// before the deadline is returned even if the wake-up ends after it.
 //
-// A send that is cancelled before the message has left sends nothing; a receive that is cancelled
-// leaves the message to the next one.
+// A send that is cancelled before the message has left sends nothing; a cancelled receive leaves
+// the message to the next one.
 //
 // Stamps: at "application", the receive stamp is the reading of the system clock, through its
 // interface, when receive() returns, and there are no transmit stamps; at "kernel", both are taken
 // when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
 // resolution. Stamps of the last 4096 messages are kept.
 //
-// Hardware stamps, where the host's card takes them, are of sim/host/host_clocks.h. A burst of load
-// (sim/network/load.h) makes the wake-up longer.
+// Hardware stamps are those of the host's card, if it stamps (sim/host/host_clocks.h). A burst of
+// load (sim/network/load.h) makes the wake-up longer.
 //
 // Source: docs/reference/calibration.md section 2 (steps 1, 2 and 4); docs/design.md section 4.
 #ifndef SIMBENCH_SIM_HOST_SIM_CHANNEL_H_
@@ -60,9 +60,9 @@ class SimChannel final : public MessageChannel, private Endpoint {
 
   Nanoseconds occupancy(MessageId id) const;
   bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
-  // What is known of a message that has left; nothing if it never did or that is forgotten.
+  // A message that has left; null if it never did or is no longer kept.
   const Sent* sent(MessageId id) const;
-  // The numbers of the message for draws of its own.
+  // The key of the message's own draws.
   std::uint64_t key_of(MessageId id) const {
     return 2 * id + (transport_ == Transport::kStream ? 1 : 0);
   }
@@ -77,7 +77,7 @@ class SimChannel final : public MessageChannel, private Endpoint {
   WaitPoint arrived_;
   WaitPoint left_;
   WaitPoint passed_;
-  MessageId first_sent_ = 0;  // the message of the first of
+  MessageId first_sent_ = 0;  // the message of sent_.front()
   std::deque<Sent> sent_;
 };
 

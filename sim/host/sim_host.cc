@@ -1,9 +1,9 @@
 #include "sim/host/sim_host.h"
 
+#include "algorithms/ports/assert.h"
 #include "sim/host/host_clocks.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_channel.h"
-#include "sim/host/sim_frame_feed.h"
 
 namespace simbench::sim {
 namespace {
@@ -12,6 +12,8 @@ namespace {
 constexpr std::chrono::hours kNever(24 * 365 * 10);
 // Noise is sampled as far as anyone asks: nobody asks further than this for a mere deadline.
 constexpr std::chrono::seconds kFarOff(10);
+
+constexpr std::size_t kFramesKept = 1024;
 
 std::string host_name(PeerId id) { return "host" + std::to_string(id); }
 
@@ -109,6 +111,26 @@ std::optional<TrueTime> SimHost::next_look(SteadyTime deadline) const {
 
 std::string SimHost::name(std::string_view what) const {
   return host_name(id_).append(": ").append(what);
+}
+
+SimFrameFeed::SimFrameFeed(SimHost& host)
+    : host_(host), delivered_(host.world().context, host.name("next frame")) {}
+
+Task<std::optional<FrameArrival>> SimFrameFeed::next(SteadyTime deadline) {
+  SIMBENCH_ASSERT(!delivered_.waiting(), "one wait at a time on a frame feed");
+  while (frames_.empty()) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await delivered_.wait(host_.next_look(deadline));
+  }
+  const FrameArrival frame = frames_.front();
+  frames_.pop_front();
+  co_return frame;
+}
+
+void SimFrameFeed::push(const FrameArrival& frame) {
+  if (frames_.size() == kFramesKept) frames_.pop_front();
+  frames_.push_back(frame);
+  delivered_.notify();
 }
 
 }  // namespace simbench::sim

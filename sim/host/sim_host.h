@@ -2,12 +2,12 @@
 //
 // Calls of the clock cost CPU time (sim/host/host_clocks.h), sends the sender's occupancy
 // (sim/host/sim_channel.h). All waits are on the engine: intervals and deadlines follow the host's
-// oscillator, sleep_until follows its system clock and is re-armed whenever that is adjusted, by
-// whomever. Adjustments, exchanges and outcomes go to the recording sink as they happen.
+// oscillator, sleep_until follows its system clock and is re-armed at each adjustment. Adjustments,
+// exchanges and outcomes go to the recording sink as they happen.
 //
-// What else it has is made when the scenario or somebody asks for it: the card's clock
-// (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h), the feed of its cameras' frames
-// (sim/host/sim_frame_feed.h). None costs an event while nobody waits.
+// The card's clock (sim/host/host_clocks.h), pulse lines (sim/host/pulse_lines.h) and the feed of
+// its cameras' frames exist only if the scenario or a program uses them. None costs an event while
+// no coroutine waits.
 //
 // The host's random streams are named after its number ("host3: ..."), never after the scenario.
 //
@@ -30,6 +30,7 @@
 
 #include <boost/intrusive/list.hpp>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -52,10 +53,29 @@
 
 namespace simbench::sim {
 
-class NicClock;
 class SimChannel;
-class SimFrameFeed;
-class SimPulseInput;
+class SimHost;
+
+// The frames of the host's cameras for its programs: a queue that the rig fills.
+//
+// A frame is pushed at its delivery and next() returns at that instant, as the stamps of a frame
+// already contain all delays. The last 1024 frames that no program has taken are kept. A feed
+// exists only from the host's first frame_feed() on; until then frames cost nothing, and afterwards
+// a frame that no coroutine waits for costs no event.
+class SimFrameFeed final : public FrameFeed {
+ public:
+  // `host` must outlive the feed.
+  explicit SimFrameFeed(SimHost& host);
+
+  Task<std::optional<FrameArrival>> next(SteadyTime deadline) override;
+
+  void push(const FrameArrival& frame);
+
+ private:
+  SimHost& host_;
+  WaitPoint delivered_;
+  std::deque<FrameArrival> frames_;
+};
 
 // What the hosts of a world have in common. Everything referred to must outlive them.
 struct HostWorld {
@@ -91,10 +111,10 @@ class SimHost final : public Host {
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
 
-  // The feed if somebody has asked for it.
+  // The feed if a program has opened it.
   SimFrameFeed* opened_frame_feed() const { return frame_feed_.get(); }
 
-  // The trigger line has come alive.
+  // The trigger line has pulses from now on.
   void trigger_started();
 
   // For its ports.
@@ -104,15 +124,15 @@ class SimHost final : public Host {
   Cpu& cpu() { return cpu_; }
   // Null if the card takes no stamps.
   const NicClock* nic() const { return nic_.get(); }
-  // What a burst of load adds to the wake-up for something known as (what, a, b).
+  // The delay that a burst of load adds to the wake-up for an event with the key (what, a, b).
   Nanoseconds load_delay(ComponentKey what, std::uint64_t a, std::uint64_t b) {
     return host_load_.delay(true_now(), what, a, b);
   }
   TrueTime true_now() const { return world_.context.engine().now(); }
   bool is_past(SteadyTime deadline) const { return steady_clock().now() >= deadline; }
-  // When a wait for `deadline` should look at the clock again: at the deadline's instant, or on the
-  // way to one that is far off, whose instant only the oscillator's future could tell; nothing if
-  // the deadline is years away. Only while the deadline is not past.
+  // When a wait for `deadline` should read the clock again: at the deadline's instant, or earlier
+  // if that is far off, as its instant depends on the oscillator's future; nothing if the deadline
+  // is years away. Only while the deadline is not past.
   std::optional<TrueTime> next_look(SteadyTime deadline) const;
   // "host3: what".
   std::string name(std::string_view what) const;

@@ -12,7 +12,7 @@ double asymmetry_ms(double sigma_ms, std::uint64_t run_seed, PeerId from, PeerId
   return from < to ? forward_minus_backward_ms : -forward_minus_backward_ms;
 }
 
-// What no message is faster than, but for the asymmetry.
+// The least latency of a message, without the asymmetry.
 double least_ms(const scenarios::Network& network) {
   return network.latency_quantiles_ms.empty() ? network.latency_fixed_ms
                                               : network.latency_quantiles_ms.front();
@@ -40,7 +40,7 @@ Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
 
 double LinkLatency::draw_parametric_ms(RandomStream& draw) const {
   const double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);
-  // Both are drawn whatever comes of them, so that the draws after them stay in place.
+  // Both are always drawn, so that later draws stay the same.
   const bool has_spike = draw.chance(network_->spike_probability);
   const double spike_ms = draw.uniform(0, network_->spike_max_ms);
   return has_spike ? latency_ms + spike_ms : latency_ms;

@@ -25,7 +25,7 @@
 
 namespace simbench::sim {
 
-// Names the bursts of the directions of links.
+// The key of the bursts on links.
 inline constexpr ComponentKey kLinkBursts("network: bursts");
 
 // Numbers the directions of all links.
@@ -35,11 +35,11 @@ constexpr std::uint64_t direction_of(PeerId from, PeerId to) {
 
 class LinkLatency {
  public:
-  // `session_latency_ms` comes on top. `network` must outlive this.
+  // `session_latency_ms` is added. `network` must outlive this.
   LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
               double session_latency_ms);
 
-  // What of it is the cable's: the fixed latency (the table's least) and the asymmetry.
+  // The cable's part: the fixed latency (the table's least) and the asymmetry.
   Nanoseconds cable() const { return cable_; }
 
   // The latency of a message that leaves at `left`; `draw` is the message's own stream.

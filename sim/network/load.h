@@ -1,8 +1,8 @@
-// How loaded the hosts and the network are, during one run and from one moment to the next.
+// The load of the hosts and the network, during one run and from one moment to the next.
 //
-//  - RunLoad: what one run differs in from another, whose pipeline is another one.
+//  - RunLoad: the load of one run, which depends on its pipeline.
 //  - BurstProcess: foreign traffic or other programs that come and go.
-//  - HostLoad: what such bursts do to one host.
+//  - HostLoad: the effect of such bursts on one host.
 //
 // Source: docs/reference/calibration.md sections 1 and 2 (rmult, callrun, Lrun, Srun);
 // docs/design.md section 6; scenario /hosts/load_burst and /network/burst.
@@ -30,7 +30,7 @@
 
 namespace simbench::sim {
 
-// What the load adds to every message of a session.
+// Added to every message of a session.
 struct SessionLoad {
   double send_cost_ms = 0;
   double latency_ms = 0;
@@ -38,12 +38,12 @@ struct SessionLoad {
 
 // The draws that differ from pipeline to pipeline.
 //
-// In the calibrated worlds every cell of the published tables was a run of its own, with a load of
-// its own: one factor M for the run, an extra occupancy of the sender and an extra latency for each
-// session (a session is a pair of hosts: they share the latency, each end has an occupancy of its
-// own, so that naive two-way stamps are asymmetric by their difference), a factor on each host's
-// set calls. All are drawn per (run seed, load key); nothing else in the world depends on the load
-// key, so pipelines stay paired by seed in everything else. Draws are keyed, not stored.
+// In the calibrated worlds every cell of the published tables was a run with a load of its own: one
+// factor M for the run, an extra occupancy of the sender and an extra latency for each session (a
+// session is a pair of hosts: they share the latency, but each end has its own occupancy, so that
+// naive two-way stamps are asymmetric by the difference), a factor on each host's set calls. All
+// are drawn per (run seed, load key); nothing else in the world depends on the load key, so
+// pipelines stay paired by seed in everything else. Draws are keyed, not stored.
 class RunLoad {
  public:
   RunLoad(std::uint64_t run_seed, std::string_view load_key, const scenarios::Hosts& hosts,
@@ -51,7 +51,7 @@ class RunLoad {
 
   // M of the run.
   double factor() const { return factor_; }
-  // Of messages that `from` sends to `to`.
+  // For messages from `from` to `to`.
   SessionLoad session(PeerId from, PeerId to) const;
   // Factor on the cost of this host's set calls.
   double set_cost_factor(PeerId host) const;
@@ -66,15 +66,15 @@ class RunLoad {
   double set_cost_log_sigma_;
 };
 
-// Bursts of foreign traffic on one direction of a link, or of load on a host: when is it slow?
+// Bursts of foreign traffic on one direction of a link, or of load on a host.
 //
 // Bursts begin as a Poisson process in true time and last an exponential time each; they may
-// overlap. The process exists independently of the messages: it is sampled on a fixed grid of true
-// time whose cells have random numbers of their own, so it can be asked at any instant, in any
-// order, with the same answer. A cell is 20 mean durations long and a burst is cut off at the
-// length of a cell (once in 5e8 bursts), so only two cells matter at any instant.
+// overlap. The process is independent of the messages: it is sampled on a fixed grid of true time
+// whose cells have random numbers of their own, so queries at any instants in any order agree. A
+// cell is 20 mean durations long and a burst is cut off at the length of a cell (once in 5e8
+// bursts), so only two cells matter at any instant.
 //
-// Complexity: O(1), cheap while the instants asked for stay in one cell.
+// Complexity: O(1), cheap while the queries stay in one cell.
 class BurstProcess {
  public:
   // `kind` and `number` tell the processes of a run apart.
@@ -103,13 +103,13 @@ class BurstProcess {
   std::vector<Interval> bursts_;
 };
 
-// Bursts of load on one host: while one lasts, frames are delivered and messages noticed later,
-// each by a U(0, 2 * latency_ms) of its own. Clock calls, sends and interrupts are not delayed.
+// Bursts of load on one host: a burst delays the delivery of each frame and the receipt of each
+// message by U(0, 2 * latency_ms). It does not delay clock calls, sends and interrupts.
 class HostLoad {
  public:
   HostLoad(const scenarios::Burst& parameters, std::uint64_t run_seed, PeerId host);
 
-  // Of what arrives at `at` and is known as (what, a, b).
+  // The delay of what arrives at `at` with the key (what, a, b).
   Nanoseconds delay(TrueTime at, ComponentKey what, std::uint64_t a, std::uint64_t b);
 
  private:

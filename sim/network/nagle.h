@@ -4,8 +4,8 @@
 // acknowledgement comes or a full segment is reached. The receiver acknowledges a second segment at
 // once, a single one only after a delay, or with data of its own that leaves before.
 //
-// The algorithm without the network: it decides what leaves and when an acknowledgement is due;
-// its owner carries both (sim/network/network.h).
+// This is the algorithm alone: it decides what leaves and when an acknowledgement is due; the
+// network carries both (sim/network/network.h).
 //
 // Source: RFC 896; RFC 1122, 4.2.3.2 and 4.2.3.4.
 //
@@ -46,21 +46,22 @@ class Nagle {
  public:
   explicit Nagle(Nanoseconds ack_delay) : ack_delay_(ack_delay) {}
 
-  // The sender has another message: the segment that leaves now, if it is not to wait.
+  // Adds a message of the sender. Returns the segment that leaves now, unless the message must
+  // wait.
   std::optional<Segment> add(PathId path, MessageId id, Bytes message);
   // A segment leaves.
   void on_left() { ++sent_; }
-  // The next acknowledgement arrives: what waited for it and leaves now.
+  // The next acknowledgement arrives. Returns the waiting segment that leaves now, if any.
   std::optional<Segment> on_ack();
 
-  // A segment reaches the receiver: when it will be acknowledged unless something happens before;
-  // nothing if that is to be at once.
+  // A segment reaches the receiver. Returns when its acknowledgement is due at the latest; nothing
+  // if it is due at once.
   std::optional<TrueTime> on_arrival(TrueTime now);
   bool owes_ack() const { return owes_ack_; }
   bool is_ack_due(TrueTime now) const { return owes_ack_ && ack_due_ == now; }
-  // The receiver acknowledges all that has arrived: the acknowledgement's number.
+  // The receiver acknowledges all arrived segments. Returns the acknowledgement's number.
   std::uint64_t acknowledge();
-  // Acknowledgements do not overtake each other: when one arrives that could arrive at `at`.
+  // When an acknowledgement arrives that could arrive at `at`, as they do not overtake each other.
   TrueTime ack_in_order(TrueTime at);
 
  private:

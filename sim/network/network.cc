@@ -13,7 +13,7 @@ constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
 constexpr ComponentKey kAckDraws("network: acknowledgement");
 
-// The sending program's patience and buffers end somewhere.
+// The buffers of the sending program are bounded.
 constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
 }  // namespace
@@ -83,7 +83,7 @@ void Network::send_segment(Segment segment) {
   const SegmentId id = keep(std::move(segment));
   if (path.nagle) {
     path.nagle->on_left();
-    // What the sender owes for the way back travels with its data.
+    // An acknowledgement that the sender owes leaves with its data.
     if (paths_[path_id ^ 1].nagle->owes_ack()) acknowledge(path_id ^ 1);
   }
   if (rate_.is_infinite()) {
@@ -156,7 +156,7 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
 }
 
-// A datagram will arrive then, corrected for the time it spends in the switch.
+// Schedules the arrival of a datagram, corrected for its time in the switch.
 void Network::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
   Segment& segment = segments_[id];
   const Path& path = paths_[segment.path];

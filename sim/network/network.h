@@ -3,25 +3,25 @@
 // A message that leaves a host passes the host's port to the switch and the switch's port to the
 // receiver, each of which serves in order of arrival, and then takes the latency of its direction
 // of the link. All random numbers of a message are keyed by (link, direction, transport, number of
-// the message): whoever sends more moves nobody else's.
+// the message), so more messages change no other's numbers.
 //
-// Datagrams may be lost, duplicated (the copy has a latency of its own) and reordered (delayed on
-// their own, others pass); apart from that they keep their order. Streams are in order and
-// complete: a lost segment arrives a retransmission timeout later, doubled each time, and holds up
-// what follows it. After 15 retransmissions the stream is broken and nothing arrives any more.
+// Datagrams may be lost, duplicated (the copy has a latency of its own) and reordered (delayed
+// while others pass); otherwise they keep their order. Streams are in order and complete: a lost
+// segment arrives a retransmission timeout later, doubled each time, and delays those behind it.
+// After 15 retransmissions the stream is broken and nothing arrives any more.
 //
 // Under Nagle's algorithm (sim/network/nagle.h) small messages of a stream arrive together, as
 // separate messages. Acknowledgements have the latency of their direction and no size; without
 // Nagle they change nothing and are not simulated.
 //
 // Hosts and links may stop (sim/faults/faults.h): datagrams to or from them are lost, streams
-// retransmit. A switch may know PTP (sim/network/switch_clock.h): it corrects datagrams that are
-// event messages for the time they spent in it.
+// retransmit. A switch with PTP (sim/network/switch_clock.h) corrects datagrams that are event
+// messages for their time in the switch.
 //
-// Capture traffic: what a host sends on of its cameras' frames passes its port like messages, in
-// the order of the frames' delivery and each frame in one piece, towards a storage whose own port
-// is not modelled. Messages of the host wait behind it; those to the host do not. What finds more
-// than a second of traffic queued is not sent, so that the queue stays bounded.
+// Capture traffic: the frames that a host sends on pass its port like messages, in the order of
+// their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
+// of the host wait behind it; those to the host do not. A frame that finds more than a second of
+// traffic queued is not sent, so that the queue stays bounded.
 //
 // Links are made when first used: memory grows with the links in use, not with hosts squared.
 // Cost: one event per message, two with a bandwidth; no allocation of its own in steady state.
@@ -69,9 +69,9 @@ class LineRate {
 // arrival.
 class Port {
  public:
-  // How long what arrives at `at` would have to wait.
+  // How long a message that arrives at `at` would wait.
   Nanoseconds backlog(TrueTime at) const { return free_at_ > at ? free_at_ - at : Nanoseconds(0); }
-  // When a message has passed that arrives at `at`, not before the one before it.
+  // When a message that arrives at `at` has passed; messages pass in order.
   TrueTime pass(TrueTime at, Nanoseconds duration) {
     free_at_ = std::max(free_at_, at) + duration;
     return free_at_;
@@ -81,7 +81,7 @@ class Port {
   TrueTime free_at_ = TrueTime::min();
 };
 
-// A message that has arrived and waits to be received.
+// An arrived message that was not received yet.
 struct ArrivedMessage {
   Bytes bytes;
   TrueTime at;
@@ -89,7 +89,7 @@ struct ArrivedMessage {
 };
 using Inbox = std::deque<ArrivedMessage>;
 
-// One end of a channel, notified of what happens, at the virtual time when it happens.
+// One end of a channel, notified at the virtual time of each event.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
@@ -109,24 +109,23 @@ class Network : private EventHandler {
   Network& operator=(const Network&) = delete;
   ~Network() override = default;
 
-  // The path from `from` to `to`, both of whose ends at `from` are `endpoint` from now on: it is
-  // notified of what leaves on this path and of what arrives on the way back. It must outlive the
-  // network's events. Messages that arrive before the receiver has opened its end wait in the
-  // inbox.
+  // The path from `from` to `to`. `endpoint` is notified of messages that leave on this path and of
+  // those that arrive on the way back; it must outlive the network's events. Messages that arrive
+  // before the receiver has opened its end wait in the inbox.
   PathId open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint);
 
   // Message `id` leaves the host now; ids count from 0 on each path.
   void send(PathId path, MessageId id, Bytes message);
 
-  // From now on `observer`, which must outlive the network's events, is notified of every message
-  // when its way is known: as it leaves the sender or, with a bandwidth, the sender's port. A
-  // duplicate is no message of its own, and capture traffic none at all.
+  // Notifies `observer`, which must outlive the network's events, of every message when its arrival
+  // is known: as it leaves the sender or, with a bandwidth, the sender's port. Duplicates and
+  // capture traffic are not reported.
   void observe(WorldObserver& observer) { observer_ = &observer; }
 
-  // `from` sends this much capture traffic now.
+  // `from` sends `bytes` of capture traffic now.
   void send_capture_traffic(PeerId from, double bytes);
 
-  // What has arrived at the host that opened `path`, sent by its peer.
+  // The messages from the peer that have arrived at the host that opened `path`.
   Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
 
  private:
@@ -157,12 +156,12 @@ class Network : private EventHandler {
     return rate_.duration(segment.bytes + parameters_.overhead_bytes);
   }
 
-  // A message between the two is lost if it leaves and would arrive then.
+  // Whether an outage loses a message that leaves and would arrive then.
   bool is_cut(const Path& path, TrueTime left, TrueTime arrival) const {
     return outages_.unreachable(path.from, left) || outages_.unreachable(path.to, arrival);
   }
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
-  // To the observer: the segment's messages arrive then, or never.
+  // Reports to the observer that the segment's messages arrive then, or never.
   void report(const Segment& segment, std::optional<TrueTime> arrival) const;
 
   SegmentId keep(Segment segment);

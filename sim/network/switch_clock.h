@@ -1,10 +1,9 @@
-// What a switch that knows PTP adds to the event messages it forwards.
+// The corrections that a switch with PTP adds to the event messages it forwards.
 //
-// A transparent switch adds to a message's correctionField how long it kept the message, its
-// residence time: everything from the last bit's way in to its arrival beyond the fixed latency and
-// the asymmetry of the direction, which are the cable's - so the queue at its port, the random
-// latency, spikes, bursts, a session's load and detours - with an error
-// N(switch_clock_error_ns) per message.
+// A transparent switch adds the message's residence time to its correctionField: all from the last
+// bit's way in to its arrival (the queue at its port, the random latency, spikes, bursts, a
+// session's load and detours) except the cable's part, the fixed latency and the asymmetry of the
+// direction. The error is N(switch_clock_error_ns) per message.
 //
 // A boundary switch is modelled as a transparent one whose slaves see the master through the
 // switch's own servo: messages from the master (host 0) are corrected by E(t) more, those to the
@@ -12,7 +11,7 @@
 // another. E(t) is a stationary normal process of standard deviation switch_clock_error_ns: a blend
 // of independent values on a grid of 30 s, so constant over seconds and forgotten within a minute.
 //
-// Event messages are recognised as IEEE 1588-2019 lays them out (clause 13.3): in a datagram, the
+// Event messages are recognised by their layout (IEEE 1588-2019, clause 13.3): in a datagram, the
 // low nibble of byte 0 (messageType) is at most 3, that of byte 1 (versionPTP) is 2, and there are
 // 44 bytes or more; bytes 8 to 15 are the correctionField, big-endian, in units of 2^-16 ns.
 //

@@ -2,8 +2,8 @@
 // their streams are plugged in: at which host, on which USB controller.
 //
 // Cameras are numbered host by host (Scenario::host_of); usb/cameras_per_controller neighbours on a
-// host share a controller. What a stream has of its own is drawn from random streams named after
-// its camera and kind, so neither hosts nor pipelines change it.
+// host share a controller. The values of a stream are drawn from random streams named after its
+// camera and kind, so neither hosts nor pipelines change them.
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2 ("Cameras"),
 // docs/reference/d455.md.
@@ -57,7 +57,7 @@ class Cameras {
   Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
       : scenario_(scenario), seed_(seed) {}
 
-  // The cameras are started at `at`, once. There are no clocks and streams before that.
+  // Starts the cameras at `at`, once. There are no clocks and streams before that.
   void start(TrueTime at);
 
   // When this camera starts: with all others, or somewhat later.
@@ -69,7 +69,7 @@ class Cameras {
 
   CameraStream& stream(std::uint32_t id) { return streams_[id]; }
   std::vector<CameraStream>& streams() { return streams_; }
-  // The numbers of those that pulses start.
+  // The numbers of the streams that pulses start.
   const std::vector<std::uint32_t>& triggered_streams() const { return triggered_streams_; }
 
   // A controller of its own for each group of cameras, as CameraStream::controller counts them.

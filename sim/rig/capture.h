@@ -1,14 +1,14 @@
 // A capture: trigger pulses, cameras, USB and the hosts' stamps, as typed events on the engine.
 //
-// The way of a frame, an event each:
+// The events of a frame:
 //
 //   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
-//     -> transfer complete -> delivery: stamped by its host and handed to the sink
+//     -> transfer complete -> delivery: stamped by its host and passed to the sink
 //
-// Everything random about a frame is drawn when its exposure begins, from streams of its own
-// camera and stream, so pipelines of one seed see the same frames whatever their hosts' clocks do.
+// All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
+// and stream, so pipelines of one seed get the same frames whatever their hosts' clocks do.
 //
-// The hosts' clocks are only read, by true time; which protocol disciplines them is not known here.
+// The hosts' clocks are only read, by true time, whatever protocol disciplines them.
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three events per frame and one per pulse; no allocation per event
@@ -46,14 +46,14 @@ class Capture final : public EventHandler {
   Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
           std::vector<SystemClock*> clocks, const CaptureReports& reports);
 
-  // What will be captured; known from the beginning.
+  // The layout of the recording; known from the beginning.
   RigLayout layout() const;
 
-  // The cameras are started at `at`, not before the engine's present. `on_end` is called when the
-  // last frame has been delivered.
+  // Starts the cameras at `at`, not before the engine's present. Calls `on_end` when the last frame
+  // has been delivered.
   void start(TrueTime at, std::function<void()> on_end);
 
-  // What other parts of the rig may know of a capture that has been started.
+  // For other parts of the rig, after start().
   const TriggerTree& trigger() const { return trigger_; }
   std::int64_t last_slot() const { return last_slot_; }
   TrueTime end() const { return end_; }
@@ -79,7 +79,7 @@ class Capture final : public EventHandler {
     double kernel_copy_ns = 0;
     double delivery_ns = 0;
   };
-  // What a host does to all of its frames.
+  // A host's effects on all of its frames.
   struct HostSide {
     HostJitter jitter;
     HostLoad load;

@@ -1,7 +1,7 @@
 #include "sim/rig/capture_reports.h"
 
 #include "sim/host/host_group.h"
-#include "sim/host/sim_frame_feed.h"
+#include "sim/host/sim_host.h"
 
 namespace simbench::sim {
 namespace {

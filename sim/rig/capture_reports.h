@@ -1,10 +1,9 @@
-// Where what a capture makes goes: a frame whose way has ended is reported once, and from here to
-// all who have to do with it.
+// Reports of a capture: each frame is reported once, when it is delivered or lost, to
 //
-//  - The recording has every delivered frame.
-//  - The frame's host (FrameFeeds) gives it to the programs that asked for frames, and sends a part
-//    of it on over the network.
-//  - An observer of the world has every frame that was exposed, lost ones too.
+//  - the recording, if it was delivered;
+//  - its host (FrameFeeds), whose programs may use frames and which sends a part of it on over the
+//    network;
+//  - an observer of the world, also if it was lost.
 //
 //   CaptureReports reports(sink, &feeds, request.observer);
 //   Capture capture(scenario, seed, engine, clocks, reports);
@@ -21,9 +20,9 @@ namespace simbench::sim {
 
 class HostGroup;
 
-// A frame at the end of its way.
+// A frame that was delivered or lost.
 struct CapturedFrame {
-  FrameRecord record{};  // what the host knows only of one that was delivered
+  FrameRecord record{};  // complete only if the frame was delivered
   FrameTruth truth{};
   std::uint32_t host = 0;
   double bytes = 0;
@@ -34,14 +33,14 @@ struct CapturedFrame {
   TrueTime delivered{};    // to the program
 };
 
-// What hosts do with the frames that were delivered to them, besides recording them.
+// The hosts' use of the frames that were delivered to them, besides recording them.
 //
-//  - Programs that asked for them get the frames of the scored stream (scenario /evaluation/stream)
-//    through their host's feed (sim/host/sim_frame_feed.h).
+//  - Programs that opened a feed get the frames of the scored stream (scenario /evaluation/stream)
+//    through their host's feed (sim/host/sim_host.h).
 //  - capture_traffic_share of every frame's bytes, of all streams, leaves through the host's switch
 //    port (sim/network/network.h), in phase with the trigger as the frames are.
 //
-// Cost of a frame that nobody wants: a few comparisons; neither use of frames costs an event.
+// Cost of a frame without either use: a few comparisons; neither use of frames costs an event.
 class FrameFeeds {
  public:
   // `hosts` must outlive this.
@@ -62,13 +61,13 @@ class CaptureReports {
                           WorldObserver* observer = nullptr)
       : sink_(sink), feeds_(feeds), observer_(observer) {}
 
-  // The cameras are being started.
+  // The cameras are started.
   void start(TrueTime at) const;
   // A pulse leaves the main trigger.
   void pulse(std::int64_t slot, TrueTime at) const;
-  // A pulse of the frames that are evaluated, for the recording.
+  // A pulse of the evaluated frames, for the recording.
   void recorded_pulse(const PulseTruth& pulse) const { sink_.on_pulse(pulse); }
-  // The way of a frame has ended, now.
+  // A frame is delivered or lost, now.
   void frame(const CapturedFrame& frame) const;
 
  private:

@@ -1,14 +1,14 @@
 // Device-clock polls: each host reads its cameras' clocks at a fixed cadence while they stream.
 //
 // A poll reads the host's clocks at t0 (the system clock through its interface, the steady clock
-// exactly), reaches the camera after the request's delay, where the register is read as it is, in
-// whole microseconds, and reads the host's clocks again at t1 after the reply's delay. It is on
-// record at t1. The arrival quantum is no matter of polls.
+// exactly), reaches the camera after the request's delay, where it reads the register in whole
+// microseconds, and reads the host's clocks again at t1 after the reply's delay, when it is
+// reported. The arrival quantum does not apply to polls.
 //
 // Polls of a camera begin at its start + phase + n * interval_ms of true time, the phase anywhere
 // in the interval, and before the end of the capture. A poll that takes longer than the interval
-// skips those that should have begun meanwhile. A camera that has vanished does not answer, and a
-// host that has stopped does not ask.
+// skips those due meanwhile. A camera that has vanished does not reply, and a host that has stopped
+// does not poll.
 //
 // All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns;
 // with an interval of 0 there is nothing at all, not even a handler.

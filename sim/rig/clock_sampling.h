@@ -1,16 +1,15 @@
-// Stands between the world and its observer, and adds what nothing in the world calls for: the
-// errors of the hosts' clocks, at the observer's interval.
+// Passes the world's reports to its observer, and adds samples of the errors of the hosts' clocks
+// at the observer's interval.
 //
-// Samples cost no events. A clock can be read at any past instant, so what is due is read just
-// before the next thing is reported, and the rest at the end: with an observer the engine does
-// exactly what it does without. A sample at an instant t is read when t is over, after all that is
-// done to the clocks then.
+// Samples cost no events. A clock can be read at any past instant, so due samples are read just
+// before the next report, and the rest at the end: the engine does exactly the same with and
+// without an observer. A sample at an instant t is read after t, so that all adjustments at t
+// count.
 //
 // Samples are at the start of the world, then every interval from true zero on to the end. A
-// service's warm-up may be hours of nothing: before zero the interval is at least a thousandth of
-// that time.
+// service's warm-up may be hours: before zero the interval is at least a thousandth of that time.
 //
-// Cost: a comparison for everything reported, and one reading of every clock per sample.
+// Cost: a comparison per report, and one reading of every clock per sample.
 //
 //   ClockSampling sampling(observer, clocks, engine);
 //   sampling.on_world(start);

@@ -116,7 +116,7 @@ class Run {
   Engine engine_;
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;
-  std::optional<ClockSampling> sampling_;  // if somebody observes
+  std::optional<ClockSampling> sampling_;  // with an observer
   FrameFeeds frame_feeds_;
   Capture capture_;
   ClockPolls clock_polls_;

@@ -2,17 +2,17 @@
 // last frame, as a RecordingSource.
 //
 // One call of record() is one run of the world: oscillators and clocks, the host synchronisation of
-// the request as real code over the simulated ports, a pause, then the capture. Everything random
-// follows from (seed, component); the request's pipeline only selects the load that the hosts
-// are under. Equal requests give identical recordings.
+// the request as real code over the simulated ports, a pause, then the capture. All random numbers
+// follow from (seed, component); the request's pipeline only selects the hosts' load. Equal
+// requests give identical recordings.
 //
 // Timeline, in true time: zero is the start of synchronisation. A synchronisation that ends by
 // itself is followed by wait_before_capture_ms and the capture; a service begins its warm_up()
 // before zero and goes on during the capture.
 //
 // Errors: record() throws SimulationError when the synchronisation comes to a standstill before the
-// capture (naming what every coroutine waits for), EngineLimitReached when it does not end, and
-// whatever an algorithm throws.
+// capture (with what every coroutine waits for), EngineLimitReached when it does not end, and the
+// exceptions of algorithms.
 //
 //   const auto source = make_simulation(scenario);
 //   KeptRecording recording;

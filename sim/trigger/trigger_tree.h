@@ -2,8 +2,8 @@
 //
 // The main trigger (TG-16C) makes a pulse per period of its own oscillator; a sub-trigger (TG-4C)
 // passes it on to its cameras. A pulse is named by its slot: slot i is due i periods after the
-// first. Missed and paused pulses leave their slot empty, so that a slot number means the same to
-// every camera and to the ground truth.
+// first. Missed and paused pulses leave their slot empty, so that a slot number is the same for
+// every camera and for the ground truth.
 //
 // The cameras of a sub-trigger are a star, or a daisy chain in which each camera passes the pulse
 // on to the next one after daisy_chain_delay_us (Azure Kinect; one sub-trigger for all cameras then
@@ -16,7 +16,7 @@
 //
 //   TriggerTree tree(scenario.trigger, 18, seed);
 //   tree.start(capture_start);
-//   if (auto pulse = tree.pulse(0)) expose(*pulse + tree.delay_to(7));   // camera 7 sees it then
+//   if (auto pulse = tree.pulse(0)) expose(*pulse + tree.delay_to(7));   // at camera 7
 #ifndef SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
 #define SIMBENCH_SIM_TRIGGER_TRIGGER_TREE_H_
 
@@ -33,8 +33,7 @@ class TriggerTree {
  public:
   TriggerTree(const scenarios::Trigger& settings, std::size_t cameras, std::uint64_t seed);
 
-  // The cameras start at `capture_start`, until then taken to be true zero; slot 0 is due
-  // start_delay_ms later.
+  // Sets the start of the cameras, true zero before this call; slot 0 is due start_delay_ms later.
   void start(TrueTime capture_start);
 
   // When slot `slot` is due, without jitter. Slots are equally spaced to the nanosecond over hours.

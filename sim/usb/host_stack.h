@@ -1,5 +1,5 @@
-// What happens to a frame between the end of its transfer and the application: copy to the kernel,
-// jitter of the delivery, jitter that all cameras of a host share, and rare big jumps.
+// Delays of a frame between the end of its transfer and the application: copy to the kernel, jitter
+// of the delivery, jitter that all cameras of a host share, and rare big jumps.
 //
 //   delivery = end of transfer + kernel copy + own jitter + host's jitter + jump
 //
@@ -9,14 +9,14 @@
 //   delivery = end of transfer + table(Phi(z[i])) + host's jitter
 //   z[i] = r * z[i-1] + sqrt(1 - r^2) * N(1),   r = usb/delivery_correlation
 //
-// so that each delay has the table's distribution and successive ones are joined by a Gaussian
-// copula, whose rank correlation (Spearman's) is 6 / pi * asin(r / 2).
+// so that each delay has the table's distribution and a Gaussian copula joins successive ones, with
+// the rank correlation (Spearman's) 6 / pi * asin(r / 2).
 //
-// All other terms scale with the transfer time of one frame alone on the bus, as
-// docs/reference/calibration.md has it; frames of one stream never overtake each other.
+// All other terms scale with the transfer time of one frame alone on the bus
+// (docs/reference/calibration.md); frames of one stream never overtake each other.
 //
 // The host's part is an AR(1) process on a grid of frame periods in true time,
-// h[i] = rho * h[i-1] + (1 - rho) * Exp(mean), so it does not depend on which frames ask for it.
+// h[i] = rho * h[i-1] + (1 - rho) * Exp(mean), so it does not depend on the frames.
 //
 // Source: docs/reference/calibration.md section 2 ("Cameras"), parameters jcam, jhost, jrho, spk,
 // spkm. Copula: Nelsen, "An Introduction to Copulas", 2006, sections 2.3 and 5.1.
@@ -73,7 +73,7 @@ class FrameDelays {
   double correlation_;
   double innovation_;  // sqrt(1 - correlation^2)
   double variate_ = 0;
-  bool has_variate_ = false;  // the first one has nothing to correlate with
+  bool has_variate_ = false;  // the first one has no predecessor
   RandomStream stream_;
 };
 

@@ -29,7 +29,7 @@ bool UsbController::later(const Transfer& a, const Transfer& b) {
   return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
 }
 
-// When a frame is through that waits for the frames before it on its lane.
+// When a frame is transferred that waits for the frames before it on its lane.
 double UsbController::queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
   double& free_at_ns = lane_free_at_ns_[lane];
   free_at_ns = std::max(free_at_ns, as_ns(now)) + bytes / settings_.bytes_per_ns;
@@ -41,7 +41,7 @@ void UsbController::serve_until(TrueTime now) {
     served_bytes_ += static_cast<double>((now - served_until_).count()) * settings_.bytes_per_ns /
                      static_cast<double>(pending_.size());
   } else {
-    served_bytes_ = 0;  // nothing pending refers to the sum: keep it small, and so exact
+    served_bytes_ = 0;  // no pending transfer uses the sum: keep it small, and so exact
   }
   served_until_ = now;
 }

@@ -7,11 +7,11 @@
 //  - fair: all pending frames advance at an equal share (processor sharing).
 //
 // A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
-// an incomplete frame is on a bus that more bytes are asked of than it carries.
+// an incomplete frame is on an overloaded bus.
 //
-// The controller is a passive model on true time. Its owner submits frames, asks take_wake_up()
-// when to come back, and then collects what is done. For dedicated and fifo the completion is known
-// at submission; fair sharing revises it as frames come and go.
+// The controller is a passive model on true time. Its owner submits frames, comes back at the time
+// of take_wake_up(), and then collects the completed transfers. For dedicated and fifo the
+// completion is known at submission; fair sharing revises it as frames come and go.
 //
 //   if (bus.submit(now, stream, bytes, frame)) {
 //     if (const auto at = bus.take_wake_up()) schedule(*at);
@@ -48,17 +48,17 @@ class UsbController {
  public:
   UsbController(const UsbSettings& settings, std::size_t streams);
 
-  // Stream `stream` offers a frame of `bytes`, to be known as `ticket`. False: it was lost.
+  // Stream `stream` offers a frame of `bytes` with the number `ticket`. False: it was lost.
   bool submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket);
 
   // When the next transfer completes if nothing else is submitted; TrueTime::max() if none is
   // pending.
   TrueTime next_completion() const;
 
-  // When the owner has to come back, if it has no date that is early enough; nothing otherwise.
-  // Under fair sharing a new frame puts completions off: a visit may find nothing done.
+  // When the owner must come back, unless it has an early enough date already. Under fair sharing a
+  // new frame delays completions: there may be nothing complete then.
   std::optional<TrueTime> take_wake_up();
-  // Whether the owner, who comes back now, has been given this date last; others are out of date.
+  // Whether `now` is the last date from take_wake_up(); earlier ones are out of date.
   bool is_woken(TrueTime now);
 
   // The ticket of a transfer that is complete at `now`, in order of completion; nothing if none is.

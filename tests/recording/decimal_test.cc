@@ -1,10 +1,10 @@
-#include "recording/decimal.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <optional>
 #include <random>
+
+#include "recording/text_fields.h"
 
 namespace simbench {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_service.h"
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -55,7 +56,46 @@ constexpr double kPollSpread = 0.02;
 constexpr double kSlewAhead = 1.25;      // poll intervals
 constexpr double kMaxClockError = 1e-6;  // the default of maxclockerror, 1 ppm
 
-Nanoseconds from_seconds(double seconds) { return from_ms(seconds * 1e3); }
+// The client on one slave. The host must outlive the client, and the client its coroutines.
+class ChronyClient {
+ public:
+  static constexpr int kBurst = 4;
+  static constexpr Nanoseconds kBurstSpacing{2'000'000'000};
+  static constexpr Nanoseconds kMaxDelay{3'000'000'000};
+  static constexpr std::uint32_t kPatience = 8;  // polls without a reply, then the slave has failed
+
+  ChronyClient(Host& host, PeerId server, const ChronySettings& settings);
+
+  // Never ends.
+  Task<void> run();
+
+ private:
+  Task<void> poll();
+  // Returns whether there is an estimate to correct the clock by.
+  bool use(const NtpMeasurement& measurement);
+  Task<void> correct();
+  // Adds `offset_s` at a rate, as a fraction, in parts.
+  Task<void> slew(double offset_s, double rate);
+  // The measurement as seen by the clock that has finished its slew.
+  ChronySample sample_of(const NtpMeasurement& measurement) const;
+
+  double seconds(SteadyTime at) const { return to_seconds(at - start_); }
+  double now_s() const { return seconds(host_.steady_clock().now()); }
+
+  Host& host_;
+  PeerId server_;
+  ChronySettings settings_;
+  NtpAssociation association_;
+  ChronySourceStats stats_;
+  ChronyReference reference_;
+  ChronyPoll poll_;
+  UnfinishedSlew slew_;
+  SteadyTime start_;
+  std::uint32_t polls_ = 0;
+  std::uint32_t replies_ = 0;
+  int good_samples_ = 0;
+  OutcomeReport outcome_;
+};
 
 }  // namespace
 
@@ -72,7 +112,8 @@ ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& sett
       stats_(settings.stats),
       reference_(settings.reference),
       poll_(settings.poll_min, settings.poll_max, settings.poll_target),
-      start_(host.steady_clock().now()) {}
+      start_(host.steady_clock().now()),
+      outcome_(host) {}
 
 Task<void> ChronyClient::run() {
   // Clients that start together do not stay together.
@@ -95,11 +136,15 @@ Task<void> ChronyClient::poll() {
   const bool is_used = reply && use(*reply);
   if (!is_used) {
     co_await slew(slew_.left_s(now_s()), slew_.rate);
-    if (replies_ == 0 && polls_ >= kPatience) report(false);
+    if (replies_ == 0 && polls_ >= kPatience) {
+      outcome_.failed(polls_, "no valid reply from time server " + std::to_string(server_) +
+                                  " in " + std::to_string(polls_) +
+                                  " polls; is it running, synchronised and reachable?");
+    }
     co_return;
   }
   co_await correct();
-  report(true);
+  outcome_.synchronised(polls_);
 }
 
 bool ChronyClient::use(const NtpMeasurement& measurement) {
@@ -128,8 +173,8 @@ Task<void> ChronyClient::correct() {
 }
 
 Task<void> ChronyClient::slew(double offset_s, double rate) {
-  // No more at a time than is due until the next poll has come for certain: what the end of a slew
-  // costs grows with its distance.
+  // No more at a time than is certainly due before the next poll: the cost of a slew's end grows
+  // with its distance.
   const double part_s = std::min(std::abs(offset_s), rate * kSlewAhead * poll_.interval_s());
   const Nanoseconds part = from_seconds(std::copysign(part_s, offset_s));
   if (part == Nanoseconds{0}) co_return;
@@ -148,21 +193,6 @@ ChronySample ChronyClient::sample_of(const NtpMeasurement& measurement) const {
   const double rate_error = kMaxClockError + std::min(reference_.skew(), 1.0);
   sample.dispersion_s = settings_.stats.precision_s + rate_error * taken_s;
   return sample;
-}
-
-void ChronyClient::report(bool synchronised) {
-  if (reported_) return;
-  reported_ = true;
-  SyncOutcome outcome;
-  outcome.slave = host_.id();
-  outcome.synchronised = synchronised;
-  outcome.passes = polls_;
-  if (!synchronised) {
-    outcome.message = "slave " + std::to_string(host_.id()) + ": no valid reply from time server " +
-                      std::to_string(server_) + " in " + std::to_string(polls_) +
-                      " polls; is it running, synchronised and reachable?";
-  }
-  host_.report_outcome(outcome);
 }
 
 Task<void> ChronyService::run_master(Host& host, std::vector<PeerId> slaves) {
@@ -207,7 +237,7 @@ std::vector<ParameterSpec> chrony_parameters() {
                        "skew above which a frequency is not used (maxupdateskew)",
                        kChronyDocumentation),
       choice_parameter("stamps", {"application", "kernel"},
-                       "t1 before the send, or from the kernel where it tells",
+                       "t1 from before the send, or from the kernel where it stamps",
                        "the other stamps are the application's"),
       number_parameter("service_hours", 4, 0, 1e4,
                        "how long the service has run when the capture starts",

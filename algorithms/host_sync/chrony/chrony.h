@@ -1,16 +1,17 @@
 // chrony as deployed: chronyd as the client on each slave, a stratum 1 server on the master.
 //
 // The client polls every 2^poll s (and up to 2 % more, at random), first four times at 2 s
-// (iburst). Its samples are fitted by a line (chrony_source_stats.h), of which frequency and offset
-// are taken over after every good sample from the third on (ChronyReference): the frequency at
-// once, the offset by a slew, never by a step. The poll adapts (ChronyPoll). A sample with a
-// delay above 3 s, or one that is_good() refuses, is dropped.
+// (iburst). A line is fitted to its samples (chrony_source_stats.h); after every good sample from
+// the third on the clock takes over the line's frequency and offset (ChronyReference): the
+// frequency at once, the offset by a slew, never by a step. The poll adapts (ChronyPoll). Samples
+// with a delay above 3 s, and those that are not good (ChronySourceStats::is_good), are discarded.
 //
-// The system clock is stamped while it slews. Offsets are therefore kept for the clock as it would
-// read if what is left of the slew had been added at once.
+// Stamps are taken while the system clock slews. Offsets are therefore kept for the clock as it
+// would read if what is left of the slew had been added at once.
 //
-// A service: warm_up() is how long it has run when the capture starts; it never ends. Outcome:
-// synchronised at the first correction of the clock; not, after eight polls without a valid reply.
+// A service: warm_up() is how long it has run when the capture starts; it never ends. The outcome
+// is "synchronised" at the first correction of the clock, and a failure after eight polls without a
+// valid reply.
 //
 // Not here: several sources and their selection, makestep, the sample filter option, interleaved
 // mode, refclocks. chrony has no broadcast client.
@@ -36,8 +37,8 @@ namespace simbench {
 
 // chrony's poll interval: long enough that about `target` samples lie on one line.
 //
-// A score moves by (samples/target - 1)/target a sample, twice that downwards; a prediction that
-// fails by more than the sample's distance (delay/2 + dispersion) moves it by -log2(error/distance)
+// A score moves by (samples/target - 1)/target per sample, twice that downwards; a prediction whose
+// error exceeds the sample's distance (delay/2 + dispersion) moves it by -log2(error/distance)
 // instead. Each whole point of the score is one step of the exponent, within its bounds.
 //
 // Source: docs/reference/host_sync.md section 2 (polltarget 8; ntp_core.c).
@@ -74,15 +75,15 @@ class ChronyPoll {
 
 // chrony's use of an estimate: how far to change the frequency, and how fast to slew the offset.
 //
-//  - Frequency: the measured one is trusted against the present one by their skews,
+//  - Frequency: the skews weigh the measured one against the present one,
 //    gain = 3 s^2 / (3 s^2 + m^2) with s the present skew and m the measured one; a measurement
 //    with a skew above max_update_skew changes nothing. The skew follows by the same gain, widened
 //    by how much the two disagree.
-//  - Offset: all of it is corrected, by a slew. An offset as large as the estimate's own deviation
-//    takes correction_ratio times the interval between updates; a larger one is corrected faster in
+//  - Offset: a slew corrects all of it. An offset as large as the estimate's own deviation takes
+//    correction_ratio times the interval between updates; a larger one is corrected faster in
 //    proportion, in no less than 1 s, at no more than max_slew_rate.
 //
-// A pure state machine. chrony steps only if it is told to (makestep), which is not here.
+// A pure state machine. chrony steps only if it is configured to (makestep), which is not here.
 // Source: docs/reference/host_sync.md section 2 (chrony, conf.c); chrony.conf documentation
 // (corrtimeratio, maxslewrate, maxupdateskew).
 //
@@ -97,7 +98,7 @@ struct ChronyReferenceSettings {
 struct ChronyCorrection {
   double frequency = 0;  // change of the clock's rate, as a fraction
   double offset_s = 0;   // to be added to what was still to be slewed
-  double slew_rate = 0;  // for all that is left then, as a fraction; 0 if nothing is
+  double slew_rate = 0;  // for all that is then left, as a fraction; 0 if nothing is
 };
 
 class ChronyReference {
@@ -143,58 +144,14 @@ class ChronyService : public HostSync {
   ChronySettings settings_;
 };
 
-// The client of ChronyService on one slave (ChronyService says what it does).
-
-// What a slew has still to add, at any time from its start on.
 struct UnfinishedSlew {
   double offset_s = 0;
   double rate = 0;  // as a fraction
   double start_s = 0;
-  double duration_s = 0;  // of the part of it that was begun
+  double duration_s = 0;  // of the part that was begun
 
+  // What it has still to add at a time from its start on.
   double left_s(double at_s) const;
-};
-
-class ChronyClient {
- public:
-  static constexpr int kBurst = 4;
-  static constexpr Nanoseconds kBurstSpacing{2'000'000'000};
-  static constexpr Nanoseconds kMaxDelay{3'000'000'000};
-  static constexpr std::uint32_t kPatience = 8;  // polls without reply, then it is an outcome
-
-  // The host must outlive the client, the client its coroutines.
-  ChronyClient(Host& host, PeerId server, const ChronySettings& settings);
-
-  // Endless.
-  Task<void> run();
-
- private:
-  Task<void> poll();
-  // Whether there is an estimate to correct the clock by.
-  bool use(const NtpMeasurement& measurement);
-  Task<void> correct();
-  // Adds `offset_s` at a rate, as a fraction; in parts, each as long as is sure to be needed.
-  Task<void> slew(double offset_s, double rate);
-  // The measurement as seen by the clock that has finished its slew.
-  ChronySample sample_of(const NtpMeasurement& measurement) const;
-
-  double seconds(SteadyTime at) const { return to_seconds(at - start_); }
-  double now_s() const { return seconds(host_.steady_clock().now()); }
-  void report(bool synchronised);
-
-  Host& host_;
-  PeerId server_;
-  ChronySettings settings_;
-  NtpAssociation association_;
-  ChronySourceStats stats_;
-  ChronyReference reference_;
-  ChronyPoll poll_;
-  UnfinishedSlew slew_;
-  SteadyTime start_;
-  std::uint32_t polls_ = 0;
-  std::uint32_t replies_ = 0;
-  int good_samples_ = 0;
-  bool reported_ = false;
 };
 
 }  // namespace simbench

@@ -1,20 +1,12 @@
 // One NTP association: a client and its server exchange 48-byte packets, unicast or broadcast.
 //
-// NtpAssociation is the client's side. exchange() sends a request (mode 3) and waits for the reply
-// to it; next_broadcast() waits for a packet of mode 5. Whatever else arrives - late, duplicated or
-// foreign replies, noise - is ignored, as RFC 5905 section 8 asks: a reply must echo the transmit
-// stamp of the last request, come from a synchronised server of stratum 1 to 15 and carry its own
-// transmit stamp; a kiss-o'-death (stratum 0) is none.
+// Stamps: a packet carries the clock's reading from before it is sent. With NtpStamps::kKernel the
+// client replaces its own t1 by the kernel's transmit stamp where there is one. The server cannot
+// do so with t3, which has left by then: its sending time counts to one direction only, and half of
+// it is an error.
 //
-// serve_ntp() is the server's side for one client, endless: a local reference of stratum 1.
-// broadcast_ntp() sends a packet of mode 5 to every client at an interval, endless.
-//
-// Stamps: a packet carries the reading of the clock before it is sent. With NtpStamps::kKernel the
-// client replaces its own t1 by the kernel's transmit stamp where there is one; the reply that
-// carries t3 has left by the time the server knows better, so the server's sending time then counts
-// to one direction only, and half of it is an error.
-//
-// Source: RFC 5905 sections 7 to 9; docs/reference/host_sync.md section 2.
+// Source: RFC 5905 sections 6 to 9; RFC 4330 sections 3 to 5 (the client's checks);
+// docs/reference/host_sync.md section 2.
 //
 //   NtpAssociation association(host, master, NtpStamps::kApplication);
 //   const std::optional<NtpMeasurement> reply = co_await association.exchange(from_ms(1000));
@@ -26,17 +18,61 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/host_sync/ntp/ntp_packet.h"
 #include "algorithms/ports/host.h"
 
 namespace simbench {
+
+// Seconds and fractions since 1900. It wraps every 136 years (an era; era 1 begins on 7 February
+// 2036), so it names an instant only together with a time known to within 68 years. Here a HostTime
+// is nanoseconds since 1970; both conversions together are exact. Zero means "not known".
+struct NtpTimestamp {
+  std::uint32_t seconds = 0;   // since 1900, modulo 2^32
+  std::uint32_t fraction = 0;  // in 2^-32 s
+  friend bool operator==(NtpTimestamp, NtpTimestamp) = default;
+};
+
+NtpTimestamp to_ntp(HostTime time);
+
+// The instant nearest to `near` that `stamp` can mean.
+HostTime from_ntp(NtpTimestamp stamp, HostTime near);
+
+inline constexpr std::uint8_t kNtpModeClient = 3;
+inline constexpr std::uint8_t kNtpModeServer = 4;
+inline constexpr std::uint8_t kNtpLeapAlarm = 3;  // the server's clock is not synchronised
+
+struct NtpPacket {
+  std::uint8_t leap = 0;     // 0 to 3
+  std::uint8_t version = 3;  // 1 to 4
+  std::uint8_t mode = kNtpModeClient;
+  std::uint8_t stratum = 0;
+  std::int8_t poll = 0;               // log2 s
+  std::int8_t precision = 0;          // log2 s
+  std::uint32_t root_delay = 0;       // in 2^-16 s
+  std::uint32_t root_dispersion = 0;  // in 2^-16 s
+  std::uint32_t reference_id = 0;
+  NtpTimestamp reference;
+  NtpTimestamp origin;    // t1, echoed by the server
+  NtpTimestamp receive;   // t2
+  NtpTimestamp transmit;  // t1 in a request, t3 in a reply
+  friend bool operator==(const NtpPacket&, const NtpPacket&) = default;
+};
+
+inline constexpr std::size_t kNtpPacketBytes = 48;
+
+Bytes encode(const NtpPacket& packet);
+
+// Nothing unless it is 48 bytes (no extension, no authenticator) of a version from 1 to 4.
+std::optional<NtpPacket> decode_ntp_packet(const Bytes& bytes);
+
+// The server's time minus the client's, from the four stamps of an exchange (RFC 5905 section 8):
+// ((t2 - t1) + (t3 - t4)) / 2, without overflow for any stamps within 146 years of each other.
+Nanoseconds clock_offset(HostTime t1, HostTime t2, HostTime t3, HostTime t4);
 
 inline constexpr std::uint8_t kNtpModeBroadcast = 5;
 inline constexpr std::uint8_t kNtpStratumMax = 15;
 
 enum class NtpStamps : std::uint8_t { kApplication, kKernel };
 
-// What an exchange measured.
 struct NtpMeasurement {
   HostTime t1{};
   HostTime t2{};
@@ -51,7 +87,7 @@ struct NtpMeasurement {
   Exchange exchange(PeerId server) const { return {server, t1, t2, t3, t4}; }
 };
 
-// What a broadcast tells: t3 and t4 only.
+// A broadcast has t3 and t4 only.
 struct NtpBroadcast {
   HostTime t3{};
   HostTime t4{};
@@ -61,21 +97,18 @@ struct NtpBroadcast {
   Exchange exchange(PeerId server) const { return {server, {}, {}, t3, t4}; }
 };
 
-// Whether a client may use this packet as the reply to the request that carried `sent`.
-bool is_valid_ntp_reply(const NtpPacket& reply, NtpTimestamp sent);
-
-// Whether a client may use this packet as a broadcast.
-bool is_valid_ntp_broadcast(const NtpPacket& packet);
-
+// The client's side. It ignores late, duplicated and foreign packets, as RFC 5905 section 8
+// requires: a reply must echo the transmit stamp of the last request, come from a synchronised
+// server of stratum 1 to 15 (so a kiss-o'-death is none) and carry its own transmit stamp.
 class NtpAssociation {
  public:
   // The host must outlive the association. Requests are of `version`.
   NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std::uint8_t version = 4);
 
-  // One request and its reply, put on record; nothing if no valid reply comes within `timeout`.
+  // Sends a request and reports the exchange; nothing if no valid reply comes within `timeout`.
   Task<std::optional<NtpMeasurement>> exchange(Nanoseconds timeout);
 
-  // The next valid broadcast, put on record; nothing if none comes before `deadline`.
+  // Reports the next valid broadcast; nothing if none comes before `deadline`.
   Task<std::optional<NtpBroadcast>> next_broadcast(SteadyTime deadline);
 
  private:
@@ -86,11 +119,11 @@ class NtpAssociation {
   MessageChannel& channel_;
 };
 
-// Answers the requests of one client, for ever, in the version asked in. `root_dispersion_s`, up to
-// 65535, is what the server claims its own clock may be off by.
+// Serves one client for ever, as a local reference of stratum 1, in the version of each request.
+// The server announces `root_dispersion_s`, up to 65535, as the error bound of its own clock.
 Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s = 0);
 
-// Sends a broadcast to each client every `interval`, for ever.
+// Sends a broadcast (mode 5) to each client every `interval`, for ever.
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval);
 
 }  // namespace simbench

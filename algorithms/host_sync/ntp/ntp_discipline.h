@@ -1,39 +1,88 @@
-// NTP's clock discipline: from offsets to steps, a frequency and a decaying phase correction.
+// NTP's clock filter and clock discipline. Both are pure state machines: offsets are server minus
+// client, in seconds; times are steady seconds. What is not finite is refused by an assertion.
 //
-// A pure state machine; the caller feeds the offsets that passed the clock filter and does to the
-// clock what it says. Offsets are server minus client, in seconds; times are steady seconds.
+// Source: RFC 5905 sections 10 and 11.3 (figures 24 to 28); docs/reference/host_sync.md section 2
+// (ntp_loopfilter.c; gate 3 and Allan intercept: ntp.h).
 //
-//  - States: NSET (nothing known), FREQ (measuring the frequency for step_out_s, with the phase
-//    left alone), SYNC (phase and frequency locked), SPIK (an offset above step_s, waiting), FSET
-//    (the frequency is known, the time is not: after a step, and when started with a frequency).
-//  - An offset above step_s steps the clock at once in NSET and FSET; in SYNC it is a spike, and
-//    steps if step_out_s after the last good update offsets still are so. Above panic_s: panic.
-//  - A smaller first offset is slewed away at once; then FREQ begins, as after a step.
-//  - Phase: in SYNC the residual decays with the time constant 16 * 2^poll seconds, at no more than
-//    the frequency leaves of 500 ppm.
-//  - Start-up clamp: for step_out_s after SYNC is first entered, that time constant is 32 s, and
-//    neither frequency nor poll are touched, until the initial transient is over.
-//  - Frequency: PLL, offset * min(mu, 2^11) / (4 * 16 * 2^poll)^2, with mu the time since the last
-//    update; from poll 11 on also FLL, (offset - residual) * 0.25 / max(2^poll, mu). Within 500
-//    ppm. (RFC 5905's appendix has a PLL gain of 65536: a time constant of 48 days.)
-//  - Clock jitter: root of the exponential average (1/8) of squared offset differences.
-//  - Poll exponent: a counter goes up by the exponent while |offset| < 4 * jitter, else down by
-//    twice that; beyond +-30 the poll moves one step within its bounds.
-//
-// Not here: reading and writing a drift file, and the kernel's discipline.
-//
-// Source: RFC 5905 section 11.3 (figures 24 to 28); docs/reference/host_sync.md section 2
-// (ntp_loopfilter.c).
-//
+//   NtpClockFilter filter(1e-6);
 //   NtpDiscipline discipline({});
-//   if (discipline.update(offset_s, now_s) == NtpAction::kStep) step(offset_s);
+//   const auto best = filter.add({offset_s, delay_s, dispersion_s, now_s}, 64);
+//   if (best && discipline.update(best->offset_s, now_s) == NtpAction::kStep) step(best->offset_s);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_NTP_DISCIPLINE_H_
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 namespace simbench {
+
+struct NtpSample {
+  double offset_s = 0;
+  double delay_s = 0;
+  double dispersion_s = 0;  // at `at_s`
+  double at_s = 0;
+};
+
+// The clock filter: of the last eight samples, the one with the lowest delay, if it is new.
+//
+//  - Order: by delay; the delay of a sample older than the Allan intercept (2048 s) counts with its
+//    dispersion added, so that recent ones win at long poll intervals (reference implementation).
+//    While the clock is starting the newest comes first: the clock has moved since the older ones.
+//  - The dispersion of a kept sample grows by 15e-6 s/s. Dispersion of the filter: sum of
+//    dispersion_i / 2^(i+1) over the eight, in that order; a stage that is empty or holds a missing
+//    sample has 16 s.
+//  - Jitter: RMS difference of the offsets to that of the best sample, at least the precision.
+//  - A sample is used once, and never one older than the last used.
+//  - Popcorn spikes: a best sample is not used if it differs from the last used by more than 3
+//    times the jitter before it and comes within two poll intervals of it; after these it is used,
+//    so a real change passes. The gate needs a dispersion below kMaxDistance (four samples), as a
+//    jitter of two samples is none.
+//
+// Complexity: O(1). Degenerate: delays below the precision count as the precision, a dispersion of
+// 16 s or more as no sample.
+class NtpClockFilter {
+ public:
+  static constexpr std::size_t kStages = 8;
+  static constexpr double kMaxDispersion = 16;        // s
+  static constexpr double kDispersionGrowth = 15e-6;  // s/s, PHI
+  static constexpr double kAllanIntercept = 2048;     // s
+  static constexpr double kPopcornGate = 3;           // times the jitter
+  static constexpr double kMaxDistance = 1.5;         // s, MAXDIST
+
+  explicit NtpClockFilter(double precision_s) : precision_s_(precision_s) { reset(); }
+
+  // Samples come in order of time. Returns the sample to discipline the clock by, if any.
+  std::optional<NtpSample> add(const NtpSample& sample, double poll_interval_s,
+                               bool is_starting = false);
+
+  // A poll without a reply takes up a stage.
+  void add_missing(double at_s);
+
+  // Forgets all samples, after a step of the clock.
+  void reset();
+
+  double jitter_s() const { return jitter_s_; }
+  double dispersion_s() const { return dispersion_s_; }
+  // Half the delay of the best sample plus dispersion and jitter; a server above kMaxDistance is
+  // not used.
+  double distance_s() const;
+
+ private:
+  void shift_in(const NtpSample& stage);
+  // The stages in order of preference, as of `now_s`.
+  std::array<NtpSample, kStages> ordered(double now_s) const;
+  void update_statistics(const std::array<NtpSample, kStages>& by_delay);
+
+  double precision_s_;
+  std::array<NtpSample, kStages> stages_;  // newest first
+  double newest_s_ = 0;                    // up to when the dispersions have grown
+  std::optional<NtpSample> last_used_;
+  double jitter_s_ = 0;
+  double dispersion_s_ = kMaxDispersion;
+  double best_delay_s_ = kMaxDispersion;
+};
 
 struct NtpDisciplineSettings {
   double step_s = 0.128;  // 0: never step
@@ -42,7 +91,7 @@ struct NtpDisciplineSettings {
   int poll_min = 6;       // log2 s
   int poll_max = 10;
   double precision_s = 1e-6;
-  // A frequency to start with, as a drift file would give; nothing: measure it first.
+  // A frequency to start with, as from a drift file; nothing: measure it first.
   std::optional<double> frequency;
 };
 
@@ -53,9 +102,29 @@ enum class NtpAction : std::uint8_t {
   kAdjust,  // frequency() and phase have new values
   kSlew,    // add the whole offset, as fast as the clock is slewed: kMaxFrequency
   kStep,    // step the clock by the offset; frequency() may have a new value
-  kPanic,   // refuse to go on
+  kPanic,   // end the service
 };
 
+// The clock discipline: from offsets to steps, a frequency and a decaying phase correction.
+//
+//  - States: NSET (nothing known), FREQ (measuring the frequency for step_out_s, with the phase
+//    left alone), SYNC (phase and frequency locked), SPIK (an offset above step_s, waiting), FSET
+//    (frequency known, time unknown: after a step, and when started with a frequency).
+//  - An offset above step_s steps the clock at once in NSET and FSET; in SYNC it is a spike, and
+//    steps if it lasts until step_out_s after the last good update. Above panic_s: panic.
+//  - A smaller first offset is slewed away at once; then FREQ begins, as after a step.
+//  - Phase: in SYNC the residual decays with the time constant 16 * 2^poll seconds, no faster than
+//    the frequency leaves room for within 500 ppm.
+//  - Start-up clamp: for step_out_s after SYNC is first entered, that time constant is 32 s and
+//    frequency and poll stay, until the initial transient is over.
+//  - Frequency: PLL, offset * min(mu, 2^11) / (4 * 16 * 2^poll)^2, with mu the time since the last
+//    update; from poll 11 on also FLL, (offset - residual) * 0.25 / max(2^poll, mu). Within 500
+//    ppm. (RFC 5905's appendix has a PLL gain of 65536: a time constant of 48 days.)
+//  - Clock jitter: root of the exponential average (1/8) of squared offset differences.
+//  - Poll exponent: a counter goes up by the exponent while |offset| < 4 * jitter, else down by
+//    twice that; beyond +-30 the poll moves one step within its bounds.
+//
+// Not here: reading and writing a drift file, and the kernel's discipline.
 class NtpDiscipline {
  public:
   static constexpr double kPllGain = 16;
@@ -69,8 +138,7 @@ class NtpDiscipline {
 
   explicit NtpDiscipline(const NtpDisciplineSettings& settings);
 
-  // `at_s` is when the offset was measured; must not decrease. A not-finite offset is refused by an
-  // assertion.
+  // `at_s`, when the offset was measured, must not decrease.
   NtpAction update(double offset_s, double at_s);
 
   NtpState state() const { return state_; }
@@ -84,7 +152,7 @@ class NtpDiscipline {
 
   // What is left of the phase correction at a time after the last update; 0 unless in SYNC.
   double residual_s(double at_s) const;
-  // How much of it is to be corrected in the poll interval that begins then, per second.
+  // The part of it to correct in the poll interval that begins then, per second.
   double phase_rate(double at_s) const;
 
  private:

@@ -1,15 +1,249 @@
 #include "algorithms/host_sync/ntp/ntp_service.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
-#include "algorithms/host_sync/ntp/ntp_client.h"
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
+namespace {
+
+constexpr double kPollSpread = 1.0 / 16;
+constexpr double kSlewAhead = 1.25;  // poll intervals
+// s; a longer round trip is of no use. This also keeps nonsense stamps out of the arithmetic.
+constexpr double kMaxDelay = 16;
+
+std::string text(double seconds) { return std::to_string(seconds) + " s"; }
+
+// The client on one slave. The host must outlive the client, and the client its coroutines.
+class NtpClient {
+ public:
+  static constexpr int kBurst = 8;
+  static constexpr Nanoseconds kBurstSpacing{2'000'000'000};
+  static constexpr std::uint32_t kPatience = 8;  // polls without a reply, then the slave has failed
+
+  NtpClient(Host& host, PeerId server, const NtpSettings& settings);
+
+  // Ends only by panic.
+  Task<void> run();
+
+ private:
+  Task<void> run_unicast();
+  Task<void> run_broadcast();
+  Task<void> poll();
+  // Measures the delay by the first broadcast, a burst and the next broadcast.
+  Task<void> calibrate();
+  Task<void> listen();
+
+  // Makes up to `count` exchanges at burst spacing; ends early if the first has no reply. Returns
+  // the sample to discipline the clock by, if any.
+  Task<std::optional<NtpSample>> burst(int count);
+  std::optional<NtpSample> add_sample(const NtpSample& sample);
+  Task<NtpAction> discipline_by(std::optional<NtpSample> sample);
+  Task<void> step(double offset_s);
+  Task<void> correct_frequency();
+  Task<void> correct_phase();
+
+  double seconds(SteadyTime at) const { return to_seconds(at - start_); }
+  SteadyTime now() const { return host_.steady_clock().now(); }
+  void note_reply(bool replied);
+
+  Host& host_;
+  PeerId server_;
+  NtpSettings settings_;
+  NtpAssociation association_;
+  NtpClockFilter filter_;
+  NtpDiscipline discipline_;
+  SteadyTime start_;
+  double root_distance_s_ = 0;    // of the server
+  double broadcast_delay_s_ = 0;  // one way
+  double applied_frequency_ = 0;
+  std::uint8_t reach_ = 0;  // one bit per poll, the last one lowest
+  std::uint32_t polls_ = 0;
+  bool is_slewing_ = false;
+  bool panicked_ = false;
+  OutcomeReport outcome_;
+};
+
+NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
+    : host_(host),
+      server_(server),
+      settings_(settings),
+      association_(host, server, settings.stamps),
+      filter_(settings.discipline.precision_s),
+      discipline_(settings.discipline),
+      start_(host.steady_clock().now()),
+      broadcast_delay_s_(settings.broadcast_delay_s),
+      outcome_(host) {}
+
+Task<void> NtpClient::run() {
+  if (settings_.mode == NtpMode::kUnicast) {
+    co_await run_unicast();
+  } else {
+    co_await run_broadcast();
+  }
+}
+
+Task<void> NtpClient::run_unicast() {
+  // Clients that start together do not stay together.
+  co_await host_.sleep_for(from_seconds(host_.random_uniform() * to_seconds(kBurstSpacing)));
+  while (!panicked_) {
+    const SteadyTime begin = now();
+    co_await poll();
+    const double spread = 1 + host_.random_uniform() * kPollSpread;
+    const Nanoseconds interval = from_seconds(discipline_.poll_interval_s() * spread);
+    const Nanoseconds passed = now() - begin;
+    co_await host_.sleep_for(std::max(interval - passed, kBurstSpacing));
+  }
+}
+
+Task<void> NtpClient::poll() {
+  const bool is_reached = reach_ != 0;
+  const std::optional<NtpSample> best =
+      co_await burst(settings_.initial_burst && !is_reached ? kBurst : 1);
+  co_await discipline_by(best);
+  co_await correct_phase();
+}
+
+Task<void> NtpClient::run_broadcast() {
+  if (settings_.mode == NtpMode::kBroadcastVolley) co_await calibrate();
+  while (!panicked_) co_await listen();
+}
+
+Task<void> NtpClient::calibrate() {
+  while (!panicked_) {
+    const SteadyTime patience = now() + settings_.broadcast_interval * 2;
+    const std::optional<NtpBroadcast> first = co_await association_.next_broadcast(patience);
+    note_reply(first.has_value());
+    if (!first) continue;
+    const std::optional<NtpSample> volley = co_await burst(kBurst);
+    if (!volley) continue;
+    const NtpAction action = co_await discipline_by(volley);
+    if (action == NtpAction::kSlew) {
+      const double slew_s = std::abs(volley->offset_s) / NtpDiscipline::kMaxFrequency;
+      co_await host_.sleep_for(from_seconds(slew_s));
+    }
+    if (action == NtpAction::kSlew || action == NtpAction::kStep) continue;
+    const SteadyTime deadline = now() + settings_.broadcast_interval * 2;
+    const std::optional<NtpBroadcast> next = co_await association_.next_broadcast(deadline);
+    if (!next) continue;
+    broadcast_delay_s_ = std::abs(volley->offset_s - next->offset_s());
+    co_return;
+  }
+}
+
+Task<void> NtpClient::listen() {
+  const SteadyTime deadline = now() + settings_.broadcast_interval * 2;
+  const std::optional<NtpBroadcast> broadcast = co_await association_.next_broadcast(deadline);
+  note_reply(broadcast.has_value());
+  std::optional<NtpSample> best;
+  if (broadcast) {
+    best = add_sample({broadcast->offset_s() + broadcast_delay_s_, 2 * broadcast_delay_s_,
+                       settings_.discipline.precision_s, seconds(broadcast->received)});
+  }
+  const NtpAction action = co_await discipline_by(best);
+  if (action != NtpAction::kStep) co_await correct_phase();
+}
+
+Task<std::optional<NtpSample>> NtpClient::burst(int count) {
+  std::optional<NtpSample> best;
+  bool replied = false;
+  for (int i = 0; i < count; ++i) {
+    const SteadyTime begin = now();
+    const std::optional<NtpMeasurement> reply = co_await association_.exchange(kBurstSpacing);
+    if (!reply && !replied) break;
+    replied = true;
+    if (reply && std::abs(reply->delay_s()) < kMaxDelay) {
+      root_distance_s_ = reply->root_delay_s / 2 + reply->root_dispersion_s;
+      const double taking_s = std::max(to_seconds(reply->t4 - reply->t1), 0.0);
+      const double dispersion_s =
+          settings_.discipline.precision_s + NtpClockFilter::kDispersionGrowth * taking_s;
+      const std::optional<NtpSample> used =
+          add_sample({reply->offset_s(), reply->delay_s(), dispersion_s, seconds(reply->received)});
+      if (used) best = used;
+    }
+    const Nanoseconds passed = now() - begin;
+    if (i + 1 < count && passed < kBurstSpacing) co_await host_.sleep_for(kBurstSpacing - passed);
+  }
+  note_reply(replied);
+  co_return best;
+}
+
+std::optional<NtpSample> NtpClient::add_sample(const NtpSample& sample) {
+  return filter_.add(sample, discipline_.poll_interval_s(), discipline_.is_starting(sample.at_s));
+}
+
+Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
+  if (!sample || filter_.distance_s() + root_distance_s_ > NtpClockFilter::kMaxDistance) {
+    co_return NtpAction::kIgnore;
+  }
+  const NtpAction action = discipline_.update(sample->offset_s, sample->at_s);
+  if (action == NtpAction::kPanic) {
+    panicked_ = true;
+    outcome_.failed(
+        polls_, "the clock is off by " + text(sample->offset_s) + ", more than the panic limit " +
+                    text(settings_.discipline.panic_s) + "; set it by hand or raise panic_s");
+    co_return action;
+  }
+  if (action == NtpAction::kStep) co_await step(sample->offset_s);
+  if (action == NtpAction::kSlew) {
+    is_slewing_ = true;
+    co_await host_.clock().slew(from_seconds(sample->offset_s), NtpDiscipline::kMaxFrequency * 1e9);
+  }
+  co_await correct_frequency();
+  outcome_.synchronised(polls_);
+  co_return action;
+}
+
+Task<void> NtpClient::step(double offset_s) {
+  filter_.reset();
+  reach_ = 0;
+  is_slewing_ = false;
+  co_await host_.clock().slew(Nanoseconds{0}, 1);
+  const HostTime before = co_await host_.clock().now();
+  co_await host_.clock().set(before + from_seconds(offset_s));
+}
+
+Task<void> NtpClient::correct_frequency() {
+  const double frequency = discipline_.frequency();
+  if (frequency == applied_frequency_) co_return;
+  applied_frequency_ = frequency;
+  co_await host_.clock().adjust_frequency(frequency * 1e9);
+}
+
+Task<void> NtpClient::correct_phase() {
+  // While the frequency is measured, the first offset is still being added.
+  if (discipline_.state() == NtpState::kFreq) co_return;
+  const double at_s = seconds(now());
+  // No more than is certainly due before the next poll: the cost of a slew's end grows with its
+  // distance.
+  const double rate = discipline_.phase_rate(at_s);
+  const double due_s = std::abs(rate) * kSlewAhead * discipline_.poll_interval_s();
+  const double residual_s = discipline_.residual_s(at_s);
+  const Nanoseconds part =
+      from_seconds(std::copysign(std::min(due_s, std::abs(residual_s)), residual_s));
+  if (part == Nanoseconds{0} && !is_slewing_) co_return;
+  is_slewing_ = part != Nanoseconds{0};
+  co_await host_.clock().slew(part, std::abs(rate) * 1e9);
+}
+
+void NtpClient::note_reply(bool replied) {
+  ++polls_;
+  reach_ = static_cast<std::uint8_t>((reach_ << 1) | (replied ? 1 : 0));
+  if ((reach_ & 7U) == 0) filter_.add_missing(seconds(now()));
+  if (reach_ == 0 && polls_ >= kPatience) {
+    outcome_.failed(polls_, "no valid packet from time server " + std::to_string(server_) + " in " +
+                                std::to_string(polls_) +
+                                " polls; is it running, synchronised and reachable?");
+  }
+}
+
+}  // namespace
 
 void check_poll_bounds(int low, int high) {
   if (low > high) throw ParameterError("max_poll", "max_poll must not be below min_poll");
@@ -61,7 +295,7 @@ std::vector<ParameterSpec> ntp_parameters(double service_hours) {
       flag_parameter("iburst", true, "a burst of eight exchanges while the server is not reached",
                      "usual configuration (iburst)"),
       choice_parameter("stamps", {"application", "kernel"},
-                       "t1 before the send, or from the kernel where it tells",
+                       "t1 from before the send, or from the kernel where it stamps",
                        "ntpd stamps in the application"),
       number_parameter("broadcast_interval_s", 64, 8, 131072,
                        "between broadcasts (broadcast modes only)", "RFC 5905 section 9.2"),
@@ -92,7 +326,7 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double se
     check_poll_bounds(settings.discipline.poll_min, settings.discipline.poll_max);
     settings.initial_burst = parameters.flag("iburst");
     settings.stamps = stamps_of(parameters);
-    settings.broadcast_interval = from_ms(parameters.number("broadcast_interval_s") * 1e3);
+    settings.broadcast_interval = from_seconds(parameters.number("broadcast_interval_s"));
     settings.broadcast_delay_s = parameters.number("broadcast_delay_ms") * 1e-3;
     settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
     return std::make_unique<NtpService>(settings);

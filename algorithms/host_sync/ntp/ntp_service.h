@@ -4,23 +4,23 @@
 //  - unicast: every 2^poll s (and up to 1/16 more, at random) one exchange; while the server has
 //    not been reached, and after a step, a burst of eight at 2 s instead (iburst).
 //  - broadcast_volley: the server sends a broadcast every interval. The client answers the first
-//    with a burst of exchanges, takes twice the difference between the burst's offset and that of
-//    the next broadcast for the delay, and from then on only listens: offset = (t3 - t4) + delay/2.
-//    A change of the client's clock between the two measurements stays in the delay for good; a
-//    step or slew by the burst itself does not: a new one follows.
+//    with a burst of exchanges, estimates the delay as twice the difference between the offsets of
+//    the burst and of the next broadcast, and from then on only listens: offset = (t3 - t4) +
+//    delay/2. A change of the client's clock between the two stays in the delay for good; after a
+//    step or slew by the burst itself another burst follows.
 //  - broadcast_fixed: the same without a burst, with an assumed one-way delay.
 //
-// Samples pass the clock filter (ntp_clock_filter.h) and drive the discipline (ntp_discipline.h).
-// The phase correction, once a second in the reference implementation, is a slew that is renewed at
-// every poll with the exact exponential: 4 events instead of thousands.
+// Samples pass the clock filter and drive the discipline (both ntp_discipline.h). The phase
+// correction, once a second in the reference implementation, is a slew that is renewed at every
+// poll with the exact exponential: 4 events instead of thousands.
 //
-// A poll without reply shifts a zero into the reach register; three in a row put a missing sample
-// into the filter. A server whose distance exceeds 1.5 s is not used. One server, so no selection,
-// clustering or combining.
+// A poll without a reply shifts a zero into the reach register; three in a row put a missing sample
+// into the filter. A server whose distance exceeds 1.5 s is not used. There is one server, so no
+// selection, clustering or combining.
 //
-// A service: warm_up() is how long it has run when the capture starts. It ends on a slave only by
-// panic. Outcome: synchronised at the first update of the clock; not, after eight polls (or
-// broadcast intervals) without a reply or by panic.
+// A service: warm_up() is how long it has run when the capture starts. On a slave it ends only by
+// panic. The outcome is "synchronised" at the first update of the clock, and a failure after eight
+// polls (or broadcast intervals) without a reply or by panic.
 //
 // Source: RFC 5905; docs/reference/host_sync.md sections 1 and 2.
 //
@@ -65,8 +65,8 @@ class NtpService : public HostSync {
   NtpSettings settings_;
 };
 
-// Of all that poll as NTP does: the parameters min_poll and max_poll must be in order (else throws
-// ParameterError), and the parameter stamps is "application" or "kernel".
+// For all algorithms that poll as NTP does: throws ParameterError unless min_poll <= max_poll;
+// reads the parameter stamps, "application" or "kernel".
 void check_poll_bounds(int low, int high);
 NtpStamps stamps_of(const Parameters& parameters);
 

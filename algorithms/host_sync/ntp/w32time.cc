@@ -7,7 +7,6 @@
 
 #include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
-#include "algorithms/host_sync/ntp/ntp_packet.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -51,8 +50,8 @@ Task<void> correct(Host& host, Nanoseconds offset, W32TimeSettings settings) {
   co_await host.clock().set(now + offset);
 }
 
-// Asks until there is an answer, and corrects the clock by it. What is referred to must outlive the
-// call.
+// Repeats the request until there is a reply, and corrects the clock by it. The arguments must
+// outlive the call.
 Task<SyncOutcome> poll(Host& host, PeerId server, NtpAssociation& association,
                        W32TimeSettings settings, W32TimeSpikes& spikes) {
   SyncOutcome outcome;
@@ -133,8 +132,8 @@ Task<void> W32Time::run_slave(Host& host, PeerId master) {
 
 namespace {
 
-// w32time_domain is a family of its own: what a scenario sets for a stand-alone machine's W32Time
-// is not meant for it.
+// w32time_domain is a family of its own: a scenario's parameters for a stand-alone machine are not
+// meant for it.
 HostSyncEntry w32time(const std::string& name, std::string summary,
                       const W32TimeSettings& defaults) {
   const std::string documentation =
@@ -162,12 +161,12 @@ HostSyncEntry w32time(const std::string& name, std::string summary,
   };
   entry.make = [defaults](const Parameters& parameters) {
     W32TimeSettings settings = defaults;
-    settings.poll_interval = from_ms(parameters.number("poll_interval_s") * 1e3);
+    settings.poll_interval = from_seconds(parameters.number("poll_interval_s"));
     settings.phase_correct_rate = parameters.number("phase_correct_rate");
     settings.max_allowed_phase_offset =
-        from_ms(parameters.number("max_allowed_phase_offset_s") * 1e3);
+        from_seconds(parameters.number("max_allowed_phase_offset_s"));
     settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
-    settings.start_spread = from_ms(parameters.number("start_spread_s") * 1e3);
+    settings.start_spread = from_seconds(parameters.number("start_spread_s"));
     return std::make_unique<W32Time>(settings);
   };
   return entry;

@@ -2,17 +2,14 @@
 // every 17 minutes on a member of a domain.
 //
 // W32Time is closed. This follows its public documentation (registry entries and the stated rule
-// for setting or slewing), not its code. What is not published is not here: jitter filtering,
-// frequency correction (FrequencyCorrectRate, UpdateInterval), and how the poll moves between
-// MinPollInterval and MaxPollInterval; the interval is fixed instead.
+// for setting or slewing), not its code. Jitter filtering, frequency correction
+// (FrequencyCorrectRate, UpdateInterval) and the adaptive poll interval are not published and not
+// here; the interval is fixed.
 //
-// The master serves (mode 4): it echoes the client's transmit stamp as origin and adds its receive
-// and transmit stamps; it announces itself as a local reference, stratum 1. Each slave is a client
-// (mode 3, NTPv3): first after a random part of start_spread, then every poll_interval, it makes
-// one exchange over datagrams, of which the offset is ((t2 - t1) + (t3 - t4)) / 2. Replies that
-// are not from a synchronised server or do not echo the request's stamp are ignored. A request
-// without a valid reply within kReplyTimeout is repeated, kRequestLimit times in all; then the
-// client waits for the next poll.
+// The master serves as a local reference of stratum 1 (ntp_association.h). Each slave is a client
+// (NTPv3): first after a random part of start_spread, then every poll_interval, it makes one
+// exchange. A request without a valid reply within kReplyTimeout is repeated, kRequestLimit times
+// in all; then the client waits for the next poll.
 //
 // The rule (Microsoft, "Windows Time service tools and settings"): with
 //
@@ -23,10 +20,10 @@
 // takes 16 * PhaseCorrectRate * poll ticks. Example: 0.54 s at a poll of 1024 s and
 // PhaseCorrectRate 7 gives 47 units a tick, 301 ppm, for 1792 s.
 //
-// Spikes are ignored (W32timeSpikes), and offsets above max_phase_correction refused.
+// Spikes are ignored (W32TimeSpikes), and offsets above max_phase_correction are not corrected.
 //
-// A service: it never ends by itself. warm_up() is how long it has run when the capture starts.
-// A slave reports how its first poll ended, and every exchange (t1 to t4).
+// A service: it never ends. warm_up() is how long it has run when the capture starts. A slave
+// reports how its first poll ended, and every exchange.
 //
 // Source: docs/reference/host_sync.md section 2 (W32Time); RFC 4330; RFC 5905.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
@@ -42,12 +39,12 @@ namespace simbench {
 
 // W32Time's protection against single wrong samples, as documented.
 //
-//  - Hold: the first kHoldPeriod samples, and as many after each accepted large offset, are taken
-//    as they come, "to bring the local clock into synchronization quickly".
-//  - Then an offset of kLargePhaseOffset or more is a spike: ignored, until such offsets have
+//  - Hold: the first kHoldPeriod samples, and as many after each accepted large offset, are
+//    accepted, "to bring the local clock into synchronization quickly".
+//  - Then an offset of kLargePhaseOffset or more is a spike: ignored until such offsets have
 //    persisted for kSpikeWatchPeriod. A smaller offset ends the suspicion.
 //
-// The documentation gives HoldPeriod without a unit; samples is an assumption.
+// The documentation gives HoldPeriod without a unit; that it counts samples is an assumption.
 // Source: docs/reference/host_sync.md section 2 (LargePhaseOffset, HoldPeriod, SpikeWatchPeriod);
 // Microsoft, "Windows Time service tools and settings".
 //
@@ -64,7 +61,7 @@ class W32TimeSpikes {
 
  private:
   int held_ = 0;                         // samples taken since the hold began
-  std::optional<SteadyTime> suspicion_;  // when the first large offset of the present ones came
+  std::optional<SteadyTime> suspicion_;  // since the first large offset of the present ones
 };
 
 struct W32TimeSettings {
@@ -81,10 +78,10 @@ struct W32TimeSettings {
 // MaxAllowedPhaseOffset 300 s, corrections without limit.
 W32TimeSettings w32time_domain_settings();
 
-// What is done about an offset.
+// How an offset is corrected.
 struct W32TimeCorrection {
   bool set = false;           // step the clock; else slew it
-  double units_per_tick = 0;  // the adjustment, in 100 ns per tick, that the rule asks about
+  double units_per_tick = 0;  // the rule's adjustment, in 100 ns per tick
   double rate_ppb = 0;        // the same as a rate
 };
 

@@ -32,7 +32,7 @@ Task<void> couple_card(Host& host, PtpSettings settings, std::shared_ptr<bool> i
 
 Task<void> Ptp::run_master(Host& host, std::vector<PeerId> slaves) {
   const bool needs_card = settings_.has_hardware_stamps;
-  // The slaves will report that nobody sends.
+  // The slaves will report that no Sync came.
   if (needs_card && host.hardware_clock() == nullptr) co_return;
   auto is_ready = std::make_shared<bool>(!needs_card);
   std::vector<Task<void>> tasks;
@@ -56,7 +56,7 @@ std::vector<ParameterSpec> ptp_parameters(double warm_up_s) {
       number_parameter("warm_up_s", warm_up_s, 1, 1e6,
                        "how long the service has run before the capture",
                        "assumption: until the default servo has settled"),
-      choice_parameter("servo", {"pi", "linreg"}, "what steers the clock that makes the stamps",
+      choice_parameter("servo", {"pi", "linreg"}, "the servo that steers the clock that stamps",
                        kLinuxPtp),
       number_parameter("sync_interval_s", 1, 1e-3, 1e4, "time between two Sync messages",
                        kLinuxPtp),
@@ -85,11 +85,11 @@ HostSyncEntry ptp(std::string name, std::string summary, bool is_peer_delay, boo
     PtpSettings settings;
     settings.is_peer_delay = is_peer_delay;
     settings.has_hardware_stamps = has_hardware;
-    settings.service_time = from_ms(parameters.number("warm_up_s") * 1e3);
+    settings.service_time = from_seconds(parameters.number("warm_up_s"));
     settings.servo =
         parameters.text("servo") == "pi" ? ServoKind::kPi : ServoKind::kLinearRegression;
-    settings.sync_interval = from_ms(parameters.number("sync_interval_s") * 1e3);
-    settings.delay_interval = from_ms(parameters.number("delay_interval_s") * 1e3);
+    settings.sync_interval = from_seconds(parameters.number("sync_interval_s"));
+    settings.delay_interval = from_seconds(parameters.number("delay_interval_s"));
     settings.median_length = static_cast<std::size_t>(parameters.number("delay_median"));
     settings.first_step_threshold_us = parameters.number("first_step_threshold_us");
     settings.step_threshold_us = parameters.number("step_threshold_us");

@@ -1,9 +1,9 @@
 // PTP (IEEE 1588-2008) in the manner of linuxptp: two-step, one master, its slaves.
 //
-// The master sends each slave a Sync every sync_interval and tells its departure in a Follow_Up.
+// The master sends each slave a Sync every sync_interval and its departure in a Follow_Up.
 // The slave measures the delay, end to end (Delay_Req, Delay_Resp; at random times, on average
 // every delay_interval) or by peer delay (Pdelay_*, every delay_interval), filters it
-// (ptp_port.h), and a servo (ptp_servo.h) steers the clock that made the stamps:
+// (ptp_port.h), and a servo (ptp_servo.h) steers the clock that stamps:
 //
 //   software stamps  the system clock. Departure: the host's transmit stamp if it has one, else the
 //                    clock right after the send call; arrival: the host's receive stamp.
@@ -12,13 +12,13 @@
 //                    PI servo. On the master it runs the other way round and the card's clock
 //                    follows the system clock; no Sync is sent before that is locked.
 //
-// What transparent clocks on the way add to the correction fields is taken out. Messages go as
-// datagrams from host to host, where real PTP would multicast. Lost, duplicated, reordered and
-// foreign messages cost their measurement only.
+// The corrections of transparent clocks on the way are subtracted. Messages go as datagrams from
+// host to host, where real PTP would multicast. Lost, duplicated, reordered and foreign messages
+// cost their measurement only.
 //
 // A service. Exchanges are reported for software stamps (t1, t2: Delay_Req or Pdelay_Req; t3, t4:
 // Sync or Pdelay_Resp); the card's stamps are no host times. A slave reports its outcome when its
-// system clock is first steered, or once `patience` has passed without; it goes on.
+// system clock is first steered, or after `patience` without that; it goes on in either case.
 // Source: IEEE 1588-2008 clauses 11 and 13; docs/reference/host_sync.md section 1 (linuxptp).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_H_

@@ -15,7 +15,7 @@
 //   32      1     control: 0 Sync, 1 Delay_Req, 2 Follow_Up, 3 Delay_Resp, 5 others
 //   33      1     log2 of the interval; 0x7f: none
 //   34      10    time: 48-bit seconds, 32-bit nanoseconds
-//   44      10    Delay_Resp, Pdelay_Resp, Pdelay_Resp_Follow_Up: the asking port
+//   44      10    Delay_Resp, Pdelay_Resp, Pdelay_Resp_Follow_Up: the requesting port
 //
 // Seconds are taken as signed, so that a clock before its zero can be sent.
 //
@@ -57,8 +57,8 @@ Nanoseconds correction_of(const PtpMessage& message);
 
 Bytes encode(const PtpMessage& message);
 
-// Nothing, if it is not a PTPv2 message of one of these types. Flags, domain, control and interval
-// are not looked at.
+// Nothing unless it is a PTPv2 message of one of these types. Flags, domain, control and interval
+// are ignored.
 std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes);
 
 }  // namespace simbench

@@ -5,6 +5,111 @@
 #include <utility>
 
 namespace simbench {
+namespace {
+
+constexpr int kStepCalls = 3;
+// An error below this needs no further call.
+constexpr Nanoseconds kStepTolerance{1'000};
+constexpr Nanoseconds kStampTimeout{10'000'000};
+
+// The system clock's lead over the steady clock.
+Task<Nanoseconds> system_lead(Host& host) {
+  const HostTime reading = co_await host.clock().now();
+  co_return offset_between(reading, host.steady_clock().now());
+}
+
+ServoSettings servo_settings(const PtpSettings& settings, Nanoseconds interval) {
+  return {.interval_s = to_seconds(interval),
+          .max_frequency_ppb = settings.max_frequency_ppm * 1e3,
+          .first_step_threshold_ns = settings.first_step_threshold_us * 1e3,
+          .step_threshold_ns = settings.step_threshold_us * 1e3};
+}
+
+// Adds `offset` to the system clock. A set call takes effect late by a part of its duration, so its
+// effect is measured against the steady clock and the rest is set again.
+Task<void> step_system_clock(Host& host, Nanoseconds offset) {
+  const Nanoseconds before = co_await system_lead(host);
+  const Nanoseconds wanted = before + offset;
+  Nanoseconds lead = wanted;  // to be set, so that `wanted` results
+  for (int call = 0; call < kStepCalls; ++call) {
+    const SteadyTime now = host.steady_clock().now();
+    co_await host.clock().set(HostTime(now.time_since_epoch() + lead));
+    const Nanoseconds reached = co_await system_lead(host);
+    const Nanoseconds missing = wanted - reached;
+    if (missing < kStepTolerance && -missing < kStepTolerance) co_return;
+    lead += missing;
+  }
+}
+
+// Does to the clock what the servo answered; `offset` is what the servo was fed.
+Task<void> apply_answer(Host& host, ClockKind kind, ServoAnswer answer, Nanoseconds offset) {
+  if (answer.state == ServoState::kUnlocked) co_return;
+  if (kind == ClockKind::kSystem) {
+    co_await host.clock().adjust_frequency(-answer.ppb);
+    if (answer.state == ServoState::kJump) co_await step_system_clock(host, -offset);
+    co_return;
+  }
+  co_await host.hardware_clock()->adjust_frequency(-answer.ppb);
+  if (answer.state == ServoState::kJump) co_await host.hardware_clock()->step(-offset);
+}
+
+// When the message left that send() has just returned from; nothing if the card did not stamp it.
+Task<std::optional<std::int64_t>> departure_stamp(Host& host, MessageChannel& channel, MessageId id,
+                                                  ClockKind kind) {
+  const SteadyTime deadline = host.steady_clock().now() + kStampTimeout;
+  if (kind == ClockKind::kHardware) {
+    const std::optional<HardwareTime> stamp =
+        co_await channel.hardware_transmit_stamp(id, deadline);
+    if (!stamp) co_return std::nullopt;
+    co_return nanoseconds_of(*stamp);
+  }
+  const std::optional<HostTime> stamp = co_await channel.transmit_stamp(id, deadline);
+  if (stamp) co_return nanoseconds_of(*stamp);
+  const HostTime now = co_await host.clock().now();
+  co_return nanoseconds_of(now);
+}
+
+std::optional<std::int64_t> arrival_stamp(const ReceivedMessage& message, ClockKind kind) {
+  if (kind == ClockKind::kSystem) return nanoseconds_of(message.received);
+  if (!message.received_hardware) return std::nullopt;
+  return nanoseconds_of(*message.received_hardware);
+}
+
+std::unique_ptr<Servo> make_port_servo(const PtpSettings& settings) {
+  const ServoSettings servo = servo_settings(settings, settings.sync_interval);
+  if (settings.servo == ServoKind::kLinearRegression) {
+    return std::make_unique<LinearRegressionServo>(servo);
+  }
+  return std::make_unique<PiServo>(
+      settings.has_hardware_stamps ? PiServo::kHardwareStamps : PiServo::kSoftwareStamps, servo);
+}
+
+}  // namespace
+
+ClockCoupling::ClockCoupling(Host& host, ClockKind follower, const PtpSettings& settings)
+    : host_(host),
+      follower_(follower),
+      servo_(PiServo::kHardwareStamps, servo_settings(settings, kInterval)) {}
+
+Task<void> ClockCoupling::update() {
+  CrossStamp best;
+  Nanoseconds width = Nanoseconds::max();
+  for (int i = 0; i < kCrossStamps; ++i) {
+    const CrossStamp stamp = co_await host_.hardware_clock()->cross_stamp();
+    if (stamp.after - stamp.before >= width) continue;
+    best = stamp;
+    width = stamp.after - stamp.before;
+  }
+  const HostTime system = best.before + width / 2;
+  const Nanoseconds system_lead = offset_between(system, best.hardware);
+  const bool system_follows = follower_ == ClockKind::kSystem;
+  const Nanoseconds offset = system_follows ? system_lead : -system_lead;
+  const std::int64_t local =
+      system_follows ? nanoseconds_of(system) : nanoseconds_of(best.hardware);
+  const ServoAnswer answer = servo_.sample(static_cast<double>(offset.count()), local, 1);
+  co_await apply_answer(host_, follower_, answer, offset);
+  if (answer.state != ServoState::kUnlocked) is_locked_ = true;
+}
 
 Task<void> PtpMaster::run() {
   const double part = host_.random_uniform();
@@ -73,7 +178,7 @@ Task<void> PtpMaster::answer_peer_delay(PtpMessage request, std::int64_t arrival
 
 namespace {
 
-// A Sync this much older than the last one is no late copy: the master has started again.
+// A Sync this much older than the last one is no late copy: the master has restarted.
 constexpr int kLateSyncs = 64;
 
 }  // namespace
@@ -83,7 +188,8 @@ PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
       master_(master),
       settings_(settings),
       servo_(make_port_servo(settings)),
-      offset_(settings.median_length) {
+      offset_(settings.median_length),
+      outcome_(host) {
   if (settings.has_hardware_stamps && host.hardware_clock() != nullptr) {
     coupling_.emplace(host, ClockKind::kSystem, settings);
   }
@@ -91,12 +197,8 @@ PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
 
 Task<void> PtpSlave::run() {
   if (settings_.has_hardware_stamps && !coupling_) {
-    host_.report_outcome({.slave = host_.id(),
-                          .synchronised = false,
-                          .passes = 0,
-                          .message = "slave " + std::to_string(host_.id()) +
-                                     ": the host has no hardware clock (Host::hardware_clock); use "
-                                     "software stamps"});
+    outcome_.failed(0,
+                    "the host has no hardware clock (Host::hardware_clock); use software stamps");
     co_return;
   }
   begin_ = host_.steady_clock().now();
@@ -109,7 +211,7 @@ Task<void> PtpSlave::run() {
     if (received) co_await take(std::move(*received));
     const SteadyTime now = host_.steady_clock().now();
     if (now >= next_request) {
-      // End to end: at random times (IEEE 1588 9.5.11.2), so that the slaves do not ask together.
+      // End to end: at random times (IEEE 1588 9.5.11.2), so that the slaves' requests do not meet.
       const double factor = settings_.is_peer_delay ? 1 : 2 * host_.random_uniform();
       next_request = now + from_ms(factor * to_ms(settings_.delay_interval));
       co_await ask();
@@ -228,22 +330,15 @@ void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::in
 }
 
 void PtpSlave::report_outcome_if_due() {
-  if (is_reported_) return;
-  const bool is_done = coupling_ ? coupling_->is_locked() : is_locked_;
-  if (!is_done && host_.steady_clock().now() - begin_ < settings_.patience) return;
-  SyncOutcome outcome;
-  outcome.slave = host_.id();
-  outcome.synchronised = is_done;
-  outcome.passes = corrections_;
-  if (!is_done) {
-    outcome.message = "slave " + std::to_string(host_.id()) + ": the servo has not locked after " +
+  if (outcome_.is_reported()) return;
+  if (coupling_ ? coupling_->is_locked() : is_locked_) return outcome_.synchronised(corrections_);
+  if (host_.steady_clock().now() - begin_ < settings_.patience) return;
+  outcome_.failed(corrections_,
+                  "the servo has not locked after " +
                       std::to_string(static_cast<int>(to_seconds(settings_.patience))) + " s and " +
                       std::to_string(corrections_) + " measured offsets; is host " +
                       std::to_string(master_) + " running and reachable" +
-                      (coupling_ ? ", and do both network cards stamp messages" : "") + "?";
-  }
-  host_.report_outcome(outcome);
-  is_reported_ = true;
+                      (coupling_ ? ", and do both network cards stamp messages" : "") + "?");
 }
 
 }  // namespace simbench

@@ -1,5 +1,8 @@
-// The two ends of PTP (ptp.h): the master's port towards one slave, the slave's port, and what the
-// slave makes of the stamps.
+// The two ends of PTP (ptp.h), the clocks that they steer, and what the slave computes from the
+// stamps.
+//
+// Every stamp is a count of nanoseconds of the clock in use: the system clock with software stamps,
+// the network card's clock with hardware stamps.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
 
@@ -11,16 +14,39 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/host_sync/ptp/ptp_clock.h"
+#include "algorithms/host_sync/outcome.h"
+#include "algorithms/host_sync/ptp/ptp.h"
 #include "algorithms/host_sync/ptp/ptp_message.h"
+#include "algorithms/host_sync/ptp/ptp_servo.h"
+#include "algorithms/ports/host.h"
 #include "algorithms/ports/time.h"
 
 namespace simbench {
 
-// The master's end of PTP towards one slave; see ptp.h.
+enum class ClockKind : std::uint8_t { kSystem, kHardware };
+
+// phc2sys: one of a host's two clocks follows the other. The host must have a hardware clock.
+class ClockCoupling {
+ public:
+  static constexpr int kCrossStamps = 5;
+  static constexpr Nanoseconds kInterval{1'000'000'000};
+
+  ClockCoupling(Host& host, ClockKind follower, const PtpSettings& settings);
+  // Measures and corrects once.
+  Task<void> update();
+  bool is_locked() const { return is_locked_; }
+
+ private:
+  Host& host_;
+  ClockKind follower_;
+  PiServo servo_;
+  bool is_locked_ = false;
+};
+
+// The master's port towards one slave.
 class PtpMaster {
  public:
-  // Sync is sent while *is_ready.
+  // It sends Sync while *is_ready.
   PtpMaster(Host& host, PeerId slave, PtpSettings settings, std::shared_ptr<const bool> is_ready)
       : host_(host), slave_(slave), settings_(settings), is_ready_(std::move(is_ready)) {}
 
@@ -45,7 +71,7 @@ class PtpMaster {
 
 // The median of the last N values: linuxptp's delay filter (N = 10).
 //
-// For an even count it is the mean of the middle two, rounded towards zero.
+// For an even number it is the mean of the middle two, rounded towards zero.
 // Complexity: O(N) a value. Source: docs/reference/host_sync.md section 1 (linuxptp).
 //
 //   MovingMedian median(10);
@@ -104,7 +130,7 @@ class PtpOffset {
   void add_peer_delay(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::int64_t t4) {
     delay_ = median_.add(Nanoseconds((t4 - t1) / 2 - (t3 - t2) / 2));
   }
-  // The clock has been stepped: the last Sync counts no more.
+  // Discards the last Sync, after a step of the clock.
   void forget_sync() { sync_.reset(); }
 
   const std::optional<Sync>& sync() const { return sync_; }
@@ -120,7 +146,7 @@ class PtpOffset {
   std::optional<Nanoseconds> delay_;
 };
 
-// A slave's end of PTP; see ptp.h.
+// The slave's port.
 class PtpSlave {
  public:
   PtpSlave(Host& host, PeerId master, PtpSettings settings);
@@ -129,7 +155,7 @@ class PtpSlave {
   Task<void> run();
 
  private:
-  // A message that a measurement waits with for the other one of its pair.
+  // One message of a pair, while the other is to come.
   struct Half {
     PtpMessage message;
     std::int64_t stamp = 0;  // arrival, or departure of the own request
@@ -141,7 +167,7 @@ class PtpSlave {
   MessageChannel& channel() { return host_.open_channel(master_, Transport::kDatagram); }
   Task<void> ask();
   Task<void> take(ReceivedMessage received);
-  // A copy of a Sync that has been used, or one that another has overtaken.
+  // Whether a Sync is a copy of a used one, or was overtaken by another.
   bool is_late(std::uint16_t sequence) const;
   Task<void> take_sync();
   void take_delay_response(const PtpMessage& response);
@@ -164,9 +190,9 @@ class PtpSlave {
   std::optional<Half> peer_response_;
   std::optional<PtpMessage> peer_follow_up_;
   bool is_locked_ = false;
-  bool is_reported_ = false;
   std::uint32_t corrections_ = 0;
   SteadyTime begin_{};
+  OutcomeReport outcome_;
 };
 
 }  // namespace simbench

@@ -81,7 +81,7 @@ void LinearRegressionServo::restart() {
   has_local_ = false;
 }
 
-// Moves the point at which the fits are taken: both clocks have gone on by these.
+// Moves the point at which the fits are evaluated, as both clocks have advanced by these.
 void LinearRegressionServo::move(std::int64_t oscillator_ns, std::int64_t local_ns) {
   now_.oscillator_ns += oscillator_ns;
   now_.reference_ns += local_ns;
@@ -168,7 +168,7 @@ ServoAnswer LinearRegressionServo::sample(double offset_ns, std::int64_t local_n
   if (window_ == 0) return {.ppb = -frequency_ppb_, .state = ServoState::kUnlocked};
   if (!is_first_update_ && settings_.step_threshold_ns > 0 &&
       std::abs(offset_ns) > settings_.step_threshold_ns) {
-    // The reference has jumped: what is known of it is of before.
+    // The reference has jumped: its old samples do not count.
     restart();
     return {.ppb = -frequency_ppb_, .state = ServoState::kJump};
   }

@@ -1,21 +1,20 @@
-// The clock servos of linuxptp, by its published constants: proportional-integral and adaptive
+// The clock servos of linuxptp, with its published constants: proportional-integral and adaptive
 // linear regression. They only compute.
 //
 // A servo is fed the measured offset (own clock minus reference, ns) with the own clock's reading,
-// and answers with a frequency correction: the clock is to run slower by that many ppb than its
-// oscillator. State kJump asks in addition for a step by minus the offset; kUnlocked for nothing.
+// and answers with a frequency correction: the clock must run slower by that many ppb than its
+// oscillator. State kJump adds a step by minus the offset; kUnlocked means no correction.
 //
 // PI. kp = min(kp_scale T^-0.3, 0.7 / T), ki = min(ki_scale T^0.4, 0.3 / T) with the interval T in
 // seconds; scales 0.7 and 0.3 for hardware stamps, 0.1 and 0.001 for software stamps. The first
-// sample is kept, the first one at least min(0.016 / ki, 1000) s later gives the frequency, and
-// from then on ppb = kp o w + drift + ki o w, drift += ki o w, unless that exceeds the largest
-// frequency.
+// sample and the first one at least min(0.016 / ki, 1000) s later give the frequency; from then on
+// ppb = kp o w + drift + ki o w, drift += ki o w, unless that exceeds the largest frequency.
 //
-// Linear regression. Of the last 4, 8, ... 64 samples it fits the reference over the own
-// oscillator (corrections taken out), and takes the largest window whose mean prediction error is
-// below 1.05 times that of the last one taken; the error is averaged over 10 updates, then smoothed
-// by 0.02. Frequency = slope plus what is left at the line, divided by the interval and by 1 up to
-// window 16, 2 for 32 and 3 for 64.
+// Linear regression. For windows of the last 4, 8, ... 64 samples it fits the reference over the
+// own oscillator (corrections subtracted), and chooses the largest window whose mean prediction
+// error is below 1.05 times that of the one chosen before; the error is averaged over 10 updates,
+// then smoothed by 0.02. Frequency = slope plus the residual offset, divided by the interval and by
+// 1 up to window 16, 2 for 32 and 3 for 64.
 //
 // Steps: on the first update if the offset exceeds first_step_threshold, later only if it exceeds a
 // positive step_threshold; the regression then starts afresh.
@@ -54,7 +53,7 @@ struct ServoSettings {
 class Servo {
  public:
   virtual ~Servo() = default;
-  // `local_ns`: the own clock at the offset. A clock that jumps back is answered with kUnlocked.
+  // `local_ns`: the own clock at the offset. The answer to a clock that jumps back is kUnlocked.
   virtual ServoAnswer sample(double offset_ns, std::int64_t local_ns, double weight) = 0;
 };
 

@@ -1,71 +1,23 @@
 #include "algorithms/host_sync/pulses/common_view.h"
 
-#include <boost/endian/conversion.hpp>
 #include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
-#include "algorithms/host_sync/two_way/two_way.h"
+#include "algorithms/host_sync/messages.h"
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
-namespace {
-
-constexpr std::size_t kBytes = 28;
-constexpr std::uint16_t kMagic = 0x5643;
-constexpr std::uint8_t kVersion = 1;
-// Times this far from zero can still be subtracted in 64 bits.
-constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
-constexpr std::uint8_t kRequest = 1;
-constexpr std::uint8_t kAnswer = 2;
-
-}  // namespace
-
-Bytes encode(const CommonViewMessage& message) {
-  Bytes bytes(kBytes);
-  auto* at = reinterpret_cast<unsigned char*>(bytes.data());
-  boost::endian::store_little_u16(at, kMagic);
-  at[2] = kVersion;
-  at[3] = message.is_answer ? kAnswer : kRequest;
-  boost::endian::store_little_u32(at + 4, message.index);
-  if (!message.pulse) return bytes;
-  boost::endian::store_little_s64(at + 8, nanoseconds_of(message.pulse->at));
-  boost::endian::store_little_s64(at + 16, message.pulse->sigma_ns);
-  boost::endian::store_little_u32(at + 24, 1);
-  return bytes;
-}
-
-std::optional<CommonViewMessage> decode_common_view_message(const Bytes& bytes) {
-  if (bytes.size() != kBytes) return std::nullopt;
-  const auto* at = reinterpret_cast<const unsigned char*>(bytes.data());
-  if (boost::endian::load_little_u16(at) != kMagic || at[2] != kVersion) return std::nullopt;
-  if (at[3] != kRequest && at[3] != kAnswer) return std::nullopt;
-  CommonViewMessage message;
-  message.is_answer = at[3] == kAnswer;
-  message.index = boost::endian::load_little_u32(at + 4);
-  const std::int64_t pulse_ns = boost::endian::load_little_s64(at + 8);
-  const std::int64_t sigma_ns = boost::endian::load_little_s64(at + 16);
-  const std::uint32_t pulses = boost::endian::load_little_u32(at + 24);
-  if (message.index == 0 || sigma_ns < 0) return std::nullopt;
-  if (pulse_ns > kMostNs || pulse_ns < -kMostNs) return std::nullopt;
-  if (pulses == 0) {
-    if (pulse_ns != 0 || sigma_ns != 0) return std::nullopt;
-    return message;
-  }
-  if (pulses != 1 || !message.is_answer) return std::nullopt;
-  message.pulse = CommonViewMessage::Pulse{HostTime(Nanoseconds(pulse_ns)), sigma_ns};
-  return message;
-}
-
 namespace {
 
 constexpr Nanoseconds kIdle{3'600'000'000'000};
 constexpr Nanoseconds kAnswerTimeout{500'000'000};
 constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
 
-// The master's side towards one slave.
+// The master's end towards one slave.
 Task<void> serve(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
                  std::shared_ptr<PulseObserver> observer, bool is_naive) {
   TwoWayServer server(host, slave, clock, is_naive);
@@ -108,7 +60,7 @@ class CommonViewSlave : public TwoWaySlave {
     co_return line;
   }
 
-  // When the master saw a pulse.
+  // Requests the time at which the master saw a pulse.
   Task<std::optional<CommonViewMessage::Pulse>> ask() {
     Bytes bytes = encode(CommonViewMessage{.index = ++index_});
     co_await channel().send(std::move(bytes));
@@ -160,11 +112,8 @@ Task<void> CommonView::run_master(Host& host, std::vector<PeerId> slaves) {
 Task<void> CommonView::run_slave(Host& host, PeerId master) {
   PulseObserver observer(host, settings_.pulses);
   if (!observer.is_possible()) {
-    host.report_outcome({.slave = host.id(),
-                         .synchronised = false,
-                         .passes = 0,
-                         .message = "slave " + std::to_string(host.id()) + ": the host has no " +
-                                    port_name(settings_.pulses.source)});
+    OutcomeReport(host).failed(
+        0, std::string("the host has no ") + port_name(settings_.pulses.source));
     co_return;
   }
   CommonViewSlave slave(host, master, settings_, std::move(observer));
@@ -198,8 +147,8 @@ HostSyncEntry common_view(std::string name, std::string summary, std::string sou
     settings.two_way = two_way_settings(parameters);
     settings.hull = two_way_hull_settings(parameters);
     settings.pulses.source = pulses;
-    settings.pulses.window = from_ms(parameters.number("pulse_window_s") * 1e3);
-    settings.pulses.settle = from_ms(parameters.number("settle_s") * 1e3);
+    settings.pulses.window = from_seconds(parameters.number("pulse_window_s"));
+    settings.pulses.settle = from_seconds(parameters.number("settle_s"));
     settings.asymmetry_sigma_us = parameters.number("asymmetry_sigma_us");
     return std::make_unique<CommonView>(settings);
   };

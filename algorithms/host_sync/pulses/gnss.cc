@@ -5,41 +5,20 @@
 #include <string>
 #include <utility>
 
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
 namespace {
 
-// No oscillator is that far off: the stamps are wrong.
+// No oscillator is so far off: the stamps are wrong.
 constexpr double kMostSlope = 1e-3;
 
-// Reports how a slave fares, once; the master's own clock is nobody's outcome.
-class Outcome {
- public:
-  Outcome(Host& host, bool is_slave) : host_(host), is_open_(is_slave) {}
-
-  void synchronised() { report(""); }
-  void failed(const std::string& why) {
-    report("slave " + std::to_string(host_.id()) + ": " + why);
-  }
-
- private:
-  void report(const std::string& why) {
-    if (!is_open_) return;
-    is_open_ = false;
-    host_.report_outcome(
-        {.slave = host_.id(), .synchronised = why.empty(), .passes = 1, .message = why});
-  }
-
-  Host& host_;
-  bool is_open_;
-};
-
-Task<void> follow(Host& host, GnssSettings settings, bool is_slave) {
-  Outcome outcome(host, is_slave);
+// Without `outcome` for the master, whose own clock is nobody's outcome.
+Task<void> follow(Host& host, GnssSettings settings, std::optional<OutcomeReport> outcome) {
   PulseInput* const input = host.pulse_input(PulseLine::kPps);
   if (input == nullptr) {
-    outcome.failed("the host has no PPS line (Host::pulse_input)");
+    if (outcome) outcome->failed(1, "the host has no PPS line (Host::pulse_input)");
     co_return;
   }
   SteeredClock clock(host, settings.steering);
@@ -48,8 +27,10 @@ Task<void> follow(Host& host, GnssSettings settings, bool is_slave) {
     const std::optional<PulseStamp> pulse =
         co_await input->next(host.steady_clock().now() + Gnss::kPatience);
     if (!pulse || !pulse->gnss) {
-      outcome.failed(pulse ? "the receiver tells no time with its pulses (PulseStamp::gnss)"
-                           : "no pulse on the PPS line");
+      const char* const why = pulse
+                                  ? "the receiver sends no time with its pulses (PulseStamp::gnss)"
+                                  : "no pulse on the PPS line";
+      if (outcome) outcome->failed(1, why);
       continue;
     }
     clock.observe(pulse->system, pulse->steady);
@@ -57,7 +38,7 @@ Task<void> follow(Host& host, GnssSettings settings, bool is_slave) {
     const std::optional<ClockLine> line = estimator.line();
     if (!line) continue;
     co_await clock.steer(*line);
-    outcome.synchronised();
+    if (outcome) outcome->synchronised(1);
   }
 }
 
@@ -102,11 +83,11 @@ std::optional<ClockLine> GnssEstimator::line() const {
 }
 
 Task<void> Gnss::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
-  co_await follow(host, settings_, false);
+  co_await follow(host, settings_, std::nullopt);
 }
 
 Task<void> Gnss::run_slave(Host& host, PeerId /*master*/) {
-  co_await follow(host, settings_, true);
+  co_await follow(host, settings_, OutcomeReport(host));
 }
 
 namespace {
@@ -124,13 +105,11 @@ HostSyncEntry gnss() {
       number_parameter("window_s", 60, 4, 1e5, "span of the pulses that the line is fitted to",
                        "assumption: short against the wander of a quartz"),
   };
-  for (ParameterSpec& spec : steering_parameters()) {
-    entry.info.parameters.push_back(std::move(spec));
-  }
+  append_steering_parameters(entry.info.parameters);
   entry.make = [](const Parameters& parameters) {
     GnssSettings settings;
-    settings.service_time = from_ms(parameters.number("warm_up_s") * 1e3);
-    settings.window = from_ms(parameters.number("window_s") * 1e3);
+    settings.service_time = from_seconds(parameters.number("warm_up_s"));
+    settings.window = from_seconds(parameters.number("window_s"));
     settings.steering = steering_settings(parameters);
     return std::make_unique<Gnss>(settings);
   };

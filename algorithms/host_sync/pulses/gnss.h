@@ -1,12 +1,12 @@
-// GNSS-disciplined hosts: each has a receiver whose PPS interrupts it and whose message tells the
+// GNSS-disciplined hosts: each has a receiver whose PPS interrupts it and whose message has the
 // time of the pulse. All hosts, the master too, follow GNSS time; no message passes between them.
 //
-// The lower envelope of (GNSS time, steady clock minus GNSS time) of the last pulses, whose
-// touching line at the middle of the window gives offset and rate (interrupts are late, never
-// early), is followed by clock_steering.h. What the interrupt is late by at the least is in every
-// host's clock alike, and so in no difference between them.
+// Interrupts are late, never early. So the lower envelope of (GNSS time, steady clock minus GNSS
+// time) of the last pulses has, at the middle of the window, a touching line that gives offset and
+// rate; the system clock is steered along it (clock_steering.h). The interrupt's least delay is in
+// every host's clock alike, and so in no difference between them.
 //
-// A service. A slave without the line, or whose receiver tells no time within kPatience, reports
+// A service. A slave without the line, or whose receiver sends no time within kPatience, reports
 // that as its outcome.
 // Source: theory; PulseStamp::gnss in algorithms/ports/host.h.
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_GNSS_H_
@@ -33,9 +33,9 @@ class GnssEstimator {
   static constexpr std::size_t kFewestPulses = 4;
 
   explicit GnssEstimator(Nanoseconds window);
-  // A pulse at `gnss`, seen at `seen`. One that is more than kJumpNs off starts afresh.
+  // A pulse at `gnss`, seen at `seen`. One that is more than kJumpNs off starts the fit anew.
   void add(Nanoseconds gnss, SteadyTime seen);
-  // Nothing before kFewestPulses, nor for pulses that no clock would see so (rate beyond 0.1 %).
+  // Nothing before kFewestPulses, nor for a rate beyond 0.1 %, which no clock has.
   std::optional<ClockLine> line() const;
 
  private:

@@ -1,18 +1,4 @@
-// What a host sees of the rig's pulses: through its cameras, or on a pulse line.
-//
-// Each camera, and each pulse line, is a PulseTrain of its own; where there are several, a pulse
-// was seen at the mean of what they say, so that cameras of unequal delay hurt less.
-//
-//   frames    the arrival of each frame less its exposure time: where the exposure begins with the
-//             pulse that is the pulse plus a constant, whatever the exposure. Pulses are counted by
-//             the camera's clock, across the wrap of its 32-bit stamps. Frames of a camera's first
-//             `settle` are left out, and frames of pulses of which not every camera of the host
-//             has delivered one: where fewer frames share the bus, they come earlier than ever
-//             else. (A camera that falls silent for good thus ends the observation.)
-//   kTrigger  the camera's trigger pulses on a line of the host
-//   kPps      one pulse a second
-//
-// collect() takes what has come since the last time, without waiting for more.
+// The rig's pulses as a host observes them: through its cameras, or on a pulse line.
 //
 //   PulseObserver observer(host, {.source = PulseSource::kFrames});
 //   co_await observer.collect();
@@ -20,21 +6,100 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "algorithms/host_sync/pulses/pulse_train.h"
+#include "algorithms/host_sync/two_way/two_way_estimators.h"
 #include "algorithms/ports/host.h"
+#include "algorithms/ports/time.h"
 
 namespace simbench {
+
+// A pulse on the steady clock, as seen with the least delay.
+struct Sighting {
+  SteadyTime at{};
+  double sigma_ns = 0;
+};
+
+// Periodic pulses that one observer (a camera, a pulse line) sees late: for each, when the host
+// noticed it (steady clock), and the step since the one before on a clock that is good enough to
+// count the pulses in between (the camera's, or the steady clock itself). The delay of a sighting
+// has a minimum; the lower envelope of the sightings over the pulse's number is where the pulses
+// would have been seen with the minimum delay. Between hosts with equal minimum delays it is the
+// same instant: common view (TriggerSync).
+//
+// The period is given, or the median of the first kFirstSteps steps. A step is rounded to whole
+// periods; steps that are not positive are ignored. After kStrangeSteps in a row that are more than
+// a quarter of a period off, the train starts again: the rate has changed.
+//
+// The uncertainty is measured by splitting the pulses: the envelopes of the even and the odd ones
+// differ by chance alone; sigma = |difference| / 2.
+//
+// Complexity: O(1) amortised a pulse. Memory bounded (two_way_estimators.h).
+//
+//   PulseTrain train({.window = from_ms(30e3)});
+//   train.add(step, seen);
+//   std::optional<Sighting> pulse = train.nearest(when);
+class PulseTrain {
+ public:
+  struct Settings {
+    Nanoseconds window = from_ms(30e3);
+    std::optional<Nanoseconds> period{};
+  };
+  static constexpr std::size_t kFirstSteps = 9;
+  static constexpr int kStrangeSteps = 8;
+  static constexpr std::uint64_t kFewestPulses = 16;
+
+  explicit PulseTrain(Settings settings);
+
+  // `step`: since the pulse added before; ignored for the first one.
+  void add(Nanoseconds step, SteadyTime seen);
+  // The pulse in the middle of the kept ones; nothing before kFewestPulses were added.
+  std::optional<Sighting> middle() const;
+  // The pulse nearest to `when`, if that lies between the kept ones.
+  std::optional<Sighting> nearest(SteadyTime when) const;
+  std::optional<Nanoseconds> period() const;
+
+ private:
+  void add_numbered(Nanoseconds step, SteadyTime seen);
+  void find_period();
+  void restart();
+  std::optional<Sighting> at_number(double number) const;
+
+  Settings settings_;
+  std::vector<std::pair<Nanoseconds, SteadyTime>> first_;  // until the period is known
+  double period_ns_ = 0;
+  bool has_last_ = false;
+  double number_ = 0;  // of the last pulse
+  int strange_ = 0;
+  std::uint64_t pulses_ = 0;
+  SteadyTime zero_{};  // x = 0, y = 0
+  // x = number * period, y = seen - zero - x.
+  Envelope all_;
+  Envelope even_;
+  Envelope odd_;
+};
 
 enum class PulseSource : std::uint8_t { kFrames, kTrigger, kPps };
 
 // The port that a source needs, for messages.
 const char* port_name(PulseSource source);
 
+// Each camera, and each pulse line, is a PulseTrain of its own; where several trains saw a pulse,
+// it was seen at their mean, so that cameras of unequal delay hurt less.
+//
+//   frames    the arrival of each frame less its exposure time: where the exposure begins with the
+//             pulse that is the pulse plus a constant, whatever the exposure. Pulses are counted by
+//             the camera's clock, across the wrap of its 32-bit stamps. Frames of a camera's first
+//             `settle` are left out, and so are pulses of which a camera of the host has delivered
+//             no frame: with fewer frames on the bus the others come earlier. (A camera that falls
+//             silent for good thus ends the observation.)
+//   kTrigger  the cameras' trigger pulses on a line of the host
+//   kPps      one pulse a second
 class PulseObserver {
  public:
   struct Settings {
@@ -48,11 +113,11 @@ class PulseObserver {
 
   // Whether the host has the port.
   bool is_possible() const { return feed_ != nullptr || input_ != nullptr; }
-  // Does nothing while another coroutine is at it.
+  // Takes what has come since the last time, without waiting for more. Does nothing while another
+  // coroutine collects.
   Task<void> collect();
-  // The pulse in the middle of the first train, by the mean over all trains that saw it.
+  // The pulse in the middle of the first train, and the one nearest to `when`.
   std::optional<Sighting> middle() const;
-  // The pulse nearest to `when`, by the mean over all trains that saw it.
   std::optional<Sighting> nearest(SteadyTime when) const;
 
  private:

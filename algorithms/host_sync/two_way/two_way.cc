@@ -4,14 +4,122 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/clock_steering.h"
 #include "algorithms/host_sync/join.h"
-#include "algorithms/host_sync/two_way/two_way_estimators.h"
-#include "algorithms/host_sync/two_way/two_way_probe.h"
-#include "algorithms/parameters.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
+namespace {
+
+constexpr Nanoseconds kIdle{3'600'000'000'000};
+// A host that stamps departures reports a stamp soon, or not at all.
+constexpr Nanoseconds kStampTimeout{10'000'000};
+// A request this much older than the last one is not late: its sender has started again.
+constexpr std::uint32_t kLateRequests = 64;
+
+// When the message left that send(), called at `begin`, has just returned from: by the host's stamp
+// if there is one, else now. A stamp before `begin` is of a coarse clock and does not count.
+Task<SteadyTime> departure_of(Host& host, MessageChannel& channel, MessageId id, SteadyTime begin,
+                              std::shared_ptr<const SteeredClock> clock) {
+  const SteadyTime returned = host.steady_clock().now();
+  const std::optional<HostTime> stamp =
+      co_await channel.transmit_stamp(id, returned + kStampTimeout);
+  if (!stamp) co_return returned;
+  const SteadyTime departure = clock->when(*stamp);
+  co_return departure < begin ? returned : departure;
+}
+
+}  // namespace
+
+Task<void> TwoWayServer::answer(ReceivedMessage received) {
+  clock_->observe(received.received, received.received_steady);
+  const std::optional<TwoWayMessage> request = decode_two_way_message(received.bytes);
+  if (!request || request->kind != TwoWayMessage::Kind::kRequest) co_return;
+  const bool is_late =
+      request->index <= last_index_ && last_index_ - request->index < kLateRequests;
+  if (is_late) co_return;
+  MessageChannel& channel = host_.open_channel(client_, Transport::kDatagram);
+  TwoWayMessage reply{.kind = TwoWayMessage::Kind::kReply,
+                      .index = request->index,
+                      .arrived = clock_->at(received.received_steady),
+                      .replied_index = 0,
+                      .replied = {}};
+  if (is_naive_) {
+    reply.replied_index = reply.index;
+    reply.replied = clock_->at(host_.steady_clock().now());
+  }
+  for (const Departure& departure : departures_) {
+    if (departure.index != request->replied_index) continue;
+    reply.replied_index = departure.index;
+    reply.replied = departure.at;
+  }
+  Bytes bytes = encode(reply);
+  const SteadyTime begin = host_.steady_clock().now();
+  const MessageId id = co_await channel.send(std::move(bytes));
+  last_index_ = request->index;
+  if (is_naive_) co_return;
+  const SteadyTime departure = co_await departure_of(host_, channel, id, begin, clock_);
+  departures_.push_back({request->index, clock_->at(departure)});
+  if (departures_.size() > kDepartures) departures_.pop_front();
+}
+
+Task<std::optional<TwoWayExchange>> TwoWayClient::ask(Nanoseconds timeout) {
+  MessageChannel& channel = host_.open_channel(server_, Transport::kDatagram);
+  present_ = Open{.index = ++index_, .exchange = {}, .t1 = {}, .t4 = {}};
+  const SteadyTime begin = host_.steady_clock().now();
+  const std::uint32_t wanted = last_ && !is_naive_ ? last_->index : 0;
+  Bytes bytes = encode(TwoWayMessage{.index = index_, .replied_index = wanted});
+  const MessageId id = co_await channel.send(std::move(bytes));
+  SteadyTime sent = begin;
+  if (!is_naive_) sent = co_await departure_of(host_, channel, id, begin, clock_);
+  present_.exchange.sent = sent;
+  while (true) {
+    std::optional<ReceivedMessage> received = co_await channel.receive(begin + timeout);
+    if (!received) co_return std::nullopt;
+    clock_->observe(received->received, received->received_steady);
+    const std::optional<TwoWayMessage> reply = decode_two_way_message(received->bytes);
+    if (!reply || reply->kind != TwoWayMessage::Kind::kReply || reply->index != index_) continue;
+    ++answered_;
+    co_return complete(*reply, received->received_steady);
+  }
+}
+
+std::optional<TwoWayExchange> TwoWayClient::complete(const TwoWayMessage& reply,
+                                                     SteadyTime received) {
+  present_.exchange.arrived = reply.arrived;
+  present_.exchange.received = received;
+  present_.t1 = clock_->at(present_.exchange.sent);
+  present_.t4 = clock_->at(received);
+  std::optional<TwoWayExchange> completed;
+  if (reply.replied_index == present_.index) {
+    completed = report(present_, reply.replied);
+  } else if (last_ && reply.replied_index == last_->index) {
+    completed = report(*last_, reply.replied);
+  }
+  last_ = present_;
+  return completed;
+}
+
+TwoWayExchange TwoWayClient::report(Open& open, HostTime replied) {
+  open.exchange.replied = replied;
+  host_.report_exchange(
+      {.peer = server_, .t1 = open.t1, .t2 = open.exchange.arrived, .t3 = replied, .t4 = open.t4});
+  return open.exchange;
+}
+
+namespace {
+
+Task<void> serve_two_way(Host& host, PeerId client, std::shared_ptr<SteeredClock> clock,
+                         bool is_naive) {
+  TwoWayServer server(host, client, std::move(clock), is_naive);
+  MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
+  while (true) {
+    std::optional<ReceivedMessage> received =
+        co_await channel.receive(host.steady_clock().now() + kIdle);
+    if (received) co_await server.answer(std::move(*received));
+  }
+}
+
+}  // namespace
 
 Task<void> TwoWay::run_master(Host& host, std::vector<PeerId> slaves) {
   auto clock = std::make_shared<SteeredClock>(host, settings_.steering);
@@ -50,7 +158,8 @@ TwoWaySlave::TwoWaySlave(Host& host, PeerId master, TwoWaySettings settings,
       clock_(std::make_shared<SteeredClock>(host, settings.steering)),
       client_(host, master, clock_, settings.is_naive),
       estimator_(std::move(estimator)),
-      steer_at_(host.steady_clock().now()) {}
+      steer_at_(host.steady_clock().now()),
+      outcome_(host) {}
 
 Task<ClockLine> TwoWaySlave::refine(ClockLine line) { co_return line; }
 
@@ -76,25 +185,15 @@ Task<Nanoseconds> TwoWaySlave::turn() {
     const ClockLine refined = co_await refine(line);
     co_await clock_->steer(refined);
   }
-  report_outcome(is_due);
+  if (is_due) {
+    outcome_.synchronised(client_.asked());
+  } else if (client_.answered() == 0 && client_.asked() == TwoWay::kPatience) {
+    outcome_.failed(client_.asked(), "no reply from host " + std::to_string(master_) + " to " +
+                                         std::to_string(client_.asked()) +
+                                         " requests; is it running and reachable? Still trying");
+  }
   if (is_new && settings_.round_pause.count() > 0) co_return settings_.round_pause;
   co_return is_burst ? settings_.burst_interval : settings_.interval;
-}
-
-void TwoWaySlave::report_outcome(bool is_steered) {
-  const bool is_silent = client_.answered() == 0 && client_.asked() == TwoWay::kPatience;
-  if (is_reported_ || !(is_steered || is_silent)) return;
-  is_reported_ = true;
-  SyncOutcome outcome;
-  outcome.slave = host_.id();
-  outcome.passes = client_.asked();
-  outcome.synchronised = is_steered;
-  if (!is_steered) {
-    outcome.message = "slave " + std::to_string(host_.id()) + ": no reply from host " +
-                      std::to_string(master_) + " to " + std::to_string(client_.asked()) +
-                      " requests; is it running and reachable? Still asking";
-  }
-  host_.report_outcome(outcome);
 }
 
 std::vector<ParameterSpec> two_way_parameters() {
@@ -102,7 +201,7 @@ std::vector<ParameterSpec> two_way_parameters() {
       number_parameter("warm_up_s", 60, 1, 1e6, "how long the service has run before the capture",
                        kAssumption),
       number_parameter("exchanges", 16, 1, 1e5,
-                       "exchanges of the first burst, and of each round that a minimum is taken of",
+                       "exchanges of the first burst, and of each round whose minimum is taken",
                        kAssumption),
       number_parameter("burst_interval_ms", 20, 0.1, 1e5, "pace of the first burst", kAssumption),
       number_parameter("interval_ms", 250, 0.1, 1e6, "pace after it, also during the capture",
@@ -112,13 +211,13 @@ std::vector<ParameterSpec> two_way_parameters() {
       number_parameter("max_rate_ppm", 500, 1, 1e4, "largest rate between two hosts",
                        "the limit of adjtimex(2)"),
   };
-  for (ParameterSpec& spec : steering_parameters()) specs.push_back(std::move(spec));
+  append_steering_parameters(specs);
   return specs;
 }
 
 TwoWaySettings two_way_settings(const Parameters& parameters) {
   TwoWaySettings settings;
-  settings.service_time = from_ms(parameters.number("warm_up_s") * 1e3);
+  settings.service_time = from_seconds(parameters.number("warm_up_s"));
   settings.exchanges = static_cast<std::size_t>(parameters.number("exchanges"));
   settings.burst_interval = from_ms(parameters.number("burst_interval_ms"));
   settings.interval = from_ms(parameters.number("interval_ms"));
@@ -129,7 +228,7 @@ TwoWaySettings two_way_settings(const Parameters& parameters) {
 
 TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters) {
   TwoWayHull::Settings settings;
-  settings.window = from_ms(parameters.number("window_s") * 1e3);
+  settings.window = from_seconds(parameters.number("window_s"));
   settings.max_rate_ppm = parameters.number("max_rate_ppm");
   return settings;
 }
@@ -150,7 +249,7 @@ TwoWay::MakeEstimator minimum_of(const Parameters& parameters, TwoWayMinimum::Ki
   TwoWayMinimum::Settings settings;
   settings.kind = kind;
   settings.exchanges = static_cast<std::size_t>(parameters.number("exchanges"));
-  settings.window = from_ms(parameters.number("window_s") * 1e3);
+  settings.window = from_seconds(parameters.number("window_s"));
   settings.max_rate_ppm = parameters.number("max_rate_ppm");
   return [settings] { return std::make_unique<TwoWayMinimum>(settings); };
 }
@@ -193,16 +292,14 @@ HostSyncEntry libsoftwaresync() {
       number_parameter("round_pause_s", 10, 0.1, 1e6, "time from one round to the next",
                        kAssumption),
   };
-  for (ParameterSpec& spec : steering_parameters()) {
-    entry.info.parameters.push_back(std::move(spec));
-  }
+  append_steering_parameters(entry.info.parameters);
   entry.make = [](const Parameters& parameters) {
     TwoWaySettings settings;
-    settings.service_time = from_ms(parameters.number("warm_up_s") * 1e3);
+    settings.service_time = from_seconds(parameters.number("warm_up_s"));
     settings.is_naive = true;
     settings.exchanges = 0;
     settings.interval = from_ms(parameters.number("interval_ms"));
-    settings.round_pause = from_ms(parameters.number("round_pause_s") * 1e3);
+    settings.round_pause = from_seconds(parameters.number("round_pause_s"));
     settings.steering = steering_settings(parameters);
     settings.steer_interval = Nanoseconds(0);
     TwoWayMinimum::Settings minimum;

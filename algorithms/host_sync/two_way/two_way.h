@@ -1,20 +1,21 @@
-// Two-way synchronisation: the slaves ask, the master answers, the shortest delays decide.
+// Two-way synchronisation: the slaves send requests, the master replies, and an estimator uses the
+// exchanges of the shortest delays.
 //
 // A service. Each slave sends requests over datagrams, first `exchanges` of them burst_interval
 // apart, then one every `interval` (each interval varied by +-10 %, so that no periodic load can
 // stay in step), for ever: before, during and after the capture. An estimator
-// (two_way_estimators.h, two_way_estimators.h) turns the exchanges into a line of the master's
-// clock over the slave's steady clock, and every steer_interval the slave's system clock is steered
-// along it (clock_steering.h).
+// (two_way_estimators.h) turns the exchanges into a line of the master's clock over the slave's
+// steady clock, and every steer_interval the slave's system clock is steered along it
+// (clock_steering.h).
 //
 // Where the departure is stamped decides how much of the sender's occupancy is in the path:
 //   transmit-stamped  t1 and t3 are when the message left: the host's transmit stamp if it has one,
 //                     else the clock right after the send call. t3 follows with a later reply.
 //   naive             t1 and t3 are read before the send call, as most code does it.
 //
-// A lost message costs its exchange; duplicates, late replies and bytes that are no message of ours
-// are ignored. A slave reports its outcome when its clock was first steered, or once kPatience
-// requests have gone unanswered; it goes on asking.
+// A lost message costs its exchange; duplicates, late replies and foreign messages are ignored. A
+// slave reports its outcome when its clock is first steered, or after kPatience requests without a
+// reply; it goes on in either case.
 //
 // The names: two_way_min_rtt, two_way_independent_minima, two_way_hull, each also as *_naive where
 // registered; libsoftwaresync is naive best-of-300 with early stop and without rate, one round
@@ -25,18 +26,77 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_TWO_WAY_TWO_WAY_H_
 
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "algorithms/host_sync/clock_steering.h"
+#include "algorithms/host_sync/messages.h"
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/host_sync/two_way/two_way_estimators.h"
-#include "algorithms/host_sync/two_way/two_way_probe.h"
 #include "algorithms/parameters.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
+
+// The master's end of the exchanges with one client.
+class TwoWayServer {
+ public:
+  TwoWayServer(Host& host, PeerId client, std::shared_ptr<SteeredClock> clock, bool is_naive)
+      : host_(host), client_(client), clock_(std::move(clock)), is_naive_(is_naive) {}
+
+  // Replies to a message if it is a request and not an old one; else does nothing.
+  Task<void> answer(ReceivedMessage received);
+
+ private:
+  static constexpr std::size_t kDepartures = 16;
+  struct Departure {
+    std::uint32_t index = 0;
+    HostTime at{};
+  };
+  Host& host_;
+  PeerId client_;
+  std::shared_ptr<SteeredClock> clock_;
+  bool is_naive_;
+  std::uint32_t last_index_ = 0;
+  std::deque<Departure> departures_;  // of the last replies
+};
+
+class TwoWayClient {
+ public:
+  TwoWayClient(Host& host, PeerId server, std::shared_ptr<SteeredClock> clock, bool is_naive)
+      : host_(host), server_(server), clock_(std::move(clock)), is_naive_(is_naive) {}
+
+  // Sends a request and waits up to `timeout` for its reply. Returns and reports the exchange that
+  // this completes, if any: this one, or (transmit-stamped) the one answered before.
+  Task<std::optional<TwoWayExchange>> ask(Nanoseconds timeout);
+  std::uint32_t asked() const { return index_; }
+  std::uint32_t answered() const { return answered_; }
+
+ private:
+  struct Open {
+    std::uint32_t index = 0;
+    TwoWayExchange exchange;
+    HostTime t1{};
+    HostTime t4{};
+  };
+
+  std::optional<TwoWayExchange> complete(const TwoWayMessage& reply, SteadyTime received);
+  TwoWayExchange report(Open& open, HostTime replied);
+
+  Host& host_;
+  PeerId server_;
+  std::shared_ptr<SteeredClock> clock_;
+  bool is_naive_;
+  std::uint32_t index_ = 0;
+  std::uint32_t answered_ = 0;
+  Open present_;
+  std::optional<Open> last_;
+};
 
 struct TwoWaySettings {
   Nanoseconds service_time = from_ms(60e3);  // before the capture
@@ -68,11 +128,11 @@ class TwoWay : public HostSync {
   MakeEstimator make_estimator_;
 };
 
-// The slave's side of every algorithm that learns the master's clock from two-way exchanges: asks,
-// estimates, steers, for ever. See two_way.h.
+// The slave's side of every algorithm that estimates the master's clock from two-way exchanges:
+// sends requests, estimates, steers, for ever.
 //
-// refine() is where more than the network can be brought in: it is asked for the line to steer by
-// each time, given the line that the exchanges say.
+// refine() is where more than the network can be brought in: it gets the line estimated from the
+// exchanges and returns the line to steer by.
 class TwoWaySlave {
  public:
   TwoWaySlave(Host& host, PeerId master, TwoWaySettings settings,
@@ -88,10 +148,8 @@ class TwoWaySlave {
   MessageChannel& channel() { return host_.open_channel(master_, Transport::kDatagram); }
 
  private:
-  // One exchange and what follows from it. Returns how long after it the next one is due.
+  // One exchange and the steering due after it. Returns the interval to the next one.
   Task<Nanoseconds> turn();
-  void report_outcome(bool is_steered);
-
   Host& host_;
   PeerId master_;
   TwoWaySettings settings_;
@@ -99,10 +157,10 @@ class TwoWaySlave {
   TwoWayClient client_;
   std::unique_ptr<TwoWayEstimator> estimator_;
   SteadyTime steer_at_{};
-  bool is_reported_ = false;
+  OutcomeReport outcome_;
 };
 
-// The parameters of two_way.h with the hull, as every algorithm on top of it declares them.
+// The parameters of every algorithm on top of the two-way hull.
 std::vector<ParameterSpec> two_way_parameters();
 TwoWaySettings two_way_settings(const Parameters& parameters);
 TwoWayHull::Settings two_way_hull_settings(const Parameters& parameters);

@@ -88,8 +88,7 @@ std::optional<double> Envelope::at(double x) const {
 namespace {
 
 constexpr int kBisections = 64;
-// Stamps are rounded; hulls that cross by no more than this are no
-// contradiction.
+// Stamps are rounded; hulls that cross by no more than this are no contradiction.
 constexpr double kToleranceNs = 1000;
 
 }  // namespace

@@ -1,13 +1,14 @@
 // Estimators of a remote clock from two-way exchanges. They only compute: values in, values out.
 //
-// Of an exchange, sent and received are the own steady clock's, arrived and replied the remote
-// system clock's. With remote(s) the remote reading at own steady time s and no negative delays
+// In an exchange, sent and received are readings of the own steady clock, arrived and replied of
+// the remote system clock. With remote(s) the remote reading at own steady time s and no negative
+// delays
 //
 //   replied - received <= remote(received) - received     a lower bound of the difference
 //   remote(sent) - sent <= arrived - sent                 an upper bound
 //
-// All of these assume equal minimum delays both ways; what the directions differ by, A, is in every
-// result with A / 2, and nothing in the stamps can tell (docs/reference/host_sync.md section 3).
+// All of these assume equal minimum delays both ways; a difference A between the directions is in
+// every result with A / 2, and no stamp reveals it (docs/reference/host_sync.md section 3).
 //
 //   TwoWayHull hull({});
 //   hull.add(exchange);
@@ -33,31 +34,31 @@ struct TwoWayExchange {
   HostTime replied{};     // t3
   SteadyTime received{};  // t4
 
-  // Without the time spent at the peer.
+  // Without the time that the peer took.
   Nanoseconds round_trip() const { return (received - sent) - (replied - arrived); }
 };
 
 class TwoWayEstimator {
  public:
   virtual ~TwoWayEstimator() = default;
-  // Exchanges in order. Returns whether the line is a new one.
+  // Exchanges come in order. Returns whether the line is a new one.
   virtual bool add(const TwoWayExchange& exchange) = 0;
-  // Nothing before enough has come.
+  // Nothing before there are enough exchanges.
   virtual std::optional<ClockLine> line() = 0;
 };
 
 // The lower convex envelope of the newest points of a stream, in bounded memory.
 //
 // A delay can only make a stamp later, so the points (time, stamp difference) of a stream lie above
-// the line they would lie on without delay; the edges of their lower convex hull are what touches
-// that line from above. For an upper envelope negate y.
+// their line without delay; the edges of their lower convex hull touch that line from above. For an
+// upper envelope negate y.
 //
 // The points of the last `window` are kept, to within one part of kParts: each part of the window
-// has a hull of its own, the oldest part goes as a whole. A part that collects kPartVertices hull
-// vertices ends early, so memory is at most (kParts + 1) * kPartVertices points whatever comes.
+// has a hull of its own, and the oldest part is dropped as a whole. A part with kPartVertices hull
+// vertices ends early, so memory is at most (kParts + 1) * kPartVertices points.
 //
-// Contract: x does not decrease (a smaller x is taken as the last one's); units are the caller's.
-// Complexity: add() amortised O(1); the first look after an add O(vertices), usually some tens.
+// Contract: x does not decrease (a smaller x counts as the last one); units are the caller's.
+// Complexity: add() amortised O(1); the first query after an add O(vertices), usually some tens.
 // Source: docs/reference/host_sync.md section 1 (two-way convex hull).
 //
 //   Envelope envelope(60e9);
@@ -99,34 +100,30 @@ class Envelope {
   mutable bool is_current_ = false;
 };
 
-// The two-way convex hull: offset and rate of a remote clock together, from the
-// bounds of a window.
+// The two-way convex hull: offset and rate of a remote clock together, from the bounds of a window.
 //
-// Requests bound the remote clock from above, replies from below. Between the
-// lower hull of the upper bounds and the upper hull of the lower bounds fits a
-// family of lines; taken is the mid-line of the widest corridor (largest
-// vertical separation), which for delays with equal exponential tails both ways
-// is the maximum-likelihood line. With w the half width,
+// Requests bound the remote clock from above, replies from below. A family of lines fits between
+// the lower hull of the upper bounds and the upper hull of the lower bounds; the estimate is the
+// mid-line of the widest corridor (largest vertical separation), which for delays with equal
+// exponential tails both ways is the maximum-likelihood line. The width of the corridor,
 //
-//   maximise over the rate b:  min_i (U_i - b s_i) - max_j (L_j - b s_j)
+//   maximised over the rate b:  min_i (U_i - b s_i) - max_j (L_j - b s_j)
 //
-// is concave in b and its derivative is the distance of the two vertices that
-// are touched, so b is found by bisection.
+// is concave in b and its derivative is the distance of the two touched vertices, so bisection
+// finds b.
 //
-// The rate is held at the last good one (0 at the start) while the kept points
-// span less than kFirstSpan (kLaterSpan once a rate was known): a short span
-// says little about a rate. Where no line of the held rate passes between the
-// hulls (delays that are short against what the clocks drift apart in that
-// span), it moves to the nearest rate of which one does. |b| is bounded by
-// max_rate_ppm.
+// The rate is held at the last good one (0 at the start) while the kept points span less than
+// kFirstSpan (kLaterSpan once a rate was known), too short to estimate a rate. If no line of the
+// held rate passes between the hulls (delays that are short against the clocks' drift in that
+// span), it moves to the nearest rate that has one. |b| is bounded by max_rate_ppm.
 //
-// When the hulls cross, no line is possible: the remote clock (or a stamp) has
-// jumped. All but the exchange just added is then forgotten. A jump of less
-// than half the round trip is not seen so; it leaves with the window.
+// When the hulls cross, no line is possible: the remote clock (or a stamp) has jumped. All but the
+// exchange just added is then discarded. A jump of less than half the round trip is not detected;
+// it leaves with the window.
 //
-// Complexity: add() O(1) amortised, line() some tens of vertices times 64 steps
-// of bisection. Memory bounded (Envelope). Source: docs/reference/host_sync.md section 1
-// (MOOS, TICSync: line of maximum separation).
+// Complexity: add() O(1) amortised, line() some tens of vertices times 64 steps of bisection.
+// Memory bounded (Envelope). Source: docs/reference/host_sync.md section 1 (MOOS, TICSync: line of
+// maximum separation).
 class TwoWayHull : public TwoWayEstimator {
  public:
   struct Settings {
@@ -142,8 +139,7 @@ class TwoWayHull : public TwoWayEstimator {
   std::optional<ClockLine> line() override;
   // How often the hulls have crossed.
   std::uint64_t resets() const { return resets_; }
-  // Smallest possible round trip along the line: the vertical width of the
-  // corridor.
+  // The smallest possible round trip along the line: the vertical width of the corridor.
   std::optional<Nanoseconds> width() const;
 
  private:
@@ -158,10 +154,9 @@ class TwoWayHull : public TwoWayEstimator {
   void add_bounds(const TwoWayExchange& exchange);
   double span_ns() const;
   double choose_rate() const;
-  // Of the widest corridor.
+  // The rate of the widest corridor.
   double widest_rate() const;
-  // The rate nearest to the held one of which a line passes between the hulls,
-  // if there is any.
+  // The rate nearest to the held one with a line between the hulls, if there is any.
   double nearest_possible_rate() const;
   Corridor corridor(double rate) const;
 
@@ -172,32 +167,10 @@ class TwoWayHull : public TwoWayEstimator {
   Nanoseconds zero_offset_{0};      // y = 0
   double latest_ns_ = 0;
   double rate_ = 0;
-  // Of rate_. Points that have left the window may still be in it: then it is
-  // too narrow.
-  Corridor corridor_;
+  Corridor corridor_;  // of rate_; too narrow if points in it have left the window
   bool rate_is_known_ = false;
   std::uint64_t resets_ = 0;
 };
-
-// Estimators that take the shortest of N exchanges.
-//
-// best_round_trip: the offset of the exchange with the smallest round trip (Cristian 1989;
-// libsoftwaresync, SimpleNetworkTimeProtocol.java), at the instant of that exchange.
-// independent_minima: half the difference of the smallest delays of each direction, whichever
-// exchanges they are from: maximum likelihood and minimum variance for exponential delays of equal
-// mean beta, standard deviation beta / (sqrt(2) N) (Jeske 2005). The clocks must not drift apart
-// meanwhile, so the rate known so far is taken out first.
-//
-// TwoWayMinimum makes rounds of N exchanges out of a stream: each round gives one offset by one of
-// the two, and the rate is the least-squares slope of the offsets in the window (kRoundsKept at
-// most). An exchange whose bounds lie more than kJumpNs on the wrong side of the line says that a
-// clock has jumped: everything starts afresh, from that exchange alone.
-// With `early_stop`, a round ends with the first exchange whose round trip is below that: on a
-// wired network nearly always the first one (docs/reference/host_sync.md section 1).
-// Without `estimate_rate` the line is flat and goes through the last offset.
-//
-// Complexity: O(1) an exchange, O(kRoundsKept) a round.
-// Source: docs/reference/host_sync.md sections 1, 3 and 4.
 
 // A remote clock's reading at one instant of the own steady clock.
 struct RemoteReading {
@@ -205,10 +178,25 @@ struct RemoteReading {
   HostTime value{};
 };
 
-// For at least one exchange. `rate_ppb`: of the remote clock against the own steady one.
+// The offset of the exchange with the smallest round trip (Cristian 1989; libsoftwaresync,
+// SimpleNetworkTimeProtocol.java), at the instant of that exchange. At least one exchange.
 RemoteReading best_round_trip(std::span<const TwoWayExchange> exchanges);
+// Half the difference of the smallest delays of each direction, whichever exchanges they are from:
+// maximum likelihood and minimum variance for exponential delays of equal mean beta, standard
+// deviation beta / (sqrt(2) N) (Jeske 2005). `rate_ppb`, the known rate of the remote clock against
+// the own steady one, is subtracted first. At least one exchange.
 RemoteReading independent_minima(std::span<const TwoWayExchange> exchanges, double rate_ppb);
 
+// Takes the shortest of N exchanges: each round of N gives one offset by one of the two functions
+// above, and the rate is the least-squares slope of the offsets in the window (kRoundsKept at
+// most). An exchange whose bounds lie more than kJumpNs on the wrong side of the line means that a
+// clock has jumped: the estimate starts anew, from that exchange alone. With `early_stop`, a round
+// ends with the first exchange whose round trip is below that: on a wired network nearly always the
+// first one (docs/reference/host_sync.md section 1). Without `estimate_rate` the line is flat and
+// goes through the last offset.
+//
+// Complexity: O(1) an exchange, O(kRoundsKept) a round.
+// Source: docs/reference/host_sync.md sections 1, 3 and 4.
 class TwoWayMinimum : public TwoWayEstimator {
  public:
   enum class Kind { kRoundTrip, kIndependent };

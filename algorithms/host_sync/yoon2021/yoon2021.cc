@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
-#include "algorithms/host_sync/yoon2021/wire.h"
+#include "algorithms/host_sync/messages.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -28,7 +28,7 @@ struct PassResult {
   Nanoseconds delay;       // max(T_r - T_m, T_r - T_s)
 };
 
-// The next message of this kind, pass and index; whatever else comes is late, doubled or foreign.
+// The next message of this kind, pass and index; others are late, duplicated or foreign.
 Task<std::optional<SessionMessage>> receive_answer(MasterSession session, MessageKind kind,
                                                    std::uint32_t pass, std::uint32_t index) {
   const SteadyTime deadline = session.host.steady_clock().now() + silence_limit(session.settings);
@@ -42,7 +42,7 @@ Task<std::optional<SessionMessage>> receive_answer(MasterSession session, Messag
   }
 }
 
-// The master's clock, n_d times. False if the slave stopped asking.
+// Sends the master's clock n_d times. False if the slave stopped its requests.
 Task<bool> send_stamps(MasterSession session, std::uint32_t pass) {
   const Yoon2021Settings& settings = session.settings;
   const SteadyTime begin = session.host.steady_clock().now();
@@ -63,7 +63,7 @@ Task<bool> send_stamps(MasterSession session, std::uint32_t pass) {
   co_return true;
 }
 
-// One turn of the loop of Algorithm 1; nothing if the slave fell silent.
+// One turn of the loop of Algorithm 1; nothing if the slave is silent.
 Task<std::optional<PassResult>> run_master_pass(MasterSession session, std::uint32_t pass) {
   Bytes ready = encode({MessageKind::kReady, pass, 0, HostTime{}});
   co_await session.channel.send(std::move(ready));
@@ -122,7 +122,7 @@ std::string limit_message(PeerId slave, const Yoon2021Settings& settings,
          milliseconds(smallest->delay) + ", " + threshold;
 }
 
-// Passes until one is within the threshold, or a limit is reached. The slave is not told yet.
+// Runs passes until one is within the threshold, or a limit is reached. Does not notify the slave.
 Task<SyncOutcome> run_passes(MasterSession session) {
   const Yoon2021Settings& settings = session.settings;
   SyncOutcome outcome;
@@ -197,7 +197,7 @@ struct SlaveSession {
 
 using MaybeMessage = std::optional<SessionMessage>;
 
-// Whether this ends the pass: a later READY, or the end of the session.
+// Whether the message ends the pass: a later READY, or the end of the session.
 bool ends_pass(const SessionMessage& message, std::uint32_t pass) {
   switch (message.kind) {
     case MessageKind::kReady:
@@ -210,8 +210,8 @@ bool ends_pass(const SessionMessage& message, std::uint32_t pass) {
   }
 }
 
-// What the master sends next that matters in this pass: a message of `kind` (with `index`, if one
-// is given), or one that ends the pass. Nothing if the master is silent for too long.
+// The master's next message of `kind` (with `index`, if given) in this pass, or one that ends the
+// pass. Nothing if the master is silent for too long.
 Task<MaybeMessage> receive_next(SlaveSession session, MessageKind kind, std::uint32_t pass,
                                 std::optional<std::uint32_t> index) {
   const Nanoseconds patience = Yoon2021::kSlavePatience * silence_limit(session.settings);
@@ -227,7 +227,7 @@ Task<MaybeMessage> receive_next(SlaveSession session, MessageKind kind, std::uin
   }
 }
 
-// The first READY, or nothing if this slave's turn does not come.
+// The first READY; nothing if this slave's turn does not come.
 Task<MaybeMessage> wait_for_turn(SlaveSession session) {
   const SteadyTime deadline = session.host.steady_clock().now() + session.settings.turn_timeout;
   while (true) {
@@ -275,7 +275,7 @@ Task<NetworkDelay> measure_network_delay(SlaveSession session, std::uint32_t pas
   co_return result;
 }
 
-// The time synchronisation delay t_t. Each call really sets the clock, to a reading that has aged.
+// The time synchronisation delay t_t. Each call sets the clock to a reading that has aged.
 Task<Nanoseconds> measure_time_delay(SlaveSession session) {
   const SteadyClock& steady = session.host.steady_clock();
   HostClock& clock = session.host.clock();
@@ -374,7 +374,7 @@ Yoon2021Settings yoon2021_settings(const Parameters& parameters) {
   settings.transport =
       parameters.text("transport") == "stream" ? Transport::kStream : Transport::kDatagram;
   settings.receive_timeout = from_ms(parameters.number("receive_timeout_ms"));
-  settings.turn_timeout = from_ms(parameters.number("turn_timeout_s") * 1e3);
+  settings.turn_timeout = from_seconds(parameters.number("turn_timeout_s"));
   return settings;
 }
 

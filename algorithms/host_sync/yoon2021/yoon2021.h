@@ -16,13 +16,13 @@
 // t_d alone (all run both measurements, so that they are comparable seed by seed):
 // yoon2021_network t_l, yoon2021_time t_t, yoon2021_both t_l + t_t, yoon2021_neither 0.
 //
-// Defects of the algorithm under test that stay (numbers as in docs/reference/paper.md section 4):
+// Defects of the algorithm that are kept (numbers as in docs/reference/paper.md section 4):
 //   1. the receives are back to back, so t_l telescopes to the mean spacing of the stamps at the
 //      receiver: the sender's occupancy per stamp; the latency cancels ("literal");
 //   2. the test never bounds a lead: a slave that is ahead makes T_r - T_s smaller;
 //   5. n_d, n_c, T_th and the transport are not published: the parameters' defaults are a fit;
 //   6. set(get()) really steps the slave's clock back by part of the call, each time;
-//   7. t_t takes half of get and set for the part that matters, which the loop cannot see;
+//   7. t_t is half of get and set, which need not be the part that matters;
 //   8. no rate is estimated: the error grows with the time since the session.
 //
 // Repairs, without which it cannot run:
@@ -30,20 +30,20 @@
 //      names the smallest round trip seen;
 //   4. the printed last message is "ready", which would start another pass: it is SUCCESS;
 //   -  every receive has a time limit, so a dead peer or a lost datagram ends the pass, and
-//      kSilentPassLimit such passes in a row the session. Algorithm 2 counts n_d receives: one lost
-//      stamp, or one that overtakes READY, loses the pass; a duplicate counts as a stamp. On a
+//      kSilentPassLimit such passes in a row end the session. Algorithm 2 counts n_d receives: one
+//      lost stamp, or one that overtakes READY, loses the pass; a duplicate counts as a stamp. On a
 //      network that loses or reorders use the stream.
 //
 // Latency estimate "intended": the paper describes t_l as "the average time taken for the
 // transmission of n_d data packets". One-way times cannot be measured between clocks that are not
-// yet set, so the slave asks for each stamp (REQUEST) and t_l is half the mean round trip on its
+// yet set, so the slave requests each stamp (REQUEST) and t_l is half the mean round trip on its
 // own steady clock:
 //
 //   n_d times:  tic = steady; send REQUEST; receive STAMP; toc = steady;  t_l += (toc - tic) / 2
 //
-// One added message a stamp, nothing but clocks a real host has. Nothing telescopes: what remains
-// is half of the difference between the two directions (latency, send occupancy, wake-up), which no
-// two-way protocol can see.
+// This adds one message per stamp and needs no other clock. Nothing telescopes: what remains is
+// half of the difference between the two directions (latency, send occupancy, wake-up), which no
+// two-way protocol can measure.
 //
 // Time limits count from the peer's last message, on the steady clock. The slave's coroutine ends
 // on SUCCESS or GIVE_UP, or when the master has been silent for kSlavePatience silence limits.
@@ -77,7 +77,7 @@ struct Yoon2021Settings {
   Nanoseconds turn_timeout = from_ms(86.4e6);   // how long a slave waits for its first READY
 };
 
-// How long a side waits for the other's next message before it calls that silence.
+// How long a side waits for the other's next message before the other counts as silent.
 constexpr Nanoseconds silence_limit(const Yoon2021Settings& settings) {
   return settings.receive_timeout + settings.send_interval;
 }

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "algorithms/device_time/lower_hull.h"
-#include "algorithms/device_time/sample_anchor.h"
+#include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/unwrap.h"
 #include "tests/algorithms/device_time/streams.h"
 

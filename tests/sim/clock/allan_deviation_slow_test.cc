@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/clock/flicker_noise.h"
 #include "sim/clock/oscillator.h"
 
 namespace simbench::sim {

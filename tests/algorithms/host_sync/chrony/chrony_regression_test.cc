@@ -1,5 +1,3 @@
-#include "algorithms/host_sync/chrony/chrony_regression.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/host_sync/chrony/chrony_source_stats.h"
 #include "tests/data/test_data.h"
 
 namespace simbench {

@@ -1,11 +1,11 @@
-#include "algorithms/host_sync/ntp/ntp_clock_filter.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <optional>
+
+#include "algorithms/host_sync/ntp/ntp_discipline.h"
 
 namespace simbench {
 namespace {

@@ -1,8 +1,8 @@
-#include "algorithms/host_sync/ntp/ntp_packet.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "algorithms/host_sync/ntp/ntp_association.h"
 
 namespace simbench {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/host_sync/ntp/ntp_packet.h"
+#include "algorithms/host_sync/ntp/ntp_association.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/host_sync/script_host.h"
 #include "tests/nonempty.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "algorithms/host_sync/ntp/ntp_packet.h"
+#include "algorithms/host_sync/ntp/ntp_association.h"
 #include "tests/algorithms/host_sync/script_host.h"
 
 namespace simbench {

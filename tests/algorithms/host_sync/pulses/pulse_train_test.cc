@@ -1,10 +1,10 @@
-#include "algorithms/host_sync/pulses/pulse_train.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <cmath>
+
+#include "algorithms/host_sync/pulses/pulse_observer.h"
 
 namespace simbench {
 namespace {

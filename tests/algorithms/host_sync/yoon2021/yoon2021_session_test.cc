@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "algorithms/host_sync/yoon2021/wire.h"
+#include "algorithms/host_sync/messages.h"
 #include "algorithms/host_sync/yoon2021/yoon2021.h"
 #include "tests/algorithms/host_sync/script_host.h"
 #include "tests/algorithms/host_sync/yoon2021/yoon2021_rig.h"

@@ -1,7 +1,8 @@
-#include "algorithms/host_sync/yoon2021/wire.h"
+#include "algorithms/host_sync/messages.h"
 
 #include <gtest/gtest.h>
 
+#include <boost/random/mersenne_twister.hpp>
 #include <limits>
 #include <random>
 #include <vector>
@@ -23,7 +24,7 @@ std::vector<SessionMessage> one_of_each_kind() {
           {MessageKind::kGiveUp, 200, 0, HostTime{}}};
 }
 
-TEST(Wire, EveryKindComesBackAsItWas) {
+TEST(SessionMessageTest, EveryKindComesBackAsItWas) {
   for (const SessionMessage& message : nonempty(one_of_each_kind())) {
     const Bytes bytes = encode(message);
     ASSERT_EQ(bytes.size(), kSessionMessageBytes);
@@ -33,7 +34,7 @@ TEST(Wire, EveryKindComesBackAsItWas) {
   }
 }
 
-TEST(Wire, TheBytesAreThoseOfTheTable) {
+TEST(SessionMessageTest, TheBytesAreThoseOfTheTable) {
   const Bytes bytes =
       encode({MessageKind::kStamp, 0x01020304, 0x0A0B0C0D, HostTime{Nanoseconds{-2}}});
   const unsigned char expected[] = {0x59, 0x32, 1,    2,    4,    3,    2,    1,    0x0D, 0x0C,
@@ -44,7 +45,7 @@ TEST(Wire, TheBytesAreThoseOfTheTable) {
   }
 }
 
-TEST(Wire, OtherLengthsAreRefused) {
+TEST(SessionMessageTest, OtherLengthsAreRefused) {
   const Bytes whole = encode({MessageKind::kReady, 1, 0, HostTime{}});
   for (std::size_t size = 0; size <= 64; ++size) {
     Bytes bytes = whole;
@@ -53,7 +54,7 @@ TEST(Wire, OtherLengthsAreRefused) {
   }
 }
 
-TEST(Wire, FieldsThatAKindDoesNotHaveMustBeZero) {
+TEST(SessionMessageTest, FieldsThatAKindDoesNotHaveMustBeZero) {
   EXPECT_FALSE(decode_session_message(encode({MessageKind::kReady, 1, 1, HostTime{}})));
   EXPECT_FALSE(
       decode_session_message(encode({MessageKind::kSuccess, 1, 0, HostTime{Nanoseconds{1}}})));
@@ -62,7 +63,7 @@ TEST(Wire, FieldsThatAKindDoesNotHaveMustBeZero) {
 }
 
 // Whatever is accepted is exactly what encode() makes of it: one message has one encoding.
-TEST(Wire, DamagedMessagesAreRefusedOrAreAnotherMessageExactly) {
+TEST(SessionMessageTest, DamagedMessagesAreRefusedOrAreAnotherMessageExactly) {
   constexpr std::uint64_t kSeed = 6276;
   std::mt19937_64 random(kSeed);
   const std::vector<SessionMessage> messages = one_of_each_kind();
@@ -80,13 +81,75 @@ TEST(Wire, DamagedMessagesAreRefusedOrAreAnotherMessageExactly) {
   }
 }
 
-TEST(Wire, RandomBytesAreRefused) {
+TEST(SessionMessageTest, RandomBytesAreRefused) {
   constexpr std::uint64_t kSeed = 21;
   std::mt19937_64 random(kSeed);
   for (int i = 0; i < 200'000; ++i) {
     Bytes bytes(random() % 2 == 0 ? kSessionMessageBytes : random() % 64);
     for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
     ASSERT_FALSE(decode_session_message(bytes)) << "seed " << kSeed << ", round " << i;
+  }
+}
+
+TEST(TwoWayMessageTest, WhatIsEncodedIsDecoded) {
+  const TwoWayMessage request{.index = 7};
+  EXPECT_EQ(decode_two_way_message(encode(request)), request);
+  const TwoWayMessage asking{.index = 7, .replied_index = 6};
+  EXPECT_EQ(decode_two_way_message(encode(asking)), asking);
+  const TwoWayMessage reply{.kind = TwoWayMessage::Kind::kReply,
+                            .index = 0xfffffffe,
+                            .arrived = HostTime(Nanoseconds(-5)),
+                            .replied_index = 0xfffffffd,
+                            .replied = HostTime(Nanoseconds(1'700'000'000'123'456'789))};
+  EXPECT_EQ(decode_two_way_message(encode(reply)), reply);
+  EXPECT_EQ(encode(reply).size(), kTwoWayMessageBytes);
+  EXPECT_EQ(encode(request).size(), kTwoWayMessageBytes);
+}
+
+TEST(TwoWayMessageTest, WhatEncodeCannotMakeIsRefused) {
+  const Bytes good = encode(TwoWayMessage{.kind = TwoWayMessage::Kind::kReply,
+                                          .index = 9,
+                                          .arrived = HostTime(Nanoseconds(1)),
+                                          .replied_index = 8,
+                                          .replied = HostTime(Nanoseconds(2))});
+  ASSERT_TRUE(decode_two_way_message(good));
+  Bytes shorter = good;
+  shorter.pop_back();
+  EXPECT_FALSE(decode_two_way_message(shorter));
+  for (const std::size_t at : {0u, 1u, 2u}) {
+    Bytes other = good;
+    other[at] ^= std::byte{0x40};
+    EXPECT_FALSE(decode_two_way_message(other)) << "byte " << at;
+  }
+  for (const int kind : {0, 1, 3}) {
+    Bytes other = good;
+    other[3] = static_cast<std::byte>(kind);
+    EXPECT_FALSE(decode_two_way_message(other)) << "kind " << kind;
+  }
+  Bytes no_index = good;
+  no_index[4] = std::byte{0};
+  EXPECT_FALSE(decode_two_way_message(no_index));
+  Bytes from_the_future = good;
+  from_the_future[16] = std::byte{10};
+  EXPECT_FALSE(decode_two_way_message(from_the_future));
+  Bytes in_a_far_future = good;
+  in_a_far_future[15] = std::byte{0x7f};
+  EXPECT_FALSE(decode_two_way_message(in_a_far_future));
+  Bytes departure_of_none = good;
+  departure_of_none[16] = std::byte{0};
+  EXPECT_FALSE(decode_two_way_message(departure_of_none));
+}
+
+TEST(TwoWayMessageTest, RandomBytesAreRefusedOrEncodeToThemselves) {
+  boost::random::mt19937_64 engine(3);
+  for (int run = 0; run < 20'000; ++run) {
+    Bytes bytes = encode(TwoWayMessage{.index = 1});
+    for (int change = 0; change < 1 + run % 6; ++change) {
+      bytes[engine() % bytes.size()] = static_cast<std::byte>(engine());
+    }
+    const auto message = decode_two_way_message(bytes);
+    if (!message) continue;
+    EXPECT_EQ(encode(*message), bytes) << "seed 3, run " << run;
   }
 }
 

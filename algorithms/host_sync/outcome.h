@@ -1,0 +1,42 @@
+// Reports how the synchronisation of a slave ended, as seen by the slave: only the first outcome is
+// reported.
+//
+//   OutcomeReport outcome(host);
+//   outcome.failed(polls, "no reply from the master; is it running?");  // "slave 3: no reply ..."
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
+
+#include <cstdint>
+#include <string>
+
+#include "algorithms/ports/host.h"
+
+namespace simbench {
+
+class OutcomeReport {
+ public:
+  // The host must outlive this.
+  explicit OutcomeReport(Host& host) : host_(host) {}
+
+  bool is_reported() const { return is_reported_; }
+  void synchronised(std::uint32_t passes) { report(passes, true, ""); }
+  // `why` says what would help.
+  void failed(std::uint32_t passes, const std::string& why) {
+    report(passes, false, "slave " + std::to_string(host_.id()) + ": " + why);
+  }
+
+ private:
+  void report(std::uint32_t passes, bool synchronised, const std::string& message) {
+    if (is_reported_) return;
+    is_reported_ = true;
+    host_.report_outcome(
+        {.slave = host_.id(), .synchronised = synchronised, .passes = passes, .message = message});
+  }
+
+  Host& host_;
+  bool is_reported_ = false;
+};
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
