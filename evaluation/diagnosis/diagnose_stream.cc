@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {

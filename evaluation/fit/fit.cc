@@ -10,7 +10,7 @@
 #include <span>
 
 #include "algorithms/device_time/lower_hull.h"
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 
 namespace simbench::evaluation {
 namespace {

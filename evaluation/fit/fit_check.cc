@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evaluation/statistics/two_sample_ks.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {

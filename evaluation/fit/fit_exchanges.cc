@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {

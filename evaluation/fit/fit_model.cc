@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
 

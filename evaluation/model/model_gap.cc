@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "evaluation/statistics/statistics.h"
-#include "evaluation/statistics/two_sample_ks.h"
 
 namespace simbench::evaluation {
 namespace {

@@ -23,14 +23,68 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "algorithms/ports/time.h"
-#include "evaluation/replay/replay_camera.h"
 #include "recording/rs_csv.h"
 
 namespace simbench::evaluation {
+
+struct PeriodStatistics {
+  double mean_ms = 0;
+  double sd_ms = 0;
+};
+
+// Deviations from a line or from a stamp, their mean taken off; the late side is positive.
+struct ResidualStatistics {
+  double sd_ms = 0;
+  double p95_ms = 0;
+  double p99_ms = 0;
+  double max_ms = 0;
+};
+
+// How much later than the lower envelope the frames arrived.
+struct ExcessStatistics {
+  double mean_ms = 0;
+  double p50_ms = 0;
+  double p95_ms = 0;
+  double p99_ms = 0;
+  double max_ms = 0;
+};
+
+// A quantity that too few frames leave undefined is NaN.
+struct CameraStatistics {
+  std::int64_t frames = 0;
+  std::int64_t missing_frames = 0;  // by gaps of the frame counter
+  std::int64_t long_intervals = 0;  // sensor intervals above 1.5 times their median
+  std::int64_t backward_steps = 0;  // sensor stamps before the one before
+  double span_s = 0;                // of the arrivals
+  PeriodStatistics sensor_period;
+  PeriodStatistics arrival_period;
+  double drift_ppm = 0;           // (host rate / device rate - 1) 1e6, least squares
+  double envelope_drift_ppm = 0;  // the same by the earliest frames of the first and last tenth
+  ResidualStatistics residual;    // of the arrivals from the least-squares line
+  ExcessStatistics excess;
+};
+
+// The frames with sensor stamps that go on where the 32-bit microsecond register starts again
+// (half- range rule: late frames are no wrap). Stamps beyond the register's range are taken as they
+// are.
+std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
+
+// O(n). `frames` are unwrapped.
+CameraStatistics camera_statistics(std::span<const StampedFrame> frames);
+
+// The median of the intervals between sensor stamps; zero with fewer than two frames.
+Nanoseconds median_period(std::span<const StampedFrame> frames);
+
+// Of values in any order; their mean is taken off first.
+ResidualStatistics residual_statistics(std::vector<double> values);
+
+// Exact before it becomes a double; cannot overflow.
+double difference_ms(std::int64_t a_ns, std::int64_t b_ns);
 
 // One estimator on one stream of one camera.
 struct DeviceTimeReplay {

@@ -15,7 +15,6 @@
 #define SIMBENCH_EVALUATION_SCORING_METRICS_H_
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -23,19 +22,11 @@
 #include <variant>
 #include <vector>
 
+#include "evaluation/statistics/statistics.h"
+
 namespace simbench::evaluation {
 
 struct Row;
-
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();  // does not exist
-
-// Values in seed order, with the median and the 5-95 % band of those that exist.
-struct Series {
-  std::vector<double> values;
-  double median = 0;
-  double p05 = 0;
-  double p95 = 0;
-};
 
 // What a seed has before anything is computed: no value, which is NaN; a row has an empty series.
 template <class Value>

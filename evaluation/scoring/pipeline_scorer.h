@@ -38,7 +38,6 @@
 #include "evaluation/scoring/deferred_stamps.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
-#include "evaluation/scoring/pulse_table.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
 #include "evaluation/scoring/set_counter.h"

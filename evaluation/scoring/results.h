@@ -7,7 +7,6 @@
 #define SIMBENCH_EVALUATION_SCORING_RESULTS_H_
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,13 +46,6 @@ struct SeedScore : MetricValues<double> {
   std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
   std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   RecordingCost cost;
-};
-
-// A fraction of seeds with its 95 % binomial interval (Clopper-Pearson).
-struct Percentile {
-  double percent = 0;
-  double low = 0;
-  double high = 0;
 };
 
 struct PublishedComparison {

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "algorithms/gathering/gathering.h"
-#include "evaluation/scoring/pulse_table.h"
+#include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "evaluation/budget/ideal_world.h"
+#include "evaluation/budget/budget.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/text/number_text.h"

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "evaluation/statistics/seeds_needed.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::reports {
 namespace {

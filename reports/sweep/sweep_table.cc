@@ -4,7 +4,6 @@
 #include <array>
 #include <optional>
 
-#include "evaluation/statistics/seeds_needed.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/number_text.h"

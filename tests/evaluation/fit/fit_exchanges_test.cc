@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "evaluation/statistics/two_sample_ks.h"
+#include "evaluation/statistics/statistics.h"
 #include "sim/engine/random.h"
 
 namespace simbench::evaluation {

@@ -1,4 +1,4 @@
-#include "evaluation/statistics/seeds_needed.h"
+#include "evaluation/statistics/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {

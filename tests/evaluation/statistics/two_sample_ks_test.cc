@@ -1,4 +1,4 @@
-#include "evaluation/statistics/two_sample_ks.h"
+#include "evaluation/statistics/statistics.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,7 @@
 
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/scoring/pipeline_scorer.h"
-#include "evaluation/scoring/pulse_table.h"
+#include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/score_observer.h"
 #include "recording/forwarding_sink.h"
 

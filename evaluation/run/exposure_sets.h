@@ -15,8 +15,8 @@
 //
 //   const ExposureSets sets = exposure_sets(scenario, choice, seed, source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;
-#ifndef SIMBENCH_EVALUATION_SCORING_EXPOSURE_SETS_H_
-#define SIMBENCH_EVALUATION_SCORING_EXPOSURE_SETS_H_
+#ifndef SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_
+#define SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -56,4 +56,4 @@ ExposureSets exposure_sets(const scenarios::Scenario& scenario, const PipelineCh
 
 }  // namespace simbench::evaluation
 
-#endif  // SIMBENCH_EVALUATION_SCORING_EXPOSURE_SETS_H_
+#endif  // SIMBENCH_EVALUATION_RUN_EXPOSURE_SETS_H_
