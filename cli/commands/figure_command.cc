@@ -11,7 +11,7 @@
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/run/evaluate.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure_catalogue.h"
 #include "reports/figures/figure_csv.h"
 #include "reports/figures/gnuplot.h"

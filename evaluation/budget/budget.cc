@@ -38,7 +38,7 @@ void idealise_device_clock(scenarios::Oscillator& oscillator) {
   oscillator.self_heating_time_constant_s = time_constant_s;
 }
 
-// Frames are moved by IdealDelivery; polls take no time, and nothing is left to calibrate.
+// IdealDelivery moves the frames; polls take no time, and there is no delay to calibrate.
 void idealise_delivery(scenarios::Cameras& cameras) {
   for (scenarios::Stream& stream : cameras.streams) stream.calibrated_delay_ms = 0;
   const double interval_ms = cameras.clock_poll.interval_ms;
@@ -54,7 +54,7 @@ Time floored(Time time, Nanoseconds quantum) {
   return time - above;
 }
 
-// Hands everything on, frames as if they had arrived in the middle of their exposure.
+// Forwards everything, frames as if they had arrived in the middle of their exposure.
 class IdealDelivery final : public ForwardingSink {
  public:
   IdealDelivery(RecordingSink& sink, Nanoseconds quantum)
@@ -67,7 +67,7 @@ class IdealDelivery final : public ForwardingSink {
     ideal.backend = floored(truth->own_host, quantum_);
     ideal.arrival = ideal.backend;
     ideal.arrival_steady = floored(truth->own_steady, quantum_);
-    ideal.exposure_us = 0;  // nothing is left of it between the stamp and the arrival
+    ideal.exposure_us = 0;  // no part of it lies between the stamp and the arrival
     sink().on_frame(ideal, truth);
   }
 
@@ -89,7 +89,7 @@ class IdealDeliverySource final : public RecordingSource {
   Nanoseconds quantum_;
 };
 
-// The scores of all worlds: by world, then by seed.
+// The scores by world, then by seed.
 struct WorldScores {
   std::vector<std::vector<double>> set_amd_ms;
   std::vector<std::vector<double>> amd_ms;

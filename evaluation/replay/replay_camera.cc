@@ -36,7 +36,7 @@ std::int64_t missing_frames(std::span<const StampedFrame> frames) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const std::uint64_t before = frames[i - 1].counter;
     const std::uint64_t now = frames[i].counter;
-    // A counter that goes back has been started again; a leap beyond any recording is no gap.
+    // A counter that goes back was restarted; a leap beyond any recording is no gap.
     if (now > before && now - before < (std::uint64_t{1} << 32)) {
       missing += static_cast<std::int64_t>(now - before - 1);
     }

@@ -1,17 +1,16 @@
-// Which frames a user would take for simultaneous, and when each of them was really exposed.
+// Frames that a user would take for simultaneous, with their true exposures (for reconstruction/).
 //
-// For what is made of several cameras' frames together (reconstruction/). Frame sets are the same
-// for every pipeline in kind: around a frame of the anchor (the master's first camera; if that has
-// no frame, the next one that has), of each other camera the frame whose global stamp is nearest.
-// There is no threshold on how far apart stamps of a set are: with half a period, Algorithm 3 gives
-// no set at all where hosts are hundreds of milliseconds apart, and there would be nothing to
-// compare. But the nearest frame of a camera that runs is at most half a period away: one without a
-// frame within three quarters of a period of the anchor's stamp (the frame was lost, the camera
-// dropped out, or the capture is over by then) is missing from the set.
+// Frame sets are made in the same way for every pipeline: a frame of the anchor (the master's first
+// camera that has frames, else the first camera that has) and from each other camera the frame with
+// the nearest global stamp. The range of a set has no threshold: with half a period, Algorithm 3 emits
+// no set at all where hosts are hundreds of milliseconds apart, and there would be nothing to compare.
+// The nearest frame of a running camera is at most half a period away, so a camera without a frame
+// within three quarters of a period of the anchor's stamp (lost frame, stopped camera, end of the
+// capture) is missing from the set.
 //
-// Anchors are spread evenly over those evaluated pulses at which the stamps of all cameras overlap
-// (that have any); if there are none, over all evaluated pulses. A frame of free-running cameras
-// counts as one of the last trigger pulse before its mid-exposure; so it does in the score.
+// Anchors are spread evenly over the evaluated pulses at which the stamps of all cameras with frames
+// overlap; without any, over all evaluated pulses. A frame of a free-running camera counts as one of
+// the last trigger pulse before its mid-exposure, in the score too.
 //
 //   const ExposureSets sets = exposure_sets(scenario, choice, seed, source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;
@@ -38,7 +37,7 @@ struct SetExposure {
 struct ExposureSet {
   std::vector<std::optional<SetExposure>> cameras;  // by camera; nothing: missing
 
-  // The largest difference of true mid-exposures, in ms; 0 of fewer than two.
+  // The largest difference of true mid-exposures, in ms; 0 with fewer than two.
   double spread_ms() const;
 };
 
@@ -49,8 +48,8 @@ struct ExposureSets {
   SeedScore score;  // as evaluate() gives it, with pulses
 };
 
-// One simulated capture, with any number of cameras. Throws what evaluate() throws for one job, but
-// bare, and RecordingFailed if the capture has no truth.
+// Makes one simulated capture, with any number of cameras. Throws what a job of evaluate() throws,
+// without its context, and RecordingFailed if the capture has no truth.
 ExposureSets exposure_sets(const scenarios::Scenario& scenario, const PipelineChoice& choice,
                            std::uint64_t seed, RecordingSource& source, std::size_t count);
 

@@ -1,17 +1,13 @@
-// From the table of stamps to the scores of a seed: everything that is a mean over pulses.
+// The global stamps of the evaluated pulses, and the scores that are means over them.
 //
-// Only complete pulses count. A score that does not exist is NaN: all of them without a complete
-// pulse, the errors without truth, the spread inside a host where no host has two sources, the
-// spread between hosts where there is one host, the trend of a single pulse.
-@@
-// The global stamps of the evaluated pulses: a row per pulse, a column per source.
+// PulseTable has a row per pulse and a column per source, which is one stream of one camera. Rows
+// fill in any order; a row is complete, and counts, when all sources have delivered. With truth a row
+// also holds the correct stamps and the true exposures. 16 bytes a cell: 1.6 million cells for 18,000
+// cameras and 90 pulses, 26 MB. Nothing is allocated after construction.
 //
-// A source is one stream of one camera. Rows fill in any order; a row counts (is complete) when
-// all sources have delivered. With truth, a row also knows what the stamps should have been and
-// when the exposures really were.
-//
-// 16 bytes a cell: 1.6 million for 18,000 cameras and 90 pulses, 26 MB. Nothing is allocated after
-// construction.
+// A score that does not exist is NaN: all without a complete pulse, the errors without truth, the
+// spread inside a host where no host has two sources, the spread between hosts where there is one
+// host, the trend of a single pulse.
 //
 //   PulseTable table(/*first_pulse=*/225, /*pulses=*/480, /*sources=*/18);
 //   table.store(225, 3, global);
@@ -38,13 +34,13 @@ class PulseTable {
  public:
   PulseTable(std::int64_t first_pulse, std::int64_t pulses, std::size_t sources);
 
-  // Whether the pulse is one of the evaluated.
+  // Whether the pulse is evaluated.
   bool holds(std::int64_t pulse) const {
     return pulse >= first_pulse_ && pulse - first_pulse_ < static_cast<std::int64_t>(rows_.size());
   }
 
-  // The stamp that device_time gave the source's frame of this pulse. A second frame of the same
-  // pulse is ignored. `pulse` must be held.
+  // Stores the stamp of the source's frame of this pulse, which must be held. A second frame of the
+  // same pulse is ignored.
   void store(std::int64_t pulse, std::size_t source, GlobalTime global) {
     const std::size_t row = row_of(pulse);
     std::int64_t& cell = global_ns_[row * sources_ + source];
@@ -53,7 +49,7 @@ class PulseTable {
     ++rows_[row].delivered;
   }
 
-  // What is true of that frame.
+  // Stores the truth about that frame.
   void store_truth(std::int64_t pulse, std::size_t source, const FrameTruth& truth) {
     const std::size_t row = row_of(pulse);
     reference_ns_[row * sources_ + source] = nanoseconds_of(truth.reference);
@@ -78,11 +74,11 @@ class PulseTable {
   std::size_t delivered(std::size_t row) const { return rows_[row].delivered; }
   bool has_truth() const { return has_truth_; }
 
-  // By source; of a complete row, the second also of sources that delivered. The second and third
-  // only with truth.
+  // Stamps by source, valid in a complete row.
   std::span<const std::int64_t> global_ns(std::size_t row) const {
     return {global_ns_.data() + row * sources_, sources_};
   }
+  // With truth: the correct stamp of each source that delivered.
   std::span<const std::int64_t> reference_ns(std::size_t row) const {
     return {reference_ns_.data() + row * sources_, sources_};
   }
@@ -90,7 +86,7 @@ class PulseTable {
     return rows_[row].latest - rows_[row].earliest;
   }
 
-  // Stamps further than 146 years from zero count as that far: two of them still subtract.
+  // Limits a stamp to 146 years from zero, so that the difference of two does not overflow.
   static std::int64_t clamped_ns(GlobalTime global) {
     return std::clamp(nanoseconds_of(global), -kFarthest, kFarthest);
   }
@@ -118,7 +114,6 @@ class PulseTable {
 // The error of a host is its system clock minus the master's at the instant of a pulse. The master
 // (host 0) defines global time: its error is 0 and does not count in the mean. NaN: no slave, or no
 // pulse with truth.
-
 class HostErrors {
  public:
   explicit HostErrors(std::size_t hosts) : sum_ms_(hosts) {}
@@ -135,7 +130,7 @@ class HostErrors {
   std::int64_t pulses_ = 0;
 };
 
-// What the scores need to know besides the table.
+// The input of the scores besides the table.
 struct PulseScoring {
   MedianKind median = MedianKind::kUpperMiddle;
   Nanoseconds period{};  // of the pulses
@@ -143,12 +138,12 @@ struct PulseScoring {
   std::vector<std::uint32_t> host_of_source;  // by column of the table
 };
 
-// Fills in amd_ms, rmdv_ms, absolute_error_ms, bias_ms, exposure_spread_ms, the two spreads by
+// Sets amd_ms, rmdv_ms, absolute_error_ms, bias_ms, exposure_spread_ms, the two spreads by
 // host, trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses.
 // O(pulses x sources).
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score);
 
-// AMD alone.
+// Returns AMD alone.
 double amd_ms(const PulseTable& table);
 
 }  // namespace simbench::evaluation

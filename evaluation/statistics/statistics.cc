@@ -63,10 +63,10 @@ double probability(std::int64_t n, std::int64_t m, std::int64_t bound) {
 }  // namespace
 
 double quantile(std::vector<double> values, double p) {
-  SIMBENCH_ASSERT(p >= 0 && p <= 1, "a quantile is asked for by a share");
+  SIMBENCH_ASSERT(p >= 0 && p <= 1, "the place of a quantile is a share");
   leave_out_nan(values);
   if (values.empty()) return kNan;
-  // Only the two order statistics around the position have to be in place.
+  // Only the two order statistics around the position must be in place.
   const auto below = static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * p);
   std::nth_element(values.begin(), values.begin() + below, values.end());
   if (values.begin() + below + 1 != values.end()) {
@@ -140,7 +140,7 @@ Percentile percentile_of(double published, const std::vector<double>& values) {
     if (value == published) halves += 1;
   }
   if (count == 0) return {kNan, kNan, kNan};
-  // With half a success, each bound is taken from its own side: the wider of the two intervals.
+  // With half a success, each bound is that of its own side: the wider interval.
   const double low = binomial_interval(halves / 2, count).low;
   const double high = binomial_interval((halves + 1) / 2, count).high;
   const double share = static_cast<double>(halves) / (2 * static_cast<double>(count));
@@ -168,7 +168,7 @@ std::optional<std::int64_t> seeds_for(const std::vector<double>& values, double 
   const auto enough = [&](std::int64_t seeds) {
     return median_interval(values, seeds).relative <= relative;
   };
-  // The interval shrinks as seeds grow: between quantiles that move towards the median.
+  // The interval shrinks with more seeds: its quantiles move towards the median.
   if (!enough(kMostSeedsNeeded)) return std::nullopt;
   std::int64_t too_few = 0;
   std::int64_t many = kMostSeedsNeeded;
@@ -198,7 +198,7 @@ double ks_distance(std::vector<double> a, std::vector<double> b) {
 
 double ks_probability(std::size_t n, std::size_t m, double distance) {
   if (n == 0 || m == 0 || std::isnan(distance)) return kNan;
-  // Distances are whole multiples of 1 / (n m), but for what rounding made of them.
+  // Distances are whole multiples of 1 / (n m), except for rounding.
   const double scaled = distance * static_cast<double>(n) * static_cast<double>(m);
   return probability(static_cast<std::int64_t>(n), static_cast<std::int64_t>(m),
                      static_cast<std::int64_t>(std::ceil(scaled - 1e-6)));
@@ -212,14 +212,14 @@ double ks_critical_distance(std::size_t n, std::size_t m) {
   }
   const auto rows = static_cast<std::int64_t>(n);
   const auto columns = static_cast<std::int64_t>(m);
-  std::int64_t unlikely = rows * columns;  // the smallest such bound is looked for by halving
+  std::int64_t unlikely = rows * columns;  // the search for the smallest such bound is by halving
   if (probability(rows, columns, unlikely) > kLevel) return kNan;
   std::int64_t likely = 0;
   while (unlikely - likely > 1) {
     const std::int64_t middle = likely + (unlikely - likely) / 2;
     (probability(rows, columns, middle) > kLevel ? likely : unlikely) = middle;
   }
-  // Not every multiple of 1 / (n m) is a distance that occurs: those of their common step are.
+  // Only multiples of the common step occur as distances, not every multiple of 1 / (n m).
   const std::int64_t step = std::gcd(rows, columns);
   const std::int64_t steps = (unlikely + step - 1) / step;
   return static_cast<double>(steps * step) / product;

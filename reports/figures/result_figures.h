@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "evaluation/budget/budget.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

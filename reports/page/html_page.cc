@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "recording/version.h"
-#include "reports/comparison/gate_commands.h"
 #include "reports/page/web_files.h"
 #include "reports/text/html_text.h"
 
@@ -45,12 +44,6 @@ std::string html_notes(const std::vector<std::string>& notes) {
 std::string html_command(std::string_view what, const std::string& command) {
   return fmt::format("<dt>{}</dt><dd><pre class=\"scroll\" tabindex=\"0\">{}</pre></dd>\n",
                      html_escaped(what), html_escaped(command));
-}
-
-std::string simbench_line(const std::vector<std::string>& command) {
-  std::vector<std::string> words = command;
-  words.front() = "simbench";
-  return shell_line(words);
 }
 
 }  // namespace simbench::reports

@@ -28,10 +28,6 @@ std::string html_notes(const std::vector<std::string>& notes);
 // An entry of the commands that reproduce a result.
 std::string html_command(std::string_view what, const std::string& command);
 
-// An argv as its user typed it, for a POSIX shell: whatever the program's path was, it is called
-// simbench.
-std::string simbench_line(const std::vector<std::string>& command);
-
 }  // namespace simbench::reports
 
 #endif  // SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/ports/assert.h"
-#include "reports/comparison/gate_commands.h"
 #include "reports/page/html_figures.h"
 #include "reports/page/html_page.h"
 #include "reports/results/ground_truth_text.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/model/model_gap.h"
+#include "evaluation/model/evidence.h"
 #include "evaluation/scoring/results.h"
 #include "reports/rigs/measured_study.h"
 #include "reports/text/block.h"

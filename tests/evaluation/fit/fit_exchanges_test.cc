@@ -1,4 +1,4 @@
-#include "evaluation/fit/fit_exchanges.h"
+#include "evaluation/fit/fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "evaluation/model/model_gap.h"
+#include "evaluation/model/evidence.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "evaluation/sweep/sweep_axis.h"
+#include "evaluation/sweep/sweep_plan.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -10,7 +10,6 @@
 #include <string>
 
 #include "recording/version.h"
-#include "reports/archive/archive.h"
 #include "reports/results/json.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
@@ -158,7 +157,7 @@ TEST_F(ArchiveReader, RefusesDamagedLinesOfFrames) {
 
 TEST_F(ArchiveReader, RefusesSeedsAndPipelinesThatResultsDoNotHave) {
   edit("frames.csv", "yoon2021_both,2,", "yoon2021_both,9,");
-  EXPECT_THAT(problem(), HasSubstr("found seed 9, allowed: the 2 seeds from 1"));
+  EXPECT_THAT(problem(), HasSubstr("found seed 9, allowed: 1 to 2, the seeds"));
   edit("frames.csv", "yoon2021_both,1,", "yoon2020_both,1,");
   EXPECT_THAT(problem(), HasSubstr("found pipeline 'yoon2020_both'"));
 }

@@ -65,7 +65,7 @@ TEST(DiagnoseReport, WhatIsUnknownIsNull) {
     EXPECT_TRUE(root["cameras"][0][key].is_null()) << key;
   }
   EXPECT_EQ(root["cameras"][0]["follows"], "unknown");
-  EXPECT_THAT(diagnose_table(diagnosis), HasSubstr("one frame: nothing can be told"));
+  EXPECT_THAT(diagnose_table(diagnosis), HasSubstr("one frame: too few for a diagnosis"));
   EXPECT_THAT(diagnose_table(diagnosis), Not(HasSubstr("nan")));
 }
 

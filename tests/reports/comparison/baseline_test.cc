@@ -1,4 +1,4 @@
-#include "reports/archive/baseline.h"
+#include "reports/comparison/baseline.h"
 
 #include <gmock/gmock.h>
 
