@@ -7,23 +7,24 @@
 //   stamp quantisation  stamps without noise, arrivals without quantum (the camera's register keeps
 //                       its microsecond)
 //   device clock        camera oscillators without any error
-//   USB delivery        every frame stamped as if it arrived in the middle of its exposure; polls of
+//   USB delivery        every frame stamped as if it arrived in the middle of its exposure; polls
+//   of
 //                       a camera's clock answered at once
 //   host clock          every host reads the master's clock
 //   gathering           sets by the true pulse
 //
 // A stage's part is its Shapley value: the reduction of the error when the stage is replaced by its
 // oracle, averaged over all orders in which the stages can be replaced, and so over all 2^7 worlds
-// with some of them ideal, each simulated with the same seeds. The parts and the remainder (the error
-// that is left when all stages are ideal) add up to the error, exactly for each seed. A part may be
-// negative: two errors can cancel.
+// with some of them ideal, each simulated with the same seeds. The parts and the remainder (the
+// error that is left when all stages are ideal) add up to the error, exactly for each seed. A part
+// may be negative: two errors can cancel.
 //
 // Three errors are divided:
-//  - amd_ms: over the sets that gathering emits, so that gathering counts; if it emits none in one of
-//    the worlds, over the true pulses, where gathering has no part (amd_of_sets tells which);
+//  - amd_ms: over the sets that gathering emits, so that gathering counts; if it emits none in one
+//    of the worlds, over the true pulses, where gathering has no part (amd_of_sets tells which);
 //  - absolute_error_ms: likewise;
-//  - physical_ms: how far apart the exposures of a pulse really were (exposure_spread). No algorithm
-//    can remove it, since it is the same in all clocks; AMD contains it.
+//  - physical_ms: how far apart the exposures of a pulse really were (exposure_spread). No
+//    algorithm can remove it, since it is the same in all clocks; AMD contains it.
 //
 // Streams of random numbers belong to components, so a real stage draws the same numbers whichever
 // others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
@@ -89,8 +90,8 @@ class StageSet {
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal);
 
-// Returns `source`, with the stamps of an ideal delivery if `ideal` has that. `world` is the scenario
-// that the source simulates. record() throws std::runtime_error on a frame without truth.
+// Returns `source`, with the stamps of an ideal delivery if `ideal` has that. `world` is the
+// scenario that the source simulates. record() throws std::runtime_error on a frame without truth.
 std::unique_ptr<RecordingSource> ideal_delivery(std::unique_ptr<RecordingSource> source,
                                                 const scenarios::Scenario& world, StageSet ideal);
 

@@ -116,9 +116,10 @@ class Findings {
       const std::string part =
           standing.period_multiple == 2 ? "half" : fmt::format("1/{} of", standing.period_multiple);
       add("divided_rate",
-          fmt::format("{} the rate ({:.3f} Hz): it ignores triggers while it is busy, with too long "
-                      "an exposure or a trigger faster than half its mode's rate",
-                      part, rate_hz));
+          fmt::format(
+              "{} the rate ({:.3f} Hz): it ignores triggers while it is busy, with too long "
+              "an exposure or a trigger faster than half its mode's rate",
+              part, rate_hz));
     }
   }
 
@@ -154,10 +155,9 @@ class Findings {
   void add_lost() {
     const StreamFacts& facts = camera_->facts;
     if (facts.lost_frames > 0) {
-      add("lost_frames",
-          fmt::format(
-              "{} frames lost after the camera had counted them: in the camera, on USB or in the host",
-              facts.lost_frames));
+      add("lost_frames", fmt::format("{} frames lost after the camera had counted them: in the "
+                                     "camera, on USB or in the host",
+                                     facts.lost_frames));
     }
     if (facts.skipped_pulses > 0) {
       add("skipped_pulses",
@@ -210,14 +210,14 @@ class Findings {
       add("backward_stamps", "its stamps go back " + times(facts.backward_stamps));
     }
     if (facts.backward_arrivals > 0) {
-      add("backward_arrivals",
-          fmt::format("arrivals go back {}: its host's clock was set back",
-                      times(facts.backward_arrivals)));
+      add("backward_arrivals", fmt::format("arrivals go back {}: its host's clock was set back",
+                                           times(facts.backward_arrivals)));
     }
     if (facts.wraps > 0) {
-      add("register_wraps", fmt::format("its 32-bit microsecond register wraps {} (every 71.6 min): "
-                                        "no fault, but programs must expect it",
-                                        times(facts.wraps)));
+      add("register_wraps",
+          fmt::format("its 32-bit microsecond register wraps {} (every 71.6 min): "
+                      "no fault, but programs must expect it",
+                      times(facts.wraps)));
     }
   }
 

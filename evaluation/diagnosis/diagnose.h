@@ -2,22 +2,22 @@
 //
 // Takes the recordings that `simbench replay` reads. They hold no truth; the answer rests on two
 // facts. Cameras that start each frame with a common trigger have the same frame period in *host*
-// time, whatever their own clocks do; free-running cameras differ by tens of ppm, so that their phases
-// drift apart. And a camera's frame counter counts exposures: a gap in it is frames lost after the
-// camera, a period without a count was never exposed.
+// time, whatever their own clocks do; free-running cameras differ by tens of ppm, so that their
+// phases drift apart. And a camera's frame counter counts exposures: a gap in it is frames lost
+// after the camera, a period without a count was never exposed.
 //
 // Streams (diagnose_stream.cc): a lasting change between arrivals and sensor stamps is a jump, of
 // whole periods (the camera's stamps slipped) or of any length (a clock was set). Arrivals are
-// compared with jumps taken out. The first 5 s of recordings of 20 s and more are discarded: cameras
-// are unsteady there.
+// compared with jumps taken out. The first 5 s of recordings of 20 s and more are discarded:
+// cameras are unsteady there.
 //
 // Groups (diagnose_group.cc): the cameras that have one kind of stream follow one trigger if their
-// periods in host time agree within the fits' uncertainty (four standard deviations), also at a whole
-// multiple of the common period. The largest set that agrees is the standard for the others. The
-// verdict "works" needs a resolution of 5 ppm: free-running cameras rarely agree that well, and two of
-// them by chance once in ten. Periods are compared between cameras whose arrivals were stamped by one
-// clock. Those of different hosts can differ because the hosts' clocks do; stamps cannot tell these
-// cases apart.
+// periods in host time agree within the fits' uncertainty (four standard deviations), also at a
+// whole multiple of the common period. The largest set that agrees is the standard for the others.
+// The verdict "works" needs a resolution of 5 ppm: free-running cameras rarely agree that well, and
+// two of them by chance once in ten. Periods are compared between cameras whose arrivals were
+// stamped by one clock. Those of different hosts can differ because the hosts' clocks do; stamps
+// cannot tell these cases apart.
 //
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.

@@ -1,5 +1,3 @@
-#include "evaluation/diagnosis/diagnose.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -138,8 +137,8 @@ class Group {
     if (has_standard && in_standard(candidate)) return Follows::kTrigger;
     const Candidate standard = {0, standard_period_ms_, standard_sd_ppm_};
     if (!is_precise(candidate) && agree(candidate, standard)) return Follows::kUnknown;
-    // Compares with others on the same clock: if they differ, the camera differs; if all on that clock
-    // agree, the cause may be the clock.
+    // Compares with others on the same clock: if they differ, the camera differs; if all on that
+    // clock agree, the cause may be the clock.
     bool others = false;
     for (const Candidate& other : candidates_) {
       if (other.member == candidate.member || host(other) != host(candidate)) continue;
@@ -207,24 +206,25 @@ class Group {
     }
     if (count(Follows::kOwnClock) > 0) {
       return result(SyncStatus::kDoesNotWork,
-                 fmt::format("free-running, each with a frame period of its own: {}",
-                             names(Follows::kOwnClock)));
+                    fmt::format("free-running, each with a frame period of its own: {}",
+                                names(Follows::kOwnClock)));
     }
     if (count(Follows::kOtherRate) > 0) {
       return result(SyncStatus::kDoesNotWork,
-                 fmt::format("at a rate that is no whole fraction of {:.3f} Hz: {}", 1000 / common_ms_,
-                             names(Follows::kOtherRate)));
+                    fmt::format("at a rate that is no whole fraction of {:.3f} Hz: {}",
+                                1000 / common_ms_, names(Follows::kOtherRate)));
     }
     if (count(Follows::kHostOrOwn) > 0) {
-      return result(SyncStatus::kCannotBeTold,
-                 fmt::format("frame periods differ between hosts, but not within a host: either the "
-                             "clocks of the hosts of {} or these cameras are not synchronised",
-                             names(Follows::kHostOrOwn)));
+      return result(
+          SyncStatus::kCannotBeTold,
+          fmt::format("frame periods differ between hosts, but not within a host: either the "
+                      "clocks of the hosts of {} or these cameras are not synchronised",
+                      names(Follows::kHostOrOwn)));
     }
     if (count(Follows::kUnknown) > 0) return result(SyncStatus::kCannotBeTold, too_little());
     return result(SyncStatus::kWorks,
-               fmt::format("all {} cameras have one frame period, to {:.2g} ppm", members_.size(),
-                           verdict.resolution_ppm));
+                  fmt::format("all {} cameras have one frame period, to {:.2g} ppm",
+                              members_.size(), verdict.resolution_ppm));
   }
 
   std::string too_little() const {
@@ -235,7 +235,8 @@ class Group {
       const double resolution = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
       const double needed_s = longest_s_ * std::pow(resolution / kResolutionPpm, 2.0 / 3);
       text += fmt::format(
-          "; periods are known to {:.2g} ppm, but {:.0f} ppm are needed because free-running cameras "
+          "; periods are known to {:.2g} ppm, but {:.0f} ppm are needed because free-running "
+          "cameras "
           "differ by tens: record about {:.0f} s",
           resolution, kResolutionPpm, std::ceil(needed_s));
     }

@@ -1,5 +1,3 @@
-#include "evaluation/diagnosis/diagnose.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
@@ -66,8 +65,8 @@ void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   }
 }
 
-// Two successive frames, `periods` apart: counts frames that only the counter has, and periods that it
-// lacks.
+// Two successive frames, `periods` apart: counts frames that only the counter has, and periods that
+// it lacks.
 void note_counter(std::uint64_t before, std::uint64_t now, double periods, StreamFacts& facts) {
   if (now <= before || now - before > (std::uint64_t{1} << 32)) {
     ++facts.counter_restarts;
@@ -79,8 +78,8 @@ void note_counter(std::uint64_t before, std::uint64_t now, double periods, Strea
   facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
 }
 
-// The period by the camera's clock; nothing if the stamps do not advance. The median over longer spans,
-// since with alternating intervals the median interval is one of the two kinds.
+// The period by the camera's clock; nothing if the stamps do not advance. The median over longer
+// spans, since with alternating intervals the median interval is one of the two kinds.
 std::optional<double> period_of(std::span<const StampedFrame> frames) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -182,8 +181,8 @@ void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts
   }
 }
 
-// Medians of batches of frames, which a late frame hardly moves, between jumps. Each stretch between
-// two jumps has its own zero, since a jump is known no better than the arrivals.
+// Medians of batches of frames, which a late frame hardly moves, between jumps. Each stretch
+// between two jumps has its own zero, since a jump is known no better than the arrivals.
 struct Batches {
   std::vector<double> x;  // periods, about the stretch's mean
   std::vector<double> y;  // arrival less the camera's periods, about its mean
@@ -218,8 +217,8 @@ void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, B
   ++batches.stretches;
 }
 
-// The period in host time: a line through the batches. Their scatter about it gives its uncertainty,
-// also where lateness lasts for many frames.
+// The period in host time: a line through the batches. Their scatter about it gives its
+// uncertainty, also where lateness lasts for many frames.
 void note_host_period(StreamFacts& facts) {
   Batches batches;
   std::size_t begin = 0;

@@ -1,9 +1,10 @@
 // From a recording of a rig to parameters of a scenario, each with its evidence:
 //
-//  - the rate of each camera's clock relative to its host's, from the stream that determines it best;
+//  - the rate of each camera's clock relative to its host's, from the stream that determines it
+//    best;
 //  - the lateness of frames: the excess delay of all streams together, as a quantile table, and its
-//    correlation from frame to frame, as that of the normal variates of a Gaussian copula,
-//    r = 2 sin(pi / 6 * Spearman's);
+//    correlation from frame to frame, as that of the normal variates of a Gaussian copula, r = 2
+//    sin(pi / 6 * Spearman's);
 //  - the share of frames that the counters counted and that never arrived;
 //  - from exchanges between hosts: the latency of one way, offsets and rates.
 //
@@ -27,21 +28,22 @@
 
 namespace simbench::evaluation {
 
-// The fit of the exchanges of a recording: latencies of the network, offsets and rates of the hosts.
+// The fit of the exchanges of a recording: latencies of the network, offsets and rates of the
+// hosts.
 //
 // Only exchanges with all four stamps count, and only those during which neither host's clock was
 // set. Recorded settings are undone: intervals are those of the steady clocks.
 //
 // A round trip is the sum of two ways, which stamps cannot separate. Both ways are assumed to have
-// one distribution and to be independent. The table of one way is then the one whose sum with itself
-// has the distribution of the round trips; some rounds of expectation and maximisation find it from a
-// uniform one (more would follow the sample's noise). A constant asymmetry of a link stays hidden.
-// The cost of messages between the stamp and the wire is part of it.
+// one distribution and to be independent. The table of one way is then the one whose sum with
+// itself has the distribution of the round trips; some rounds of expectation and maximisation find
+// it from a uniform one (more would follow the sample's noise). A constant asymmetry of a link
+// stays hidden. The cost of messages between the stamp and the wire is part of it.
 //
 // A host's initial offset is that of its quickest exchange before any setting, within half a round
 // trip; its rate relative to the master's is the slope of the offsets of the quickest quarter.
-// Source: docs/reference/host_sync.md section 3; Dempster, Laird and Rubin 1977, "Maximum likelihood
-// from incomplete data via the EM algorithm".
+// Source: docs/reference/host_sync.md section 3; Dempster, Laird and Rubin 1977, "Maximum
+// likelihood from incomplete data via the EM algorithm".
 
 // A value with its standard error.
 struct FittedValue {
@@ -75,16 +77,16 @@ std::vector<double> one_way_table(const std::vector<double>& round_trips);
 // the host's, except for a constant: it is the edge of the lower convex hull over the middle of the
 // device stamps.
 //
-// A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its height
-// above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at least, so
-// that a rate that changes over minutes is not taken for delay. Excess contains everything else that
-// varies between the camera's stamp and the arrival stamp: bus, kernel, scheduling, noise and steps
-// of both stamps.
+// A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its
+// height above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at
+// least, so that a rate that changes over minutes is not taken for delay. Excess contains
+// everything else that varies between the camera's stamp and the arrival stamp: bus, kernel,
+// scheduling, noise and steps of both stamps.
 //
 // The standard error of the rate is that of the hull lines of eight interleaved parts, divided by
 // sqrt(8): cautious, since a hull's error falls faster than that. It does not cover a rate that
-// changes; rise_ms shows that. The rank correlation (Spearman's) is between the excess of a frame and
-// of the next by the counter.
+// changes; rise_ms shows that. The rank correlation (Spearman's) is between the excess of a frame
+// and of the next by the counter.
 //
 // Source: docs/reference/device_time.md section 1 (hull); algorithms/device_time/lower_hull.h.
 // Errors: FitError: too few frames, device stamps or arrivals that go back.

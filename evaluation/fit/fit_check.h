@@ -1,9 +1,10 @@
-// The quality of a fit: the fitted model is simulated, and the simulation is fitted like the recording
-// and compared with it.
+// The quality of a fit: the fitted model is simulated, and the simulation is fitted like the
+// recording and compared with it.
 //
-// The comparison is with the simulator's output, through its buses and clocks, never with the fitted
-// tables themselves. It is made twice: the model of the whole recording with that recording, and, with
-// enough frames, the model of the first half of each stream with the second half (a hold-out).
+// The comparison is with the simulator's output, through its buses and clocks, never with the
+// fitted tables themselves. It is made twice: the model of the whole recording with that recording,
+// and, with enough frames, the model of the first half of each stream with the second half (a
+// hold-out).
 //
 // The distance is Kolmogorov's between the two samples of excess. Two samples of one distribution
 // exceed the limit in 5 % of all cases, for sizes reduced by the correlation of successive frames,

@@ -1,5 +1,3 @@
-#include "evaluation/fit/fit.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "evaluation/fit/fit.h"
 #include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
@@ -115,8 +114,8 @@ std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
 // The cells of one way, from the least latency on; round trips have twice as many.
 constexpr Eigen::Index kCells = 500;
 
-// The middles of two cells i and j add up to the edge between the round trips' cells i + j and
-// i + j + 1; their share belongs to i + j.
+// The middles of two cells i and j add up to the edge between the round trips' cells i + j and i +
+// j + 1; their share belongs to i + j.
 Eigen::VectorXd shares_of_cells(const std::vector<double>& round_trips, double shortest,
                                 double cell) {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(2 * kCells - 1);
@@ -127,8 +126,8 @@ Eigen::VectorXd shares_of_cells(const std::vector<double>& round_trips, double s
   return shares / static_cast<double>(round_trips.size());
 }
 
-// One round of expectation and maximisation: divides each round trip among the pairs of ways that add
-// up to it, by their probability in `way`.
+// One round of expectation and maximisation: divides each round trip among the pairs of ways that
+// add up to it, by their probability in `way`.
 Eigen::VectorXd expected_shares(const Eigen::VectorXd& way, const Eigen::VectorXd& trips) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(trips.size());
   for (Eigen::Index i = 0; i < kCells; ++i) sums.segment(i, kCells) += way[i] * way;

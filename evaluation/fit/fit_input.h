@@ -86,8 +86,8 @@ class FitInputSink final : public RecordingSink {
   std::map<std::pair<std::uint32_t, StreamKind>, std::vector<Stamps>> stamps_;
 };
 
-// Returns the input from files of real cameras. `one_host`: one computer stamped all arrivals, whatever
-// the files state.
+// Returns the input from files of real cameras. `one_host`: one computer stamped all arrivals,
+// whatever the files state.
 FitInput fit_input(std::vector<CameraStream> streams, bool one_host);
 
 // Returns the halves of every stream, for a fit to one and a test on the other.

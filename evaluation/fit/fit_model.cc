@@ -137,8 +137,8 @@ constexpr std::size_t kLongestSummary = 3900;
 
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
-// Tables of numbers: each has a mark in the document, in whose place it is written with many numbers to
-// a line.
+// Tables of numbers: each has a mark in the document, in whose place it is written with many
+// numbers to a line.
 class Tables {
  public:
   Json mark(const std::vector<double>& values, int decimals) {

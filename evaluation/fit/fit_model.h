@@ -1,18 +1,19 @@
 // A fitted rig as a scenario file: the fitted values over a base scenario.
 //
-// The file names its base by name or path, or is complete if the base is a recording's own scenario,
-// which may exist nowhere else. Effects that the fitted tables contain are switched off: jitter common
-// to a host, bursts of load, noise and steps of the stamps; with a latency table also the cost of
-// messages on the hosts at both ends. Faults of the base are omitted: their effects are in the
-// recording.
+// The file names its base by name or path, or is complete if the base is a recording's own
+// scenario, which may exist nowhere else. Effects that the fitted tables contain are switched off:
+// jitter common to a host, bursts of load, noise and steps of the stamps; with a latency table also
+// the cost of messages on the hosts at both ends. Faults of the base are omitted: their effects are
+// in the recording.
 //
-// "summary" has the evidence for each value; fit_evidence() returns it line by line, not_identified()
-// what no fit to these stamps can give.
+// "summary" has the evidence for each value; fit_evidence() returns it line by line,
+// not_identified() what no fit to these stamps can give.
 //
 //   const FitModel model = fit_model(fit, input, base, "model.json");
 //   reports::write_file("model.json", model.text);
 //
-// Errors: scenarios::InputError if the base does not support it (a frame rate that its cameras lack).
+// Errors: scenarios::InputError if the base does not support it (a frame rate that its cameras
+// lack).
 #ifndef SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
 #define SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
 
@@ -33,8 +34,8 @@ struct FitBase {
   std::optional<double> mode_rate_hz = {};
 };
 
-// Returns the nearest built-in scenario, for recordings of real cameras without one, with the cameras'
-// rate at half of the slowest mode that allows it.
+// Returns the nearest built-in scenario, for recordings of real cameras without one, with the
+// cameras' rate at half of the slowest mode that allows it.
 FitBase default_base(const FitInput& input);
 
 struct FitModel {
@@ -56,8 +57,8 @@ std::vector<std::string> fit_evidence(const RigFit& fit, const FitInput& input);
 std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input,
                                         const scenarios::Scenario& base);
 
-// Return the standard deviation of the rates of the hosts' oscillators, from the rates relative to the
-// master's, which is one of them, and that of the initial offsets; nothing if no host has one.
+// Return the standard deviation of the rates of the hosts' oscillators, from the rates relative to
+// the master's, which is one of them, and that of the initial offsets; nothing if no host has one.
 std::optional<double> host_skew_sigma_ppm(const NetworkFit& network);
 std::optional<double> initial_offset_sigma_ms(const NetworkFit& network);
 

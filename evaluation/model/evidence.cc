@@ -19,15 +19,18 @@ constexpr StageEvidence kStages[] = {
     {"exposure",
      {false, false, false, true, true},
      "delay after the pulse, pulses ignored in genlock, waiting slaves: reported for the D455, but "
-     "not measured here; the spread of exposures in the calibrated worlds is a fit to eight published "
+     "not measured here; the spread of exposures in the calibrated worlds is a fit to eight "
+     "published "
      "numbers"},
     {"device clock",
      {true, false, false, true, true},
-     "32-bit microseconds and their wrap as in the SDK's code, wander tested against its configured "
+     "32-bit microseconds and their wrap as in the SDK's code, wander tested against its "
+     "configured "
      "Allan deviation; rate errors and wander of a camera's quartz are assumed"},
     {"USB and host stack",
      {false, false, false, true, true},
-     "whole latencies as reported for the D455; their parts, the distribution of the jitter and the "
+     "whole latencies as reported for the D455; their parts, the distribution of the jitter and "
+     "the "
      "sharing of a controller are assumed. simbench fit replaces them by a rig's own quantiles"},
     {"host oscillator",
      {true, false, false, true, true},
@@ -43,8 +46,10 @@ constexpr StageEvidence kStages[] = {
      "experiment imposes the scenario's latencies, so it cannot confirm them"},
     {"transport and kernel stamps",
      {false, true, false, false, false},
-     "real sockets and kernel stamps under the scenario's delay, jitter, loss and reordering; the gap "
-     "above shows the effects that the simulator omits. The experiment has no network card, switch or "
+     "real sockets and kernel stamps under the scenario's delay, jitter, loss and reordering; the "
+     "gap "
+     "above shows the effects that the simulator omits. The experiment has no network card, switch "
+     "or "
      "second kernel"},
     {"host_sync protocols",
      {true, true, false, true, false},
@@ -53,15 +58,18 @@ constexpr StageEvidence kStages[] = {
      "reproduced"},
     {"device_time",
      {true, false, true, true, false},
-     "closed forms, and a recording of other cameras with a real drift of -215 ppm, but without true "
+     "closed forms, and a recording of other cameras with a real drift of -215 ppm, but without "
+     "true "
      "exposure times, so that a constant delay stays unknown"},
     {"gathering",
      {true, false, false, true, false},
-     "exact small cases, and the test vectors of the projects with these policies; in the experiment "
+     "exact small cases, and the test vectors of the projects with these policies; in the "
+     "experiment "
      "gathering runs on stamps of simulated cameras"},
     {"metrics",
      {true, false, false, true, false},
-     "the definitions of the paper with bounds that hold for any data; two published rows break the "
+     "the definitions of the paper with bounds that hold for any data; two published rows break "
+     "the "
      "bound of eq. (4), so nothing is fitted to them"},
 };
 

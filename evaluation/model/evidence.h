@@ -1,13 +1,13 @@
 // How far the model can be trusted: the evidence for each stage, and measured beside simulated
 // results. `simbench validate-model` prints both.
 //
-// Evidence: the experiment of six nodes behind a relay validates the implementation of transport and
-// protocols; it has no cameras and no second oscillator. Each line names its sources, so that a
+// Evidence: the experiment of six nodes behind a relay validates the implementation of transport
+// and protocols; it has no cameras and no second oscillator. Each line names its sources, so that a
 // reader can look up what was measured, by whom, and what nobody has measured.
 //
-// Gap: both sides are results of the same scenario and pipelines. The measured side knows true clock
-// errors (an experiment whose clocks share one) or at least GenLock order. Repetitions are independent
-// draws, not pairs, so distributions are compared: their quantiles, and the two-sample
+// Gap: both sides are results of the same scenario and pipelines. The measured side knows true
+// clock errors (an experiment whose clocks share one) or at least GenLock order. Repetitions are
+// independent draws, not pairs, so distributions are compared: their quantiles, and the two-sample
 // Kolmogorov-Smirnov distance with its critical value for these sample sizes. A distance below the
 // critical value means that no difference was found; with few repetitions that is weak evidence.
 //
@@ -86,8 +86,8 @@ struct ModelGapRow {
   bool significant() const { return ks >= ks_critical; }  // false where either is NaN
 };
 
-// Returns a row per pipeline and metric, in the order of `measured`. Pipelines of one side alone and
-// metrics without a value on either side have no row.
+// Returns a row per pipeline and metric, in the order of `measured`. Pipelines of one side alone
+// and metrics without a value on either side have no row.
 std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simulated);
 
 }  // namespace simbench::evaluation

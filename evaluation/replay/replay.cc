@@ -177,8 +177,8 @@ Nanoseconds first_arrival_range(const Members& members) {
   return (*last)->frames.front().arrival - (*first)->frames.front().arrival;
 }
 
-// `members`: the cameras (two or more) that have `stream`; their rows are complete. Returns nothing if
-// no camera has a frame period (of at least a microsecond) to match frames by.
+// `members`: the cameras (two or more) that have `stream`; their rows are complete. Returns nothing
+// if no camera has a frame period (of at least a microsecond) to match frames by.
 std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
                                     const std::string& stream,
                                     const std::vector<std::size_t>& members) {
@@ -325,7 +325,8 @@ Replay run_replay(std::vector<CameraStream> streams) {
     if (members.size() < 2) continue;
     std::optional<RigReplay> rig = replay_rig(replay.cameras, stream, members);
     if (!rig) {
-      replay.warnings.push_back(stream + ": no camera has a frame period, so the cameras are not compared");
+      replay.warnings.push_back(stream +
+                                ": no camera has a frame period, so the cameras are not compared");
       continue;
     }
     replay.rigs.push_back(std::move(*rig));

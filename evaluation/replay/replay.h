@@ -2,8 +2,8 @@
 //
 // host_sync cannot be replayed: it had its effect on the clocks that stamped the arrivals. Every
 // registered device_time estimator that needs no truth runs with its default parameters on every
-// stream of every camera. Streams of the same kind on two or more cameras are then compared: AMD and
-// RMDV over the frames that GenLock order puts together, and over the sets of every registered
+// stream of every camera. Streams of the same kind on two or more cameras are then compared: AMD
+// and RMDV over the frames that GenLock order puts together, and over the sets of every registered
 // gatherer. A recording has no ground truth:
 //
 //  - GenLock order (re-anchored) counts from each camera's first frame. It is right if one trigger
@@ -11,17 +11,17 @@
 //    nearer ones do not prove it (RigReplay::common_start_plausible).
 //  - Sets of a gatherer are as good as the gatherer: scores over them are unverified.
 //
-// Relative stamps (they count from a camera's first frame) get one common anchor, the earliest first
-// arrival of the kind of stream.
+// Relative stamps (they count from a camera's first frame) get one common anchor, the earliest
+// first arrival of the kind of stream.
 //
 // Statistics of one camera: intervals, the frequency difference of the two clocks, and the excess
-// delay over the fastest frames, in milliseconds of the named clock. A value that too few frames leave
-// undefined is NaN.
+// delay over the fastest frames, in milliseconds of the named clock. A value that too few frames
+// leave undefined is NaN.
 //
-// Complexity: linear in the frames, except for sorting them by arrival. Memory: a few hundred bytes per
-// frame. Source: docs/design.md sections 2 and 8, docs/reference/paper.md section 8,
-// docs/reference/device_time.md sections 1 and 5; check values: tests/data/README.md (ibl: -215.385 ppm
-// by least squares, -214.932 ppm by the lower envelope).
+// Complexity: linear in the frames, except for sorting them by arrival. Memory: a few hundred bytes
+// per frame. Source: docs/design.md sections 2 and 8, docs/reference/paper.md section 8,
+// docs/reference/device_time.md sections 1 and 5; check values: tests/data/README.md (ibl: -215.385
+// ppm by least squares, -214.932 ppm by the lower envelope).
 //
 //   Replay replay = run_replay(reader.take());
 //   CameraStatistics s = camera_statistics(unwrapped(stream));
@@ -75,8 +75,8 @@ struct CameraStatistics {
   ExcessStatistics excess;
 };
 
-// Returns the frames with sensor stamps that continue where the 32-bit microsecond register wraps (half
-// range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
+// Returns the frames with sensor stamps that continue where the 32-bit microsecond register wraps
+// (half range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
 std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
 
 // O(n). `frames`: unwrapped.
@@ -94,8 +94,8 @@ double difference_ms(std::int64_t a_ns, std::int64_t b_ns);
 // One estimator on one stream of one camera.
 struct DeviceTimeReplay {
   std::string device_time;
-  // Standard deviation of (interval of global stamps - interval of sensor stamps): the jitter of the
-  // arrivals that the estimator passes on.
+  // Standard deviation of (interval of global stamps - interval of sensor stamps): the jitter of
+  // the arrivals that the estimator passes on.
   double jitter_ms = 0;
   // Arrival minus global stamp: the delay by the estimator. NaN for relative stamps.
   ResidualStatistics residual;

@@ -1,5 +1,3 @@
-#include "evaluation/replay/replay.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include "algorithms/device_time/saturate.h"
 #include "algorithms/device_time/unwrap.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 

@@ -1,12 +1,13 @@
 // Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
 //
-// Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs` threads;
-// results do not depend on their number. A job that throws ends the evaluation after the running jobs
-// have finished; the error holds the finished jobs (EvaluationFailed). A capture that could not be made
-// (RecordingFailed) is no failure of the evaluation: its seed is missing from its row, whose notes have
-// the reason and the notes of other captures (RecordingCost::notes).
+// Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
+// threads; results do not depend on their number. A job that throws ends the evaluation after the
+// running jobs have finished; the error holds the finished jobs (EvaluationFailed). A capture that
+// could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing from its
+// row, whose notes have the reason and the notes of other captures (RecordingCost::notes).
 //
-// With one thread the source is called in order: every pipeline at the first seed, then at the next.
+// With one thread the source is called in order: every pipeline at the first seed, then at the
+// next.
 //
 //   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
 //                        nullptr);
@@ -62,9 +63,9 @@ class EvaluationCancelled final : public EvaluationFailed {
   using EvaluationFailed::EvaluationFailed;
 };
 
-// Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its algorithm
-// does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, with scenario,
-// pipeline, seed, version and commit in its message; and what make_source throws.
+// Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
+// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, with
+// scenario, pipeline, seed, version and commit in its message; and what make_source throws.
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
 

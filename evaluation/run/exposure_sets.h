@@ -2,15 +2,15 @@
 //
 // Frame sets are made in the same way for every pipeline: a frame of the anchor (the master's first
 // camera that has frames, else the first camera that has) and from each other camera the frame with
-// the nearest global stamp. The range of a set has no threshold: with half a period, Algorithm 3 emits
-// no set at all where hosts are hundreds of milliseconds apart, and there would be nothing to compare.
-// The nearest frame of a running camera is at most half a period away, so a camera without a frame
-// within three quarters of a period of the anchor's stamp (lost frame, stopped camera, end of the
-// capture) is missing from the set.
+// the nearest global stamp. The range of a set has no threshold: with half a period, Algorithm 3
+// emits no set at all where hosts are hundreds of milliseconds apart, and there would be nothing to
+// compare. The nearest frame of a running camera is at most half a period away, so a camera without
+// a frame within three quarters of a period of the anchor's stamp (lost frame, stopped camera, end
+// of the capture) is missing from the set.
 //
-// Anchors are spread evenly over the evaluated pulses at which the stamps of all cameras with frames
-// overlap; without any, over all evaluated pulses. A frame of a free-running camera counts as one of
-// the last trigger pulse before its mid-exposure, in the score too.
+// Anchors are spread evenly over the evaluated pulses at which the stamps of all cameras with
+// frames overlap; without any, over all evaluated pulses. A frame of a free-running camera counts
+// as one of the last trigger pulse before its mid-exposure, in the score too.
 //
 //   const ExposureSets sets = exposure_sets(scenario, choice, seed, source, /*count=*/10);
 //   sets.sets[0].cameras[17]->mid_exposure_s;

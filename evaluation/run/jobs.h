@@ -1,18 +1,18 @@
 // Many independent jobs, numbered from 0, on the threads of this process.
 //
-// Used by evaluate() for pipelines and seeds, by a sweep for points, by a reconstruction for sets. A
-// farm over several processes (evaluation/sweep/task_farm.h, cli/mpi/main.cc) takes its jobs from the
-// same queue.
+// Used by evaluate() for pipelines and seeds, by a sweep for points, by a reconstruction for sets.
+// A farm over several processes (evaluation/sweep/task_farm.h, cli/mpi/main.cc) takes its jobs from
+// the same queue.
 //
 // Contract
-//  - Order: jobs begin in the order of their numbers and end in any. Each runs once. A job writes its
-//    result to a place of its own, so that results do not depend on the number of threads.
+//  - Order: jobs begin in the order of their numbers and end in any. Each runs once. A job writes
+//    its result to a place of its own, so that results do not depend on the number of threads.
 //  - Threads: at most one per job; the calling thread is one of them. One thread runs the jobs in
 //    order. If the system cannot start a further thread, the existing ones do the work.
 //  - Workers: a worker is made once on each thread, used by it alone, and destroyed there.
-//  - Errors: if a job throws, no further job begins, running jobs finish, and the exception of the job
-//    with the lowest number is thrown: the same one with any number of threads, since every job before
-//    it had begun. A worker that cannot be made counts as an error before all jobs.
+//  - Errors: if a job throws, no further job begins, running jobs finish, and the exception of the
+//    job with the lowest number is thrown: the same one with any number of threads, since every job
+//    before it had begun. A worker that cannot be made counts as an error before all jobs.
 //  - Cancelling: once `cancel` is true, no further job begins. A signal handler may set it.
 //
 //   std::vector<double> squares(100);

@@ -1,11 +1,11 @@
 // The rows of a leaderboard: by absolute error, with ratios to the limit and to the paper.
 //
-// A leaderboard scenario names its pipelines "<board>.<algorithm>": the rows of a board differ in one
-// stage. Its row "<board>.oracle" has the oracle in that stage. Rows without a dot are the board ""
-// (references). Ratios are paired by seed: the median of the row's value divided by the other's, over
-// seeds in which both exist. Rows are in order of their median absolute error, rows without one last;
-// estimators that need the whole recording (offline) are ranked apart. Rows that differ in gathering
-// alone share one error; they are in order of recall, then precision.
+// A leaderboard scenario names its pipelines "<board>.<algorithm>": the rows of a board differ in
+// one stage. Its row "<board>.oracle" has the oracle in that stage. Rows without a dot are the
+// board "" (references). Ratios are paired by seed: the median of the row's value divided by the
+// other's, over seeds in which both exist. Rows are in order of their median absolute error, rows
+// without one last; estimators that need the whole recording (offline) are ranked apart. Rows that
+// differ in gathering alone share one error; they are in order of recall, then precision.
 //
 //   for (const Board& board : leaderboard(results)) board.online.front().row->pipeline;
 #ifndef SIMBENCH_EVALUATION_RUN_LEADERBOARD_H_

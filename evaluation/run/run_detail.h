@@ -5,9 +5,9 @@
 // recording, same score.
 //
 // Units: milliseconds. Times on the hosts' scale (`backend` to `reference`) count from `zero`, the
-// same for all cameras of a run, so that a double holds them to about a picosecond; device times count
-// from the zero of the camera's own register; true times from true zero (true_time.h). A value that
-// does not exist (no truth, no stamp) is NaN.
+// same for all cameras of a run, so that a double holds them to about a picosecond; device times
+// count from the zero of the camera's own register; true times from true zero (true_time.h). A
+// value that does not exist (no truth, no stamp) is NaN.
 //
 // Cost: the run and one or two more estimators; 150 bytes per frame of the first kDetailCameras
 // cameras. Frames of other cameras are scored, but not kept.
@@ -37,13 +37,13 @@ inline constexpr std::size_t kDetailCameras = 18;
 
 struct FrameDetail {
   std::uint32_t counter = 0;
-  std::int64_t pulse = -1;      // that exposed it; -1: none, or unknown
-  bool evaluated = false;       // of a scored pulse
-  bool in_warm_up = false;      // before the first scored pulse
-  double sensor_ms = 0;         // device clock, unwrapped
-  double frame_ms = 0;          // device clock, unwrapped
-  double backend_ms = 0;        // host's system clock, from zero
-  double arrival_ms = 0;        // the same
+  std::int64_t pulse = -1;  // that exposed it; -1: none, or unknown
+  bool evaluated = false;   // of a scored pulse
+  bool in_warm_up = false;  // before the first scored pulse
+  double sensor_ms = 0;     // device clock, unwrapped
+  double frame_ms = 0;      // device clock, unwrapped
+  double backend_ms = 0;    // host's system clock, from zero
+  double arrival_ms = 0;    // the same
   double global_ms = kNan;  // by the pipeline, from zero; none in the warm-up
   // By the same estimator, started with the camera's first frame, as in Fig. 7b. For a relative
   // estimator only differences are meaningful.
@@ -62,8 +62,8 @@ struct CameraDetail {
   std::vector<FrameDetail> frames;  // of the scored stream, in order of delivery
 };
 
-// A frame that was taken and never arrived: observed in a simulated world, else derived from gaps of
-// the frame counters, and then without pulse and time.
+// A frame that was taken and never arrived: observed in a simulated world, else derived from gaps
+// of the frame counters, and then without pulse and time.
 struct LostFrame {
   std::uint32_t camera = 0;
   std::uint32_t counter = 0;
@@ -111,7 +111,7 @@ struct RunDetail {
   double capture_start_ms = kNan;
   double evaluated_start_ms = kNan;  // first scored exposure
   double capture_end_ms = kNan;      // last exposure
-  HostTime zero{};                       // of the stamps on the hosts' scale
+  HostTime zero{};                   // of the stamps on the hosts' scale
 
   std::vector<CameraDetail> cameras;
   std::vector<LostFrame> lost;

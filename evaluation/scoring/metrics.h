@@ -1,9 +1,9 @@
 // The metrics: what each is, where a score keeps it, and where results show it.
 //
-// This is the only list. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive reader,
-// tables and figures go through metrics(). A new metric is a member of MetricValues and an entry of
-// kMetricTable (both here), the line that computes it (pulse_scores.cc, set_counter.cc, ...), and its
-// tests. Definitions: docs/design.md section 8.
+// This is the only list. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
+// reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
+// entry of kMetricTable (both here), the line that computes it (pulse_scores.cc, set_counter.cc,
+// ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
 // 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
@@ -93,7 +93,8 @@ struct RunCounts {
 
 enum class Better : std::uint8_t { kLower, kHigher, kNearestZero, kNeither };
 
-// What a metric depends on; without it the metric is NaN, null in JSON, empty in CSV, "-" in tables.
+// What a metric depends on; without it the metric is NaN, null in JSON, empty in CSV, "-" in
+// tables.
 enum class Needs : std::uint8_t {
   kNothing,
   kVerifiedSets,  // it is known which frames belong together
@@ -110,9 +111,9 @@ enum class CsvColumns : std::uint8_t {
 
 // The metric's place, from 1, among the columns or panels of each report; 0: it is not shown.
 struct TablePlaces {
-  int paper = 0;  // the paper's metrics
-  int truth = 0;  // metrics that need true time
-  int sets = 0;   // gathered sets
+  int paper = 0;           // the paper's metrics
+  int truth = 0;           // metrics that need true time
+  int sets = 0;            // gathered sets
   int response = 0;        // the table of a sweep
   int response_panel = 0;  // the figure of a sweep
 };
@@ -184,9 +185,9 @@ struct Metric {
   // The value over all seeds: median, number or count; NaN if the row does not know it.
   double value(const Row& row) const;
 
-  // Reduces a series for comparisons and gates: to its median, a share to the mean of the values that
-  // exist. (Gathering mostly finds all sets of a seed or none, so a median would stay at 100 % until
-  // half of the seeds are lost.) NaN: no seed has a value.
+  // Reduces a series for comparisons and gates: to its median, a share to the mean of the values
+  // that exist. (Gathering mostly finds all sets of a seed or none, so a median would stay at 100 %
+  // until half of the seeds are lost.) NaN: no seed has a value.
   double table_value(const std::vector<double>& values) const;
 };
 

@@ -5,16 +5,16 @@
 // frame allocates nothing. A source is the scored stream of one camera, numbered like the camera.
 //
 // The rules (docs/design.md section 8):
-//  - The truth (the pulse that exposed a frame), or GenLock order on a real genlock rig, tells which
-//    frames belong together. Other captures are scored over the sets that gathering emitted,
+//  - The truth (the pulse that exposed a frame), or GenLock order on a real genlock rig, tells
+//    which frames belong together. Other captures are scored over the sets that gathering emitted,
 //    unverified (unverified_scores.h), and every score that needs pulses is NaN. The first frame
 //    decides; SeedScore::ground_truth has the result.
 //  - device_time and gathering begin where the warm-up ends, with the first evaluated pulse. Only
-//    those that request it (relative(), from_first_frame()) get the warm-up too. Frames that no pulse
-//    exposed (free-running) are used once another source's evaluated pulse ends the warm-up; they are
-//    part of the stream, but never scored.
-//  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame of
-//    the master's first camera, or of the first frame of all if that camera has none.
+//    those that request it (relative(), from_first_frame()) get the warm-up too. Frames that no
+//    pulse exposed (free-running) are used once another source's evaluated pulse ends the warm-up;
+//    they are part of the stream, but never scored.
+//  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame
+//    of the master's first camera, or of the first frame of all if that camera has none.
 //  - An offline estimator stamps when the capture has ended; gathering follows then.
 //
 //   PipelineScorer scorer(setup);
@@ -48,9 +48,9 @@ using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>()>;
 
 // Runs an estimator that must see the whole recording before its first stamp.
 //
-// Holds frames back (56 bytes each) until the capture has ended. Then each source's estimator learns
-// from all of them and stamps them, in order of delivery. An online estimator gives the same stamps
-// here as it would have given at once.
+// Holds frames back (56 bytes each) until the capture has ended. Then each source's estimator
+// learns from all of them and stamps them, in order of delivery. An online estimator gives the same
+// stamps here as it would have given at once.
 class DeferredStamps {
  public:
   explicit DeferredStamps(std::size_t sources) : sources_(sources) {}

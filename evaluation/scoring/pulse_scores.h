@@ -1,9 +1,9 @@
 // The global stamps of the evaluated pulses, and the scores that are means over them.
 //
 // PulseTable has a row per pulse and a column per source, which is one stream of one camera. Rows
-// fill in any order; a row is complete, and counts, when all sources have delivered. With truth a row
-// also holds the correct stamps and the true exposures. 16 bytes a cell: 1.6 million cells for 18,000
-// cameras and 90 pulses, 26 MB. Nothing is allocated after construction.
+// fill in any order; a row is complete, and counts, when all sources have delivered. With truth a
+// row also holds the correct stamps and the true exposures. 16 bytes a cell: 1.6 million cells for
+// 18,000 cameras and 90 pulses, 26 MB. Nothing is allocated after construction.
 //
 // A score that does not exist is NaN: all without a complete pulse, the errors without truth, the
 // spread inside a host where no host has two sources, the spread between hosts where there is one
@@ -138,9 +138,8 @@ struct PulseScoring {
   std::vector<std::uint32_t> host_of_source;  // by column of the table
 };
 
-// Sets amd_ms, rmdv_ms, absolute_error_ms, bias_ms, exposure_spread_ms, the two spreads by
-// host, trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses.
-// O(pulses x sources).
+// Sets amd_ms, rmdv_ms, absolute_error_ms, bias_ms, exposure_spread_ms, the two spreads by host,
+// trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses. O(pulses x sources).
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score);
 
 // Returns AMD alone.

@@ -1,7 +1,7 @@
 // From the scores of all seeds to one row of the table, with the paper's published values.
 //
-// A seed without a recording keeps its place, so that rows stay paired by seed: its values are NaN in
-// every series, and the row has its notes.
+// A seed without a recording keeps its place, so that rows stay paired by seed: its values are NaN
+// in every series, and the row has its notes.
 #ifndef SIMBENCH_EVALUATION_SCORING_ROWS_H_
 #define SIMBENCH_EVALUATION_SCORING_ROWS_H_
 
@@ -25,7 +25,8 @@ struct RowSetting {
 
 RowSetting row_setting(const scenarios::Scenario& scenario);
 
-// Returns the score of a seed without a recording, every quantity NaN, with the reason in its notes.
+// Returns the score of a seed without a recording, every quantity NaN, with the reason in its
+// notes.
 SeedScore missing_score(std::uint64_t seed, const std::string& reason);
 
 // Returns the row over these seeds, which must still have their pulses (for the margin).

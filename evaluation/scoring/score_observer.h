@@ -31,8 +31,8 @@ class ScoreObserver {
   // A stamp of device_time, for a frame after the warm-up; an offline estimator stamps when the
   // capture has ended.
   virtual void on_stamp(const DeferredFrame& frame, GlobalTime global) = 0;
-  // A set that counts (set_counter.h); `complete` if no source is missing. `now` is the arrival of the
-  // frame whose push emitted it.
+  // A set that counts (set_counter.h); `complete` if no source is missing. `now` is the arrival of
+  // the frame whose push emitted it.
   virtual void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) = 0;
   // Once, at the end: the shift to add to all stamps (a relative estimator's anchor).
   virtual void on_shift(Nanoseconds shift) = 0;

@@ -1,12 +1,13 @@
 // Counts the sets that a gatherer emits, the correct ones among them, and their latency.
 //
-// Frames have their pulse as their tag (-1: none). A set counts when one of its members belongs to an
-// evaluated pulse; it is pure when all members belong to that one. Scores are over complete sets:
-//  - range of the stamps, so that AMD shows the effect of gathering (a strict policy makes it small by
-//    giving sets up: see recall too);
+// Frames have their pulse as their tag (-1: none). A set counts when one of its members belongs to
+// an evaluated pulse; it is pure when all members belong to that one. Scores are over complete
+// sets:
+//  - range of the stamps, so that AMD shows the effect of gathering (a strict policy makes it small
+//    by giving sets up: see recall too);
 //  - |stamp - reference| of members of evaluated pulses, with truth;
-//  - emission latency: arrival of the frame whose push emitted the set, minus the latest arrival of a
-//    member. Arrivals are true in a simulation; on a rig they are as good as the hosts' clocks.
+//  - emission latency: arrival of the frame whose push emitted the set, minus the latest arrival of
+//    a member. Arrivals are true in a simulation; on a rig they are as good as the hosts' clocks.
 //
 //   SetCounter sets(table);
 //   sets.before_push(frame.arrival, shift);
@@ -28,13 +29,13 @@ namespace simbench::evaluation {
 
 class SetCounter final : public FrameSetSink {
  public:
-  // The table has the evaluated pulses and the references. The observer (or null) is notified of the
-  // sets that count. Both must outlive this.
+  // The table has the evaluated pulses and the references. The observer (or null) is notified of
+  // the sets that count. Both must outlive this.
   explicit SetCounter(const PulseTable& table, ScoreObserver* observer = nullptr)
       : table_(table), observer_(observer) {}
 
-  // Sets the arrival of the next frame to be pushed, and what to add to the stamps of sets before the
-  // comparison with the reference (an estimator may not know the epoch).
+  // Sets the arrival of the next frame to be pushed, and what to add to the stamps of sets before
+  // the comparison with the reference (an estimator may not know the epoch).
   void before_push(GlobalTime arrival, Nanoseconds shift) {
     now_ = arrival;
     shift_ = shift;

@@ -1,16 +1,16 @@
 // Scores of a capture without truth and without GenLock, where it is unknown which frames belong
 // together.
 //
-// Only the sets that the gatherer under test emitted can be scored: how far apart the stamps of a set
-// are, how many frames arrived, and how late sets were emitted. The score cannot show whether the
-// frames of a set were exposed together. A gatherer that mixes neighbours consistently looks perfect;
-// one that gives up all difficult sets looks better than one that does not; stamps of relative
-// estimators, which count from each camera's own first frame, agree by construction. Precision,
-// recall and the errors do not exist. Reports label such scores "unverified".
+// Only the sets that the gatherer under test emitted can be scored: how far apart the stamps of a
+// set are, how many frames arrived, and how late sets were emitted. The score cannot show whether
+// the frames of a set were exposed together. A gatherer that mixes neighbours consistently looks
+// perfect; one that gives up all difficult sets looks better than one that does not; stamps of
+// relative estimators, which count from each camera's own first frame, agree by construction.
+// Precision, recall and the errors do not exist. Reports label such scores "unverified".
 //
-// The warm-up lasts as long as layout.first_pulse frames take, for each host on its steady clock from
-// its first frame; the evaluated part lasts as long as layout.pulses frames take. Lost frames are
-// gaps of the counters: a camera that never returns leaves none.
+// The warm-up lasts as long as layout.first_pulse frames take, for each host on its steady clock
+// from its first frame; the evaluated part lasts as long as layout.pulses frames take. Lost frames
+// are gaps of the counters: a camera that never returns leaves none.
 //
 //   UnverifiedScores scores(layout, MedianKind::kUpperMiddle, nullptr);
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
@@ -43,8 +43,8 @@ class UnverifiedScores final : public FrameSetSink {
   // `observer` (or null) is notified of the sets that count.
   UnverifiedScores(const RigLayout& layout, MedianKind median, ScoreObserver* observer);
 
-  // Counts a frame of the scored stream and returns its part of the capture. Once for each frame, in
-  // order of delivery.
+  // Counts a frame of the scored stream and returns its part of the capture. Once for each frame,
+  // in order of delivery.
   Part part_of(const FrameRecord& frame);
 
   // Sets the arrival of the next frame to be pushed.
@@ -53,8 +53,8 @@ class UnverifiedScores final : public FrameSetSink {
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
 
-  // Sets amd_ms, rmdv_ms, set_amd_ms, the emission latencies, frames, sets and pulses (where a set has
-  // its number in place of the pulse). The rest of `score` stays.
+  // Sets amd_ms, rmdv_ms, set_amd_ms, the emission latencies, frames, sets and pulses (where a set
+  // has its number in place of the pulse). The rest of `score` stays.
   void score(SeedScore& score) const;
 
  private:

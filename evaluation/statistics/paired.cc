@@ -22,8 +22,8 @@ struct Sums {
   double b = 0;
 };
 
-// Draws pairs from 32 random bits by multiplication, which favours some of n pairs by an insignificant
-// 2^-32 n.
+// Draws pairs from 32 random bits by multiplication, which favours some of n pairs by an
+// insignificant 2^-32 n.
 class PairDraw {
  public:
   explicit PairDraw(std::size_t pairs) : pairs_(pairs) {}

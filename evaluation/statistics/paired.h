@@ -1,14 +1,14 @@
-// Two pipelines or archives measured in the same worlds: by how much does B differ from A, and is the
-// difference significant?
+// Two pipelines or archives measured in the same worlds: by how much does B differ from A, and is
+// the difference significant?
 //
-// Values stand in pairs, one for each seed, so that differences between worlds cancel. A pair without
-// one of its values (NaN) is left out and counted.
+// Values stand in pairs, one for each seed, so that differences between worlds cancel. A pair
+// without one of its values (NaN) is left out and counted.
 //
 // Interval: 95 %, by bootstrap. Pairs are resampled kResamples times, always with the same random
 // numbers, so that all metrics have the same resamples and equal input gives equal bytes. The
-// percentiles are moved outward for small samples as in T. C. Hesterberg, "What teachers should know
-// about the bootstrap", The American Statistician 69(4), 2015 (expanded percentile interval): with
-// n = 8 and n = 32 pairs the interval holds the mean nearly as often as stated
+// percentiles are moved outward for small samples as in T. C. Hesterberg, "What teachers should
+// know about the bootstrap", The American Statistician 69(4), 2015 (expanded percentile interval):
+// with n = 8 and n = 32 pairs the interval holds the mean nearly as often as stated
 // (tests/evaluation/statistics/paired_test.cc). Below kFewestPairs there is no interval: even the
 // smallest and the largest of five differences enclose a mean only 94 times in 100.
 //
@@ -16,8 +16,8 @@
 //   interval excludes 0             better or worse
 //   includes 0, lies within +-e     no difference seen
 //   includes 0, reaches beyond e    too few seeds
-// seeds_needed is the number of seeds with which the interval is narrower than e, so that it leads to
-// one of the other verdicts. The width shrinks with the square root of the pairs.
+// seeds_needed is the number of seeds with which the interval is narrower than e, so that it leads
+// to one of the other verdicts. The width shrinks with the square root of the pairs.
 //
 // Cost: kResamples draws per pair; 1,000 pairs in about 5 ms.
 //
@@ -85,15 +85,16 @@ PairedComparison compare(const PairedValues& values, const ComparisonRule& rule)
 
 // Student's t for paired differences, and Holm's correction for many of them: the test of a gate.
 //
-// A gate tests many metrics and must rarely raise a false alarm. Each metric's mean paired difference
-// gets a two-sided p-value from Student's t with n - 1 degrees of freedom. Holm's step-down procedure
-// (S. Holm, Scand. J. Statistics 6, 1979) keeps the probability that any of them excludes zero by
-// chance within 5 %, whatever their dependence. interval() at HolmDecision::error excludes zero
-// exactly where Holm rejects.
+// A gate tests many metrics and must rarely raise a false alarm. Each metric's mean paired
+// difference gets a two-sided p-value from Student's t with n - 1 degrees of freedom. Holm's
+// step-down procedure (S. Holm, Scand. J. Statistics 6, 1979) keeps the probability that any of
+// them excludes zero by chance within 5 %, whatever their dependence. interval() at
+// HolmDecision::error excludes zero exactly where Holm rejects.
 //
-// If nothing changed, the two values of a pair are interchangeable. Their difference is then symmetric
-// around zero however skewed the values are, and t on 32 or more symmetric differences rejects no more
-// often than stated; tests/cli/commands/gate_null_slow_test.cc counts that on real runs.
+// If nothing changed, the two values of a pair are interchangeable. Their difference is then
+// symmetric around zero however skewed the values are, and t on 32 or more symmetric differences
+// rejects no more often than stated; tests/cli/commands/gate_null_slow_test.cc counts that on real
+// runs.
 //
 //   const PairedT t = paired_t(pair_up(before, after));
 inline constexpr double kFamilyError = 0.05;  // of all metrics of a gate together

@@ -11,8 +11,8 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kLevel = 0.05;  // of a test
-constexpr double kTail = kLevel / 2;  // on each side of a 95 % interval
+constexpr double kLevel = 0.05;                     // of a test
+constexpr double kTail = kLevel / 2;                // on each side of a 95 % interval
 constexpr double kAsymptotic = 1.3581015157406195;  // sqrt(-ln(0.05 / 2) / 2)
 constexpr std::size_t kMostExact = 1'000'000;       // n m
 

@@ -1,5 +1,5 @@
-// Statistics over seeds: quantiles, a series with its band, the place of a published value in it, the
-// number of seeds that a study needs, and the comparison of two samples.
+// Statistics over seeds: quantiles, a series with its band, the place of a published value in it,
+// the number of seeds that a study needs, and the comparison of two samples.
 //
 // A quantity that a seed does not have is NaN: it stays in Series::values, which remain in seed
 // order, and is left out of all computations. Without any value, the result is NaN.
@@ -33,7 +33,8 @@ struct Series {
 Series make_series(std::vector<double> values);
 
 // Returns quantile p in [0, 1] by linear interpolation between order statistics: of n sorted values
-// the one at index (n - 1) * p ("type 7" of Hyndman and Fan 1996, the default of R and NumPy). O(n).
+// the one at index (n - 1) * p ("type 7" of Hyndman and Fan 1996, the default of R and NumPy).
+// O(n).
 double quantile(std::vector<double> values, double p);
 
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
@@ -71,8 +72,8 @@ struct Percentile {
   double high = 0;
 };
 
-// The percentage of the values that are below `published` (equal ones count half), with its interval
-// as an estimate of the distribution's percentage.
+// The percentage of the values that are below `published` (equal ones count half), with its
+// interval as an estimate of the distribution's percentage.
 Percentile percentile_of(double published, const std::vector<double>& values);
 
 // Whether `published` lies between the 5 % and the 95 % quantile of the series.

@@ -60,8 +60,8 @@ int decimals_of(const std::string& text) {
   return std::max(0, digits - exponent);
 }
 
-// start + i * step. With few decimals the sum is one of whole numbers, which is exact, and its quotient
-// by a power of ten is the double nearest to the decimal.
+// start + i * step. With few decimals the sum is one of whole numbers, which is exact, and its
+// quotient by a power of ten is the double nearest to the decimal.
 class Range {
  public:
   Range(const std::string& start, const std::string& step)

@@ -7,13 +7,13 @@
 //   /hosts/count=2:6:2+/cameras/count=6:18:6           several in lockstep, where one alone
 //                                                      would make no valid scenario
 //
-// Value i of a range is start + i * step, never a sum of steps. For decimals it is the decimal that a
-// person expects: 0:1:0.1 has 0.3, not 0.30000000000000004. A value's text is the shortest that reads
-// back as the same number.
+// Value i of a range is start + i * step, never a sum of steps. For decimals it is the decimal that
+// a person expects: 0:1:0.1 has 0.3, not 0.30000000000000004. A value's text is the shortest that
+// reads back as the same number.
 //
-// A point is one combination; the first axis varies slowest. A run is one pipeline at one point with
-// one seed. Runs are numbered point by point, pipeline by pipeline, seed by seed. The results depend
-// on the plan and the program alone, so the plan identifies a sweep.
+// A point is one combination; the first axis varies slowest. A run is one pipeline at one point
+// with one seed. Runs are numbered point by point, pipeline by pipeline, seed by seed. The results
+// depend on the plan and the program alone, so the plan identifies a sweep.
 //
 //   const SweepRequest request = {.scenario = "18cam_6host_45fps",
 //                                 .axes = {"/trigger/rate_hz=15,30,45"}, .seeds = 32};
@@ -85,13 +85,13 @@ struct SweepPlan {
   std::string point_text(std::size_t point) const;
 };
 
-// Throws scenarios::InputError for a scenario that is invalid without the sweep, an invalid axis, an
-// unknown pipeline, a pointer swept twice, more than kMostRuns runs.
+// Throws scenarios::InputError for a scenario that is invalid without the sweep, an invalid axis,
+// an unknown pipeline, a pointer swept twice, more than kMostRuns runs.
 SweepPlan make_plan(const SweepRequest& request);
 
-// Loads the scenario of every point. Throws an InputError that names the first refused point. Returns
-// the texts of scenarios::warnings(), each once. Some milliseconds for each point and thread (0: all
-// cores).
+// Loads the scenario of every point. Throws an InputError that names the first refused point.
+// Returns the texts of scenarios::warnings(), each once. Some milliseconds for each point and
+// thread (0: all cores).
 std::vector<std::string> check_points(const SweepPlan& plan, const SweepRequest& request,
                                       unsigned threads);
 

@@ -1,8 +1,9 @@
-// The score of one run of a sweep, as numbers and as text, and the response over all seeds of a point.
+// The score of one run of a sweep, as numbers and as text, and the response over all seeds of a
+// point.
 //
 // The text is for the log of finished runs and for other machines: the cells of the run's line in
-// sweep.csv, a semicolon, and the mean clock error of every host. Numbers are the shortest that read
-// back as the same double, so the text loses nothing.
+// sweep.csv, a semicolon, and the mean clock error of every host. Numbers are the shortest that
+// read back as the same double, so the text loses nothing.
 #ifndef SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_
 #define SIMBENCH_EVALUATION_SWEEP_SWEEP_SCORE_H_
 

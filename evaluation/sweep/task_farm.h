@@ -1,9 +1,9 @@
-// The runs of a sweep as tasks, worked on by threads of this process (ThreadFarm) or by the ranks of
-// a cluster (cli/mpi/main.cc).
+// The runs of a sweep as tasks, worked on by threads of this process (ThreadFarm) or by the ranks
+// of a cluster (cli/mpi/main.cc).
 //
-// Tasks and answers are texts: a farm does not interpret them and can send them to other processes. A
-// worker is made once for each thread, from `setup`, which all tasks share. Order, errors and threads
-// are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
+// Tasks and answers are texts: a farm does not interpret them and can send them to other processes.
+// A worker is made once for each thread, from `setup`, which all tasks share. Order, errors and
+// threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
 //   ThreadFarm farm(sweep_workers(make_world));
 //   farm.run(sweep_tasks(plan, missing), [&](std::size_t task, const std::string& answer) {

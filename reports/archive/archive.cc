@@ -8,7 +8,6 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
@@ -22,8 +21,6 @@
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string utc_text(std::chrono::system_clock::time_point time) {
   const auto whole = std::chrono::floor<std::chrono::seconds>(time);
@@ -75,7 +72,7 @@ std::string manifest_json(const Provenance& provenance, const std::string& more)
                    {"started", utc_text(provenance.started)},
                    {"finished", utc_text(provenance.finished)}};
   manifest.update(Json::parse(more));
-  return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(manifest);
 }
 
 void write_archive(OutputFolder& output, const evaluation::Results& results,

@@ -7,9 +7,9 @@
 //
 // Only manifest.json (its clock times) and /performance in results.json differ between equal runs.
 //
-// The reader checks everything: it refuses a file that was cut short, edited by hand or written with a
-// newer schema, with file, line and JSON pointer, what was found and what is allowed. It computes
-// medians and bands again from the values, so that an archive cannot contradict itself.
+// The reader checks everything: it refuses a file that was cut short, edited by hand or written
+// with a newer schema, with file, line and JSON pointer, what was found and what is allowed. It
+// computes medians and bands again from the values, so that an archive cannot contradict itself.
 //
 // Errors: scenarios::InputError in reading, OutputError in writing.
 //
@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reports {
@@ -40,8 +40,8 @@ std::string shell_line(const std::vector<std::string>& words);
 // The same for an argv of simbench, without the path of the program.
 std::string simbench_line(std::vector<std::string> command);
 
-// Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO 8601,
-// UTC), and `more`, the text of a JSON object, merged in.
+// Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO
+// 8601, UTC), and `more`, the text of a JSON object, merged in.
 std::string manifest_json(const Provenance& provenance, const std::string& more);
 
 // Writes and publishes. After an OutputError nothing is left.
@@ -59,8 +59,8 @@ struct Archive {
   std::string started{};
   std::string finished{};
   std::string scenario_json{};  // resolved; load it with scenarios::load_scenario_text
-  // As evaluate() returned them, without Row::seeds: the values of the row's series have the scores of
-  // the seeds, in seed order.
+  // As evaluate() returned them, without Row::seeds: the values of the row's series have the scores
+  // of the seeds, in seed order.
   evaluation::Results results;
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "reports/comparison/comparison_scenarios.h"
@@ -13,7 +12,6 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 using evaluation::judged_metrics;
 
 constexpr const char* kKind = "simbench baseline";

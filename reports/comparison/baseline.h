@@ -1,5 +1,5 @@
-// The baseline of a build: the gated metrics of every pipeline, seed by seed, in a small file beside
-// the sources.
+// The baseline of a build: the gated metrics of every pipeline, seed by seed, in a small file
+// beside the sources.
 //
 //   {"schema_version": 1, "kind": "simbench baseline", "version": ..., "commit": ...,
 //    "scenario": "18cam_6host_45fps", "seeds": {"first": 1, "count": 32},
@@ -9,12 +9,12 @@
 //    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,
 //                   seed_recall likewise}, ...]}
 //
-// Margins may be edited by hand. Two digests (comparison_scenarios.h) reveal any other edit, and the
-// scenario shows where another one differs. Values have 12 digits, a thousand times finer than the
-// tolerated rounding (kRounding in gate.h). A value that does not exist is null.
+// Margins may be edited by hand. Two digests (comparison_scenarios.h) reveal any other edit, and
+// the scenario shows where another one differs. Values have 12 digits, a thousand times finer than
+// the tolerated rounding (kRounding in gate.h). A value that does not exist is null.
 //
-// Errors: scenarios::InputError with file, line and pointer for a file that was cut short, edited or
-// written by a newer simbench; OutputError for one that cannot be written.
+// Errors: scenarios::InputError with file, line and pointer for a file that was cut short, edited
+// or written by a newer simbench; OutputError for one that cannot be written.
 //
 //   write_baseline(make_baseline(read_archive("results")), "reports/baselines/mine.json");
 #ifndef SIMBENCH_REPORTS_COMPARISON_BASELINE_H_
@@ -47,7 +47,8 @@ struct Baseline {
   std::vector<BaselinePipeline> pipelines;
 };
 
-// Uses the default margins. Throws InputError for a result without its scenario (a results.json alone).
+// Uses the default margins. Throws InputError for a result without its scenario (a results.json
+// alone).
 Baseline make_baseline(const Archive& archive);
 
 // Returns the content of the file: a line for each metric of a pipeline, for readable diffs.

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "recording/version.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/csv.h"
+#include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -66,11 +66,13 @@ std::string described(const Archive& archive) {
 }
 
 [[noreturn]] void refuse_worlds(const Archive& a, const Archive& b, const std::string& what) {
-  throw InputError(fmt::format(
-      "{} and {} are of different scenarios, so a difference does not come from the pipelines alone: "
-      "{}. Compare pipelines within one of them (--pipelines or --with-baseline), or the same pipelines "
-      "in both worlds with --different-scenarios",
-      a.path, b.path, what));
+  throw InputError(
+      fmt::format("{} and {} are of different scenarios, so a difference does not come from the "
+                  "pipelines alone: "
+                  "{}. Compare pipelines within one of them (--pipelines or --with-baseline), or "
+                  "the same pipelines "
+                  "in both worlds with --different-scenarios",
+                  a.path, b.path, what));
 }
 
 // Refuses other worlds, or adds the differences to `notes`.
@@ -83,7 +85,8 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     if (name_a != name_b && !options.different_scenarios) refuse_worlds(a, b, names);
     if (name_a != name_b) notes.push_back(names);
     notes.emplace_back(
-        "a results.json alone does not hold its scenario, so whether both are of the same world was "
+        "a results.json alone does not hold its scenario, so whether both are of the same world "
+        "was "
         "not checked");
     return;
   }
@@ -92,8 +95,7 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     const std::string world = first_few(found.world);
     if (!options.different_scenarios) refuse_worlds(a, b, world);
     notes.push_back(fmt::format(
-        "different worlds (--different-scenarios), which cause the differences: {}",
-        world));
+        "different worlds (--different-scenarios), which cause the differences: {}", world));
   }
   if (name_a != name_b) notes.push_back(names);
   if (!found.algorithms.empty()) {
@@ -208,8 +210,6 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-
 Json estimate_json(const evaluation::Estimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
 }
@@ -252,7 +252,7 @@ std::string comparison_json(const Comparison& comparison) {
     }
     root["pipelines"].push_back(std::move(row));
   }
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 std::string comparison_csv(const Comparison& comparison) {

@@ -1,13 +1,13 @@
 // Compares two result archives, or pipelines of one archive, seed by seed (`simbench compare`).
 //
-// A is the reference that B is compared with: the older archive, the pipeline to beat. All numbers are
-// of the pairs that both have: the common seeds, the common pipelines. `notes` has the other
+// A is the reference that B is compared with: the older archive, the pipeline to beat. All numbers
+// are of the pairs that both have: the common seeds, the common pipelines. `notes` has the other
 // differences (version, commit, seeds, pipelines, parameters of the algorithms). Statistics and
 // verdicts are those of evaluation/statistics/paired.h.
 //
-// Errors: scenarios::InputError, which states the difference and what can be compared instead: other
-// worlds (comparison_scenarios.h) unless allowed, no common seed unless paired by index, no common
-// pipeline, an unknown name.
+// Errors: scenarios::InputError, which states the difference and what can be compared instead:
+// other worlds (comparison_scenarios.h) unless allowed, no common seed unless paired by index, no
+// common pipeline, an unknown name.
 //
 //   const Archive monday = read_archive("monday");
 //   std::cout << plain(comparison_document(compare_with_baseline(monday, "ntp_last_set", {})));
@@ -25,8 +25,8 @@
 namespace simbench::reports {
 
 struct ComparisonOptions {
-  double smallest_effect = 0.05;  // ComparisonRule::smallest_effect
-  bool by_index = false;          // pairs the n-th seed of A with the n-th of B
+  double smallest_effect = 0.05;         // ComparisonRule::smallest_effect
+  bool by_index = false;                 // pairs the n-th seed of A with the n-th of B
   bool different_scenarios = false;      // allows other worlds: compares these, not pipelines
   std::vector<std::string> pipelines{};  // of two archives; empty: all that both have
 };
@@ -71,16 +71,8 @@ const char* verdict_name(evaluation::Verdict verdict);
 // needed".
 std::string verdict_text(const evaluation::PairedComparison& comparison, double smallest_effect);
 
-// A metric's value as reports print it: milliseconds unchanged, shares in percent.
-double shown_value(const evaluation::Metric& metric, double value);
-// "AMD ms", "recall %".
-std::string shown_title(const evaluation::Metric& metric);
-
-// Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
-std::string factor_text(double factor);
-
-// B relative to A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]",
-// "recall 100 % in place of 0 %", "absolute error: no difference seen".
+// B relative to A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]", "recall 100
+// % in place of 0 %", "absolute error: no difference seen".
 std::string effect_words(const evaluation::Metric& metric,
                          const evaluation::PairedComparison& comparison, double smallest_effect);
 

@@ -1,8 +1,8 @@
 // Which results can be compared: those of the same world, with seeds in pairs.
 //
 // The world is the input of a pipeline: everything except the parameters of the algorithms, the
-// pipelines, published values and the scenario's description of itself. Numbers of different worlds do
-// not compare the algorithms. Algorithms may differ, since comparisons are about them.
+// pipelines, published values and the scenario's description of itself. Numbers of different worlds
+// do not compare the algorithms. Algorithms may differ, since comparisons are about them.
 //
 //   const ScenarioDifferences d = compare_scenarios(a.scenario_json, b.scenario_json);
 //   if (!d.world.empty()) refuse(d.world);
@@ -28,8 +28,8 @@ struct ScenarioDifferences {
 // `a`, `b`: two resolved scenarios. Throws scenarios::InputError if one is not JSON.
 ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b);
 
-// Returns a UUID of version 5 (SHA-1) of a JSON text: equal for equal content, whatever the spacing and
-// the order of members.
+// Returns a UUID of version 5 (SHA-1) of a JSON text: equal for equal content, whatever the spacing
+// and the order of members.
 std::string digest_of_json(const std::string& text);
 
 // Joins the first few in one line: "x; y; and 7 more".

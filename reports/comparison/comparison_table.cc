@@ -1,10 +1,9 @@
 // Comparisons for people.
-#include "reports/comparison/comparison.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "reports/comparison/comparison.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/text/number_text.h"
 
@@ -18,6 +17,18 @@ using evaluation::Verdict;
 
 bool is_sure(const PairedComparison& comparison) {
   return comparison.verdict == Verdict::kBetter || comparison.verdict == Verdict::kWorse;
+}
+
+// Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
+std::string factor_text(double factor) {
+  constexpr double kWhole = 999.5;  // rounds to four digits
+  if (std::isnan(factor)) return "-";
+  return std::abs(factor) < kWhole ? fmt::format("{:.3g}", factor) : fmt::format("{:.0f}", factor);
+}
+
+// "AMD ms", "recall %".
+std::string shown_title(const Metric& metric) {
+  return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
 }
 
 // "times" from a factor of two on, else percent.
@@ -40,12 +51,6 @@ std::string factor_words(const Estimate& ratio) {
 }
 
 }  // namespace
-
-std::string factor_text(double factor) {
-  constexpr double kWhole = 999.5;  // rounds to four digits
-  if (std::isnan(factor)) return "-";
-  return std::abs(factor) < kWhole ? fmt::format("{:.3g}", factor) : fmt::format("{:.0f}", factor);
-}
 
 const char* verdict_name(Verdict verdict) {
   switch (verdict) {
@@ -81,19 +86,9 @@ std::string verdict_text(const PairedComparison& comparison, double smallest_eff
     text = fmt::format("too few seeds: {} needed", comparison.seeds_needed);
   }
   if (comparison.left_out > 0) {
-    text += fmt::format(" ({} {} left out: no value)", comparison.left_out,
-                        comparison.left_out == 1 ? "seed" : "seeds");
+    text += fmt::format(" ({} left out: no value)", counted(comparison.left_out, "seed"));
   }
   return text;
-}
-
-double shown_value(const Metric& metric, double value) {
-  constexpr double kPercent = 100;
-  return metric.is_share() ? kPercent * value : value;
-}
-
-std::string shown_title(const Metric& metric) {
-  return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
 }
 
 std::string effect_words(const Metric& metric, const PairedComparison& comparison,
@@ -113,9 +108,6 @@ std::string effect_words(const Metric& metric, const PairedComparison& compariso
 }
 
 namespace {
-
-using evaluation::Metric;
-using evaluation::PairedComparison;
 
 // Like other numbers, but a small ratio keeps its digits.
 std::string ratio_cell(double ratio) {
@@ -187,7 +179,8 @@ std::string legend(const Comparison& comparison) {
       "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
       "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
       "interval excludes 0. no difference seen: it includes 0 and lies within {:.3g} % of A's mean "
-      "(--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds needed it "
+      "(--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds needed "
+      "it "
       "is so narrow that it leads to one of the other results.",
       100 * comparison.smallest_effect);
 }

@@ -213,12 +213,10 @@ std::string run_command(const Archive& result) {
   if (!result.command.empty()) return simbench_line(result.command);
   std::vector<std::string> names;
   for (const evaluation::Row& row : result.results.rows) names.push_back(row.pipeline);
-  return shell_line({"simbench",     "run",
-          "--scenario",   result.results.scenario,
-          "--first-seed", fmt::format("{}", result.results.first_seed),
-          "--seeds",      fmt::format("{}", result.results.seed_count),
-          "--pipelines",  fmt::format("{}", fmt::join(names, ",")),
-          "--output",     "results"});
+  return shell_line({"simbench", "run", "--scenario", result.results.scenario, "--first-seed",
+                     fmt::format("{}", result.results.first_seed), "--seeds",
+                     fmt::format("{}", result.results.seed_count), "--pipelines",
+                     fmt::format("{}", fmt::join(names, ",")), "--output", "results"});
 }
 
 std::vector<std::string> gate_commands(const Archive& result, const Baseline& baseline,

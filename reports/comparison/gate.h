@@ -1,18 +1,18 @@
 // Holds a result to a baseline (`simbench gate`).
 //
-// Exact mode, for pinned seeds: requires the seeds and the world of the baseline. Reports every change
-// beyond rounding. A check fails if the metric's table value (evaluation::Metric::table_value) is worse
-// by more than its margin, the larger of a share and a step, or if a seed lost its value. There is no
-// inference: equal code gives equal numbers.
+// Exact mode, for pinned seeds: requires the seeds and the world of the baseline. Reports every
+// change beyond rounding. A check fails if the metric's table value
+// (evaluation::Metric::table_value) is worse by more than its margin, the larger of a share and a
+// step, or if a seed lost its value. There is no inference: equal code gives equal numbers.
 //
-// Statistical mode, for 32 or more seeds of any numbers: paired by seed with at least 32 common seeds,
-// else by index, as independent runs. A check fails only if the mean is worse by more than the margin
-// and its Student's t interval excludes zero after Holm's correction over all checks of the gate
-// (evaluation/statistics/paired.h): fewer than one of twenty gates raises a false alarm. Lost values
-// fail here too if the seeds are the same, or if none is left.
+// Statistical mode, for 32 or more seeds of any numbers: paired by seed with at least 32 common
+// seeds, else by index, as independent runs. A check fails only if the mean is worse by more than
+// the margin and its Student's t interval excludes zero after Holm's correction over all checks of
+// the gate (evaluation/statistics/paired.h): fewer than one of twenty gates raises a false alarm.
+// Lost values fail here too if the seeds are the same, or if none is left.
 //
-// In both modes a pipeline of the baseline that is missing in the result fails; an additional one is
-// noted, and so are differences of the algorithms. The speed of the run does not matter.
+// In both modes a pipeline of the baseline that is missing in the result fails; an additional one
+// is noted, and so are differences of the algorithms. The speed of the run does not matter.
 //
 // Errors: scenarios::InputError for a result that cannot be compared with this baseline, with the
 // difference and the remedy.
@@ -96,10 +96,10 @@ std::string gate_text(const GateReport& report);
 // schema_version 1; members are only ever added. What does not exist is null.
 std::string gate_json(const GateReport& report);
 
-// Returns the report as JUnit XML, which CI services show beside a change: a suite for the gate, a case
-// for each metric of each pipeline, a failure with its numbers and the commands that repeat it. There
-// is no standard; this is the part that GitLab, Jenkins and the common GitHub actions read: testsuites,
-// testsuite, testcase (classname, name, time), failure (message, text).
+// Returns the report as JUnit XML, which CI services show beside a change: a suite for the gate, a
+// case for each metric of each pipeline, a failure with its numbers and the commands that repeat
+// it. There is no standard; this is the part that GitLab, Jenkins and the common GitHub actions
+// read: testsuites, testsuite, testcase (classname, name, time), failure (message, text).
 std::string gate_junit(const GateReport& report);
 
 // Escapes text for XML 1.0; characters that XML cannot hold become question marks.

@@ -1,14 +1,13 @@
 // The reports of a gate: text, JSON, JUnit.
-#include "reports/comparison/gate.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "recording/version.h"
 #include "reports/comparison/comparison.h"
+#include "reports/comparison/gate.h"
 #include "reports/text/block.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/document.h"
@@ -48,8 +47,7 @@ std::string change_text(const GateCheck& check) {
 std::string evidence_text(const GateReport& report, const GateCheck& check) {
   std::string text;
   if (check.lost_seeds > 0) {
-    text += fmt::format("; {} of {} seeds lost their value", check.lost_seeds,
-                        report.seeds.count);
+    text += fmt::format("; {} of {} seeds lost their value", check.lost_seeds, report.seeds.count);
   }
   if (report.mode == GateMode::kExact) {
     return text + fmt::format("; {} of {} seeds changed", check.changed_seeds, report.seeds.count);
@@ -162,8 +160,6 @@ std::string gate_text(const GateReport& report) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-
 Json seeds_json(const SeedRange& seeds) { return {{"first", seeds.first}, {"count", seeds.count}}; }
 
 Json check_json(const GateReport& report, const GateCheck& check) {
@@ -208,7 +204,7 @@ std::string gate_json(const GateReport& report) {
                {"notes", report.notes},
                {"reproduce", report.reproduce}};
   for (const GateCheck& check : report.checks) root["checks"].push_back(check_json(report, check));
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 namespace {

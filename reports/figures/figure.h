@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace simbench::reports {
@@ -83,6 +84,36 @@ struct Figure {
   std::vector<PhotographRow> photographs{};
   std::string absent{};  // why there is nothing to draw; then there are no panels
 };
+
+// What a figure is of, and so what a reader can switch: a figure of kRun exists once for each
+// pipeline and seed, one of kResults once. A few have, beside the one of their scope, one for each
+// pipeline (Figure::pipeline says which).
+enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun };
+
+struct FigureEntry {
+  std::string id;
+  std::string title;
+  std::string paper;                 // "Fig. 9, 10"; empty: of none
+  std::vector<std::string> aliases;  // "fig9", "fig10"
+  FigureScope scope = FigureScope::kRun;
+};
+
+// In the order in which a report shows them.
+const std::vector<FigureEntry>& figure_catalogue();
+
+// By id or alias; null if there is none.
+const FigureEntry* find_figure(std::string_view name);
+
+// A figure as tidy CSV: one line for each point, to be drawn by whatever the reader likes.
+//
+//   panel,series,x,y
+//   Sensor stamp,camera 0,225,22.222
+//
+// A gap has an empty y; where categories stand on the x axis, x is the category. A published value
+// or the like is a series of one point without x (or y, if it is vertical), a shaded stretch one of
+// two points without y. Photographs: the pipeline as the panel, the camera as the series, what is
+// read as x, its share as y.
+std::string figure_csv(const Figure& figure);
 
 }  // namespace simbench::reports
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "algorithms/ports/assert.h"
-#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure.h"
 
 namespace simbench::reports {
 namespace {

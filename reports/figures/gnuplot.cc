@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "reports/text/output_file.h"
-#include "reports/text/output_folder.h"
 
 extern char** environ;
 

@@ -1,5 +1,5 @@
-// What `simbench validate-model` prints: measured beside simulated distributions, the distance
-// between them, and what each stage of the model rests on.
+// The output of `simbench validate-model`: measured beside simulated distributions, the distance
+// between them, and the evidence for each stage of the model.
 //
 // JSON: {"schema_version": 1, "version", "commit", "scenario",
 //        "measured_on": {"date", "machine", "commit"}, "simulated_seeds": ...,

@@ -7,6 +7,7 @@
 
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_score.h"
+#include "reports/figures/figure.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -39,6 +40,19 @@ Block host_order_block(const evaluation::SweepPlan& plan,
 // How near the median AMD of n seeds comes to that of all, and how many are needed.
 Block seeds_needed_block(const evaluation::SweepPlan& plan,
                          const std::vector<evaluation::ResponseRow>& rows);
+
+// Panels of median AMD, absolute error, recall and margin. With no more than one point there is
+// nothing to draw (Figure::absent).
+Figure response_figure(const evaluation::SweepPlan& plan,
+                       const std::vector<evaluation::ResponseRow>& rows);
+
+// One panel: each host's median clock error, in the order of the sessions.
+Figure host_order_figure(const evaluation::SweepPlan& plan,
+                         const std::vector<evaluation::ResponseRow>& rows);
+
+// One panel: how far the median AMD of n seeds is from that of all, in percent, against n.
+Figure seeds_needed_figure(const evaluation::SweepPlan& plan,
+                           const std::vector<evaluation::ResponseRow>& rows);
 
 }  // namespace simbench::reports
 

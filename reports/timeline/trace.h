@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,37 @@ inline std::uint64_t events_of(const TraceAdjustment&) { return 1; }
 
 // A sentence for each reason why something was left out; none if all is there.
 std::vector<std::string> left_out_notes(const Trace& trace);
+
+// A trace in the Chrome trace event format (JSON object format), which the Perfetto UI
+// (ui.perfetto.dev) and chrome://tracing open.
+//
+// `ts` and `dur` are microseconds with three decimals, in true time from true zero, the start of
+// host synchronisation; if something begins before that, from its begin. otherData says which, what
+// was run, and what was left out. One line per event, in order of time, names first.
+// The same trace gives the same bytes. Cost: memory for the events, the text is streamed.
+// Source: "Trace Event Format", the Chromium project.
+void write_chrome_trace(const Trace& trace, std::ostream& out);
+
+inline constexpr std::uint32_t kTraceCsvPlaces = 100;
+
+// A trace as a table of series over time, which PlotJuggler opens: one strictly increasing column
+// `time_s`, seconds of true time, and a cell only where a series has a value.
+//
+//   trigger/pulse                number of the pulse
+//   hostN/clock_error_us         system clock minus the master's (N > 0)
+//   hostN/clock_step_us          what was set at once
+//   cameraN/latency_ms           middle of the exposure to delivery, at the delivery
+//                                (cameraN/colour/latency_ms: of the colour stream)
+//   cameraN/stamp_error_us       the pipeline's stamp minus what it should be, at the delivery
+//   gathering/stamps_range_us    of the set emitted then
+//   gathering/frames             in that set
+//
+// Of two values of a series at one instant the later is shown. Columns are those of the first
+// kTraceCsvPlaces hosts and cameras; the rest is left out.
+void write_trace_csv(const Trace& trace, std::ostream& out);
+
+// A sentence if columns are left out, besides left_out_notes().
+std::vector<std::string> trace_csv_notes(const Trace& trace);
 
 }  // namespace simbench::reports
 

@@ -1,20 +1,17 @@
-#include "reports/timeline/trace_chrome.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "recording/version.h"
+#include "reports/text/json_node.h"
+#include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double us(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
 

@@ -1,11 +1,11 @@
-#include "reports/timeline/trace_csv.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <tuple>
+
+#include "reports/timeline/trace.h"
 
 namespace simbench::reports {
 namespace {

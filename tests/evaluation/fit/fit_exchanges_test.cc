@@ -1,11 +1,10 @@
-#include "evaluation/fit/fit.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "evaluation/fit/fit.h"
 #include "evaluation/statistics/statistics.h"
 #include "sim/engine/random.h"
 

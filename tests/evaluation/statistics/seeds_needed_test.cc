@@ -1,11 +1,10 @@
-#include "evaluation/statistics/statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {

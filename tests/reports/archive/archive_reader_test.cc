@@ -1,5 +1,3 @@
-#include "reports/archive/archive.h"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "recording/version.h"
+#include "reports/archive/archive.h"
 #include "reports/results/json.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"

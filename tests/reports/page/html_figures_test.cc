@@ -1,6 +1,4 @@
 // Columns of numbers: read back by a decoder that is written from the description alone.
-#include "reports/page/html_figures.h"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -9,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+
+#include "reports/page/html_page.h"
 
 namespace simbench::reports {
 namespace {

@@ -1,11 +1,10 @@
 // The page as text: what stands in it, and what may not. How it looks is tested in a browser.
-#include "reports/reconstruction/reconstruction_html.h"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "reports/reconstruction/reconstruction_folder.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {

@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/sweep/sweep_figure.h"
-
 namespace simbench::reports {
 namespace {
 

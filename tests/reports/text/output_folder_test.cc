@@ -1,11 +1,10 @@
-#include "reports/text/output_folder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
+#include "reports/text/output_file.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reports {
