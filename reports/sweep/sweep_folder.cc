@@ -29,12 +29,12 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void log_failed(const fs::path& path, const std::string& what) {
   throw OutputError(
-      fmt::format("{}: {}: {}; every run finished by now is kept, and the same "
-                  "command goes on from there",
+      fmt::format("{}: {}: {}; all finished runs are kept, and the same command "
+                  "continues with the others",
                   path.string(), what, std::strerror(errno)));
 }
 
-// Writes all of it or says so; errno tells why not.
+// Writes all of the text. On failure errno has the reason.
 bool write_all(int file, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(file, text.data(), text.size());
@@ -53,7 +53,7 @@ constexpr const char* kLock = "lock";
 constexpr std::array<const char*, 7> kOwnFiles = {kManifest,   kLog,        kLock,      "sweep.csv",
                                                   "hosts.csv", "sweep.txt", "sweep.svg"};
 constexpr const char* kWayOut =
-    "name another folder, give that sweep's command again, or start anew here with --restart";
+    "name another folder, repeat that sweep's command, or replace it with --restart";
 
 [[noreturn]] void fail(const fs::path& folder, const std::string& problem) {
   throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
@@ -81,7 +81,7 @@ std::string shown(const json& flat, const std::string& pointer) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-// What tells two manifests apart: the first difference, and how many more there are.
+// The first difference of two manifests, and the number of further ones.
 std::string difference(const json& there, const json& here) {
   const json flat_there = there.flatten();
   const json flat_here = here.flatten();
@@ -151,7 +151,7 @@ bool SweepLog::take(std::string_view line) {
   const auto [stop, error] = std::from_chars(line.data(), line.data() + first, run);
   if (error != std::errc() || run >= texts_.size()) return false;
   const std::string_view text = line.substr(second + 1);
-  // Made again, so that a line counts only in the one way in which it is written.
+  // Made again, so that a line counts only in exactly its written form.
   if (text.empty() || this->line(run, text) != fmt::format("{}\n", line)) return false;
   if (texts_[run].empty()) ++finished_;
   texts_[run] = text;
@@ -192,7 +192,7 @@ void SweepLog::append(std::size_t run, const std::string& text) {
   const std::string added = line(run, text);
   if (!write_all(file_, added)) {
     const int reason = errno;
-    // Half a line would only be damage to report later; if this fails too, it is reported.
+    // Removes half a line; if this fails too, the next start reports it as damaged.
     if (::ftruncate(file_, size_) == 0) ::lseek(file_, size_, SEEK_SET);
     errno = reason;
     log_failed(path_, "cannot be written");
@@ -259,9 +259,9 @@ void SweepFolder::lock() {
   if (lock_ < 0) fail(folder_, fmt::format("cannot be written: {}", std::strerror(errno)));
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   if (errno == EWOULDBLOCK) {
-    fail(folder_, "another simbench is working on this sweep; wait for it or name another folder");
+    fail(folder_, "another simbench runs this sweep; wait for it or name another folder");
   }
-  // A file system without locks, as some clusters have: nothing to rely on, nothing to refuse.
+  // A file system without locks, as on some clusters: continue without.
 }
 
 void SweepFolder::check_manifest(const std::string& manifest) const {
@@ -277,11 +277,11 @@ void SweepFolder::check_manifest(const std::string& manifest) const {
                             kWayOut));
 }
 
-// A manifest that is damaged may have been a sweep's.
+// Refuses a result that is not a sweep. A damaged manifest may have been a sweep's.
 void SweepFolder::check_is_sweep(const std::string& manifest) const {
   const json found = json::parse(manifest, nullptr, false);
   if (found.is_object() && found.value("kind", json()) != "sweep") {
-    fail(folder_, "holds a result that is no sweep; name another folder");
+    fail(folder_, "holds a result that is not a sweep; name another folder");
   }
 }
 
@@ -300,7 +300,7 @@ void SweepFolder::write(const std::string& name, std::string_view content) {
 }
 
 void SweepFolder::remove(const std::string& name) {
-  std::error_code ignored;  // it is not there
+  std::error_code ignored;
   fs::remove(path(name), ignored);
 }
 

@@ -29,7 +29,7 @@ using evaluation::SweepRun;
 using evaluation::SweepScore;
 using evaluation::TablePlaces;
 
-// The columns that say which run it is.
+// The columns that identify the run.
 std::string run_header(const SweepPlan& plan) {
   std::string header;
   for (const std::string& pointer : plan.pointers()) header.append(csv_cell(pointer)).append(",");
@@ -115,7 +115,7 @@ XAxis x_axis(const SweepPlan& plan) {
 // "tick_ms" of "/hosts/clock/tick_ms": a legend has little room.
 std::string last_key(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
-// What tells the curves of a panel apart: the pipeline, and where the other axes stand.
+// The label of a curve: the pipeline, and the steps of the other axes.
 std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
   std::string label =
       plan.pipelines.size() > 1 || plan.axes.size() < 2 ? plan.pipelines[row.pipeline] : "";
@@ -184,7 +184,8 @@ Figure new_figure(const SweepPlan& plan, const std::string& id, const std::strin
   figure.title = plan.pipelines.size() > 1
                      ? fmt::format("{}: {}", plan.scenario, title)
                      : fmt::format("{}, {}: {}", plan.scenario, plan.pipelines.front(), title);
-  figure.caption = fmt::format("{} points, {} seeds each.", plan.points(), plan.seeds);
+  figure.caption =
+      fmt::format("{}, {} each.", counted(plan.points(), "point"), counted(plan.seeds, "seed"));
   return figure;
 }
 
@@ -278,7 +279,7 @@ Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& ro
   return {.heading = "Clock error of each slave, in the order of their sessions",
           .table = std::move(table),
           .prose = {"Milliseconds: the median over the seeds of a host's |mean clock error| during "
-                    "the capture. Host 1 is synchronised first and has run free for longest."}};
+                    "the capture. Host 1 is synchronised first and has run free the longest."}};
 }
 
 Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
@@ -308,20 +309,20 @@ Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& 
     }
     table.add(std::move(cells));
   }
-  return {
-      .heading =
-          fmt::format("How far the median AMD of n seeds is from that of all {}", plan.seeds),
-      .table = std::move(table),
-      .prose = {"In 95 % of studies with n seeds the median lies within +- so many percent. The "
-                "last columns turn that round; beyond the number of seeds run they go by the "
-                "distribution that these have shown. Differences between pipelines need fewer: "
-                "they are paired by seed."}};
+  return {.heading =
+              fmt::format("How far the median AMD of n seeds is from that of all {}", plan.seeds),
+          .table = std::move(table),
+          .prose = {
+              "In 95 % of studies with n seeds the median lies within +- this percentage. The "
+              "last columns show the inverse: the seeds needed for a percentage; beyond the seeds "
+              "run they use the distribution of these. Differences between pipelines need fewer "
+              "seeds: they are paired by seed."}};
 }
 
 Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   Figure figure = new_figure(plan, "sweep", "response");
   if (plan.points() < 2) {
-    figure.absent = "one point has no response";
+    figure.absent = "a single point has no response";
     return figure;
   }
   const XAxis x = x_axis(plan);

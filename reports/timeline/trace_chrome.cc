@@ -85,7 +85,7 @@ class ChromeWriter {
     line_ += '}';
   }
 
-  // "bp": the arrow holds on to the slice around its point, not to the next one.
+  // "bp": the arrow attaches to the slice around its point, not to the next one.
   void write_arrow(const TraceEvent& event) {
     const char* kind = event.what == TraceWhat::kFrameArrow ? "frame" : "message";
     const char* binding = event.phase == TracePhase::kArrowBegin ? "" : R"(,"bp":"e")";
