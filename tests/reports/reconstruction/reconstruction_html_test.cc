@@ -102,7 +102,7 @@ TEST(ReconstructionHtml, WithoutPicturesOrCurveTheirPartsAreLeftOut) {
       {.results = results, .pictures = {}, .command = {"simbench", "reconstruct"}});
   EXPECT_FALSE(has(page, "What the reconstruction looks like"));
   EXPECT_FALSE(has(page, "How good must my"));
-  EXPECT_TRUE(has(page, "the curve was not asked for"));
+  EXPECT_TRUE(has(page, "the curve was not requested"));
 }
 
 }  // namespace

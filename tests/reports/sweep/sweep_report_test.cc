@@ -77,8 +77,8 @@ TEST(SweepReport, TheResponseIsOfAllSeeds) {
   ASSERT_EQ(all.size(), 8U);
   EXPECT_EQ(all[0].of("amd_ms").median, 0.5);
   EXPECT_EQ(all[7].of("amd_ms").median, 14.5);
-  EXPECT_EQ(all[3].recall, 0.75);
-  EXPECT_EQ(all[3].precision, 1);
+  EXPECT_EQ(all[3].pooled.recall, 0.75);
+  EXPECT_EQ(all[3].pooled.precision, 1);
   EXPECT_EQ(all[3].hosts[2].median, 2);
   const std::string table = plain({.blocks = {response_block(plan(), all)}});
   EXPECT_THAT(table, HasSubstr("4 points, 2 pipelines, 2 seeds"));
