@@ -146,7 +146,7 @@ GroupVerdict judge_group(std::string stream, std::span<const GroupMember> member
 struct DiagnoseOptions {
   std::optional<double> rate_hz =
       std::nullopt;       // nominal, of the trigger; nothing: that of the cameras
-  bool one_host = false;  // one clock stamped all arrivals, whatever the files say
+  bool one_host = false;  // one clock stamped all arrivals; ignores the files' hosts
 };
 
 // One stream of one camera.

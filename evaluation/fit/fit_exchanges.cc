@@ -16,7 +16,7 @@ namespace {
 struct RoundTrip {
   double at_ns;
   double trip_ns;
-  double offset_ns;         // master's steady clock less the host's, but for a constant
+  double offset_ns;         // master's steady clock less the host's, up to a constant
   double system_offset_ns;  // host's system clock less the master's
   bool before_settings;
 };

@@ -62,7 +62,7 @@ inline constexpr std::array<const char*, 4> kGapMetrics = {"host_error_ms", "amd
 // The quantiles that are compared, as shares.
 inline constexpr std::array<double, 5> kGapQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-// Below this measured median a relative gap says more about noise than about the model.
+// Below this measured median a relative gap shows noise rather than the model.
 inline constexpr double kSmallestJudgedMs = 0.05;
 inline constexpr double kLargestGap = 0.2;
 

@@ -25,7 +25,8 @@ enum class Mark : std::uint8_t { kPoints, kLine, kSteps, kBars };
 struct FigureSeries {
   std::string label;
   Mark mark = Mark::kPoints;
-  std::vector<double> x;  // in ascending order but for kPoints; for kBars: 0, 1, ... (categories)
+  std::vector<double>
+      x;  // in ascending order except for kPoints; for kBars: 0, 1, ... (categories)
   std::vector<double> y;  // as long as x
   int colour = 0;         // the same number for the same thing throughout a figure
 };

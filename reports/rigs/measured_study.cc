@@ -17,7 +17,7 @@ using evaluation::Results;
 using evaluation::Row;
 
 constexpr int kSchemaVersion = 1;
-constexpr const char* kAdvice = "`simbench validate-model` says how to measure and keep one";
+constexpr const char* kAdvice = "`simbench validate-model` explains how to measure and keep one";
 
 MeasuredPipeline measured_pipeline(const Row& row) {
   MeasuredPipeline pipeline{.pipeline = row.pipeline, .seeds = {}, .notes = row.notes};
