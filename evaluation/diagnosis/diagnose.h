@@ -29,12 +29,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "evaluation/statistics/statistics.h"
 #include "recording/rs_csv.h"
 
 namespace simbench::evaluation {
@@ -48,23 +48,21 @@ struct StampJump {
 };
 
 struct StreamFacts {
-  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
   std::int64_t frames = 0;  // all
-  double first_arrival_s = kUnknown;
-  double last_arrival_s = kUnknown;
-  double longest_gap_s = kUnknown;  // between two arrivals
-  double gap_at_s = kUnknown;       // its begin, after the first arrival
+  double first_arrival_s = kNan;
+  double last_arrival_s = kNan;
+  double longest_gap_s = kNan;  // between two arrivals
+  double gap_at_s = kNan;       // its begin, after the first arrival
   // On the camera's clock.
-  double period_ms = kUnknown;           // of a frame
-  double interval_jitter_ms = kUnknown;  // standard deviation from whole periods
-  double on_grid_share = kUnknown;       // of intervals within a tenth of whole periods
+  double period_ms = kNan;           // of a frame
+  double interval_jitter_ms = kNan;  // standard deviation from whole periods
+  double on_grid_share = kNan;       // of intervals within a tenth of whole periods
   // On the host's clock.
-  double host_period_ms = kUnknown;
-  double host_period_sd_ppm = kUnknown;  // standard deviation of that, relative
+  double host_period_ms = kNan;
+  double host_period_sd_ppm = kNan;  // standard deviation of that, relative
   // Events.
   std::int64_t lost_frames = 0;       // counted by the camera, but never arrived
-  std::int64_t skipped_pulses = 0;    // periods without a frame that the counter does not know
+  std::int64_t skipped_pulses = 0;    // periods that the counter did not count
   std::int64_t counter_restarts = 0;  // the counter stood still or went back
   std::int64_t backward_stamps = 0;
   std::int64_t backward_arrivals = 0;
@@ -91,9 +89,9 @@ struct PairDiagnosis {
   std::string camera;
   std::string stream;
   std::string against;
-  double offset_ms = std::numeric_limits<double>::quiet_NaN();  // mean; later is positive
-  double spread_ms = std::numeric_limits<double>::quiet_NaN();  // sd about the movement
-  double moves_ms_per_minute = std::numeric_limits<double>::quiet_NaN();
+  double offset_ms = kNan;  // mean; later is positive
+  double spread_ms = kNan;  // sd about the movement
+  double moves_ms_per_minute = kNan;
   bool runs_free = false;
 };
 
@@ -111,14 +109,12 @@ enum class Follows : std::uint8_t {
 
 // One camera compared with the others of its group.
 struct Standing {
-  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
   Follows follows = Follows::kUnknown;
-  int period_multiple = 1;                // of the common period: 2 is half the rate
-  double rate_ppm = kUnknown;             // period against the common one
-  double rate_sd_ppm = kUnknown;          // of the difference
-  double moves_ms_per_minute = kUnknown;  // its phase, against the standard's
-  double phase_ms = kUnknown;  // of the arrivals, relative to the first camera of the standard
+  int period_multiple = 1;            // of the common period: 2 is half the rate
+  double rate_ppm = kNan;             // period against the common one
+  double rate_sd_ppm = kNan;          // of the difference
+  double moves_ms_per_minute = kNan;  // its phase, against the standard's
+  double phase_ms = kNan;  // of the arrivals, relative to the first camera of the standard
 };
 
 enum class SyncStatus : std::uint8_t { kWorks, kDoesNotWork, kCannotBeTold };
@@ -127,8 +123,8 @@ struct GroupVerdict {
   std::string stream;
   SyncStatus status = SyncStatus::kCannotBeTold;
   std::string reason;
-  double period_ms = std::numeric_limits<double>::quiet_NaN();  // common, in host time
-  double resolution_ppm = std::numeric_limits<double>::quiet_NaN();
+  double period_ms = kNan;  // common, in host time
+  double resolution_ppm = kNan;
   std::optional<std::size_t> standard;  // the first camera that has the common period
 };
 

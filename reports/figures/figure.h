@@ -25,8 +25,7 @@ enum class Mark : std::uint8_t { kPoints, kLine, kSteps, kBars };
 struct FigureSeries {
   std::string label;
   Mark mark = Mark::kPoints;
-  std::vector<double>
-      x;  // in ascending order except for kPoints; for kBars: 0, 1, ... (categories)
+  std::vector<double> x;  // ascending except for kPoints; for kBars: 0, 1, ... (categories)
   std::vector<double> y;  // as long as x
   int colour = 0;         // the same number for the same thing throughout a figure
 };
@@ -93,7 +92,7 @@ enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun };
 struct FigureEntry {
   std::string id;
   std::string title;
-  std::string paper;                 // "Fig. 9, 10"; empty: of none
+  std::string paper;                 // "Fig. 9, 10"; empty: none
   std::vector<std::string> aliases;  // "fig9", "fig10"
   FigureScope scope = FigureScope::kRun;
 };
