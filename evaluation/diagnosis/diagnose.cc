@@ -20,6 +20,10 @@ std::string times(std::int64_t count) {
   return count == 1 ? "once" : fmt::format("{} times", count);
 }
 
+std::string counted_frames(std::int64_t count) {
+  return fmt::format("{} frame{}", count, count == 1 ? "" : "s");
+}
+
 // Finds the faults camera by camera.
 class Findings {
  public:
@@ -155,15 +159,15 @@ class Findings {
   void add_lost() {
     const StreamFacts& facts = camera_->facts;
     if (facts.lost_frames > 0) {
-      add("lost_frames", fmt::format("{} frames lost after the camera had counted them: in the "
+      add("lost_frames", fmt::format("{} lost after the camera had counted them: in the "
                                      "camera, on USB or in the host",
-                                     facts.lost_frames));
+                                     counted_frames(facts.lost_frames)));
     }
     if (facts.skipped_pulses > 0) {
       add("skipped_pulses",
-          fmt::format("{} frames never exposed: periods that its counter did not count, because "
+          fmt::format("{} never exposed: periods that its counter did not count, because "
                       "the camera missed triggers or there were none",
-                      facts.skipped_pulses));
+                      counted_frames(facts.skipped_pulses)));
     }
     if (facts.counter_restarts > 0) {
       add("counter_restarts",

@@ -185,10 +185,12 @@ class Evaluation {
     if (seeds.empty()) return;
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
-    results.warnings.push_back(fmt::format(
-        "GenLock order differs from the pulses of up to {} frames a run, in {} of {} seeds, though "
-        "no evaluated frame was lost; did all cameras start with the same pulse?",
-        errors, seeds.size(), results.seed_count));
+    results.warnings.push_back(
+        fmt::format("GenLock order differs from the pulses of up to {} frame{} a run, in {} of {} "
+                    "seed{}, though "
+                    "no evaluated frame was lost; did all cameras start with the same pulse?",
+                    errors, errors == 1 ? "" : "s", seeds.size(), results.seed_count,
+                    results.seed_count == 1 ? "" : "s"));
   }
 
   const Scenario& scenario_;

@@ -155,9 +155,10 @@ std::string pairing_text(const Comparison& comparison) {
   const SeedRange a{comparison.first_seed_a, comparison.seed_count};
   const SeedRange b{comparison.first_seed_b, comparison.seed_count};
   if (!comparison.by_index) {
-    return fmt::format("{} pairs, one for each of the seeds {}", a.count, seeds_text(a));
+    return fmt::format("{}, one for each of the seeds {}", counted(a.count, "pair"), seeds_text(a));
   }
-  return fmt::format("{} pairs by index: seeds {} with {}", a.count, seeds_text(a), seeds_text(b));
+  return fmt::format("{} by index: seeds {} with {}", counted(a.count, "pair"), seeds_text(a),
+                     seeds_text(b));
 }
 
 Block words(const Comparison& comparison) {

@@ -7,6 +7,7 @@
 
 #include "evaluation/statistics/paired.h"
 #include "reports/comparison/comparison_scenarios.h"
+#include "reports/text/number_text.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -64,10 +65,10 @@ SeedPairing statistical_pairing(const SeedRange& expected, const SeedRange& foun
   }
   if (pairing.count >= kFewestGateSeeds) return pairing;
   throw InputError(fmt::format(
-      "{} has {} seeds and the baseline {} has {}, allowed with --mode statistical: at least {} in "
+      "{} has {} and the baseline {} has {}, allowed with --mode statistical: at least {} in "
       "each; run with --seeds {}",
-      report.result_path, found.count, report.baseline_path, expected.count, kFewestGateSeeds,
-      kFewestGateSeeds));
+      report.result_path, counted(found.count, "seed"), report.baseline_path, expected.count,
+      kFewestGateSeeds, kFewestGateSeeds));
 }
 
 // Whether two values are the same except for rounding; NaN is the same as NaN.

@@ -47,10 +47,12 @@ std::string change_text(const GateCheck& check) {
 std::string evidence_text(const GateReport& report, const GateCheck& check) {
   std::string text;
   if (check.lost_seeds > 0) {
-    text += fmt::format("; {} of {} seeds lost their value", check.lost_seeds, report.seeds.count);
+    text += fmt::format("; {} of {} lost their value", check.lost_seeds,
+                        counted(report.seeds.count, "seed"));
   }
   if (report.mode == GateMode::kExact) {
-    return text + fmt::format("; {} of {} seeds changed", check.changed_seeds, report.seeds.count);
+    return text + fmt::format("; {} of {} changed", check.changed_seeds,
+                              counted(report.seeds.count, "seed"));
   }
   return text +
          fmt::format(
@@ -67,10 +69,11 @@ std::string outcome_text(GateOutcome outcome) {
 std::string gate_head(const GateReport& report) {
   const std::size_t failed = report.count(GateOutcome::kFailed) + report.vanished_pipelines.size();
   const std::string verdict =
-      report.passed() ? fmt::format("gate passed: {} checks, {} of them the same",
-                                    report.checks.size(), report.count(GateOutcome::kSame))
-                      : fmt::format("gate FAILED: {} of {} checks", failed,
-                                    report.checks.size() + report.vanished_pipelines.size());
+      report.passed()
+          ? fmt::format("gate passed: {}, {} of them the same",
+                        counted(report.checks.size(), "check"), report.count(GateOutcome::kSame))
+          : fmt::format("gate FAILED: {} of {}", failed,
+                        counted(report.checks.size() + report.vanished_pipelines.size(), "check"));
   return wrapped(fmt::format("{} ({}). {}, {}: {} against the baseline {} (simbench {}, commit {})",
                              verdict, report.mode == GateMode::kExact ? "exact" : "statistical",
                              report.scenario, seeds_words(report), report.result_path,

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "reports/figures/figure_parts.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -360,11 +361,14 @@ Figure gathering(const RunDetail& run) {
   FigurePanel sets = sets_panel(run);
   if (!sets.series.empty()) figure.panels.push_back(std::move(sets));
   const evaluation::SetCounts& counts = run.score.sets;
+  const auto of = [](std::int64_t count, const char* thing) {
+    return counted(static_cast<std::uint64_t>(count), thing);
+  };
   figure.caption = fmt::format(
-      "{} complete sets, {} of them of one pulse; {} partial; {} of {} frames dropped. All cameras "
-      "delivered {} pulses.{}",
-      counts.emitted, counts.pure, counts.partial, run.score.frames.dropped,
-      run.score.frames.expected, counts.complete_pulses, camera_note(run));
+      "{}, {} of them of one pulse; {} partial; {} of {} dropped. All cameras delivered {}.{}",
+      of(counts.emitted, "complete set"), counts.pure, counts.partial, run.score.frames.dropped,
+      of(run.score.frames.expected, "frame"), of(counts.complete_pulses, "pulse"),
+      camera_note(run));
   return figure;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "reports/figures/figure_parts.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -184,9 +185,9 @@ Figure synchronisation(std::span<const RunDetail> runs) {
   if (with != nullptr) figure.panels.push_back(all_cameras(*with, "With"));
   const RunDetail& shown = with != nullptr ? *with : *without;
   figure.caption = fmt::format(
-      "Global stamps of {} cameras on {} hosts, one colour for each host. Note the different "
+      "Global stamps of {} on {}, one colour for each host. Note the different "
       "scales: cameras of one host agree without synchronisation, hosts do not.{}{}{}",
-      shown.camera_count, shown.host_count,
+      counted(shown.camera_count, "camera"), counted(shown.host_count, "host"),
       stand_in
           ? " The results do not have all of the paper's pipelines; those with the largest and "
             "the smallest AMD replace them."
