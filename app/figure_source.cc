@@ -13,7 +13,7 @@
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
-#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure.h"
 #include "reports/figures/result_figures.h"
 #include "reports/figures/run_figures.h"
 #include "reports/figures/seed_figures.h"

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 #include "scenarios/scenario.h"
 

@@ -8,7 +8,7 @@
 
 #include "app/figure_source.h"
 #include "recording/version.h"
-#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure.h"
 #include "scenarios/loader.h"
 
 namespace simbench::app {

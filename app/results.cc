@@ -13,9 +13,8 @@
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
-#include "reports/sweep/sweep_figure.h"
 #include "reports/sweep/sweep_report.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 
 namespace simbench::app {

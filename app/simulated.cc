@@ -1,7 +1,7 @@
 #include "app/simulated.h"
 
 #include "app/interrupt.h"
-#include "evaluation/sweep/sweep_worker.h"
+#include "evaluation/sweep/task_farm.h"
 #include "sim/rig/simulation.h"
 
 namespace simbench::app {

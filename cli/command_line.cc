@@ -13,7 +13,7 @@
 #include "recording/recording_folder.h"
 #include "recording/rs_csv.h"
 #include "recording/version.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/loader.h"
 

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reconstruction {

@@ -2,7 +2,7 @@
 // errors.
 //
 // For every (pipeline, seed): simulate the capture, take `frames` sets of simultaneous frames as
-// the pipeline's stamps have them (evaluation/scoring/exposure_sets.h), ray-cast each camera's
+// the pipeline's stamps have them (evaluation/run/exposure_sets.h), ray-cast each camera's
 // depth map at its frame's true mid-exposure, reconstruct with the believed calibration, measure
 // the reprojection error. Cameras, calibration errors and noise depend on the seed alone, so that
 // pipelines are paired by seed.

@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 #include "reconstruction/error_statistics.h"
 #include "reconstruction/results.h"
 

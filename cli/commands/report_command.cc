@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/page/html_report.h"
 #include "reports/text/output_file.h"
 #include "scenarios/loader.h"

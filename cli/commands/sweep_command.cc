@@ -13,7 +13,7 @@
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/sweep/sweep_plan.h"
-#include "evaluation/sweep/sweep_worker.h"
+#include "evaluation/sweep/task_farm.h"
 #include "reports/sweep/sweep_folder.h"
 #include "reports/sweep/sweep_report.h"
 #include "scenarios/study.h"

@@ -14,9 +14,7 @@
 #include "cli/progress.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reports/text/output_file.h"
-#include "reports/text/output_folder.h"
-#include "reports/timeline/trace_chrome.h"
-#include "reports/timeline/trace_csv.h"
+#include "reports/timeline/trace.h"
 #include "reports/timeline/trace_recorder.h"
 
 namespace simbench::cli {

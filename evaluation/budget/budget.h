@@ -1,38 +1,101 @@
-// The error budget of a pipeline: which stage its error comes from.
+// The error budget of a pipeline: how much of its error comes from each stage.
 //
-// A stage's part is its Shapley value: what replacing the stage by its oracle takes off the error,
-// averaged over all orders in which the seven stages can be replaced, and so over all 2^7 worlds
+// Each of the seven stages between a trigger pulse and a frame set can be replaced by its oracle:
+//
+//   trigger             every pulse on time at every camera
+//   exposure            all exposures equally long and steady
+//   stamp quantisation  stamps without noise, arrivals without quantum (the camera's register keeps
+//                       its microsecond)
+//   device clock        camera oscillators without any error
+//   USB delivery        every frame stamped as if it arrived in the middle of its exposure; polls
+//   of
+//                       a camera's clock answered at once
+//   host clock          every host reads the master's clock
+//   gathering           sets by the true pulse
+//
+// A stage's part is its Shapley value: the reduction of the error when the stage is replaced by its
+// oracle, averaged over all orders in which the stages can be replaced, and so over all 2^7 worlds
 // with some of them ideal, each simulated with the same seeds. The parts and the remainder (the
-// error that is left when all stages are ideal) add up to the error, for each seed exactly. A part
+// error that is left when all stages are ideal) add up to the error, exactly for each seed. A part
 // may be negative: two errors can cancel.
 //
 // Three errors are divided:
-//  - amd_ms: over the sets that gathering emits, so that gathering counts; if in some of the worlds
-//    it emits none, over the true pulses, where it has no part (amd_of_sets tells which);
+//  - amd_ms: over the sets that gathering emits, so that gathering counts; if it emits none in one
+//    of the worlds, over the true pulses, where gathering has no part (amd_of_sets tells which);
 //  - absolute_error_ms: likewise;
-//  - physical_ms: how far apart the exposures of a pulse really were (exposure_spread). The same in
-//    all clocks, so no algorithm can remove it; AMD contains it.
+//  - physical_ms: how far apart the exposures of a pulse really were (exposure_spread). No
+//    algorithm can remove it, since it is the same in all clocks; AMD contains it.
 //
-// Cost: 128 runs of the pipeline per seed. Source: Shapley, "A value for n-person games", 1953.
+// Streams of random numbers belong to components, so a real stage draws the same numbers whichever
+// others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
+// real arrivals: its use of them is part of the host clock.
+//
+// Cost: 128 runs of the pipeline per seed. Source: Shapley, "A value for n-person games", 1953;
+// docs/design.md section 6. Each oracle is a definition.
 //
 //   const Budget budget = error_budget(scenario, pipeline, make_world, {.seeds = 32}, nullptr);
 #ifndef SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
 #define SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
 
 #include <array>
-#include <functional>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "evaluation/budget/ideal_world.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
 
-// Means over the seeds, with the band from 5 to 95 %. Means, because they add up.
+enum class Stage : std::uint8_t {
+  kTrigger,
+  kExposure,
+  kStampQuantisation,
+  kDeviceClock,
+  kUsbDelivery,
+  kHostClock,
+  kGathering,
+};
+
+inline constexpr std::size_t kStageCount = 7;
+inline constexpr std::array<std::string_view, kStageCount> kStageNames = {
+    "trigger",      "exposure",   "stamp quantisation", "device clock",
+    "USB delivery", "host clock", "gathering"};
+
+// A set of stages, as the bits of a number below 2^7.
+class StageSet {
+ public:
+  static constexpr std::size_t kSets = std::size_t{1} << kStageCount;
+
+  constexpr StageSet() = default;
+  constexpr explicit StageSet(std::size_t bits) : bits_(bits) {}
+  constexpr bool has(Stage stage) const { return (bits_ & bit(stage)) != 0; }
+  constexpr StageSet with(Stage stage) const { return StageSet(bits_ | bit(stage)); }
+
+ private:
+  static constexpr std::size_t bit(Stage stage) {
+    return std::size_t{1} << static_cast<std::size_t>(stage);
+  }
+  std::size_t bits_ = 0;
+};
+
+// Returns the scenario with `pipeline` as its only one and the stages `ideal` replaced, except the
+// delivery, which a scenario cannot express.
+scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
+                                   const scenarios::Pipeline& pipeline, StageSet ideal);
+
+// Returns `source`, with the stamps of an ideal delivery if `ideal` has that. `world` is the
+// scenario that the source simulates. record() throws std::runtime_error on a frame without truth.
+std::unique_ptr<RecordingSource> ideal_delivery(std::unique_ptr<RecordingSource> source,
+                                                const scenarios::Scenario& world, StageSet ideal);
+
+// The mean over the seeds, which unlike a median adds up, with the band from 5 to 95 %.
 struct BudgetPart {
   std::vector<double> values;  // by seed
   double mean = 0;
@@ -55,16 +118,13 @@ struct Budget {
   ErrorParts physical_ms;
 };
 
-// The backend for a world; called from worker threads, the scenario outlives what it returns.
-using WorldFactory = std::function<std::unique_ptr<RecordingSource>(const scenarios::Scenario&)>;
-
-// Of options, pipelines and keep_pulses are not used. Throws what evaluate() throws.
+// Ignores EvaluationOptions::pipelines and keep_pulses. Throws what evaluate() throws.
 Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline,
                     const WorldFactory& make_world, const EvaluationOptions& options,
                     const Progress& progress);
 
-// Shapley values of n players: `worth[s]` belongs to the coalition whose members are the bits of s,
-// 2^n values in all; the result says by how much each player lowers it. O(n 2^n).
+// Returns the Shapley values of n players: by how much each lowers the worth. `worth[s]` belongs to
+// the coalition whose members are the bits of s, 2^n values in all. O(n 2^n).
 std::vector<double> shapley_values(std::span<const double> worth);
 
 }  // namespace simbench::evaluation

@@ -12,10 +12,19 @@ namespace {
 
 constexpr double kGapPeriods = 10;
 constexpr double kLeastGapS = 0.5;
-constexpr double kLateS = 1;        // a camera that starts or ends so much apart from the others
+constexpr double kLateS = 1;        // a later start or earlier end than this is reported
 constexpr double kUnsteady = 0.02;  // jitter as a share of the period
 constexpr std::size_t kMostJumps = 3;
 
+std::string times(std::int64_t count) {
+  return count == 1 ? "once" : fmt::format("{} times", count);
+}
+
+std::string counted_frames(std::int64_t count) {
+  return fmt::format("{} frame{}", count, count == 1 ? "" : "s");
+}
+
+// Finds the faults camera by camera.
 class Findings {
  public:
   explicit Findings(const Diagnosis& diagnosis) : diagnosis_(diagnosis) {
@@ -75,7 +84,7 @@ class Findings {
 
   void add_too_little() {
     const std::int64_t frames = camera_->facts.frames;
-    add("too_few_frames", frames == 1 ? "one frame: nothing can be told"
+    add("too_few_frames", frames == 1 ? "one frame: too few for a diagnosis"
                           : frames > 1
                               ? fmt::format("{} frames, but their stamps do not advance", frames)
                               : std::string("no frame"));
@@ -91,16 +100,17 @@ class Findings {
                                 : "free-running: its phase " + moves());
         break;
       case Follows::kOtherRate:
-        add("other_rate", fmt::format("runs at {:.3f} Hz, no part of the common rate", rate_hz));
+        add("other_rate",
+            fmt::format("runs at {:.3f} Hz, no whole fraction of the common rate", rate_hz));
         break;
       case Follows::kHostOrOwn:
         add_host();
         break;
       case Follows::kUnknown:
         if (std::isnan(camera_->facts.host_period_ms)) {
-          add("unknown_rate", "too few frames to tell its rate in host time");
-        } else if (group().standard) {  // else the verdict says it, of all
-          add("unknown_rate", "its rate in host time is not known well enough to compare");
+          add("unknown_rate", "too few frames to determine its rate in host time");
+        } else if (group().standard) {  // else the verdict reports it for all
+          add("unknown_rate", "its rate in host time is too uncertain to compare");
         }
         break;
       case Follows::kTrigger:
@@ -110,9 +120,10 @@ class Findings {
       const std::string part =
           standing.period_multiple == 2 ? "half" : fmt::format("1/{} of", standing.period_multiple);
       add("divided_rate",
-          fmt::format("{} the rate ({:.3f} Hz): it skips triggers that come while it is busy, as "
-                      "with too long an exposure or a trigger faster than half its mode's rate",
-                      part, rate_hz));
+          fmt::format(
+              "{} the rate ({:.3f} Hz): it ignores triggers while it is busy, with too long "
+              "an exposure or a trigger faster than half its mode's rate",
+              part, rate_hz));
     }
   }
 
@@ -122,7 +133,7 @@ class Findings {
     int count = 0;
     for (const CameraDiagnosis& other : diagnosis_.cameras) {
       if (other.stream != camera_->stream || other.host != camera_->host) continue;
-      if (count++ == 0 && &other != camera_) return;  // it was said with the first one
+      if (count++ == 0 && &other != camera_) return;  // reported with the first one
       names += (names.empty() ? "" : ", ") + other.camera;
     }
     if (is_standard()) return;  // the others are compared with this host
@@ -132,7 +143,7 @@ class Findings {
          .stream = camera_->stream,
          .kind = "host_or_free_running",
          .text = fmt::format(
-             "host {} ({} of camera{} {}): phase {}; this may be the host's clock as well as {}",
+             "host {} ({} of camera{} {}): phase {}; the cause may be the host's clock or {}",
              camera_->host, camera_->stream, alone ? "" : "s", names, moves(),
              alone ? "the camera's" : "a trigger of their own")});
   }
@@ -141,28 +152,28 @@ class Findings {
 
   std::string moves() const {
     const Standing& standing = camera_->standing;
-    return fmt::format("moves {:.3g} ms per minute against camera {} ({:+.3g} ppm)",
+    return fmt::format("drifts {:.3g} ms per minute relative to camera {} ({:+.3g} ppm)",
                        standing.moves_ms_per_minute, standard(), standing.rate_ppm);
   }
 
   void add_lost() {
     const StreamFacts& facts = camera_->facts;
     if (facts.lost_frames > 0) {
-      add("lost_frames",
-          fmt::format(
-              "{} frames lost after the camera had counted them: inside it, on USB or in the host",
-              facts.lost_frames));
+      add("lost_frames", fmt::format("{} lost after the camera had counted them: in the "
+                                     "camera, on USB or in the host",
+                                     counted_frames(facts.lost_frames)));
     }
     if (facts.skipped_pulses > 0) {
       add("skipped_pulses",
-          fmt::format("{} frames never exposed: periods without a frame that its counter does not "
-                      "know - it missed triggers, or they were missing",
-                      facts.skipped_pulses));
+          fmt::format("{} never exposed: periods that its counter did not count, because "
+                      "the camera missed triggers or there were none",
+                      counted_frames(facts.skipped_pulses)));
     }
     if (facts.counter_restarts > 0) {
-      add("counter_restarts", fmt::format("its frame counter stood still or went back {} times: it "
-                                          "was started again, or frames came twice",
-                                          facts.counter_restarts));
+      add("counter_restarts",
+          fmt::format("its frame counter stood still or went back {}: the camera was restarted, or "
+                      "frames arrived twice",
+                      times(facts.counter_restarts)));
     }
   }
 
@@ -171,44 +182,46 @@ class Findings {
     std::size_t shown = 0;
     for (const StampJump& jump : facts.jumps) {
       if (shown++ == kMostJumps) {
-        add("jumps", fmt::format("{} more jumps", facts.jumps.size() - kMostJumps));
+        const std::size_t more = facts.jumps.size() - kMostJumps;
+        add("jumps", fmt::format("{} more jump{}", more, more == 1 ? "" : "s"));
         break;
       }
       if (jump.periods != 0) {
         add("period_slip",
-            fmt::format("at {:.1f} s its stamps slip by {} period{} against their "
-                        "arrivals, for good",
+            fmt::format("at {:.1f} s its stamps slip permanently by {} period{} relative to "
+                        "their arrivals",
                         jump.at_s, -jump.periods, std::abs(jump.periods) > 1 ? "s" : ""));
       } else {
         add("clock_step",
-            fmt::format("at {:.1f} s arrivals and stamps move apart by {:.3f} ms, for "
-                        "good: a clock was set",
+            fmt::format("at {:.1f} s arrivals and stamps move apart permanently by {:.3f} ms: "
+                        "a clock was set",
                         jump.at_s, jump.step_ms));
       }
     }
     if (facts.interval_jitter_ms > kUnsteady * facts.period_ms) {
       add("unsteady",
-          fmt::format("unsteady: its intervals are {:.3f} ms off whole periods of {:.3f} "
-                      "ms (standard deviation), {:.1f} % within a tenth of one",
+          fmt::format("unsteady: its intervals differ from whole periods of {1:.3f} ms by {0:.3f} "
+                      "ms (standard deviation), {2:.1f} % are within a tenth of a period",
                       facts.interval_jitter_ms, facts.period_ms, facts.on_grid_share * 100));
     }
     if (facts.future_stamps > 0) {
-      add("future_stamps", fmt::format("{} stamps lie in the future: these frames arrived up to "
-                                       "{:.1f} ms sooner than all others after their stamp",
-                                       facts.future_stamps, facts.future_ms));
+      add("future_stamps",
+          fmt::format("{} stamp{} in the future: up to {:.1f} ms later than the delay of all other "
+                      "frames allows",
+                      facts.future_stamps, facts.future_stamps == 1 ? "" : "s", facts.future_ms));
     }
     if (facts.backward_stamps > 0) {
-      add("backward_stamps", fmt::format("its stamps go back {} times", facts.backward_stamps));
+      add("backward_stamps", "its stamps go back " + times(facts.backward_stamps));
     }
     if (facts.backward_arrivals > 0) {
-      add("backward_arrivals",
-          fmt::format("arrivals go back {} times: its host's clock was set back",
-                      facts.backward_arrivals));
+      add("backward_arrivals", fmt::format("arrivals go back {}: its host's clock was set back",
+                                           times(facts.backward_arrivals)));
     }
     if (facts.wraps > 0) {
-      add("register_wraps", fmt::format("its 32-bit microsecond register starts again {} time{} "
-                                        "(every 71.6 min): no fault, but programs must expect it",
-                                        facts.wraps, facts.wraps > 1 ? "s" : ""));
+      add("register_wraps",
+          fmt::format("its 32-bit microsecond register wraps {} (every 71.6 min): "
+                      "no fault, but programs must expect it",
+                      times(facts.wraps)));
     }
   }
 
@@ -236,7 +249,7 @@ class Findings {
          .stream = pair.stream,
          .kind = "stream_runs_free",
          .text =
-             fmt::format("camera {}: {} does not follow {}: its offset moves {:.3g} ms per minute",
+             fmt::format("camera {}: {} does not follow {}: its offset drifts {:.3g} ms per minute",
                          pair.camera, pair.stream, pair.against, pair.moves_ms_per_minute)});
   }
 
@@ -274,7 +287,7 @@ GroupVerdict judge_kind(const std::string& kind, Diagnosis& diagnosis,
   return judge_group(kind, members, period_ms);
 }
 
-// Every other stream of a camera against the one of the first kind it has.
+// Compares every other stream of a camera with that of its first kind.
 std::vector<PairDiagnosis> pairs_of(const std::vector<CameraStream>& streams,
                                     const std::vector<std::string>& kinds) {
   std::vector<PairDiagnosis> pairs;
@@ -296,22 +309,18 @@ std::vector<PairDiagnosis> pairs_of(const std::vector<CameraStream>& streams,
   return pairs;
 }
 
-// In order of the cameras; faults of a rig first, then what is worth knowing.
-std::vector<Finding> findings_of(const Diagnosis& diagnosis) { return Findings(diagnosis).all(); }
-
-// What no stamp can tell about this rig.
+// The questions about this rig that stamps cannot answer.
 std::vector<std::string> cannot_know(const Diagnosis& diagnosis) {
   std::vector<std::string> texts = {
-      "whether the exposures coincide: a constant delay (trigger cabling, exposure time, latency) "
-      "is "
-      "in no stamp. Film one flash with all cameras once.",
+      "whether the exposures coincide: no stamp shows a constant delay (trigger cabling, exposure "
+      "time, latency). Film one flash with all cameras once.",
       "which frames belong together: cameras with one period may still be whole periods apart."};
   const std::string host = diagnosis.cameras.empty() ? "" : diagnosis.cameras.front().host;
   if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),
                   [&host](const CameraDiagnosis& camera) { return camera.host != host; })) {
     texts.emplace_back(
-        "phases between hosts: they are as good as the hosts' common zero and clocks (--one-host: "
-        "all files are of one computer).");
+        "phases between hosts: they are as accurate as the hosts' common zero and clocks "
+        "(--one-host: all files are of one computer).");
   }
   return texts;
 }
@@ -333,7 +342,7 @@ Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptio
   }
   if (!diagnosis.groups.empty()) diagnosis.verdict = diagnosis.groups.front();
   diagnosis.pairs = pairs_of(streams, kinds);
-  diagnosis.findings = findings_of(diagnosis);
+  diagnosis.findings = Findings(diagnosis).all();
   diagnosis.cannot_know = cannot_know(diagnosis);
   return diagnosis;
 }

@@ -1,18 +1,25 @@
-// Is the hardware synchronisation of a rig working at all? An answer from its recorded stamps.
+// Does the hardware synchronisation of a rig work? An answer from recorded stamps.
 //
-// Takes the recordings that `simbench replay` reads. There is no truth in them; what follows rests
-// on two facts. A camera that starts each frame with a common trigger has the same frame period as
-// the others in *host* time, whatever its own clock does; cameras that run free differ by tens of
-// ppm, so that their phases drift apart. And a camera's frame counter counts exposures: frames that
-// the counter knows were lost after the camera, periods that it does not know were never exposed.
+// Takes the recordings that `simbench replay` reads. They hold no truth; the answer rests on two
+// facts. Cameras that start each frame with a common trigger have the same frame period in *host*
+// time, whatever their own clocks do; free-running cameras differ by tens of ppm, so that their
+// phases drift apart. And a camera's frame counter counts exposures: a gap in it is frames lost
+// after the camera, a period without a count was never exposed.
 //
-// Periods in host time are compared between cameras whose arrivals were stamped by one clock. Those
-// of different hosts can differ because the hosts' clocks do: then the stamps cannot tell.
+// Streams (diagnose_stream.cc): a lasting change between arrivals and sensor stamps is a jump, of
+// whole periods (the camera's stamps slipped) or of any length (a clock was set). Arrivals are
+// compared with jumps taken out. The first 5 s of recordings of 20 s and more are discarded:
+// cameras are unsteady there.
 //
-// The steps: diagnose_stream.h (streams of one camera), diagnose_group.h (the cameras that have
-// a kind of stream), and findings in words.
+// Groups (diagnose_group.cc): the cameras that have one kind of stream follow one trigger if their
+// periods in host time agree within the fits' uncertainty (four standard deviations), also at a
+// whole multiple of the common period. The largest set that agrees is the standard for the others.
+// The verdict "works" needs a resolution of 5 ppm: free-running cameras rarely agree that well, and
+// two of them by chance once in ten. Periods are compared between cameras whose arrivals were
+// stamped by one clock. Those of different hosts can differ because the hosts' clocks do; stamps
+// cannot tell these cases apart.
+//
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
-//
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
 //
 //   Diagnosis d = diagnose(reader.take(), {.rate_hz = 30});
@@ -20,21 +27,122 @@
 #ifndef SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 #define SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "evaluation/diagnosis/diagnose_group.h"
-#include "evaluation/diagnosis/diagnose_stream.h"
+#include "evaluation/statistics/statistics.h"
 #include "recording/rs_csv.h"
 
 namespace simbench::evaluation {
 
+// A lasting change of (arrival - sensor stamp).
+struct StampJump {
+  std::size_t frame = 0;  // the first one after it; of StreamFacts::arrivals_ms
+  double at_s = 0;        // after the stream's first arrival
+  double step_ms = 0;     // positive: stamps fell behind the arrivals
+  int periods = 0;        // 0: no whole number of them
+};
+
+struct StreamFacts {
+  std::int64_t frames = 0;  // all
+  double first_arrival_s = kNan;
+  double last_arrival_s = kNan;
+  double longest_gap_s = kNan;  // between two arrivals
+  double gap_at_s = kNan;       // its begin, after the first arrival
+  // On the camera's clock.
+  double period_ms = kNan;           // of a frame
+  double interval_jitter_ms = kNan;  // standard deviation from whole periods
+  double on_grid_share = kNan;       // of intervals within a tenth of whole periods
+  // On the host's clock.
+  double host_period_ms = kNan;
+  double host_period_sd_ppm = kNan;  // standard deviation of that, relative
+  // Events.
+  std::int64_t lost_frames = 0;       // counted by the camera, but never arrived
+  std::int64_t skipped_pulses = 0;    // periods that the counter did not count
+  std::int64_t counter_restarts = 0;  // the counter stood still or went back
+  std::int64_t backward_stamps = 0;
+  std::int64_t backward_arrivals = 0;
+  std::int64_t future_stamps = 0;  // frames that arrived earlier than their stamp allows
+  double future_ms = 0;            // by how much, at most
+  std::int64_t wraps = 0;          // of the 32-bit microsecond register
+  std::vector<StampJump> jumps;
+  // Arrivals with jumps taken out, and the period each belongs to; for comparisons of phase.
+  std::vector<double> arrivals_ms;
+  std::vector<std::int64_t> periods;
+
+  double span_s() const { return last_arrival_s - first_arrival_s; }
+};
+
+// `frames`: as recorded, not unwrapped, in order of delivery.
+StreamFacts stream_facts(std::span<const StampedFrame> frames);
+
+// Two streams of one camera compared, such as depth and colour.
+//
+// Both have stamps of the camera's one clock. Each frame of the second stream is compared with the
+// nearest of the first; offsets are continued beyond half a period, so that a free-running stream
+// shows as a steady drift.
+struct PairDiagnosis {
+  std::string camera;
+  std::string stream;
+  std::string against;
+  double offset_ms = kNan;  // mean; later is positive
+  double spread_ms = kNan;  // sd about the movement
+  double moves_ms_per_minute = kNan;
+  bool runs_free = false;
+};
+
+// Both as recorded; offset and drift are NaN with fewer than two frames in either.
+PairDiagnosis compare_streams(std::span<const StampedFrame> frames,
+                              std::span<const StampedFrame> against);
+
+enum class Follows : std::uint8_t {
+  kTrigger,    // the same period as the others
+  kOwnClock,   // a period of its own: free-running
+  kOtherRate,  // no whole multiple of the others' period
+  kHostOrOwn,  // a period of its own, but also the only camera of its host (or as all there)
+  kUnknown,    // too few frames
+};
+
+// One camera compared with the others of its group.
+struct Standing {
+  Follows follows = Follows::kUnknown;
+  int period_multiple = 1;            // of the common period: 2 is half the rate
+  double rate_ppm = kNan;             // period against the common one
+  double rate_sd_ppm = kNan;          // of the difference
+  double moves_ms_per_minute = kNan;  // its phase, against the standard's
+  double phase_ms = kNan;  // of the arrivals, relative to the first camera of the standard
+};
+
+enum class SyncStatus : std::uint8_t { kWorks, kDoesNotWork, kCannotBeTold };
+
+struct GroupVerdict {
+  std::string stream;
+  SyncStatus status = SyncStatus::kCannotBeTold;
+  std::string reason;
+  double period_ms = kNan;  // common, in host time
+  double resolution_ppm = kNan;
+  std::optional<std::size_t> standard;  // the first camera that has the common period
+};
+
+struct GroupMember {
+  std::string camera;
+  std::string host;
+  const StreamFacts* facts = nullptr;
+  Standing* standing = nullptr;  // filled in
+};
+
+// `expected_period_ms`: the trigger's nominal period; nothing: that of most cameras.
+GroupVerdict judge_group(std::string stream, std::span<const GroupMember> members,
+                         std::optional<double> expected_period_ms);
+
 struct DiagnoseOptions {
   std::optional<double> rate_hz =
-      std::nullopt;       // that the trigger should have; nothing: that of the others
-  bool one_host = false;  // one clock stamped all arrivals, whatever the files say
+      std::nullopt;       // nominal, of the trigger; nothing: that of the cameras
+  bool one_host = false;  // one clock stamped all arrivals; ignores the files' hosts
 };
 
 // One stream of one camera.
@@ -46,7 +154,7 @@ struct CameraDiagnosis {
   Standing standing;
 };
 
-// What someone should know, in words.
+// A fault or a noteworthy fact, in words.
 struct Finding {
   std::string camera;  // empty: about all
   std::string stream;

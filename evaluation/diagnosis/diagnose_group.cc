@@ -1,5 +1,3 @@
-#include "evaluation/diagnosis/diagnose_group.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kDeviations = 4;             // of a difference that is taken for real
-constexpr double kLeastDifferencePpm = 0.02;  // below it, numbers of milliseconds are no finer
+constexpr double kDeviations = 4;             // of a significant difference
+constexpr double kLeastDifferencePpm = 0.02;  // the resolution of stamps in milliseconds
 constexpr double kResolutionPpm = 5;
 constexpr double kWholeMultiple = 0.02;
 constexpr int kLargestMultiple = 64;
@@ -138,8 +137,8 @@ class Group {
     if (has_standard && in_standard(candidate)) return Follows::kTrigger;
     const Candidate standard = {0, standard_period_ms_, standard_sd_ppm_};
     if (!is_precise(candidate) && agree(candidate, standard)) return Follows::kUnknown;
-    // On one clock with others: if they differ from it, it is the camera that differs; if all on
-    // that clock agree, it may be the clock.
+    // Compares with others on the same clock: if they differ, the camera differs; if all on that
+    // clock agree, the cause may be the clock.
     bool others = false;
     for (const Candidate& other : candidates_) {
       if (other.member == candidate.member || host(other) != host(candidate)) continue;
@@ -197,34 +196,35 @@ class Group {
       verdict.standard = in_standard_.front();
     }
     if (worst_sd_ppm_ > 0) verdict.resolution_ppm = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
-    const auto say = [&verdict](SyncStatus status, std::string reason) {
+    const auto result = [&verdict](SyncStatus status, std::string reason) {
       verdict.status = status;
       verdict.reason = std::move(reason);
       return verdict;
     };
     if (members_.size() < 2) {
-      return say(SyncStatus::kCannotBeTold, "one camera alone cannot show a common trigger");
+      return result(SyncStatus::kCannotBeTold, "one camera alone cannot show a common trigger");
     }
     if (count(Follows::kOwnClock) > 0) {
-      return say(SyncStatus::kDoesNotWork,
-                 fmt::format("free-running, each with a frame period of its own: {}",
-                             names(Follows::kOwnClock)));
+      return result(SyncStatus::kDoesNotWork,
+                    fmt::format("free-running, each with a frame period of its own: {}",
+                                names(Follows::kOwnClock)));
     }
     if (count(Follows::kOtherRate) > 0) {
-      return say(SyncStatus::kDoesNotWork,
-                 fmt::format("at a rate that is no part of {:.3f} Hz: {}", 1000 / common_ms_,
-                             names(Follows::kOtherRate)));
+      return result(SyncStatus::kDoesNotWork,
+                    fmt::format("at a rate that is no whole fraction of {:.3f} Hz: {}",
+                                1000 / common_ms_, names(Follows::kOtherRate)));
     }
     if (count(Follows::kHostOrOwn) > 0) {
-      return say(SyncStatus::kCannotBeTold,
-                 fmt::format("frame periods differ between hosts, not within them: the clocks of "
-                             "the hosts of {} are not synchronised, or these cameras are not",
-                             names(Follows::kHostOrOwn)));
+      return result(
+          SyncStatus::kCannotBeTold,
+          fmt::format("frame periods differ between hosts, but not within a host: either the "
+                      "clocks of the hosts of {} or these cameras are not synchronised",
+                      names(Follows::kHostOrOwn)));
     }
-    if (count(Follows::kUnknown) > 0) return say(SyncStatus::kCannotBeTold, too_little());
-    return say(SyncStatus::kWorks,
-               fmt::format("all {} cameras have one frame period, to {:.2g} ppm", members_.size(),
-                           verdict.resolution_ppm));
+    if (count(Follows::kUnknown) > 0) return result(SyncStatus::kCannotBeTold, too_little());
+    return result(SyncStatus::kWorks,
+                  fmt::format("all {} cameras have one frame period, to {:.2g} ppm",
+                              members_.size(), verdict.resolution_ppm));
   }
 
   std::string too_little() const {
@@ -235,8 +235,9 @@ class Group {
       const double resolution = kDeviations * std::sqrt(2.0) * worst_sd_ppm_;
       const double needed_s = longest_s_ * std::pow(resolution / kResolutionPpm, 2.0 / 3);
       text += fmt::format(
-          "; periods are known to {:.2g} ppm and {:.0f} are needed, as free-running cameras differ "
-          "by tens: record about {:.0f} s",
+          "; periods are known to {:.2g} ppm, but {:.0f} ppm are needed because free-running "
+          "cameras "
+          "differ by tens: record about {:.0f} s",
           resolution, kResolutionPpm, std::ceil(needed_s));
     }
     if (count(Follows::kTrigger) > 0) {

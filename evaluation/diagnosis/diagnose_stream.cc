@@ -1,5 +1,3 @@
-#include "evaluation/diagnosis/diagnose_stream.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/diagnosis/diagnose.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -66,8 +65,8 @@ void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   }
 }
 
-// Two frames in a row, `periods` apart: frames that the counter has and we do not, and periods that
-// the counter does not have.
+// Two successive frames, `periods` apart: counts frames that only the counter has, and periods that
+// it lacks.
 void note_counter(std::uint64_t before, std::uint64_t now, double periods, StreamFacts& facts) {
   if (now <= before || now - before > (std::uint64_t{1} << 32)) {
     ++facts.counter_restarts;
@@ -79,8 +78,8 @@ void note_counter(std::uint64_t before, std::uint64_t now, double periods, Strea
   facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
 }
 
-// The period by the camera's clock; nothing if the stamps do not advance. The median interval, then
-// the median over longer spans: of intervals that alternate, the first is one of the two kinds.
+// The period by the camera's clock; nothing if the stamps do not advance. The median over longer
+// spans, since with alternating intervals the median interval is one of the two kinds.
 std::optional<double> period_of(std::span<const StampedFrame> frames) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -103,7 +102,7 @@ std::optional<double> period_of(std::span<const StampedFrame> frames) {
   return means.empty() ? interval : median(std::move(means));
 }
 
-// Intervals in whole periods: what they lack, and how far they are from whole.
+// Counts the missing periods of the intervals, and their deviations from whole periods.
 void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.periods.assign(1, 0);
   std::vector<double> deviations;
@@ -126,7 +125,7 @@ double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::p
   return median(std::vector<double>(values.begin() + begin, values.begin() + end));
 }
 
-// Finds lasting steps of `offsets` (arrival - sensor stamp) and takes them out of the arrivals.
+// Finds lasting steps of `offsets` (arrival - sensor stamp) and removes them from the arrivals.
 void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
                 StreamFacts& facts) {
   const auto size = static_cast<std::ptrdiff_t>(offsets.size());
@@ -158,7 +157,7 @@ void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>&
   }
 }
 
-// Offsets, their drift taken off, that lie below nearly all others.
+// Finds offsets that, less their drift, lie below nearly all others.
 void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts) {
   const auto size = static_cast<std::ptrdiff_t>(frames.size());
   if (size < 2 * kJumpWindow) return;
@@ -182,11 +181,11 @@ void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts
   }
 }
 
-// Medians of batches of frames, which a late frame hardly moves; between jumps only. Each stretch
-// between two jumps has its own zero, as a jump is known no better than the arrivals are.
+// Medians of batches of frames, which a late frame hardly moves, between jumps. Each stretch
+// between two jumps has its own zero, since a jump is known no better than the arrivals.
 struct Batches {
   std::vector<double> x;  // periods, about the stretch's mean
-  std::vector<double> y;  // arrival less the camera's periods, likewise
+  std::vector<double> y;  // arrival less the camera's periods, about its mean
   std::size_t stretches = 0;
 };
 
@@ -218,8 +217,8 @@ void add_stretch(const StreamFacts& facts, std::size_t begin, std::size_t end, B
   ++batches.stretches;
 }
 
-// The period in host time: a line through the batches, whose scatter about it says how well it is
-// known, also where lateness lasts for many frames.
+// The period in host time: a line through the batches. Their scatter about it gives its
+// uncertainty, also where lateness lasts for many frames.
 void note_host_period(StreamFacts& facts) {
   Batches batches;
   std::size_t begin = 0;
@@ -246,10 +245,10 @@ void note_host_period(StreamFacts& facts) {
 }
 
 constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
-constexpr double kMovesShare = 0.25;    // of a period: more is no jitter
+constexpr double kMovesShare = 0.25;    // of a period; more is no jitter
 constexpr double kMovesDeviations = 4;  // of the offsets
 
-// The first stream's register may have wrapped before the second was started.
+// The first stream's register may have wrapped before the second stream began.
 std::int64_t register_difference(const StampedFrame& a, const StampedFrame& b) {
   const std::int64_t difference = (a.sensor - b.sensor).count();
   const double wraps =
@@ -302,7 +301,7 @@ PairDiagnosis compare_streams(std::span<const StampedFrame> recorded,
     };
     while (nearest + 1 < against.size() && distance(nearest + 1) <= distance(nearest)) ++nearest;
     double offset = static_cast<double>(register_difference(frame, against[nearest])) * 1e-6;
-    if (std::abs(offset) > period_ms) continue;  // nothing near: lost frames
+    if (std::abs(offset) > period_ms) continue;  // lost frames
     if (!offsets.empty()) {
       offset = offsets.back() + std::remainder(offset - offsets.back(), period_ms);
     }

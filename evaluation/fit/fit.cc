@@ -4,25 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
 
 #include "algorithms/device_time/lower_hull.h"
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr std::size_t kParts = 8;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void check_stamps(const std::string& camera, const FitStream& stream) {
   const std::vector<StampedFrame>& frames = stream.frames;
   if (frames.size() < kFewestFrames) {
-    throw FitError(fmt::format("camera {}, {}: found {} frames, a fit needs {} at least", camera,
-                               stream.kind, frames.size(), kFewestFrames));
+    throw FitError(fmt::format("camera {}, {}: found {} frame{}, a fit needs {} at least", camera,
+                               stream.kind, frames.size(), frames.size() == 1 ? "" : "s",
+                               kFewestFrames));
   }
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const bool device_back = frames[i].sensor <= frames[i - 1].sensor;
@@ -49,7 +48,7 @@ std::vector<LinePoint> points_of(const std::vector<StampedFrame>& frames) {
   return points;
 }
 
-// Of every `step`-th point from `first` on.
+// The hull line of every `step`-th point from `first` on.
 SupportLine hull_line(std::span<const LinePoint> points, std::size_t first = 0,
                       std::size_t step = 1) {
   LowerHull hull;
@@ -87,7 +86,7 @@ double rise_ms(std::span<const LinePoint> points, const SupportLine& line) {
   return worst;
 }
 
-// Height above the hull of each frame's block.
+// The height of each frame above the hull of its block.
 std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) {
   const std::size_t by_frames = points.size() / kBlockFrames;
   const auto by_time = static_cast<std::size_t>(span_s / kBlockS);
@@ -104,7 +103,7 @@ std::vector<double> excess_of(std::span<const LinePoint> points, double span_s) 
   return excess_ms;
 }
 
-// Ranks from 0 on; equal values share the mean of theirs.
+// Ranks from 0 on; equal values share their mean rank.
 std::vector<double> ranks_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -132,12 +131,12 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
     bb += (b[i] - mean_b) * (b[i] - mean_b);
     ab += (a[i] - mean_a) * (b[i] - mean_b);
   }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNaN;
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNan;
 }
 
 constexpr std::int64_t kFewestPairs = 30;
 
-// The streams' own correlations, each by the number of its pairs.
+// The mean of the streams' correlations, weighted by their pairs.
 std::optional<FittedValue> correlation_of(const std::vector<StreamFit>& streams) {
   double sum = 0;
   std::int64_t pairs = 0;

@@ -1,17 +1,17 @@
-// From a recording of a rig to parameters of a scenario, each with its evidence.
+// From a recording of a rig to parameters of a scenario, each with its evidence:
 //
-//  - the rate of each camera's clock against its host's; where it has several streams, the one that
-//    knows it best;
-//  - how late frames come: the excess of all streams together, as a quantile table, and its
-//    correlation from frame to frame, as that of the normal variates of a Gaussian copula,
-//    r = 2 sin(pi / 6 * Spearman's);
-//  - the share of frames that the counters know of and that never came;
-//  - from exchanges between hosts: the latency of one way, offsets and rates (fit_exchanges.h).
+//  - the rate of each camera's clock relative to its host's, from the stream that determines it
+//    best;
+//  - the lateness of frames: the excess delay of all streams together, as a quantile table, and its
+//    correlation from frame to frame, as that of the normal variates of a Gaussian copula, r = 2
+//    sin(pi / 6 * Spearman's);
+//  - the share of frames that the counters counted and that never arrived;
+//  - from exchanges between hosts: the latency of one way, offsets and rates.
 //
-// What stamps alone cannot show, and no fit gives: the constant part of every delay, an asymmetry
-// of a link, and jitter that cameras have in common (all are taken to be independent).
+// No fit gives what stamps alone cannot show: the constant part of every delay, an asymmetry of a
+// link, and jitter that cameras have in common (all are taken to be independent).
 //
-// Errors: FitError. Complexity: O(n log n) in the frames.
+// Errors: FitError. Complexity: O(n log n) in the frames and exchanges.
 //
 //   const RigFit fit = fit_rig(input);
 #ifndef SIMBENCH_EVALUATION_FIT_FIT_H_
@@ -23,34 +23,73 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/fit/fit_exchanges.h"
 #include "evaluation/fit/fit_input.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 
-// What the stamp pairs of one stream say: the camera's rate, and how late each frame came.
+// The fit of the exchanges of a recording: latencies of the network, offsets and rates of the
+// hosts.
 //
-// Arrivals are late, never early. So the highest line that lies under all of them is the camera's
-// clock on the host's, but for a constant: the edge of the lower convex hull over the middle of the
+// Only exchanges with all four stamps count, and only those during which neither host's clock was
+// set. Recorded settings are undone: intervals are those of the steady clocks.
+//
+// A round trip is the sum of two ways, which stamps cannot separate. Both ways are assumed to have
+// one distribution and to be independent. The table of one way is then the one whose sum with
+// itself has the distribution of the round trips; some rounds of expectation and maximisation find
+// it from a uniform one (more would follow the sample's noise). A constant asymmetry of a link
+// stays hidden. The cost of messages between the stamp and the wire is part of it.
+//
+// A host's initial offset is that of its quickest exchange before any setting, within half a round
+// trip; its rate relative to the master's is the slope of the offsets of the quickest quarter.
+// Source: docs/reference/host_sync.md section 3; Dempster, Laird and Rubin 1977, "Maximum
+// likelihood from incomplete data via the EM algorithm".
+
+// A value with its standard error.
+struct FittedValue {
+  double value = 0;
+  double error = 0;
+};
+
+struct HostClockFit {
+  std::uint32_t host = 0;                             // not the master
+  std::optional<FittedValue> initial_offset_ms = {};  // from the master; error: half a round trip
+  std::optional<FittedValue> skew_ppm = {};           // rate against the master's
+};
+
+struct NetworkFit {
+  std::vector<double> round_trips_ms;
+  std::vector<double> latency_quantiles_ms;  // empty: fewer than kFewestExchanges round trips
+  std::vector<HostClockFit> hosts;           // those with exchanges with the master
+};
+
+inline constexpr std::size_t kFewestExchanges = 50;
+
+NetworkFit fit_exchanges(const FitInput& input);
+
+// Returns the quantile table of one way, two independent ones of which make up these round trips
+// (not empty).
+std::vector<double> one_way_table(const std::vector<double>& round_trips);
+
+// The fit of one stream: the camera's rate, and the lateness of each frame.
+//
+// Arrivals are late, never early. So the highest line below all of them maps the camera's clock to
+// the host's, except for a constant: it is the edge of the lower convex hull over the middle of the
 // device stamps.
 //
 // A frame's excess is its delivery delay less the smallest one, which stamps cannot show: its
 // height above that edge, block by block. Blocks last kBlockS at least, and have kBlockFrames at
-// least, so that a rate that changes over minutes is not taken for delay. Excess holds everything
-// else that varies between the camera's stamp and the arrival stamp: bus, kernel, scheduling, noise
-// and steps of both stamps.
+// least, so that a rate that changes over minutes is not taken for delay. Excess contains
+// everything else that varies between the camera's stamp and the arrival stamp: bus, kernel,
+// scheduling, noise and steps of both stamps.
 //
-// The standard error of the rate is that of the hull lines of kParts interleaved parts (every
-// kParts-th frame each), over sqrt(kParts): cautious, since a hull's error falls faster than that.
-// It does not cover a rate that changes; rise_ms shows that.
-//
-// Correlation is Spearman's between the excess of a frame and of the next by the counter.
+// The standard error of the rate is that of the hull lines of eight interleaved parts, divided by
+// sqrt(8): cautious, since a hull's error falls faster than that. It does not cover a rate that
+// changes; rise_ms shows that. The rank correlation (Spearman's) is between the excess of a frame
+// and of the next by the counter.
 //
 // Source: docs/reference/device_time.md section 1 (hull); algorithms/device_time/lower_hull.h.
-// Complexity: O(n log n). Errors: FitError: too few frames, device stamps or arrivals that go back.
-//
-//   const StreamFit fit = fit_stream("left", stream);
+// Errors: FitError: too few frames, device stamps or arrivals that go back.
 inline constexpr std::size_t kFewestFrames = 100;
 inline constexpr double kBlockS = 30;
 inline constexpr std::size_t kBlockFrames = 300;
@@ -64,7 +103,7 @@ struct StreamFit {
   double skew_ppm = 0;  // device rate / host rate - 1, lower hull
   double skew_error_ppm = 0;
   double least_squares_ppm = 0;  // the same by least squares, which the mean delay's drift moves
-  // How far all frames of the worst tenth of the recording lie above the line: a rate that changed.
+  // The least height above the line in the worst tenth of the recording: large if the rate changed.
   double rise_ms = 0;
   std::vector<double> excess_ms;  // frame by frame, 0 at least
   double rank_correlation = 0;    // NaN without pairs, or without any difference
@@ -74,7 +113,7 @@ struct StreamFit {
 // `camera` is for messages.
 StreamFit fit_stream(const std::string& camera, const FitStream& stream);
 
-// Spearman's, of successive values that are marked as successors (follows[i]: value i follows i-1).
+// Returns Spearman's correlation of successive values (follows[i]: value i follows value i - 1).
 double successive_rank_correlation(const std::vector<double>& values,
                                    const std::vector<bool>& follows);
 
@@ -96,7 +135,7 @@ struct RigFit {
 
 RigFit fit_rig(const FitInput& input);
 
-// At equally spaced probabilities 0 to 1; as many as there are values, kLongestTable at most.
+// Returns quantiles at equally spaced probabilities 0 to 1; one per value, kLongestTable at most.
 std::vector<double> quantile_table(const std::vector<double>& sorted);
 
 }  // namespace simbench::evaluation

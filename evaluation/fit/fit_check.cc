@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evaluation/statistics/two_sample_ks.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -20,7 +20,7 @@ FitSide side_of(const RigFit& fit) {
   return side;
 }
 
-// How many independent frames are worth as much; negative correlation is not counted on.
+// The number of independent frames with the same information; negative correlation counts as none.
 std::size_t effective_size(const RigFit& fit) {
   const double r = std::clamp(fit.correlation ? fit.correlation->value : 0.0, 0.0, 0.999);
   const double size = static_cast<double>(fit.excess_ms.size()) * (1 - r) / (1 + r);

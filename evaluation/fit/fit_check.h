@@ -1,18 +1,17 @@
-// How good a fit is: the fitted model is simulated, the simulation is fitted like the recording,
-// and both are put side by side.
+// The quality of a fit: the fitted model is simulated, and the simulation is fitted like the
+// recording and compared with it.
 //
-// Nothing is taken from the tables themselves: what the simulator makes of a model, through its
-// buses and clocks, is what is compared. Twice: the model of the whole recording against that
-// recording, and, where there are frames enough, the model of the first half of each stream against
-// the second half, which it was not fitted to (a hold-out).
+// The comparison is with the simulator's output, through its buses and clocks, never with the
+// fitted tables themselves. It is made twice: the model of the whole recording with that recording,
+// and, with enough frames, the model of the first half of each stream with the second half (a
+// hold-out).
 //
-// The distance is Kolmogorov's between the two samples of excess; the limit is what two samples of
-// one distribution exceed in 5 % of all cases, for sizes reduced by the correlation of successive
-// frames, n (1 - r) / (1 + r). The samples of a hold-out differ more than that if the rig itself
-// changed between the halves.
+// The distance is Kolmogorov's between the two samples of excess. Two samples of one distribution
+// exceed the limit in 5 % of all cases, for sizes reduced by the correlation of successive frames,
+// n (1 - r) / (1 + r). The samples of a hold-out differ more if the rig changed between the halves.
 //
-// The drift of simulated cameras is against true time: a recording cannot show its hosts' own
-// rates, so they are left out of both sides.
+// The drift of simulated cameras is relative to true time: a recording cannot show its hosts' own
+// rates, so both sides omit them.
 //
 //   const FitStudy study = study_fit(input, base, "model.json", sim::make_simulation);
 //   print(study.whole.ks, study.hold_out->ks);
@@ -25,16 +24,16 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/budget/budget.h"
 #include "evaluation/fit/fit.h"
 #include "evaluation/fit/fit_model.h"
+#include "evaluation/run/evaluate.h"
 
 namespace simbench::evaluation {
 
 inline constexpr std::array<double, 8> kFitQuantiles = {0.01, 0.05, 0.25, 0.5,
                                                         0.75, 0.95, 0.99, 0.999};
 
-// What is compared of a recording, or of a simulation.
+// The compared values of a recording or a simulation.
 struct FitSide {
   std::int64_t frames = 0;
   std::array<double, kFitQuantiles.size()> excess_ms{};
@@ -57,7 +56,7 @@ struct FitStudy {
   std::optional<FitCheck> hold_out;  // nothing: a stream with fewer than 2 kFewestFrames frames
 };
 
-// The model as simulated: `pulses` frames of each camera, in true time.
+// Simulates the model and fits the result: `pulses` frames of each camera, in true time.
 RigFit simulate_fit(const scenarios::Scenario& model, std::int64_t pulses,
                     const WorldFactory& make_world, std::uint64_t seed = 1);
 

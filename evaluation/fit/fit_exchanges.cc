@@ -1,5 +1,3 @@
-#include "evaluation/fit/fit_exchanges.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/fit/fit.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -17,15 +16,15 @@ namespace {
 struct RoundTrip {
   double at_ns;
   double trip_ns;
-  double offset_ns;         // master's steady clock less the host's, but for a constant
+  double offset_ns;         // master's steady clock less the host's, up to a constant
   double system_offset_ns;  // host's system clock less the master's
   bool before_settings;
 };
 
-// The clocks as they were last set: undoes the settings.
+// The last setting of each clock, to undo the settings.
 class Settings {
  public:
-  // The first of a host changes nothing: it begins the log.
+  // The first adjustment of a host begins the log and changes nothing.
   void add(const ClockAdjustment& adjustment) {
     const bool is_first = !last_.contains(adjustment.host);
     last_[adjustment.host] = adjustment;
@@ -33,7 +32,7 @@ class Settings {
   }
   bool has_set(std::uint32_t host) const { return set_.contains(host); }
 
-  // The host's steady time at its system time; nothing if that was before the last setting.
+  // Returns the host's steady time at its system time; nothing before the last setting.
   std::optional<double> steady_ns(std::uint32_t host, HostTime time) const {
     const auto found = last_.find(host);
     if (found == last_.end()) return std::nullopt;
@@ -67,7 +66,7 @@ std::optional<RoundTrip> round_trip(const ExchangeEvent& event, const Settings& 
       .offset_ns = ((*t2 - *t1) + (*t3 - *t4)) / 2,
       .system_offset_ns = -static_cast<double>(((*e.t2 - *e.t1) + (*e.t3 - *e.t4)).count()) / 2,
       .before_settings = !settings.has_set(event.host) && !settings.has_set(e.peer)};
-  if (event.host == 0) {  // the master asked
+  if (event.host == 0) {  // the master sent the request
     trip.offset_ns = -trip.offset_ns;
     trip.system_offset_ns = -trip.system_offset_ns;
   }
@@ -84,7 +83,7 @@ std::optional<FittedValue> initial_offset_ms(const std::vector<RoundTrip>& trips
   return FittedValue{quickest->system_offset_ns * 1e-6, quickest->trip_ns / 2 * 1e-6};
 }
 
-// Nothing where the slope is uncertain by more than kLargestErrorPpm.
+// Returns nothing if the slope is uncertain by more than kLargestErrorPpm.
 std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
   constexpr double kLargestErrorPpm = 5;
   constexpr std::size_t kFewest = 10;
@@ -112,11 +111,11 @@ std::optional<FittedValue> skew_ppm(const std::vector<RoundTrip>& trips) {
   return FittedValue{-line.slope / (1 + line.slope) * 1e6, error_ppm};
 }
 
-// Of one way and, as sums of two of them, of round trips: counted in cells from the least on.
+// The cells of one way, from the least latency on; round trips have twice as many.
 constexpr Eigen::Index kCells = 500;
 
-// The middles of two cells i and j add up to the edge between the round trips' cells i + j and
-// i + j + 1: their share counts as at i + j.
+// The middles of two cells i and j add up to the edge between the round trips' cells i + j and i +
+// j + 1; their share belongs to i + j.
 Eigen::VectorXd shares_of_cells(const std::vector<double>& round_trips, double shortest,
                                 double cell) {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(2 * kCells - 1);
@@ -127,8 +126,8 @@ Eigen::VectorXd shares_of_cells(const std::vector<double>& round_trips, double s
   return shares / static_cast<double>(round_trips.size());
 }
 
-// Expectation and maximisation: each round trip is divided among the pairs of ways that make it, as
-// likely as `way` makes them.
+// One round of expectation and maximisation: divides each round trip among the pairs of ways that
+// add up to it, by their probability in `way`.
 Eigen::VectorXd expected_shares(const Eigen::VectorXd& way, const Eigen::VectorXd& trips) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(trips.size());
   for (Eigen::Index i = 0; i < kCells; ++i) sums.segment(i, kCells) += way[i] * way;
@@ -170,13 +169,13 @@ NetworkFit fit_exchanges(const FitInput& input) {
   NetworkFit fit;
   for (const RecordingEvent& event : input.clock_events) {
     if (const auto* set = std::get_if<ClockAdjustment>(&event)) settings.add(*set);
-    const auto* asked = std::get_if<ExchangeEvent>(&event);
-    const auto trip = asked != nullptr ? round_trip(*asked, settings) : std::nullopt;
+    const auto* exchange = std::get_if<ExchangeEvent>(&event);
+    const auto trip = exchange != nullptr ? round_trip(*exchange, settings) : std::nullopt;
     if (!trip) continue;
     fit.round_trips_ms.push_back(trip->trip_ns * 1e-6);
-    const std::uint32_t peer = asked->exchange.peer;
-    if (asked->host == 0 || peer == 0) {
-      with_master[std::max(asked->host, peer)].push_back(*trip);
+    const std::uint32_t peer = exchange->exchange.peer;
+    if (exchange->host == 0 || peer == 0) {
+      with_master[std::max(exchange->host, peer)].push_back(*trip);
     }
   }
   if (fit.round_trips_ms.size() >= kFewestExchanges) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "algorithms/ports/time.h"
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 
 namespace simbench::evaluation {
 namespace {

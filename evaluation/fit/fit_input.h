@@ -1,10 +1,9 @@
-// What a recording offers to a fit: stamp pairs of cameras on hosts, and what hosts told each
-// other.
+// The input of a fit: stamp pairs of cameras on hosts, and the exchanges between hosts.
 //
 // Arrivals are on the hosts' steady clocks where the recording has them, so that no setting of a
-// system clock is taken for delay. Device stamps are those of the start of transmission, where the
-// camera gave them: what lies between them and the arrival does not depend on the exposure; else
-// the camera's only stamp. Both in nanoseconds, device stamps with their register unwrapped.
+// system clock is taken for delay. Device stamps are those of the start of transmission where the
+// camera has them (the delay from there to the arrival does not depend on the exposure), else the
+// camera's only stamp. Both in nanoseconds, device stamps with their register unwrapped.
 //
 //   FitInputSink sink({.warm_up_ms = 5000});
 //   folder.play(capture, sink);
@@ -27,7 +26,7 @@
 
 namespace simbench::evaluation {
 
-// A recording that nothing can be fitted to; what() is for the user.
+// A recording that no fit is possible to; what() is for the user.
 class FitError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -54,10 +53,10 @@ struct FitInput {
 };
 
 struct FitInputOptions {
-  std::vector<std::string> hosts = {};    // names; those that are missing are "host0", ...
+  std::vector<std::string> hosts = {};    // names; missing ones are "host0", ...
   std::vector<std::string> cameras = {};  // likewise "camera0", ...
-  double warm_up_ms = 0;                  // of each stream, from its first frame: left out
-  // Of a simulated recording: arrivals in true time instead of the host's steady time.
+  double warm_up_ms = 0;                  // discarded, of each stream from its first frame
+  // For a simulated recording: arrivals in true time instead of the host's steady time.
   bool true_time = false;
 };
 
@@ -87,11 +86,11 @@ class FitInputSink final : public RecordingSink {
   std::map<std::pair<std::uint32_t, StreamKind>, std::vector<Stamps>> stamps_;
 };
 
-// From files of real cameras. `one_host`: one computer stamped all arrivals, whatever the files
-// say.
+// Returns the input from files of real cameras. `one_host`: one computer stamped all arrivals,
+// whatever the files state.
 FitInput fit_input(std::vector<CameraStream> streams, bool one_host);
 
-// Halves of every stream, for a fit to the one and a test on the other.
+// Returns the halves of every stream, for a fit to one and a test on the other.
 std::pair<FitInput, FitInput> halves(const FitInput& input);
 
 }  // namespace simbench::evaluation

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "evaluation/replay/replay_camera.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
 #include "scenarios/loader.h"
 
@@ -105,7 +105,7 @@ void add_network_lines(const NetworkFit& network, Lines& lines) {
   }
 }
 
-// Cameras whose rate changed so much that a line cannot follow it.
+// Adds cameras whose rate changed too much for a line.
 void add_rise_lines(const RigFit& fit, const FitInput& input, Lines& lines) {
   constexpr double kNoticed = 0.5;  // of the median excess
   for (const StreamFit& stream : fit.streams) {
@@ -117,7 +117,7 @@ void add_rise_lines(const RigFit& fit, const FitInput& input, Lines& lines) {
   }
 }
 
-// The root of the mean square of what there is.
+// The root mean square of the existing values.
 std::optional<double> root_mean_square(const NetworkFit& network,
                                        std::optional<FittedValue> HostClockFit::*member) {
   double sum = 0;
@@ -137,8 +137,8 @@ constexpr std::size_t kLongestSummary = 3900;
 
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
-// Tables of numbers stand in the document under a mark each, and are written in lines of their own
-// width: a number per line is for nobody.
+// Tables of numbers: each has a mark in the document, in whose place it is written with many
+// numbers to a line.
 class Tables {
  public:
   Json mark(const std::vector<double>& values, int decimals) {
@@ -193,7 +193,7 @@ std::string stated_base(const FitBase& base, const std::string& path) {
   return std::filesystem::proximate(std::filesystem::absolute(base.stated), folder).string();
 }
 
-// Where each camera is.
+// The host of each camera.
 Json places_of(const FitInput& input) {
   std::vector<std::uint32_t> hosts;
   for (const FitCamera& camera : input.cameras) hosts.push_back(camera.host);

@@ -1,18 +1,19 @@
-// A fitted rig as a scenario file: what was fitted, over a scenario that gives the rest.
+// A fitted rig as a scenario file: the fitted values over a base scenario.
 //
-// The file states its base by name or path, or is complete by itself where the base is a
-// recording's own scenario, which need not be anywhere else. What the fitted tables contain already
-// is switched off: jitter common to a host, bursts of load, noise and steps of the stamps; with a
-// latency table also what messages cost the hosts at both ends. Faults of the base are left out:
-// what they did is in the recording.
+// The file names its base by name or path, or is complete if the base is a recording's own
+// scenario, which may exist nowhere else. Effects that the fitted tables contain are switched off:
+// jitter common to a host, bursts of load, noise and steps of the stamps; with a latency table also
+// the cost of messages on the hosts at both ends. Faults of the base are omitted: their effects are
+// in the recording.
 //
-// "summary" says what each value rests on; fit_evidence() gives the same line by line,
+// "summary" has the evidence for each value; fit_evidence() returns it line by line,
 // not_identified() what no fit to these stamps can give.
 //
 //   const FitModel model = fit_model(fit, input, base, "model.json");
 //   reports::write_file("model.json", model.text);
 //
-// Errors: scenarios::InputError if the base does not bear it (a frame rate that its cameras lack).
+// Errors: scenarios::InputError if the base does not support it (a frame rate that its cameras
+// lack).
 #ifndef SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
 #define SIMBENCH_EVALUATION_FIT_FIT_MODEL_H_
 
@@ -27,13 +28,13 @@ namespace simbench::evaluation {
 
 struct FitBase {
   scenarios::Scenario scenario;
-  std::string stated = {};  // as the file's "base"; empty: the file holds all of the scenario
-  // Of a base that is only like the rig: what the recording's frame rate makes of it.
+  std::string stated = {};  // as the file's "base"; empty: the file holds the whole scenario
+  // Replacements by the recording's frame rate, for a base that only resembles the rig.
   std::optional<double> rate_hz = {};
   std::optional<double> mode_rate_hz = {};
 };
 
-// For recordings of real cameras that state no scenario: the built-in one that is nearest, with the
+// Returns the nearest built-in scenario, for recordings of real cameras without one, with the
 // cameras' rate at half of the slowest mode that allows it.
 FitBase default_base(const FitInput& input);
 
@@ -44,20 +45,20 @@ struct FitModel {
   std::vector<std::string> not_identified;
 };
 
-// `path` of the file to come: its stem is the scenario's name, and a base that is a file is stated
+// `path`: of the future file; its stem is the scenario's name, and a base that is a file is stated
 // relative to it.
 FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base,
                    const std::string& path);
 
-// "/json/pointer: value and evidence" each.
+// Returns lines "/json/pointer: value and evidence".
 std::vector<std::string> fit_evidence(const RigFit& fit, const FitInput& input);
 
-// `base` gives what is not identified.
+// Returns a line for each value that comes from `base`.
 std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input,
                                         const scenarios::Scenario& base);
 
-// Of the rates of the hosts' oscillators, from those against the master's, which is one of them;
-// and of the first offsets. Nothing where no host has one.
+// Return the standard deviation of the rates of the hosts' oscillators, from the rates relative to
+// the master's, which is one of them, and that of the initial offsets; nothing if no host has one.
 std::optional<double> host_skew_sigma_ppm(const NetworkFit& network);
 std::optional<double> initial_offset_sigma_ms(const NetworkFit& network);
 

@@ -1,6 +1,11 @@
 #include "evaluation/model/evidence.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "algorithms/ports/assert.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -13,34 +18,39 @@ constexpr StageEvidence kStages[] = {
      "delays of cables and branches are assumed"},
     {"exposure",
      {false, false, false, true, true},
-     "delay after the pulse, pulses ignored in genlock, waiting slaves: reported for the D455, "
-     "measured on none here; the spread of exposures in the calibrated worlds is a fit to eight "
-     "published numbers"},
+     "delay after the pulse, pulses ignored in genlock, waiting slaves: reported for the D455, but "
+     "not measured here; the spread of exposures in the calibrated worlds is a fit to eight "
+     "published "
+     "numbers"},
     {"device clock",
      {true, false, false, true, true},
-     "32-bit microseconds and their wrap as in the SDK's code, wander tested against the Allan "
-     "deviation it is set to; rate errors and wander of a camera's quartz are assumed"},
+     "32-bit microseconds and their wrap as in the SDK's code, wander tested against its "
+     "configured "
+     "Allan deviation; rate errors and wander of a camera's quartz are assumed"},
     {"USB and host stack",
      {false, false, false, true, true},
-     "whole latencies as reported for the D455; how they divide, the law of the jitter and the "
-     "sharing of a controller are assumed. simbench fit puts a rig's own quantiles in their place"},
+     "whole latencies as reported for the D455; their parts, the distribution of the jitter and "
+     "the "
+     "sharing of a controller are assumed. simbench fit replaces them by a rig's own quantiles"},
     {"host oscillator",
      {true, false, false, true, true},
      "simulated Allan deviation follows the configured one; sizes are those of ordinary quartz. "
-     "The experiment's hosts share one oscillator: their skews are set, no wander is in it"},
+     "The experiment's hosts share one oscillator: their skews are set, and they have no wander"},
     {"clock interface (get and set)",
      {false, true, false, false, true},
      "the nodes' software clock is part of the experiment; cost and ticks of the system calls in "
      "the calibrated worlds are fitted, no document supports them"},
     {"network latency",
      {false, false, false, true, true},
-     "near the round trips that others published for one wired link; unequal links and bursts are "
-     "assumed. The experiment imposes the scenario's latencies, so it cannot confirm them"},
+     "near published round trips of one wired link; unequal links and bursts are assumed. The "
+     "experiment imposes the scenario's latencies, so it cannot confirm them"},
     {"transport and kernel stamps",
      {false, true, false, false, false},
-     "real sockets and kernel stamps under the scenario's delay, jitter, loss and reordering; what "
-     "the simulator leaves out of them is in the gap above. No network card, switch or second "
-     "kernel is in it"},
+     "real sockets and kernel stamps under the scenario's delay, jitter, loss and reordering; the "
+     "gap "
+     "above shows the effects that the simulator omits. The experiment has no network card, switch "
+     "or "
+     "second kernel"},
     {"host_sync protocols",
      {true, true, false, true, false},
      "the same code in both worlds; closed forms, recorded outputs of chrony's regression and "
@@ -48,17 +58,50 @@ constexpr StageEvidence kStages[] = {
      "reproduced"},
     {"device_time",
      {true, false, true, true, false},
-     "closed forms, and a recording of other cameras with a real drift of -215 ppm; it has no true "
+     "closed forms, and a recording of other cameras with a real drift of -215 ppm, but without "
+     "true "
      "exposure times, so that a constant delay stays unknown"},
     {"gathering",
      {true, false, false, true, false},
-     "exact small cases, and the test vectors of the projects whose policies are here; in the "
-     "experiment gathering runs on stamps of simulated cameras"},
+     "exact small cases, and the test vectors of the projects with these policies; in the "
+     "experiment "
+     "gathering runs on stamps of simulated cameras"},
     {"metrics",
      {true, false, false, true, false},
      "the definitions of the paper with bounds that hold for any data; two published rows break "
-     "the bound of eq. (4) and are marked, not chased"},
+     "the "
+     "bound of eq. (4), so nothing is fitted to them"},
 };
+
+GapSide side_of(const Series& series) {
+  GapSide side;
+  side.series = make_series(series.values);
+  side.count = static_cast<std::size_t>(std::count_if(
+      series.values.begin(), series.values.end(), [](double value) { return !std::isnan(value); }));
+  for (std::size_t i = 0; i < kGapQuantiles.size(); ++i) {
+    side.quantiles[i] = quantile(series.values, kGapQuantiles[i]);
+  }
+  return side;
+}
+
+ModelGapRow compare(const std::string& pipeline, const Metric& metric, const Row& measured_row,
+                    const Row& simulated_row) {
+  const Series& measured = metric.series(measured_row);
+  const Series& simulated = metric.series(simulated_row);
+  ModelGapRow row;
+  row.pipeline = pipeline;
+  row.metric = metric.id;
+  row.measured = side_of(measured);
+  row.simulated = side_of(simulated);
+  row.ks = ks_distance(measured.values, simulated.values);
+  row.ks_critical = ks_critical_distance(row.measured.count, row.simulated.count);
+  const double found = row.measured.series.median;
+  row.median_gap = (row.simulated.series.median - found) / found;
+  if (found > kSmallestJudgedMs && !std::isnan(row.median_gap)) {
+    row.within_20_percent = std::abs(row.median_gap) <= kLargestGap;
+  }
+  return row;
+}
 
 }  // namespace
 
@@ -80,5 +123,20 @@ std::string_view name_of(Evidence evidence) {
 }
 
 std::span<const StageEvidence> model_evidence() { return kStages; }
+
+std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simulated) {
+  std::vector<ModelGapRow> rows;
+  for (const Row& found : measured.rows) {
+    const auto predicted =
+        std::find_if(simulated.rows.begin(), simulated.rows.end(),
+                     [&](const Row& row) { return row.pipeline == found.pipeline; });
+    if (predicted == simulated.rows.end()) continue;
+    for (const char* id : kGapMetrics) {
+      ModelGapRow row = compare(found.pipeline, metric(id), found, *predicted);
+      if (row.measured.count + row.simulated.count > 0) rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
 
 }  // namespace simbench::evaluation

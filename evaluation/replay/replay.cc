@@ -22,7 +22,7 @@ namespace {
 // T_int: "less than half a frame interval is sufficient" (paper).
 constexpr std::int64_t kIntervalsPerPeriod = 2;
 
-// A frame by the place of its camera in the rig and its place in the camera's recording.
+// A frame: the place of its camera in the rig and its place in the camera's recording.
 struct FrameId {
   std::uint32_t source = 0;
   std::size_t frame = 0;
@@ -177,8 +177,8 @@ Nanoseconds first_arrival_range(const Members& members) {
   return (*last)->frames.front().arrival - (*first)->frames.front().arrival;
 }
 
-// `members` are the cameras (two or more) that have `stream`; their rows are complete. Nothing if
-// no camera has a frame period, of a microsecond at least: there is nothing to match frames by.
+// `members`: the cameras (two or more) that have `stream`; their rows are complete. Returns nothing
+// if no camera has a frame period (of at least a microsecond) to match frames by.
 std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
                                     const std::string& stream,
                                     const std::vector<std::size_t>& members) {
@@ -217,7 +217,7 @@ std::vector<DeviceSample> samples_of(const std::vector<StampedFrame>& frames) {
   std::vector<DeviceSample> samples;
   samples.reserve(frames.size());
   for (const StampedFrame& frame : frames) {
-    samples.push_back({.sensor = DeviceTime(std::chrono::round<Microseconds>(frame.sensor)),
+    samples.push_back({.sensor = device_time_of(frame),
                        .arrival = HostTime(frame.arrival),
                        .arrival_steady = SteadyTime(frame.arrival),
                        .exposure_us = 0});
@@ -247,7 +247,7 @@ void score(const std::vector<StampedFrame>& frames, bool relative, DeviceTimeRep
   row.drift_ppm = fit_line(sensor, offset).slope * 1e6;
 }
 
-// An estimator may extrapolate damaged stamps to anything; the difference of two must not overflow.
+// An estimator may extrapolate damaged stamps without limit; differences must not overflow.
 GlobalTime limited(GlobalTime stamp) {
   constexpr GlobalTime kLargest{Nanoseconds((std::int64_t{1} << 62) - 1)};
   constexpr GlobalTime kSmallest{-kLargest.time_since_epoch()};
@@ -284,8 +284,10 @@ void warn(const CameraReplay& camera, std::vector<std::string>& warnings) {
   const CameraStatistics& found = camera.statistics;
   const std::string name = camera.camera + " " + camera.stream + ": ";
   if (found.backward_steps > 0) {
-    warnings.push_back(name + "sensor stamps go back " + std::to_string(found.backward_steps) +
-                       " times: frames were reordered, or the camera was started again");
+    const std::string times =
+        found.backward_steps == 1 ? "once" : std::to_string(found.backward_steps) + " times";
+    warnings.push_back(name + "sensor stamps go back " + times +
+                       ": frames were reordered, or the camera was restarted");
   }
   if (found.frames < 2) {
     warnings.push_back(name + "has one frame: too few for a drift or a jitter");
@@ -323,7 +325,8 @@ Replay run_replay(std::vector<CameraStream> streams) {
     if (members.size() < 2) continue;
     std::optional<RigReplay> rig = replay_rig(replay.cameras, stream, members);
     if (!rig) {
-      replay.warnings.push_back(stream + ": no camera has a frame period: they are not compared");
+      replay.warnings.push_back(stream +
+                                ": no camera has a frame period, so the cameras are not compared");
       continue;
     }
     replay.rigs.push_back(std::move(*rig));
@@ -331,7 +334,7 @@ Replay run_replay(std::vector<CameraStream> streams) {
       replay.warnings.push_back(
           stream +
           ": the cameras' first frames lie more than half a period apart: without a common "
-          "start, AMD and RMDV by GenLock order mean nothing");
+          "start, AMD and RMDV by GenLock order are meaningless");
     }
   }
   return replay;

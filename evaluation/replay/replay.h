@@ -1,44 +1,103 @@
-// Recordings of real cameras through the stages that can be run again: device_time and gathering.
+// Recordings of real cameras through the stages that can run again: device_time and gathering.
 //
 // host_sync cannot be replayed: it had its effect on the clocks that stamped the arrivals. Every
-// registered device_time estimator is run that needs no truth, with its default parameters, on
-// every stream of every camera. Streams of the same kind on two or more cameras are then compared:
-// AMD and RMDV over the frames that GenLock order puts together, and over the sets of every
-// registered gatherer. There is no ground truth in a recording:
+// registered device_time estimator that needs no truth runs with its default parameters on every
+// stream of every camera. Streams of the same kind on two or more cameras are then compared: AMD
+// and RMDV over the frames that GenLock order puts together, and over the sets of every registered
+// gatherer. A recording has no ground truth:
 //
-//  - GenLock order (re-anchored) counts from each camera's first frame. It is right if all cameras
-//    were started by one trigger pulse. First arrivals further apart than half a period contradict
-//    that, nearer ones do not prove it (RigReplay::common_start_plausible).
+//  - GenLock order (re-anchored) counts from each camera's first frame. It is right if one trigger
+//    pulse started all cameras. First arrivals further apart than half a period contradict that,
+//    nearer ones do not prove it (RigReplay::common_start_plausible).
 //  - Sets of a gatherer are as good as the gatherer: scores over them are unverified.
 //
-// Stamps that are relative (they count from a camera's first frame) are given one common anchor,
-// the earliest first arrival of the kind of stream.
+// Relative stamps (they count from a camera's first frame) get one common anchor, the earliest
+// first arrival of the kind of stream.
 //
-// Complexity: linear in the frames, but for sorting them by arrival. Memory: a few hundred bytes a
-// frame. Source: docs/design.md sections 2 and 8, docs/reference/paper.md section 8.
+// Statistics of one camera: intervals, the frequency difference of the two clocks, and the excess
+// delay over the fastest frames, in milliseconds of the named clock. A value that too few frames
+// leave undefined is NaN.
+//
+// Complexity: linear in the frames, except for sorting them by arrival. Memory: a few hundred bytes
+// per frame. Source: docs/design.md sections 2 and 8, docs/reference/paper.md section 8,
+// docs/reference/device_time.md sections 1 and 5; check values: tests/data/README.md (ibl: -215.385
+// ppm by least squares, -214.932 ppm by the lower envelope).
 //
 //   Replay replay = run_replay(reader.take());
+//   CameraStatistics s = camera_statistics(unwrapped(stream));
 #ifndef SIMBENCH_EVALUATION_REPLAY_REPLAY_H_
 #define SIMBENCH_EVALUATION_REPLAY_REPLAY_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "algorithms/ports/time.h"
-#include "evaluation/replay/replay_camera.h"
 #include "recording/rs_csv.h"
 
 namespace simbench::evaluation {
 
+struct PeriodStatistics {
+  double mean_ms = 0;
+  double sd_ms = 0;
+};
+
+// Deviations from a line or a stamp, less their mean; late is positive.
+struct ResidualStatistics {
+  double sd_ms = 0;
+  double p95_ms = 0;
+  double p99_ms = 0;
+  double max_ms = 0;
+};
+
+// The delay of the arrivals over the lower envelope.
+struct ExcessStatistics {
+  double mean_ms = 0;
+  double p50_ms = 0;
+  double p95_ms = 0;
+  double p99_ms = 0;
+  double max_ms = 0;
+};
+
+struct CameraStatistics {
+  std::int64_t frames = 0;
+  std::int64_t missing_frames = 0;  // by gaps of the frame counter
+  std::int64_t long_intervals = 0;  // sensor intervals above 1.5 times their median
+  std::int64_t backward_steps = 0;  // sensor stamps earlier than the preceding one
+  double span_s = 0;                // of the arrivals
+  PeriodStatistics sensor_period;
+  PeriodStatistics arrival_period;
+  double drift_ppm = 0;           // (host rate / device rate - 1) 1e6, least squares
+  double envelope_drift_ppm = 0;  // the same by the earliest frames of the first and last tenth
+  ResidualStatistics residual;    // of the arrivals from the least-squares line
+  ExcessStatistics excess;
+};
+
+// Returns the frames with sensor stamps that continue where the 32-bit microsecond register wraps
+// (half range rule: late frames are no wrap). Stamps beyond the register's range stay as they are.
+std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames);
+
+// O(n). `frames`: unwrapped.
+CameraStatistics camera_statistics(std::span<const StampedFrame> frames);
+
+// Returns the median interval between sensor stamps; zero with fewer than two frames.
+Nanoseconds median_period(std::span<const StampedFrame> frames);
+
+// `values`: in any order; their mean is subtracted first.
+ResidualStatistics residual_statistics(std::vector<double> values);
+
+// Exact before the conversion to double; cannot overflow.
+double difference_ms(std::int64_t a_ns, std::int64_t b_ns);
+
 // One estimator on one stream of one camera.
 struct DeviceTimeReplay {
   std::string device_time;
-  // Standard deviation of (interval of global stamps - interval of sensor stamps): what the
-  // estimator lets through of the arrivals' jitter.
+  // Standard deviation of (interval of global stamps - interval of sensor stamps): the jitter of
+  // the arrivals that the estimator passes on.
   double jitter_ms = 0;
-  // Arrival minus global stamp: what the estimator takes for delay. NaN for relative stamps.
+  // Arrival minus global stamp: the delay by the estimator. NaN for relative stamps.
   ResidualStatistics residual;
   // (host rate / device rate - 1) 1e6 by least squares of its stamps over the sensor's; NaN for
   // relative stamps, which follow the device's rate.

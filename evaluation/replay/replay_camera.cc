@@ -1,5 +1,3 @@
-#include "evaluation/replay/replay_camera.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include "algorithms/device_time/saturate.h"
 #include "algorithms/device_time/unwrap.h"
+#include "evaluation/replay/replay.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 
@@ -36,7 +35,7 @@ std::int64_t missing_frames(std::span<const StampedFrame> frames) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const std::uint64_t before = frames[i - 1].counter;
     const std::uint64_t now = frames[i].counter;
-    // A counter that goes back has been started again; a leap beyond any recording is no gap.
+    // A counter that goes back was restarted; a leap beyond any recording is no gap.
     if (now > before && now - before < (std::uint64_t{1} << 32)) {
       missing += static_cast<std::int64_t>(now - before - 1);
     }
@@ -78,30 +77,6 @@ ExcessStatistics excess_statistics(std::span<const double> x, std::span<const do
 
 double difference_ms(std::int64_t a_ns, std::int64_t b_ns) {
   return to_double(Int128{a_ns} - b_ns) * 1e-6;
-}
-
-double mean_of(std::span<const double> values) {
-  if (values.empty()) return kNan;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double standard_deviation(std::span<const double> values) {
-  const double mean = mean_of(values);
-  double sum = 0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  return values.size() < 2 ? kNan : std::sqrt(sum / static_cast<double>(values.size() - 1));
-}
-
-FittedLine fit_line(std::span<const double> x, std::span<const double> y) {
-  FittedLine line{.slope = kNan, .mean_x = mean_of(x), .mean_y = mean_of(y)};
-  double sum_xx = 0;
-  double sum_xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum_xx += (x[i] - line.mean_x) * (x[i] - line.mean_x);
-    sum_xy += (x[i] - line.mean_x) * (y[i] - line.mean_y);
-  }
-  if (sum_xx > 0) line.slope = sum_xy / sum_xx;
-  return line;
 }
 
 ResidualStatistics residual_statistics(std::vector<double> values) {

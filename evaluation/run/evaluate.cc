@@ -34,13 +34,13 @@ bool is_offline(const PipelineChoice& choice) {
          choice.device_time.make(choice.device_time_parameters)->offline();
 }
 
-// A job that failed: scenario, pipeline, seed, version and why.
+// A job that failed: scenario, pipeline, seed, version and reason.
 class JobFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// The jobs of one evaluation and what has come of them.
+// The jobs of one evaluation and their results.
 class Evaluation {
  public:
   Evaluation(const Scenario& scenario, const SourceFactory& make_source,
@@ -74,13 +74,13 @@ class Evaluation {
   }
 
  private:
-  // Jobs of one seed are neighbours, so that the time left can be told from the time gone.
+  // Jobs of one seed are neighbours, so that the remaining time follows from the elapsed time.
   std::size_t pipeline_of(std::size_t job) const { return job % choices_.size(); }
   std::uint64_t seed_of(std::size_t job) const {
     return options_.first_seed + job / choices_.size();
   }
 
-  // One thread's backend, and what the thread has cost.
+  // One thread's backend and CPU time.
   struct Worker {
     explicit Worker(Evaluation& all) : evaluation(all), source(all.make_source_()) {}
     ~Worker() {
@@ -125,7 +125,7 @@ class Evaluation {
     return score;
   }
 
-  // Of the jobs that are done; takes their scores.
+  // Returns the results of the finished jobs, and moves their scores there.
   Results results(double wall_seconds) {
     Results results;
     results.scenario = scenario_.name;
@@ -185,10 +185,12 @@ class Evaluation {
     if (seeds.empty()) return;
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
-    results.warnings.push_back(fmt::format(
-        "GenLock order differs from the pulses of up to {} frames a run, in {} of {} seeds, though "
-        "no evaluated frame was lost; did all cameras start with the same pulse?",
-        errors, seeds.size(), results.seed_count));
+    results.warnings.push_back(
+        fmt::format("GenLock order differs from the pulses of up to {} frame{} a run, in {} of {} "
+                    "seed{}, though "
+                    "no evaluated frame was lost; did all cameras start with the same pulse?",
+                    errors, errors == 1 ? "" : "s", seeds.size(), results.seed_count,
+                    results.seed_count == 1 ? "" : "s"));
   }
 
   const Scenario& scenario_;

@@ -1,10 +1,10 @@
 // Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
 //
 // Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
-// threads; results do not depend on how many. A job that throws ends the evaluation after the
-// running jobs have finished; finished jobs are kept in the error (EvaluationFailed). A capture
-// that could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing
-// from its row, whose notes say why, and so do what other captures noted (RecordingCost::notes).
+// threads; results do not depend on their number. A job that throws ends the evaluation after the
+// running jobs have finished; the error holds the finished jobs (EvaluationFailed). A capture that
+// could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing from its
+// row, whose notes have the reason and the notes of other captures (RecordingCost::notes).
 //
 // With one thread the source is called in order: every pipeline at the first seed, then at the
 // next.
@@ -34,7 +34,7 @@ struct EvaluationOptions {
   unsigned jobs = 0;                     // threads; 0: as many as there are cores
   std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
   bool keep_pulses = false;              // keep SeedScore::pulses (for frames.csv)
-  // Looked at before each job; once true, no more are begun. May be set by a signal handler.
+  // Polled before each job; once true, no further job begins. A signal handler may set it.
   const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -42,29 +42,30 @@ struct EvaluationOptions {
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 // Makes the backend of one worker thread; called once per thread, from that thread.
 using SourceFactory = std::function<std::unique_ptr<RecordingSource>()>;
+// Makes the backend for a scenario, which outlives it; called from worker threads.
+using WorldFactory = std::function<std::unique_ptr<RecordingSource>(const scenarios::Scenario&)>;
 
-// An evaluation that did not get to its end, with what it had by then.
+// An evaluation that did not finish, with its results until then.
 class EvaluationFailed : public std::runtime_error {
  public:
   EvaluationFailed(const std::string& what, Results finished)
       : std::runtime_error(what), finished_(std::make_shared<const Results>(std::move(finished))) {}
-  // The rows of the seeds that were done; rows may have different seeds, and there are no claims.
+  // Rows of the finished seeds; rows may have different seeds, and there are no claims.
   const Results& finished() const { return *finished_; }
 
  private:
   std::shared_ptr<const Results> finished_;
 };
 
-// One that was ended through EvaluationOptions::cancel.
+// An evaluation that EvaluationOptions::cancel ended.
 class EvaluationCancelled final : public EvaluationFailed {
  public:
   using EvaluationFailed::EvaluationFailed;
 };
 
 // Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
-// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, whose
-// message names scenario, pipeline, seed, version and commit. What make_source throws passes
-// through.
+// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, with
+// scenario, pipeline, seed, version and commit in its message; and what make_source throws.
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
 

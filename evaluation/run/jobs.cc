@@ -67,7 +67,7 @@ bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
         others.emplace_back([&] { queue.work(make_worker); });
       }
     } catch (const std::system_error&) {
-      // The threads that there are do the work.
+      // The existing threads do the work.
     }
     queue.work(make_worker);
   }

@@ -1,20 +1,19 @@
 // Many independent jobs, numbered from 0, on the threads of this process.
 //
-// Everything here that has many runs to make makes them this way: evaluate() its pipelines and
-// seeds, a sweep its points, a reconstruction its sets. A farm over several processes
-// (evaluation/sweep/task_farm.h, cli/mpi/main.cc) takes its jobs from the same queue.
+// Used by evaluate() for pipelines and seeds, by a sweep for points, by a reconstruction for sets.
+// A farm over several processes (evaluation/sweep/task_farm.h, cli/mpi/main.cc) takes its jobs from
+// the same queue.
 //
 // Contract
-//  - Order: jobs begin in the order of their numbers and end in any. Each is done once. Results
-//    belong into a place of the job's own, so that they do not depend on the number of threads.
-//  - Threads: at most as many as there are jobs; the calling thread is one of them, and one thread
-//    does the jobs in order. Where the system has no further thread to give, those that there are
-//    do the work.
+//  - Order: jobs begin in the order of their numbers and end in any. Each runs once. A job writes
+//    its result to a place of its own, so that results do not depend on the number of threads.
+//  - Threads: at most one per job; the calling thread is one of them. One thread runs the jobs in
+//    order. If the system cannot start a further thread, the existing ones do the work.
 //  - Workers: a worker is made once on each thread, used by it alone, and destroyed there.
-//  - Errors: if a job throws, no more begin, those that run come to their end, and the exception of
-//    the job with the lowest number is thrown: the same one with any number of threads, since every
-//    job before it had begun. A worker that cannot be made counts as an error before all jobs.
-//  - Cancelling: once `cancel` is true, no more begin. A signal handler may set it.
+//  - Errors: if a job throws, no further job begins, running jobs finish, and the exception of the
+//    job with the lowest number is thrown: the same one with any number of threads, since every job
+//    before it had begun. A worker that cannot be made counts as an error before all jobs.
+//  - Cancelling: once `cancel` is true, no further job begins. A signal handler may set it.
 //
 //   std::vector<double> squares(100);
 //   bool all = run_jobs(squares.size(), {.threads = 0, .cancel = &interrupted},
@@ -33,19 +32,19 @@ namespace simbench::evaluation {
 
 struct JobOptions {
   unsigned threads = 0;                       // 0: as many as there are cores
-  const std::atomic<bool>* cancel = nullptr;  // looked at before each job
+  const std::atomic<bool>* cancel = nullptr;  // polled before each job
 };
 
 using Job = std::function<void(std::size_t job)>;
 // Makes the worker of one thread; called on that thread.
 using WorkerFactory = std::function<Job()>;
 
-// Both return whether all jobs were done: false only if they were cancelled.
+// Both return whether all jobs ran: false only if they were cancelled.
 bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
                            const WorkerFactory& make_worker);
 
-// The jobs that are left, for those who give some of them to other processes. Any thread may call.
+// The remaining jobs, for callers that give some of them to other processes. Thread-safe.
 class JobQueue {
  public:
   explicit JobQueue(std::size_t count, const std::atomic<bool>* cancel = nullptr)
@@ -53,15 +52,15 @@ class JobQueue {
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  // The next job to begin. Nothing once all have begun, one has failed or they are cancelled.
+  // Returns the next job; nothing once all have begun, one has failed or they are cancelled.
   std::optional<std::size_t> next();
-  // How many next() has still to give.
+  // The number of jobs that next() has not returned yet.
   std::size_t left() const;
-  // Does what a job from next() asks for; an exception of `action` is the job's error.
+  // Runs a job from next(); an exception of `action` is the job's error.
   void attempt(std::size_t job, const std::function<void()>& action);
-  // Makes a worker and has it attempt jobs until there are none.
+  // Makes a worker, which attempts jobs until none is left.
   void work(const WorkerFactory& make_worker);
-  // After all attempts: throws the first job's error, else returns whether all were done.
+  // After all attempts: throws the first job's error, else returns whether all jobs ran.
   bool finish() const;
 
  private:

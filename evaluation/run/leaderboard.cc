@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/statistics/statistics.h"
@@ -31,7 +30,7 @@ PairedRatios ratios(const Row& row, const Row* other) {
           .amd = paired_ratio(row.amd_ms, other->amd_ms)};
 }
 
-// What does not exist comes last; equal ones stay as they were listed.
+// Rows without an error come last; equal ones keep their order.
 void sort_by_error(std::vector<Rank>& ranks) {
   std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
     const double left = a.row->absolute_error_ms.median;
@@ -72,8 +71,7 @@ Series paired_ratio(const Series& numerator, const Series& denominator) {
   values.reserve(numerator.values.size());
   for (std::size_t seed = 0; seed < numerator.values.size(); ++seed) {
     const double below = denominator.values[seed];
-    values.push_back(below > 0 ? numerator.values[seed] / below
-                               : std::numeric_limits<double>::quiet_NaN());
+    values.push_back(below > 0 ? numerator.values[seed] / below : kNan);
   }
   return make_series(std::move(values));
 }

@@ -2,10 +2,10 @@
 //
 // A leaderboard scenario names its pipelines "<board>.<algorithm>": the rows of a board differ in
 // one stage. Its row "<board>.oracle" has the oracle in that stage. Rows without a dot are the
-// board "" (references). Ratios are paired by seed: the median, over seeds in which both exist, of
-// the row's value divided by the other's. Rows are in order of their median absolute error, what
-// has none last; estimators that need the whole recording (offline) are ranked apart. Rows that
-// differ in gathering alone have one error; they are in order of recall, then precision.
+// board "" (references). Ratios are paired by seed: the median of the row's value divided by the
+// other's, over seeds in which both exist. Rows are in order of their median absolute error, rows
+// without one last; estimators that need the whole recording (offline) are ranked apart. Rows that
+// differ in gathering alone share one error; they are in order of recall, then precision.
 //
 //   for (const Board& board : leaderboard(results)) board.online.front().row->pipeline;
 #ifndef SIMBENCH_EVALUATION_RUN_LEADERBOARD_H_
@@ -21,7 +21,7 @@ namespace simbench::evaluation {
 
 inline constexpr std::string_view kPaperPipeline = "yoon2021_both";
 
-// Of one row to another; NaN where there is no such row.
+// Ratios of one row to another; NaN without the other row.
 struct PairedRatios {
   Series error;
   Series amd;
@@ -40,10 +40,10 @@ struct Board {
   bool of_gathering = false;  // its rows differ in gathering alone
 };
 
-// In order of each board's first row. `results` must outlive them.
+// Returns the boards in order of their first rows. `results` must outlive them.
 std::vector<Board> leaderboard(const Results& results);
 
-// By seed, both rows having the same seeds.
+// Divides seed by seed; both have the same seeds.
 Series paired_ratio(const Series& numerator, const Series& denominator);
 
 }  // namespace simbench::evaluation

@@ -60,7 +60,7 @@ bool declares(const AlgorithmInfo& info, const std::string& parameter) {
                      [&](const ParameterSpec& spec) { return spec.name == parameter; });
 }
 
-// Every parameter in the scenario is declared by an algorithm of that name or family, and allowed.
+// Requires that an algorithm of that name or family declares the parameter, and allows its value.
 void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
                      const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
   const std::string pointer = fmt::format("/algorithms/{}/{}", escaped(key), escaped(parameter));
@@ -118,7 +118,7 @@ Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
   return check_parameters(info.parameters, given);
 }
 
-// What the scenario lacks of what an algorithm needs; empty if nothing.
+// What the scenario lacks of an algorithm's need; empty if nothing.
 std::string lacking(const Scenario& scenario, Need need) {
   const scenarios::PulseLines& lines = scenario.hosts.pulse_lines;
   switch (need) {
@@ -129,7 +129,7 @@ std::string lacking(const Scenario& scenario, Need need) {
     case Need::kPps:
       return lines.pps ? "" : "a pulse per second (/hosts/pulse_lines/pps is false)";
     case Need::kGnss:
-      return lines.gnss ? "" : "a receiver that tells the time (/hosts/pulse_lines/gnss is false)";
+      return lines.gnss ? "" : "a GNSS receiver (/hosts/pulse_lines/gnss is false)";
     case Need::kTriggerLine:
       return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
     case Need::kPolls:

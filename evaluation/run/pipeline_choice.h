@@ -1,10 +1,10 @@
-// The pipelines of a scenario with the registered algorithms that their names stand for.
+// The pipelines of a scenario with the registered algorithms that they name.
 //
-// An algorithm's parameters are looked up in the scenario under /algorithms/<its family> and,
-// before that, /algorithms/<its name>; several algorithms may share a family and each takes what it
-// declares. A parameter that no algorithm of that name declares is refused, and so is an algorithm
-// that needs what the scenario's world does not have (AlgorithmInfo::needs). A device_time may be
-// named with the suffixes of its variants (algorithms/device_time/variants.h).
+// An algorithm's parameters come from the scenario's /algorithms/<its name> or else
+// /algorithms/<its family>; several algorithms may share a family, and each takes what it declares.
+// Refused are a parameter that no algorithm of that name declares, and an algorithm that needs what
+// the scenario's world lacks (AlgorithmInfo::needs). The name of a device_time may have the
+// suffixes of its variants (algorithms/device_time/variants.h).
 //
 //   for (const PipelineChoice& choice : choose_pipelines(scenario, {"yoon2021_both"})) {
 //     PipelineScorer scorer(scorer_setup(scenario, choice));
@@ -27,20 +27,20 @@ struct PipelineChoice {
   HostSyncEntry host_sync;
   Parameters host_sync_parameters;
   DeviceTimeEntry device_time;          // of the base name
-  DeviceTimeName device_time_variants;  // what the pipeline's name adds to it
+  DeviceTimeName device_time_variants;  // the suffixes in the pipeline's name
   Parameters device_time_parameters;
   GatheringEntry gathering;
   Parameters gathering_parameters;
 };
 
-// The named pipelines in the given order; all of the scenario if `names` is empty. Throws
-// scenarios::InputError for a pipeline or algorithm that is not known (naming those that are), a
-// pipeline named twice, or a parameter that is not declared or not allowed.
+// Returns the named pipelines in the given order; all of the scenario if `names` is empty. Throws
+// scenarios::InputError for an unknown pipeline or algorithm (naming the known ones), a pipeline
+// named twice, or a parameter that is not declared or not allowed.
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
 
-// What PipelineScorer needs to score it. The second, offline estimator is asked for where claim C7
-// compares with it, in captures of at most 200,000 evaluated frames: it keeps them.
+// Returns the scorer's setup for the pipeline. It has the second, offline estimator, which keeps
+// all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.
 ScorerSetup scorer_setup(const scenarios::Scenario& scenario, const PipelineChoice& choice);
 
 }  // namespace simbench::evaluation

@@ -1,6 +1,7 @@
 #include "evaluation/run/run_detail.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -8,20 +9,107 @@
 #include <span>
 #include <utility>
 
-#include "evaluation/run/run_world.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/forwarding_sink.h"
 
 namespace simbench::evaluation {
 namespace {
 
-// The estimators of one camera beside the pipeline's own, and what they need.
+constexpr Nanoseconds kClockInterval = std::chrono::milliseconds(20);
+constexpr std::uint64_t kLongestGap = 10'000;  // frames; a longer one is a counter that began anew
+constexpr std::int64_t kMostClockSamplesOfAService = 2000;  // before the capture
+
+double true_ms(TrueTime time) { return to_ms(time.time_since_epoch()); }
+
+// Clock errors of the hosts kept in detail.
+ClockErrors clock_errors(TrueTime at, std::span<const Nanoseconds> errors) {
+  ClockErrors clocks{.at_ms = true_ms(at), .errors_ms = {}};
+  for (const Nanoseconds error : errors.first(std::min(errors.size(), kDetailCameras))) {
+    clocks.errors_ms.push_back(to_ms(error));
+  }
+  return clocks;
+}
+
+// The missing frames between each two delivered ones.
+std::vector<LostFrame> gaps(const RunDetail& run) {
+  std::vector<LostFrame> lost;
+  for (std::uint32_t camera = 0; camera < run.cameras.size(); ++camera) {
+    const std::vector<FrameDetail>& frames = run.cameras[camera].frames;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      const std::uint64_t next = frames[i - 1].counter + std::uint64_t{1};
+      if (frames[i].counter > next + kLongestGap) continue;
+      for (std::uint64_t counter = next; counter < frames[i].counter; ++counter) {
+        lost.push_back({.camera = camera, .counter = static_cast<std::uint32_t>(counter)});
+      }
+    }
+  }
+  return lost;
+}
+
+// The part of a RunDetail that only a simulated world shows: host clocks, lost frames, and when the
+// parts of the run began.
+class RunWorld final : public WorldObserver {
+ public:
+  // Observes frames of `stream`. `service`: how long a host_sync that does not end runs before the
+  // capture. Clocks are sampled every 20 ms, less often with many hosts or a long service.
+  RunWorld(StreamKind stream, std::int64_t hosts, std::optional<Nanoseconds> service)
+      : stream_(stream),
+        service_(service.has_value()),
+        clock_interval_(
+            std::max(kClockInterval * (1 + hosts / static_cast<std::int64_t>(kDetailCameras)),
+                     service.value_or(Nanoseconds::zero()) / kMostClockSamplesOfAService)) {}
+
+  Nanoseconds clock_interval() const override { return clock_interval_; }
+  void on_world(TrueTime start) override { start_ = start; }
+  void on_capture_start(TrueTime at) override { capture_start_ = at; }
+  void on_pulse(const ObservedPulse&) override {}
+  void on_message(const ObservedMessage&) override {}
+
+  void on_frame(const ObservedFrame& frame) override {
+    if (frame.fate == FrameFate::kDelivered || frame.stream != stream_) return;
+    if (frame.camera >= kDetailCameras) return;
+    lost_.push_back(
+        {.camera = frame.camera,
+         .counter = frame.counter,
+         .pulse = frame.pulse,
+         .fate = frame.fate,
+         .mid_exposure_ms = (true_ms(frame.exposure_start) + true_ms(frame.exposure_end)) / 2});
+  }
+
+  void on_clocks(TrueTime at, std::span<const Nanoseconds> errors) override {
+    clocks_.push_back(clock_errors(at, errors));
+  }
+
+  // When the run is over and `run` has its frames.
+  void add_to(RunDetail& run, double wait_before_capture_ms) {
+    run.service = service_;
+    run.lost = start_ ? std::move(lost_) : gaps(run);
+    run.clocks.insert(run.clocks.end(), clocks_.begin(), clocks_.end());
+    std::stable_sort(run.clocks.begin(), run.clocks.end(),
+                     [](const ClockErrors& a, const ClockErrors& b) { return a.at_ms < b.at_ms; });
+    if (start_) run.world_start_ms = true_ms(*start_);
+    if (!capture_start_) return;
+    run.capture_start_ms = true_ms(*capture_start_);
+    if (!service_) run.sync_end_ms = run.capture_start_ms - wait_before_capture_ms;
+  }
+
+ private:
+  StreamKind stream_;
+  bool service_;
+  Nanoseconds clock_interval_;
+  std::optional<TrueTime> start_;
+  std::optional<TrueTime> capture_start_;
+  std::vector<LostFrame> lost_;
+  std::vector<ClockErrors> clocks_;
+};
+
+// The estimators of one camera besides the pipeline's own, and their input.
 struct Companion {
   std::unique_ptr<DeviceTimeEstimator> from_start;  // null: the oracle
   DeviceStampUnwrapper unwrapper;
   std::vector<DeviceSample> samples;              // by frame
   std::vector<std::optional<GlobalTime>> global;  // by frame, as the pipeline's estimator gave it
-  std::map<DeviceTime, std::size_t> frame_by_sensor;  // what scorer and gatherer know a frame by
+  std::map<DeviceTime, std::size_t> frame_by_sensor;  // scorer and gatherer identify frames so
 };
 
 // The frame stamp, unwrapped with the sensor stamp, from which it is never far.
@@ -30,9 +118,8 @@ DeviceTime frame_stamp(const FrameRecord& frame, DeviceTime sensor) {
 }
 
 double device_ms(DeviceTime time) { return to_ms(time.time_since_epoch()); }
-double true_ms(TrueTime time) { return to_ms(time.time_since_epoch()); }
 
-// Keeps what passes on its way to the scorer, and what comes out of that.
+// Keeps the recording on its way to the scorer, and the scorer's stamps and sets.
 class DetailKeeper final : public ForwardingSink, public ScoreObserver {
  public:
   DetailKeeper(PipelineScorer& scorer, const ScorerSetup& setup, RunDetail& run)
@@ -60,7 +147,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_frame(frame, truth);
   }
 
-  // The world's own samples may be far apart (run_world.h).
+  // RunWorld's own samples may be far apart.
   void on_pulse(const PulseTruth& truth) override {
     run_.clocks.push_back(clock_errors(truth.at, truth.host_errors));
     ForwardingSink::on_pulse(truth);
@@ -122,7 +209,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
 
   void on_shift(Nanoseconds shift) override { shift_ = shift; }
 
-  // When the scorer is done: the stamps that had to wait for the end.
+  // After the scorer: sets the stamps that need the whole capture.
   void finish(const EstimatorFactory& make_online, const EstimatorFactory& make_offline) {
     for (std::size_t camera = 0; camera < companions_.size(); ++camera) {
       Companion& companion = companions_[camera];
@@ -191,7 +278,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
     return found->second;
   }
 
-  // Another estimator's stamps of what is not warm-up.
+  // Sets another estimator's stamps of the frames after the warm-up.
   void stamp_by(DeviceTimeEstimator& estimator, const std::vector<DeviceSample>& samples,
                 std::vector<FrameDetail>& frames, double FrameDetail::*stamp) const {
     std::vector<DeviceSample> recording;
@@ -212,7 +299,7 @@ class DetailKeeper final : public ForwardingSink, public ScoreObserver {
   std::vector<Companion> companions_;  // by camera
 };
 
-// The estimator of this name with the scenario's parameters.
+// Makes the estimator of this name with the scenario's parameters.
 EstimatorFactory estimator_named(const scenarios::Scenario& scenario, const PipelineChoice& choice,
                                  const std::string& device_time) {
   scenarios::Scenario changed = scenario;

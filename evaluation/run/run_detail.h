@@ -1,16 +1,16 @@
-// One run of one pipeline at one seed, kept with everything that can be drawn of it.
+// One run of one pipeline at one seed, with the details that figures need.
 //
-// A score is a few numbers of a capture; this is the capture behind them: every frame with its
-// stamps and its truth, every gathered set, the host clocks before, during and after
-// synchronisation. The run is the one that evaluate() scores: same recording, same score.
+// It has the capture behind a score: every frame with its stamps and its truth, every gathered set,
+// the host clocks before, during and after synchronisation. evaluate() scores the same run: same
+// recording, same score.
 //
 // Units: milliseconds. Times on the hosts' scale (`backend` to `reference`) count from `zero`, the
-// same for all cameras of a run, so that a double holds them to a picosecond or so; device times
-// count from the zero of the camera's own register; true times from true zero (true_time.h). What
-// does not exist (no truth, no stamp) is NaN.
+// same for all cameras of a run, so that a double holds them to about a picosecond; device times
+// count from the zero of the camera's own register; true times from true zero (true_time.h). A
+// value that does not exist (no truth, no stamp) is NaN.
 //
-// Cost: that of the run and of one or two more estimators; 150 bytes a frame of the first
-// kDetailCameras cameras. Frames of other cameras are scored, but not kept.
+// Cost: the run and one or two more estimators; 150 bytes per frame of the first kDetailCameras
+// cameras. Frames of other cameras are scored, but not kept.
 //
 //   const PipelineChoice choice = choose_pipelines(scenario, {"yoon2021_both"}).front();
 //   const auto source = sim::make_simulation(scenario);
@@ -21,7 +21,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,29 +32,27 @@
 
 namespace simbench::evaluation {
 
-// The cameras (and hosts) that are kept in detail: the first so many.
+// The number of cameras (and hosts), from the first on, that are kept in detail.
 inline constexpr std::size_t kDetailCameras = 18;
-
-inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 struct FrameDetail {
   std::uint32_t counter = 0;
-  std::int64_t pulse = -1;      // that exposed it; -1: none, or not known
-  bool evaluated = false;       // of a pulse that is scored
-  bool in_warm_up = false;      // before the first of those
-  double sensor_ms = 0;         // device clock, unwrapped
-  double frame_ms = 0;          // device clock, unwrapped
-  double backend_ms = 0;        // host's system clock, from zero
-  double arrival_ms = 0;        // the same
-  double global_ms = kNoValue;  // by the pipeline, from zero; none in the warm-up
-  // By the same estimator, started with the camera's first frame: what Fig. 7b shows. Of a relative
-  // estimator only differences mean anything.
-  double from_start_ms = kNoValue;
-  double online_ms = kNoValue;          // by regression_30, from zero; none in the warm-up
-  double offline_ms = kNoValue;         // by regression_offline, from zero; none in the warm-up
-  double reference_ms = kNoValue;       // master's clock at mid-exposure, from zero: the truth
-  double exposure_start_ms = kNoValue;  // true time
-  double exposure_end_ms = kNoValue;    // true time
+  std::int64_t pulse = -1;  // that exposed it; -1: none, or unknown
+  bool evaluated = false;   // of a scored pulse
+  bool in_warm_up = false;  // before the first scored pulse
+  double sensor_ms = 0;     // device clock, unwrapped
+  double frame_ms = 0;      // device clock, unwrapped
+  double backend_ms = 0;    // host's system clock, from zero
+  double arrival_ms = 0;    // the same
+  double global_ms = kNan;  // by the pipeline, from zero; none in the warm-up
+  // By the same estimator, started with the camera's first frame, as in Fig. 7b. For a relative
+  // estimator only differences are meaningful.
+  double from_start_ms = kNan;
+  double online_ms = kNan;          // by regression_30, from zero; none in the warm-up
+  double offline_ms = kNan;         // by regression_offline, from zero; none in the warm-up
+  double reference_ms = kNan;       // master's clock at mid-exposure, from zero: the truth
+  double exposure_start_ms = kNan;  // true time
+  double exposure_end_ms = kNan;    // true time
 
   double mid_exposure_ms() const { return (exposure_start_ms + exposure_end_ms) / 2; }
 };
@@ -65,28 +62,28 @@ struct CameraDetail {
   std::vector<FrameDetail> frames;  // of the scored stream, in order of delivery
 };
 
-// A frame that was taken and never arrived. From the world where it can be observed, else from
-// gaps of the frame counters; then it has no pulse and no time.
+// A frame that was taken and never arrived: observed in a simulated world, else derived from gaps
+// of the frame counters, and then without pulse and time.
 struct LostFrame {
   std::uint32_t camera = 0;
   std::uint32_t counter = 0;
   std::int64_t pulse = -1;
   FrameFate fate = FrameFate::kLostInCamera;
-  double mid_exposure_ms = kNoValue;  // true time
+  double mid_exposure_ms = kNan;  // true time
 };
 
-// A set that gathering emitted (of those that count: set_counter.h).
+// A set that gathering emitted and that counts (set_counter.h).
 struct SetDetail {
   struct Member {
     std::uint32_t camera = 0;
     std::size_t frame = 0;  // index into CameraDetail::frames
   };
-  std::vector<Member> members;  // only cameras kept in detail
-  std::int64_t pulse = -1;      // of most members (the smallest of those with as many)
-  bool complete = false;        // no source lacks
+  std::vector<Member> members;  // of cameras kept in detail
+  std::int64_t pulse = -1;      // of most members (with a tie the smallest)
+  bool complete = false;        // no source is missing
   bool pure = false;            // all members of one pulse
   double range_ms = 0;          // of the members' stamps
-  double emitted_ms = 0;        // arrival of the frame that made the gatherer emit, from zero
+  double emitted_ms = 0;        // arrival of the frame whose push emitted it, from zero
 };
 
 // System clocks minus the master's at one instant.
@@ -106,15 +103,15 @@ struct RunDetail {
   std::int64_t pulses = 0;
   double gathering_interval_ms = 0;  // T_int
   bool has_truth = false;
-  bool has_pulses = false;  // false: no frame is known to be of a pulse
-  bool service = false;     // host_sync goes on during the capture
+  bool has_pulses = false;  // the pulse of some frame is known
+  bool service = false;     // host_sync continues during the capture
   // True time; NaN where the world was not observed (a real rig) or there is none.
-  double world_start_ms = kNoValue;
-  double sync_end_ms = kNoValue;  // of a synchronisation that ends
-  double capture_start_ms = kNoValue;
-  double evaluated_start_ms = kNoValue;  // first scored exposure
-  double capture_end_ms = kNoValue;      // last exposure
-  HostTime zero{};                       // of the stamps on the hosts' scale
+  double world_start_ms = kNan;
+  double sync_end_ms = kNan;  // only if the synchronisation ends
+  double capture_start_ms = kNan;
+  double evaluated_start_ms = kNan;  // first scored exposure
+  double capture_end_ms = kNan;      // last exposure
+  HostTime zero{};                   // of the stamps on the hosts' scale
 
   std::vector<CameraDetail> cameras;
   std::vector<LostFrame> lost;
@@ -123,7 +120,7 @@ struct RunDetail {
   SeedScore score;                  // as evaluate() gives it, with pulses
 };
 
-// Throws what evaluate() throws for one job, but bare.
+// Throws what a job of evaluate() throws, without its context.
 RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& choice,
                      std::uint64_t seed, RecordingSource& source);
 

@@ -1,8 +1,8 @@
-// What unequal links cost every host synchronisation that measures over them.
+// The least error of every host synchronisation that measures over unequal links.
 //
-// Two-way stamps cannot tell an offset from half the difference of the two directions' delays. If
-// each slave's link is asymmetric by N(0, sigma), each slave's clock is off by N(0, sigma / 2),
-// however well the rest is done; the master's is right. Means over seeds, of
+// Two-way stamps cannot separate an offset from half the difference of the two directions' delays.
+// If each slave's link is asymmetric by N(0, sigma), each slave's clock is off by N(0, sigma / 2),
+// at best; the master's is right. Means over seeds, of
 //
 //   host clock error  E|X|,                      X = N(0, sigma / 2)
 //   AMD               E range of {0, X_1 ... X_n} = 2 Int_0^inf (1 - Phi(x)^n) dx * sigma / 2

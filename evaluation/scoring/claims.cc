@@ -22,7 +22,7 @@ constexpr const char* kTime = "yoon2021_time";
 constexpr const char* kNetwork = "yoon2021_network";
 constexpr const char* kBoth = "yoon2021_both";
 
-// Whether a claim holds in one seed; nothing if the seed cannot tell.
+// Whether a claim holds in one seed; nothing if a quantity is missing.
 using Verdict = std::optional<bool>;
 
 // The scores of one seed, in the order of Statement::pipelines.
@@ -34,12 +34,12 @@ struct Statement {
   const char* id;
   const char* text;
   Pipelines pipelines;
-  double rate_hz;   // of the scenario it speaks of; 0: any
-  const char* rig;  // what the rig must have, if a seed of any other cannot tell
+  double rate_hz;   // of the scenario; 0: any
+  const char* rig;  // what the rig must have for the quantities to exist; "": nothing
   Verdict (*holds)(const Scores&);
 };
 
-// The verdict, unless one of the quantities it rests on does not exist.
+// The verdict, or nothing if one of its quantities does not exist.
 Verdict verdict(bool holds, std::initializer_list<double> quantities) {
   const bool exist =
       std::none_of(quantities.begin(), quantities.end(), [](double q) { return std::isnan(q); });
@@ -135,7 +135,7 @@ const Row* find_row(const std::vector<Row>& rows, const std::string& pipeline) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-// What the statement needs and the scenario or its rows have not; empty if nothing.
+// What the statement needs and the scenario or its rows lack; empty if nothing.
 std::string missing(const Statement& statement, const std::vector<Row>& rows,
                     double trigger_rate_hz) {
   if (statement.holds == nullptr) return statement.rig;
@@ -165,7 +165,7 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
     return claim;
   }
   std::int64_t holds = 0;
-  std::int64_t told = 0;
+  std::int64_t decided = 0;
   for (std::size_t index = 0; index < paired.front()->seeds.size(); ++index) {
     Scores scores;
     for (const Row* row : paired) {
@@ -174,11 +174,11 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
     }
     const Verdict found = statement.holds(scores);
     if (!found) continue;
-    ++told;
+    ++decided;
     if (*found) ++holds;
   }
-  if (told > 0) {
-    claim.holds_fraction = static_cast<double>(holds) / static_cast<double>(told);
+  if (decided > 0) {
+    claim.holds_fraction = static_cast<double>(holds) / static_cast<double>(decided);
   } else {
     claim.needs = *statement.rig != '\0' ? statement.rig : "pulses that all cameras delivered";
   }

@@ -1,9 +1,9 @@
 // The metrics: what each is, where a score keeps it, and where results show it.
 //
-// This is the only list. Rows over the seeds, sweeps, comparisons, gates, baselines, JSON, CSV, the
-// archive reader and the tables of terminal, Markdown and page go through metrics(). To add one:
-// a member of MetricValues and an entry of kMetricTable (both here), the line that computes it
-// (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
+// This is the only list. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
+// reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
+// entry of kMetricTable (both here), the line that computes it (pulse_scores.cc, set_counter.cc,
+// ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
 // 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
@@ -15,7 +15,6 @@
 #define SIMBENCH_EVALUATION_SCORING_METRICS_H_
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -23,21 +22,13 @@
 #include <variant>
 #include <vector>
 
+#include "evaluation/statistics/statistics.h"
+
 namespace simbench::evaluation {
 
 struct Row;
 
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();  // does not exist
-
-// Values in seed order, with the median and the 5-95 % band of those that exist.
-struct Series {
-  std::vector<double> values;
-  double median = 0;
-  double p05 = 0;
-  double p95 = 0;
-};
-
-// What a seed has before anything is computed: no value, which is NaN; a row has an empty series.
+// The initial value: NaN for a seed, an empty series for a row.
 template <class Value>
 constexpr Value no_value() {
   if constexpr (std::is_same_v<Value, double>) {
@@ -47,7 +38,7 @@ constexpr Value no_value() {
   }
 }
 
-// What is measured once in each seed: of one seed (double) or over the seeds (Series).
+// Values measured once per seed: of one seed (double) or over the seeds (Series).
 template <class Value>
 struct MetricValues {
   Value amd_ms = no_value<Value>();
@@ -58,12 +49,12 @@ struct MetricValues {
   Value exposure_spread_ms = no_value<Value>();
   Value seed_precision = no_value<Value>();  // of the seed's own sets
   Value seed_recall = no_value<Value>();
-  // Over the complete sets that gathering emitted; none if it emitted none (or there is no truth).
+  // Over the complete sets that gathering emitted; NaN without such sets (or without truth).
   Value set_amd_ms = no_value<Value>();  // mean range of a set's stamps
   Value set_absolute_error_ms = no_value<Value>();
-  // From the last member's arrival to that of the frame which made the gatherer emit.
+  // From the arrival of the last member to that of the frame on which the gatherer emitted.
   Value emission_latency_ms = no_value<Value>();  // mean over these sets
-  // Without an entry below: claims of the paper rest on these, results do not show them.
+  // Without an entry below: only the claims of the paper use these.
   Value offline_amd_ms = no_value<Value>();     // AMD of regression_offline over the same recording
   Value spread_in_host_ms = no_value<Value>();  // mean over pulses and hosts of the range in a host
   Value spread_between_hosts_ms = no_value<Value>();  // mean over pulses: range of hosts' means
@@ -71,7 +62,7 @@ struct MetricValues {
   Value share_below_half_period = no_value<Value>();  // of pulses: spread under half a period
 };
 
-// Numbers over all seeds together; rows.cc makes them.
+// Numbers over all seeds together; rows.cc computes them.
 struct PooledValues {
   double precision = 0;
   double recall = 0;
@@ -92,24 +83,25 @@ struct SetCounts {
   std::int64_t complete_pulses = 0;  // evaluated pulses that all sources delivered
   std::int64_t discarded_frames = 0;
   std::int64_t partial = 0;       // sets that lack a source
-  std::int64_t index_errors = 0;  // members of emitted sets that are not of most members' pulse
+  std::int64_t index_errors = 0;  // members of emitted sets of another pulse than most members
 };
 
 struct RunCounts {
-  std::int64_t evaluated_pulses = 0;      // that the scores rest on; unverified: sets
+  std::int64_t evaluated_pulses = 0;      // behind the scores; unverified: sets
   std::int64_t unsynchronised_hosts = 0;  // over all seeds
 };
 
 enum class Better : std::uint8_t { kLower, kHigher, kNearestZero, kNeither };
 
-// Without it a metric does not exist: NaN, null in JSON, an empty cell in CSV, "-" in tables.
+// What a metric depends on; without it the metric is NaN, null in JSON, empty in CSV, "-" in
+// tables.
 enum class Needs : std::uint8_t {
   kNothing,
   kVerifiedSets,  // it is known which frames belong together
   kTruth,         // only a simulation (or an experiment that shares a clock) knows it
 };
 
-// Of a line in results.csv.
+// The columns of a metric in results.csv.
 enum class CsvColumns : std::uint8_t {
   kNone,
   kBand,        // ID, ID_p05, ID_p95
@@ -117,26 +109,28 @@ enum class CsvColumns : std::uint8_t {
   kValueAtEnd,  // likewise, behind the published values
 };
 
-// Its place, from 1, among the columns of each table of results; 0: it is not there.
+// The metric's place, from 1, among the columns or panels of each report; 0: it is not shown.
 struct TablePlaces {
-  int paper = 0;  // the paper's metrics
-  int truth = 0;  // what needs true time
-  int sets = 0;   // what gathering made of the stamps
+  int paper = 0;           // the paper's metrics
+  int truth = 0;           // metrics that need true time
+  int sets = 0;            // gathered sets
+  int response = 0;        // the table of a sweep
+  int response_panel = 0;  // the figure of a sweep
 };
 
-// How much worse a metric may become: by the larger of a share of what it was and a step.
+// How much worse a metric may become: the larger of a share of the old value and a step.
 struct GateMargin {
   double relative = 0;
   double absolute = 0;  // in the metric's unit
 };
 
-// Of a metric that comparisons and gates are about.
+// For a metric that comparisons and gates judge.
 struct Judged {
-  double smallest_step = 0;  // a smaller change means nothing, whatever its share
-  GateMargin margin;         // unless a baseline says otherwise
+  double smallest_step = 0;  // a smaller change is insignificant, whatever its share
+  GateMargin margin;         // unless a baseline states another
 };
 
-// Where the values are, of a seed and of a row.
+// Where a seed and a row keep the values.
 struct SeriesPlace {
   double MetricValues<double>::*seed = nullptr;
   Series MetricValues<Series>::*row = nullptr;
@@ -152,13 +146,12 @@ struct Metric {
   Needs needs = Needs::kNothing;
   Place place;
 
-  // In tables: "\n" breaks a heading where a column is narrow. Without a heading for the band, the
-  // median stands alone.
+  // In tables: "\n" breaks a heading. Without a heading for the band, the median stands alone.
   TablePlaces tables{};
   const char* heading = "";
   const char* band_heading = nullptr;
   const char* legend = "";
-  bool legend_continues = false;  // the line of the metric before it
+  bool legend_continues = false;  // on the line of the metric before it
 
   // In files. JSON: a member of the row's object `json_in` ("": of the row), named `json_name`
   // (null: id). Sweeps: the name of its column in sweep.csv (null: none).
@@ -177,7 +170,7 @@ struct Metric {
   bool is_share() const { return std::string_view(unit) == "share"; }
   const char* member() const { return json_name != nullptr ? json_name : id; }  // in JSON
 
-  // Of the form it has; a programming error otherwise.
+  // Access to the value in the metric's form; another form is a programming error.
   double of_seed(const MetricValues<double>& seed) const;
   double& of_seed(MetricValues<double>& seed) const;
   const Series& series(const Row& row) const;
@@ -187,14 +180,14 @@ struct Metric {
   std::int64_t count(const Row& row) const;
   std::int64_t& count(Row& row) const;
 
-  // Whether the row can know it. A series or a number that it cannot know is NaN; a count is not.
+  // Whether the row knows the value. An unknown series or number is NaN; a count cannot be.
   bool is_known(const Row& row) const;
-  // What stands for all seeds: median, number or count; NaN if the row cannot know it.
+  // The value over all seeds: median, number or count; NaN if the row does not know it.
   double value(const Row& row) const;
 
-  // What comparisons and gates reduce a series to: its median. A share is the exception: gathering
-  // mostly finds all sets of a seed or none, so a median stays at 100 % until half of the seeds are
-  // lost; the mean of those that exist stands in its place. NaN: no seed has a value.
+  // Reduces a series for comparisons and gates: to its median, a share to the mean of the values
+  // that exist. (Gathering mostly finds all sets of a seed or none, so a median would stay at 100 %
+  // until half of the seeds are lost.) NaN: no seed has a value.
   double table_value(const std::vector<double>& values) const;
 };
 
@@ -203,15 +196,15 @@ std::span<const Metric> metrics();
 // One of them, which must exist.
 const Metric& metric(std::string_view id);
 
-// Those with `judged`, in order: what comparisons and gates are about.
+// The metrics with `judged`, in order: those of comparisons and gates.
 std::vector<const Metric*> judged_metrics();
 // The columns of a sweep, in their order: series and numbers, then counts.
 std::vector<const Metric*> sweep_metrics();
 // The columns of a table, in their order: table_metrics(&TablePlaces::truth).
 std::vector<const Metric*> table_metrics(int TablePlaces::*table);
 
-// While it lives there is one more metric, at the end. For tests; not while others work with
-// metrics(), whose addresses it moves.
+// Adds a metric at the end during its lifetime. For tests; not while others use metrics(), whose
+// addresses change.
 class ScopedMetric {
  public:
   explicit ScopedMetric(const Metric& metric);
@@ -232,7 +225,7 @@ inline constexpr Metric kMetricTable[] = {
      .title = "AMD",
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::amd_ms, &MetricValues<Series>::amd_ms},
-     .tables = {.paper = 1},
+     .tables = {.paper = 1, .response = 1, .response_panel = 1},
      .heading = "AMD\nmedian ms",
      .band_heading = "AMD\n5-95 %",
      .legend = "AMD: mean range of the global stamps of a pulse over all cameras;",
@@ -257,7 +250,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kTruth,
      .place = SeriesPlace{&MetricValues<double>::absolute_error_ms,
                           &MetricValues<Series>::absolute_error_ms},
-     .tables = {.truth = 1},
+     .tables = {.truth = 1, .response = 2, .response_panel = 2},
      .heading = "absolute error\nmedian ms",
      .band_heading = "absolute error\n5-95 %",
      .legend = "absolute error: mean |global stamp - true mid-exposure on the master's clock|;",
@@ -272,7 +265,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::bias_ms, &MetricValues<Series>::bias_ms},
      .tables = {.truth = 2},
      .heading = "bias\nms",
-     .legend = "bias: with its sign. AMD is blind to what all share.",
+     .legend = "bias: the signed mean, which AMD cannot show.",
      .legend_continues = true,
      .csv = CsvColumns::kBand,
      .sweep = "bias_ms"},
@@ -282,7 +275,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kTruth,
      .place =
          SeriesPlace{&MetricValues<double>::host_error_ms, &MetricValues<Series>::host_error_ms},
-     .tables = {.truth = 3},
+     .tables = {.truth = 3, .response = 3},
      .heading = "host clock error\nmedian ms",
      .band_heading = "host clock error\n5-95 %",
      .legend = "host clock error: mean |slave - master|.",
@@ -307,7 +300,7 @@ inline constexpr Metric kMetricTable[] = {
      .better = Better::kHigher,
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::precision,
-     .tables = {.truth = 5, .sets = 2},
+     .tables = {.truth = 5, .sets = 2, .response = 4},
      .heading = "sets:\nprecision",
      .legend = "precision: gathered sets that hold one pulse only;",
      .json_in = kInGathering,
@@ -319,7 +312,7 @@ inline constexpr Metric kMetricTable[] = {
      .better = Better::kHigher,
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::recall,
-     .tables = {.truth = 6, .sets = 3},
+     .tables = {.truth = 6, .sets = 3, .response = 5, .response_panel = 3},
      .heading = "sets:\nrecall",
      .legend = "recall: complete pulses found whole;",
      .legend_continues = true,
@@ -332,9 +325,9 @@ inline constexpr Metric kMetricTable[] = {
      .better = Better::kHigher,
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::margin_ms,
-     .tables = {.truth = 7},
+     .tables = {.truth = 7, .response = 6, .response_panel = 4},
      .heading = "margin\nms",
-     .legend = "margin: from the range to the limit of a set.",
+     .legend = "margin: limit of the range less its 99.9 % quantile.",
      .legend_continues = true,
      .json_in = kInGathering,
      .csv = CsvColumns::kValue,
@@ -392,8 +385,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = &SetCounts::index_errors,
      .tables = {.sets = 4},
      .heading = "index\nerrors",
-     .legend =
-         "index errors: frames of complete sets that are not of the pulse of most others there.",
+     .legend = "index errors: members of complete sets of another pulse than most members.",
      .json_in = kInGathering,
      .csv = CsvColumns::kValueAtEnd},
     {.id = "discarded_frames",
@@ -430,8 +422,8 @@ inline constexpr Metric kMetricTable[] = {
                           &MetricValues<Series>::emission_latency_ms},
      .tables = {.sets = 9},
      .heading = "emitted after\nmean ms",
-     .legend = "emitted after: from the last member's arrival. AMD of sets is small where sets "
-               "were given up: see recall.",
+     .legend = "emitted after: since the last member's arrival. AMD of sets is small where "
+               "gathering gave sets up: see recall.",
      .legend_continues = true,
      .json_in = kInGathering,
      .csv = CsvColumns::kValueAtEnd,

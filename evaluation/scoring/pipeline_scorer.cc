@@ -22,6 +22,27 @@ GlobalTime on_global_scale(HostTime time) { return GlobalTime(time.time_since_ep
 
 }  // namespace
 
+void DeferredStamps::stamp(
+    const EstimatorFactory& make,
+    const std::function<void(const DeferredFrame&, GlobalTime)>& stamped) const {
+  std::vector<std::vector<DeviceSample>> recordings(sources_);
+  for (const DeferredFrame& frame : frames_) recordings[frame.source].push_back(frame.sample);
+
+  std::vector<std::unique_ptr<DeviceTimeEstimator>> estimators;
+  estimators.reserve(sources_);
+  for (std::size_t source = 0; source < sources_; ++source) estimators.push_back(make());
+  for (const auto& [source, adjustment] : adjustments_) {
+    estimators[source]->on_adjustment(adjustment);
+  }
+  for (const auto& [source, poll] : polls_) estimators[source]->on_poll(poll);
+  for (std::size_t source = 0; source < sources_; ++source) {
+    if (!recordings[source].empty()) estimators[source]->learn(recordings[source]);
+  }
+  for (const DeferredFrame& frame : frames_) {
+    stamped(frame, estimators[frame.source]->stamp(frame.sample));
+  }
+}
+
 PipelineScorer::PipelineScorer(ScorerSetup setup) : setup_(std::move(setup)) {}
 
 Nanoseconds PipelineScorer::period() const {
@@ -98,8 +119,7 @@ void PipelineScorer::learn_ground_truth(const FrameTruth* truth) {
     if (setup_.gatherer_needs_pulses) {
       throw RecordingFailed(
           "gathering \"oracle\" needs the pulse of every frame, which only a simulation or a "
-          "genlock "
-          "capture has");
+          "genlock capture has");
     }
   }
 }
@@ -131,7 +151,7 @@ std::int64_t PipelineScorer::pulse_of(Source& source, const FrameTruth* truth, D
   return truth->pulse;
 }
 
-// Whether a frame comes before what is evaluated.
+// Whether a frame precedes the evaluated part.
 bool PipelineScorer::in_warm_up(std::int64_t pulse) {
   if (pulse >= layout_.first_pulse) warm_up_over_ = true;
   return pulse == kNoPulse ? !warm_up_over_ : pulse < layout_.first_pulse;
@@ -152,7 +172,7 @@ GlobalTime PipelineScorer::estimate(Source& source, const DeviceSample& sample,
   return on_global_scale(truth->own_host);
 }
 
-// The anchor is known before the first complete set is: that has a frame of the anchor's camera.
+// Known before the first complete set, which has a frame of the anchor's camera.
 Nanoseconds PipelineScorer::anchor_shift() const {
   if (!relative_ || !first_arrival_) return Nanoseconds::zero();
   return anchor_.value_or(*first_arrival_).time_since_epoch();

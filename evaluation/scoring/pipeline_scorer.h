@@ -1,23 +1,21 @@
 // Scores one pipeline over one capture, while it is being recorded.
 //
-// Receives the capture as a RecordingSink, runs device_time and gathering on it frame by frame and
-// keeps only what the scores need: the global stamps of the evaluated pulses. Once warm, a frame
-// allocates nothing. A source is the scored stream of one camera; sources are numbered like
-// cameras.
+// Receives the capture as a RecordingSink, runs device_time and gathering on it frame by frame, and
+// keeps only what the scores need: the global stamps of the evaluated pulses. After the warm-up a
+// frame allocates nothing. A source is the scored stream of one camera, numbered like the camera.
 //
 // The rules (docs/design.md section 8):
-//  - Which frames belong together is known from the truth (the pulse that exposed them) or, on a
-//    real genlock rig, from GenLock order. In other captures without truth nobody knows: they are
-//    scored over the sets that gathering emitted, unverified (unverified_scores.h says what that is
-//    worth), and every score that needs pulses is NaN. The first frame decides: SeedScore says
-//    which it was (ground_truth).
+//  - The truth (the pulse that exposed a frame), or GenLock order on a real genlock rig, tells
+//    which frames belong together. Other captures are scored over the sets that gathering emitted,
+//    unverified (unverified_scores.h), and every score that needs pulses is NaN. The first frame
+//    decides; SeedScore::ground_truth has the result.
 //  - device_time and gathering begin where the warm-up ends, with the first evaluated pulse. Only
-//    those that ask for it (relative(), from_first_frame()) see all of it.
-//    Frames that no pulse exposed (free-running) are taken from the moment another source's
-//    evaluated pulse shows that the warm-up is over; they are part of the stream, but never scored.
+//    those that request it (relative(), from_first_frame()) get the warm-up too. Frames that no
+//    pulse exposed (free-running) are used once another source's evaluated pulse ends the warm-up;
+//    they are part of the stream, but never scored.
 //  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame
-//    of the master's first camera; if that has none, of the first frame of all.
-//  - An offline estimator stamps when the capture has ended, and gathering follows it then.
+//    of the master's first camera, or of the first frame of all if that camera has none.
+//  - An offline estimator stamps when the capture has ended; gathering follows then.
 //
 //   PipelineScorer scorer(setup);
 //   const RecordingCost cost = source.record({.seed = 1, .pipeline = "mine"}, scorer);
@@ -29,16 +27,15 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/device_time.h"
 #include "algorithms/device_time/unwrap.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
-#include "evaluation/scoring/deferred_stamps.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
-#include "evaluation/scoring/pulse_table.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
 #include "evaluation/scoring/set_counter.h"
@@ -47,12 +44,41 @@
 
 namespace simbench::evaluation {
 
+using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>()>;
+
+// Runs an estimator that must see the whole recording before its first stamp.
+//
+// Holds frames back (56 bytes each) until the capture has ended. Then each source's estimator
+// learns from all of them and stamps them, in order of delivery. An online estimator gives the same
+// stamps here as it would have given at once.
+class DeferredStamps {
+ public:
+  explicit DeferredStamps(std::size_t sources) : sources_(sources) {}
+
+  void add(const DeferredFrame& frame) { frames_.push_back(frame); }
+
+  void add_poll(std::uint32_t source, const PollSample& poll) { polls_.emplace_back(source, poll); }
+  void add_adjustment(std::uint32_t source, const ClockAdjustment& adjustment) {
+    adjustments_.emplace_back(source, adjustment);
+  }
+
+  // Calls `stamped` for every frame, in the order they were added.
+  void stamp(const EstimatorFactory& make,
+             const std::function<void(const DeferredFrame&, GlobalTime)>& stamped) const;
+
+ private:
+  std::size_t sources_;
+  std::vector<DeferredFrame> frames_;
+  std::vector<std::pair<std::uint32_t, PollSample>> polls_;
+  std::vector<std::pair<std::uint32_t, ClockAdjustment>> adjustments_;
+};
+
 using GathererFactory = std::function<std::unique_ptr<Gatherer>(const GatheringSetup&)>;
 
 struct ScorerSetup {
-  StreamKind stream = StreamKind::kDepth;  // the one that is scored
+  StreamKind stream = StreamKind::kDepth;  // the scored one
   MedianKind median = MedianKind::kUpperMiddle;
-  bool genlock = false;                     // sensor stamps tell the order of frames
+  bool genlock = false;                     // sensor stamps give the order of frames
   double gathering_interval_periods = 0.5;  // T_int
   EstimatorFactory make_estimator;          // empty: the oracle, the true time on the own host
   EstimatorFactory make_second_estimator;   // for SeedScore::offline_amd_ms; empty: none
@@ -64,12 +90,11 @@ class PipelineScorer final : public RecordingSink {
  public:
   explicit PipelineScorer(ScorerSetup setup);
 
-  // Shows `observer` stamps and sets as they come; before the capture starts. It must outlive this.
+  // Notifies `observer` of stamps and sets. Call before the capture starts; it must outlive this.
   void watch(ScoreObserver& observer) { observer_ = &observer; }
 
   void on_start(const RigLayout& layout) override;
-  // Throws RecordingFailed if an oracle, of device_time or of gathering, gets a frame without the
-  // truth it needs: no such capture can be scored.
+  // Throws RecordingFailed if an oracle of device_time or gathering gets a frame without the truth.
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
   void on_pulse(const PulseTruth& truth) override;
   void on_adjustment(const ClockAdjustment& adjustment) override;
@@ -77,7 +102,7 @@ class PipelineScorer final : public RecordingSink {
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
 
-  // The scores of the capture, pulses included; seed and cost are the caller's to add. Call once.
+  // Returns the scores of the capture with pulses, without seed and cost. Call once.
   SeedScore finish();
 
  private:
@@ -101,7 +126,7 @@ class PipelineScorer final : public RecordingSink {
   GlobalTime estimate(Source& source, const DeviceSample& sample, const FrameTruth* truth);
   void gather(const DeferredFrame& frame, GlobalTime global);
   void settle(const DeferredFrame& frame, GlobalTime global);
-  // What a relative estimator's stamps lack.
+  // The shift that a relative estimator's stamps lack.
   Nanoseconds anchor_shift() const;
   double second_amd_ms() const;
   Nanoseconds period() const;
@@ -128,7 +153,7 @@ class PipelineScorer final : public RecordingSink {
   std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
   std::optional<DeferredStamps> deferred_;         // if the estimator is offline
-  std::optional<DeferredStamps> second_deferred_;  // if a second one was asked for
+  std::optional<DeferredStamps> second_deferred_;  // with make_second_estimator
   std::int64_t genlock_index_errors_ = 0;
   std::vector<SyncOutcome> failures_;
 };

@@ -30,7 +30,7 @@ double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
   workspace.assign(stamps_ns.begin(), stamps_ns.end());
   const std::int64_t base = stamps_ns.front();
   const double median = median_above(base, kind, workspace);
-  // Summed in the order given, which no choice of the selection algorithm can change.
+  // Summed in the given order, so that the selection algorithm cannot change the result.
   double squares = 0;
   for (const std::int64_t stamp : stamps_ns) {
     const double difference = static_cast<double>(stamp - base) - median;

@@ -3,9 +3,8 @@
 //   AMD  = mean over pulses of spread_ms      (eq. 3)
 //   RMDV = mean over pulses of deviation_ms   (eq. 4, with the square that is missing in print)
 //
-// Stamps go in as integer nanoseconds, results come out in milliseconds. Differences are taken
-// before anything becomes floating-point, so stamps of any epoch are exact; they must differ by
-// less than 2^63 ns.
+// Stamps are integer nanoseconds, results milliseconds. Differences are taken before the conversion
+// to floating-point, so stamps of any epoch are exact; they must differ by less than 2^63 ns.
 //
 // For any stamps deviation_ms <= rmdv_bound() * spread_ms, and so RMDV <= bound * AMD: a published
 // pair that breaks it cannot come from eq. (4). Source: docs/reference/paper.md sections 6 and 7.
@@ -27,16 +26,16 @@ namespace simbench::evaluation {
 
 using scenarios::MedianKind;
 
-// Largest minus smallest. `stamps_ns` must not be empty. O(n).
+// Returns the largest minus the smallest. `stamps_ns` must not be empty. O(n).
 double spread_ms(std::span<const std::int64_t> stamps_ns);
 
-// Root mean square of the differences from the median. `stamps_ns` must not be empty. `workspace`
-// is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
+// Returns the root mean square of the differences from the median. `stamps_ns` must not be empty.
+// `workspace` is overwritten; kept by the caller, it saves an allocation per pulse. O(n).
 double deviation_ms(std::span<const std::int64_t> stamps_ns, MedianKind kind,
                     std::vector<std::int64_t>& workspace);
 
-// The largest possible deviation_ms / spread_ms of n stamps: 1/sqrt(2) for the upper-middle median
-// of an even number, 2/3 for the mean of the middle two of 18.
+// Returns the largest possible deviation_ms / spread_ms of n stamps: 1/sqrt(2) for the upper-middle
+// median of an even number, 2/3 for the mean of the middle two of 18.
 double rmdv_bound(std::size_t n, MedianKind kind);
 
 }  // namespace simbench::evaluation

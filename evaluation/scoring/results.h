@@ -7,7 +7,6 @@
 #define SIMBENCH_EVALUATION_SCORING_RESULTS_H_
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,16 +17,16 @@
 
 namespace simbench::evaluation {
 
-// How it is known which frames belong together.
+// The source of the knowledge which frames belong together.
 enum class GroundTruth : std::uint8_t {
   kSimulation,    // frames came with their truth
   kGenlockOrder,  // the order of the sensor stamps in a genlock capture
-  kNone,          // not at all: scores are over gathered sets (unverified_scores.h)
+  kNone,          // unknown: scores are over gathered sets (unverified_scores.h)
 };
 
-// One evaluated pulse, as frames.csv has it; one set of an unverified capture.
+// One evaluated pulse, as in frames.csv; one set of an unverified capture.
 struct PulseScore {
-  std::int64_t pulse = 0;   // of an unverified capture: the set's number
+  std::int64_t pulse = 0;   // in an unverified capture the set's number
   double spread_ms = 0;     // max - min of the global stamps: this pulse's term of AMD
   double deviation_ms = 0;  // this pulse's term of RMDV
 };
@@ -35,25 +34,18 @@ struct PulseScore {
 // One pipeline, one seed (on a real rig: one repetition).
 struct SeedScore : MetricValues<double> {
   std::uint64_t seed = 0;
-  // False: no capture could be made (cost.notes says why), and there is no score at all.
+  // False: no capture could be made (cost.notes states why), and there is no score.
   bool recorded = true;
   GroundTruth ground_truth = GroundTruth::kSimulation;
   double emission_latency_max_ms = kNan;
   FrameCounts frames;
   SetCounts sets;
-  // Frames whose place in GenLock order is not that of the pulse that exposed them; genlock only.
+  // Frames whose place in GenLock order differs from their pulse; genlock only.
   std::int64_t genlock_index_errors = 0;
-  std::vector<PulseScore> pulses;      // if asked for
+  std::vector<PulseScore> pulses;      // with EvaluationOptions::keep_pulses
   std::vector<double> host_errors_ms;  // signed mean over the evaluated pulses, per host
   std::vector<SyncOutcome> failures;   // of host synchronisation, only those not synchronised
   RecordingCost cost;
-};
-
-// A fraction of seeds with its 95 % binomial interval (Clopper-Pearson).
-struct Percentile {
-  double percent = 0;
-  double low = 0;
-  double high = 0;
 };
 
 struct PublishedComparison {
@@ -66,7 +58,7 @@ struct PublishedComparison {
   Percentile rmdv_percentile;
 };
 
-// One pipeline over all seeds; what the metrics are: evaluation/scoring/metrics.h.
+// One pipeline over all seeds; metrics: evaluation/scoring/metrics.h.
 struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string pipeline;
   std::string host_sync;
@@ -79,15 +71,15 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   FrameCounts frames;  // these and the sets: over all seeds
   SetCounts sets;
   std::optional<PublishedComparison> published;
-  std::vector<std::string> notes;  // what went wrong, a line each: "repetition 3: ..."
+  std::vector<std::string> notes;  // failures, a line each: "repetition 3: ..."
   std::vector<SeedScore> seeds;
 };
 
 struct Claim {
   std::string id;                        // "C1" ... "C10", docs/reference/paper.md section 11
-  std::string text;                      // with the threshold that decides it
+  std::string text;                      // with its threshold
   std::optional<double> holds_fraction;  // of seeds; nothing if it needs another scenario
-  std::string needs;                     // which, then
+  std::string needs;                     // then: which
 };
 
 struct Performance {

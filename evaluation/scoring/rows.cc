@@ -27,7 +27,7 @@ double ratio(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// Each seed's shares of its own counts.
+// Sets each seed's shares of its own counts.
 void add_shares(std::vector<SeedScore>& seeds) {
   for (SeedScore& seed : seeds) {
     if (seed.ground_truth == GroundTruth::kNone) continue;
@@ -36,7 +36,7 @@ void add_shares(std::vector<SeedScore>& seeds) {
   }
 }
 
-// What follows from the seeds' own values and counts alone.
+// Sets a row's series and counts from the seeds' own.
 struct Summary {
   const std::vector<SeedScore>& seeds;
   Row& row;
@@ -117,7 +117,7 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
     row.recall = ratio(row.sets.pure, row.sets.complete_pulses);
     row.evaluated_pulses = row.sets.complete_pulses;
     row.margin_ms = margin_ms(seeds, setting.gathering_interval_ms);
-  } else {  // the range of a gathered set says nothing of how close it came to failing
+  } else {  // the range of a gathered set does not show how close gathering came to failing
     row.precision = row.recall = row.margin_ms = kNan;
     row.evaluated_pulses = row.sets.emitted;
   }

@@ -1,7 +1,7 @@
-// From the scores of all seeds to one row of the table, with what the paper published beside it.
+// From the scores of all seeds to one row of the table, with the paper's published values.
 //
-// A seed without a recording keeps its place: its values are NaN in every series, so that rows stay
-// paired by seed, and the row has its notes.
+// A seed without a recording keeps its place, so that rows stay paired by seed: its values are NaN
+// in every series, and the row has its notes.
 #ifndef SIMBENCH_EVALUATION_SCORING_ROWS_H_
 #define SIMBENCH_EVALUATION_SCORING_ROWS_H_
 
@@ -16,7 +16,7 @@
 
 namespace simbench::evaluation {
 
-// What rows of one scenario share.
+// The settings that the rows of one scenario share.
 struct RowSetting {
   double gathering_interval_ms = 0;  // T_int
   std::size_t sources = 0;
@@ -25,14 +25,15 @@ struct RowSetting {
 
 RowSetting row_setting(const scenarios::Scenario& scenario);
 
-// The score of a seed of which no recording could be made, and why: every quantity is NaN.
+// Returns the score of a seed without a recording, every quantity NaN, with the reason in its
+// notes.
 SeedScore missing_score(std::uint64_t seed, const std::string& reason);
 
-// The row over these seeds, which must still have their pulses (for the margin).
+// Returns the row over these seeds, which must still have their pulses (for the margin).
 Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
              const RowSetting& setting);
 
-// A published result against the seeds of a row.
+// Compares a published result with the seeds of a row.
 PublishedComparison compare(const scenarios::Published& published, const Row& row,
                             const RowSetting& setting);
 

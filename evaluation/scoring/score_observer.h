@@ -1,7 +1,7 @@
-// What a PipelineScorer can be asked to show while it scores: stamps and sets as they come.
+// Observes the stamps and sets of a PipelineScorer while it scores, for figures and timelines.
 //
-// For figures and timelines. A score is the same with and without an observer, which costs a test
-// of a pointer per frame and set where there is none.
+// A score is the same with and without an observer. The cost without one is a test of a pointer per
+// frame and set.
 //
 //   scorer.watch(observer);
 //   source.record(request, scorer);
@@ -9,24 +9,32 @@
 #ifndef SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
 #define SIMBENCH_EVALUATION_SCORING_SCORE_OBSERVER_H_
 
+#include <cstdint>
 #include <span>
 
+#include "algorithms/device_time/device_time.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/ports/time.h"
-#include "evaluation/scoring/deferred_stamps.h"
 
 namespace simbench::evaluation {
+
+struct DeferredFrame {
+  std::uint32_t source = 0;
+  std::int64_t pulse = 0;
+  DeviceSample sample;
+  GlobalTime delivered{};
+};
 
 class ScoreObserver {
  public:
   virtual ~ScoreObserver() = default;
-  // The stamp that device_time gave a frame after the warm-up; an offline estimator stamps when
-  // the capture has ended.
+  // A stamp of device_time, for a frame after the warm-up; an offline estimator stamps when the
+  // capture has ended.
   virtual void on_stamp(const DeferredFrame& frame, GlobalTime global) = 0;
-  // A set that counts (set_counter.h): `complete` if no source lacks; emitted when a frame was
-  // pushed that arrived at `now`.
+  // A set that counts (set_counter.h); `complete` if no source is missing. `now` is the arrival of
+  // the frame whose push emitted it.
   virtual void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) = 0;
-  // Once, at the end: what has to be added to all stamps (a relative estimator's anchor).
+  // Once, at the end: the shift to add to all stamps (a relative estimator's anchor).
   virtual void on_shift(Nanoseconds shift) = 0;
 };
 

@@ -38,7 +38,7 @@ void SetCounter::on_set(std::span<const GatherFrame> set) {
   if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
 }
 
-// Members that are not of the pulse that most members are of.
+// Members of another pulse than most members.
 std::int64_t SetCounter::index_errors(std::span<const GatherFrame> set) {
   const auto size = static_cast<std::int64_t>(set.size());
   const std::int64_t tag = set.front().tag;
@@ -47,7 +47,7 @@ std::int64_t SetCounter::index_errors(std::span<const GatherFrame> set) {
   }
   tags_.clear();
   for (const GatherFrame& frame : set) {
-    if (frame.tag >= 0) tags_.push_back(frame.tag);  // most may be of no pulse, which is none
+    if (frame.tag >= 0) tags_.push_back(frame.tag);  // "no pulse" cannot be that of most
   }
   std::sort(tags_.begin(), tags_.end());
   std::int64_t most = 0;

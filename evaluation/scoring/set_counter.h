@@ -1,11 +1,11 @@
-// Counts the sets a gatherer emits, how many of them are right, and how late they are.
+// Counts the sets that a gatherer emits, the correct ones among them, and their latency.
 //
-// Frames carry their pulse as their tag (-1: of no pulse). A set counts when one of its members
-// belongs to an evaluated pulse; it is pure when all members belong to that one. Scores over sets
-// are over complete ones:
-//  - range of the stamps, so that AMD shows what gathering did (a strict policy makes it small by
-//    giving sets up: look at recall too);
-//  - |stamp - reference| of members of evaluated pulses, if there is truth;
+// Frames have their pulse as their tag (-1: none). A set counts when one of its members belongs to
+// an evaluated pulse; it is pure when all members belong to that one. Scores are over complete
+// sets:
+//  - range of the stamps, so that AMD shows the effect of gathering (a strict policy makes it small
+//    by giving sets up: see recall too);
+//  - |stamp - reference| of members of evaluated pulses, with truth;
 //  - emission latency: arrival of the frame whose push emitted the set, minus the latest arrival of
 //    a member. Arrivals are true in a simulation; on a rig they are as good as the hosts' clocks.
 //
@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "algorithms/gathering/gathering.h"
-#include "evaluation/scoring/pulse_table.h"
+#include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/scoring/score_observer.h"
 
@@ -29,13 +29,13 @@ namespace simbench::evaluation {
 
 class SetCounter final : public FrameSetSink {
  public:
-  // The table says which pulses are evaluated, and knows the references; it must outlive this, and
-  // so must the observer, who is shown the sets that count (null: nobody is).
+  // The table has the evaluated pulses and the references. The observer (or null) is notified of
+  // the sets that count. Both must outlive this.
   explicit SetCounter(const PulseTable& table, ScoreObserver* observer = nullptr)
       : table_(table), observer_(observer) {}
 
-  // The arrival of the frame that is to be pushed next, and what is to be added to the stamps of
-  // sets before they are compared with the reference (an estimator may not know the epoch).
+  // Sets the arrival of the next frame to be pushed, and what to add to the stamps of sets before
+  // the comparison with the reference (an estimator may not know the epoch).
   void before_push(GlobalTime arrival, Nanoseconds shift) {
     now_ = arrival;
     shift_ = shift;
@@ -44,7 +44,7 @@ class SetCounter final : public FrameSetSink {
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
 
-  // Fills in what of score.sets and the scores over sets is counted here.
+  // Sets the counted part of score.sets and the scores over sets.
   void score(SeedScore& score) const;
 
  private:

@@ -1,16 +1,16 @@
-// Scores of a capture of which nobody knows which frames belong together: no truth, no GenLock.
+// Scores of a capture without truth and without GenLock, where it is unknown which frames belong
+// together.
 //
-// All that can be scored are the sets that the gatherer under test emitted, so the score trusts
-// what it should judge. It can say how far apart the stamps of a set are, how many frames came and
-// how late sets were emitted. It cannot say whether the frames of a set were exposed together: a
-// gatherer that mixes neighbours consistently looks perfect, and one that gives up all difficult
-// sets looks better than one that does not; stamps that count from each camera's own first frame
-// (relative estimators) agree by construction, whenever the cameras were started. Precision, recall
-// and the errors do not exist. Such scores are labelled "unverified" wherever they are shown.
+// Only the sets that the gatherer under test emitted can be scored: how far apart the stamps of a
+// set are, how many frames arrived, and how late sets were emitted. The score cannot show whether
+// the frames of a set were exposed together. A gatherer that mixes neighbours consistently looks
+// perfect; one that gives up all difficult sets looks better than one that does not; stamps of
+// relative estimators, which count from each camera's own first frame, agree by construction.
+// Precision, recall and the errors do not exist. Reports label such scores "unverified".
 //
-// The warm-up is counted in time, for each host on its steady clock from its first frame: as long
-// as layout.first_pulse frames take; as much as layout.pulses frames take is evaluated then. Frames
-// count as lost by gaps of the counters: a camera that never comes back leaves none.
+// The warm-up lasts as long as layout.first_pulse frames take, for each host on its steady clock
+// from its first frame; the evaluated part lasts as long as layout.pulses frames take. Lost frames
+// are gaps of the counters: a camera that never returns leaves none.
 //
 //   UnverifiedScores scores(layout, MedianKind::kUpperMiddle, nullptr);
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
@@ -33,28 +33,28 @@
 
 namespace simbench::evaluation {
 
-// The tag of a frame that is evaluated though its pulse is not known. (-1: not evaluated.)
+// The tag of an evaluated frame whose pulse is unknown. (-1: not evaluated.)
 inline constexpr std::int64_t kUnknownPulse = -2;
 
 class UnverifiedScores final : public FrameSetSink {
  public:
   enum class Part : std::uint8_t { kWarmUp, kEvaluated, kAfter };
 
-  // `observer` is shown the sets that count; null: nobody is.
+  // `observer` (or null) is notified of the sets that count.
   UnverifiedScores(const RigLayout& layout, MedianKind median, ScoreObserver* observer);
 
-  // Which part of the capture a frame of the scored stream is in; counts it. Once for each frame,
+  // Counts a frame of the scored stream and returns its part of the capture. Once for each frame,
   // in order of delivery.
   Part part_of(const FrameRecord& frame);
 
-  // The arrival of the frame that is to be pushed next.
+  // Sets the arrival of the next frame to be pushed.
   void before_push(GlobalTime arrival) { now_ = arrival; }
   // Sets count if all their members are evaluated.
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
 
-  // Fills in amd_ms, rmdv_ms, set_amd_ms, the emission latencies, frames, sets and pulses (there, a
-  // set has its number in place of the pulse). The rest of `score` stays.
+  // Sets amd_ms, rmdv_ms, set_amd_ms, the emission latencies, frames, sets and pulses (where a set
+  // has its number in place of the pulse). The rest of `score` stays.
   void score(SeedScore& score) const;
 
  private:

@@ -14,16 +14,16 @@ namespace simbench::evaluation {
 namespace {
 
 constexpr double kPairedTail = 0.025;              // on each side of a 95 % interval
-constexpr std::uint64_t kRandomSeed = 20'151'104;  // any will do, as long as it is always the same
-constexpr double kMostSeeds = 1e15;                // where a number needed no longer tells anything
+constexpr std::uint64_t kRandomSeed = 20'151'104;  // arbitrary, but always the same
+constexpr double kMostSeeds = 1e15;                // the largest number needed that is reported
 
 struct Sums {
   double a = 0;
   double b = 0;
 };
 
-// Which pair is drawn follows from 32 random bits by multiplication; that some of n pairs are
-// favoured by 2^-32 n does not matter here.
+// Draws pairs from 32 random bits by multiplication, which favours some of n pairs by an
+// insignificant 2^-32 n.
 class PairDraw {
  public:
   explicit PairDraw(std::size_t pairs) : pairs_(pairs) {}
@@ -54,7 +54,7 @@ double expanded_tail(std::size_t pairs) {
   return boost::math::cdf(boost::math::normal_distribution<double>(), reach);
 }
 
-// Of equal differences every resample's mean is the same but for rounding; that must not matter.
+// For equal differences every resample's mean is the same except for rounding, which must not show.
 bool all_equal(const std::vector<Pair>& pairs) {
   const double first = pairs.front().b - pairs.front().a;
   return std::all_of(pairs.begin(), pairs.end(),
@@ -84,7 +84,7 @@ void set_intervals(const std::vector<Pair>& pairs, PairedComparison& result) {
   result.ratio.high = quantile(std::move(ratios), 1 - tail);
 }
 
-// Without an interval: from the standard deviation, as if the differences were normal.
+// The width of an interval by the standard deviation, as if the differences were normal.
 double width_by_deviation(const std::vector<Pair>& pairs, double mean) {
   double squares = 0;
   for (const Pair& pair : pairs) squares += std::pow(pair.b - pair.a - mean, 2);
@@ -93,7 +93,7 @@ double width_by_deviation(const std::vector<Pair>& pairs, double mean) {
   return 2 * z * std::sqrt(squares / (n - 1) / n);
 }
 
-// So many that an interval `width` wide now is narrower than the smallest effect.
+// The pairs with which an interval that is now `width` wide is narrower than the smallest effect.
 std::uint64_t needed(std::size_t pairs, double width, double effect) {
   const double times = effect > 0 ? std::pow(width / effect, 2) : kMostSeeds;
   const double seeds = std::min(kMostSeeds, std::ceil(times * static_cast<double>(pairs)));
@@ -216,7 +216,7 @@ std::vector<HolmDecision> holm(const std::vector<double>& p) {
   double error = 0;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     const auto left = static_cast<double>(order.size() - rank);
-    // The first that is not rejected ends the procedure: all later ones keep its level, which
+    // The first test that is not rejected ends the procedure: all later ones keep its level, which
     // their larger p-values do not reach either.
     if (largest <= kFamilyError) error = kFamilyError / left;
     largest = std::max(largest, std::min(1.0, left * p[order[rank]]));

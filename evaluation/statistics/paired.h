@@ -1,25 +1,25 @@
-// Two things measured in the same worlds: by how much does B differ from A, and is that sure?
+// Two pipelines or archives measured in the same worlds: by how much does B differ from A, and is
+// the difference significant?
 //
-// The values of two pipelines or two archives stand in pairs, one for each seed, and so does all
-// that is said here: what differs from world to world cancels. A pair that lacks one of its values
-// (NaN) is left out and counted.
+// Values stand in pairs, one for each seed, so that differences between worlds cancel. A pair
+// without one of its values (NaN) is left out and counted.
 //
 // Interval: 95 %, by bootstrap. Pairs are resampled kResamples times, always with the same random
-// numbers, so that all metrics see the same resamples and equal input gives equal bytes. The
+// numbers, so that all metrics have the same resamples and equal input gives equal bytes. The
 // percentiles are moved outward for small samples as in T. C. Hesterberg, "What teachers should
-// know about the bootstrap", The American Statistician 69(4), 2015 (expanded
-// percentile interval): of n = 8 and of n = 32 pairs it holds the mean nearly as often as it says
+// know about the bootstrap", The American Statistician 69(4), 2015 (expanded percentile interval):
+// with n = 8 and n = 32 pairs the interval holds the mean nearly as often as stated
 // (tests/evaluation/statistics/paired_test.cc). Below kFewestPairs there is no interval: even the
 // smallest and the largest of five differences enclose a mean only 94 times in 100.
 //
 // Verdict, with e = the smallest effect of interest, max(share of A's mean, an absolute floor):
 //   interval excludes 0             better or worse
 //   includes 0, lies within +-e     no difference seen
-//   includes 0, reaches beyond e    too few seeds: so many are needed that the interval is narrower
-//                                   than e, as it then has to be one of the others
-// seeds_needed follows from the width seen, which shrinks with the square root of the pairs.
+//   includes 0, reaches beyond e    too few seeds
+// seeds_needed is the number of seeds with which the interval is narrower than e, so that it leads
+// to one of the other verdicts. The width shrinks with the square root of the pairs.
 //
-// Cost: kResamples draws a pair; 1,000 pairs in about 5 ms.
+// Cost: kResamples draws per pair; 1,000 pairs in about 5 ms.
 //
 //   const PairedComparison c = compare(pair_up(with.values, without.values), {});
 //   if (c.verdict == Verdict::kBetter) print(c.ratio.value);
@@ -28,13 +28,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
+
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 
 inline constexpr std::size_t kResamples = 2000;
-inline constexpr std::size_t kFewestPairs = 6;  // 1 - 2^(1 - n) reaches 95 % here
+inline constexpr std::size_t kFewestPairs = 6;  // the first n with 1 - 2^(1 - n) of 95 % or more
 
 struct Pair {
   double a = 0;
@@ -46,14 +47,14 @@ struct PairedValues {
   std::size_t left_out = 0;  // a value was NaN
 };
 
-// The i-th of `a` with the i-th of `b`; both are as long.
+// Pairs the i-th of `a` with the i-th of `b`, which are equally long.
 PairedValues pair_up(const std::vector<double>& a, const std::vector<double>& b);
 
 // NaN: does not exist.
 struct Estimate {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double low = std::numeric_limits<double>::quiet_NaN();
-  double high = std::numeric_limits<double>::quiet_NaN();
+  double value = kNan;
+  double low = kNan;
+  double high = kNan;
 };
 
 struct ComparisonRule {
@@ -64,40 +65,38 @@ struct ComparisonRule {
 
 enum class Verdict : std::uint8_t { kBetter, kWorse, kNoDifferenceSeen, kTooFewSeeds };
 
-// NaN throughout where there is no pair.
+// Without any pair, values are NaN.
 struct PairedComparison {
   std::size_t pairs = 0;
   std::size_t left_out = 0;
-  double mean_a = std::numeric_limits<double>::quiet_NaN();
-  double mean_b = std::numeric_limits<double>::quiet_NaN();
-  double median_a = std::numeric_limits<double>::quiet_NaN();
-  double median_b = std::numeric_limits<double>::quiet_NaN();
+  double mean_a = kNan;
+  double mean_b = kNan;
+  double median_a = kNan;
+  double median_b = kNan;
   Estimate difference;  // mean of b - a
   Estimate ratio;       // mean of b / mean of a; NaN if a resample's mean of a is not above 0
   double smallest_effect = 0;  // e, in the metric's unit
   Verdict verdict = Verdict::kTooFewSeeds;
   bool within_effect = false;      // the whole interval lies within +-e
-  std::uint64_t seeds_needed = 0;  // only if too few; 0: cannot be told from one pair or none
+  std::uint64_t seeds_needed = 0;  // only if too few; 0: unknown with fewer than two pairs
 };
 
 PairedComparison compare(const PairedValues& values, const ComparisonRule& rule);
 
-// Student's t for paired differences, and Holm's correction for many of them: what a gate decides
-// by.
+// Student's t for paired differences, and Holm's correction for many of them: the test of a gate.
 //
-// A gate asks one thing of many metrics and must rarely cry wolf. So each metric's mean paired
-// difference gets a two-sided p-value from Student's t with n - 1 degrees of freedom, and Holm's
-// step-down procedure (S. Holm, Scand. J. Statistics 6, 1979) keeps the chance that any of them
-// excludes zero by accident within 5 %, whatever their dependence. interval() at holm_levels()
-// excludes zero exactly where Holm rejects.
+// A gate tests many metrics and must rarely raise a false alarm. Each metric's mean paired
+// difference gets a two-sided p-value from Student's t with n - 1 degrees of freedom. Holm's
+// step-down procedure (S. Holm, Scand. J. Statistics 6, 1979) keeps the probability that any of
+// them excludes zero by chance within 5 %, whatever their dependence. interval() at
+// HolmDecision::error excludes zero exactly where Holm rejects.
 //
-// Where nothing changed, the two values of a pair are interchangeable, so the difference is
+// If nothing changed, the two values of a pair are interchangeable. Their difference is then
 // symmetric around zero however skewed the values are, and t on 32 or more symmetric differences
-// rejects no more often than it says; tests/cli/commands/gate_null_slow_test.cc counts that on real
+// rejects no more often than stated; tests/cli/commands/gate_null_slow_test.cc counts that on real
 // runs.
 //
 //   const PairedT t = paired_t(pair_up(before, after));
-
 inline constexpr double kFamilyError = 0.05;  // of all metrics of a gate together
 
 struct PairedT {
@@ -113,7 +112,7 @@ struct PairedT {
 PairedT paired_t(const PairedValues& values);
 
 struct HolmDecision {
-  double error = kFamilyError;  // what this test may use: its interval is that of 1 - error
+  double error = kFamilyError;  // of this test: its interval holds with 1 - error
   double adjusted_p = 1;        // rejected if at most kFamilyError
 };
 

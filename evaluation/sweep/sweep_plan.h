@@ -1,8 +1,19 @@
-// What a sweep runs: every combination of the steps of its axes, each pipeline, each seed.
+// The plan of a sweep: every combination of the steps of its axes, each pipeline, each seed.
+//
+// An axis states which parameters of the scenario take which values, step by step:
+//
+//   /usb/delivery_jitter_transfers=0:0.4:0.1           a range, start:stop:step, stop included
+//   /trigger/rate_hz=15,30,45                          a list: numbers, words, true, false
+//   /hosts/count=2:6:2+/cameras/count=6:18:6           several in lockstep, where one alone
+//                                                      would make no valid scenario
+//
+// Value i of a range is start + i * step, never a sum of steps. For decimals it is the decimal that
+// a person expects: 0:1:0.1 has 0.3, not 0.30000000000000004. A value's text is the shortest that
+// reads back as the same number.
 //
 // A point is one combination; the first axis varies slowest. A run is one pipeline at one point
-// with one seed, and runs are numbered point by point, pipeline by pipeline, seed by seed. The plan
-// is all that the results depend on, beside the program, and so what tells one sweep from another.
+// with one seed. Runs are numbered point by point, pipeline by pipeline, seed by seed. The results
+// depend on the plan and the program alone, so the plan identifies a sweep.
 //
 //   const SweepRequest request = {.scenario = "18cam_6host_45fps",
 //                                 .axes = {"/trigger/rate_hz=15,30,45"}, .seeds = 32};
@@ -17,14 +28,27 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/sweep/sweep_axis.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
 
+struct SweepAxis {
+  std::vector<std::string> pointers;             // JSON pointers; more than one: in lockstep
+  std::vector<std::vector<std::string>> values;  // by pointer, then by step
+
+  std::size_t steps() const { return values.front().size(); }
+};
+
+// The most steps of a range; more are a misplaced zero.
+inline constexpr std::size_t kMostSteps = 100'000;
+
+// Throws scenarios::InputError, "--sweep TEXT: found ..., allowed ...": no pointer, no value, an
+// empty or endless range, a value twice, pointers in lockstep with different numbers of values.
+SweepAxis parse_axis(const std::string& text);
+
 inline constexpr std::size_t kMostRuns = 10'000'000;
 
-// As a user asks for it.
+// What the user states.
 struct SweepRequest {
   std::string scenario;                          // name or path
   std::vector<scenarios::Override> overrides{};  // for all points
@@ -51,23 +75,23 @@ struct SweepPlan {
   std::size_t points() const;
   std::size_t runs() const { return points() * pipelines.size() * seeds; }
   SweepRun run(std::size_t index) const;
-  // Which step each axis stands at.
+  // The step of each axis.
   std::vector<std::size_t> steps(std::size_t point) const;
-  // All pointers of all axes, in order, and their values at a point.
+  // The pointers of all axes, in order, and their values at a point.
   std::vector<std::string> pointers() const;
   std::vector<std::string> values(std::size_t point) const;
   std::vector<scenarios::Override> overrides(std::size_t point) const;
-  // "/hosts/count=4, /cameras/count=12"; "as it is" of no axes.
+  // "/hosts/count=4, /cameras/count=12"; "as it is" without axes.
   std::string point_text(std::size_t point) const;
 };
 
-// The scenario as it is without the sweep must be valid. Throws scenarios::InputError for that, for
-// an axis, for pipelines that it does not have, a pointer swept twice, more than kMostRuns runs.
+// Throws scenarios::InputError for a scenario that is invalid without the sweep, an invalid axis,
+// an unknown pipeline, a pointer swept twice, more than kMostRuns runs.
 SweepPlan make_plan(const SweepRequest& request);
 
-// Loads the scenario of every point. The first one that is refused is thrown as an InputError that
-// names it. Returns what scenarios::warnings() has to say, each text once. Some milliseconds for
-// each point and thread (0: all cores).
+// Loads the scenario of every point. Throws an InputError that names the first refused point.
+// Returns the texts of scenarios::warnings(), each once. Some milliseconds for each point and
+// thread (0: all cores).
 std::vector<std::string> check_points(const SweepPlan& plan, const SweepRequest& request,
                                       unsigned threads);
 

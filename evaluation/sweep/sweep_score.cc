@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -25,7 +24,7 @@ std::size_t place_of(std::string_view column) {
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-// With commas; NaN is an empty cell.
+// Joins by commas; NaN is an empty cell.
 std::string list_of(const std::vector<double>& values) {
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -41,7 +40,7 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
   while (true) {
     const std::size_t comma = text.find(',');
     const std::string_view cell = text.substr(0, comma);
-    double value = std::numeric_limits<double>::quiet_NaN();
+    double value = kNan;
     if (!cell.empty()) {
       const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       if (error != std::errc() || stop != cell.data() + cell.size()) return std::nullopt;
@@ -114,9 +113,8 @@ std::vector<Series> host_series(std::span<const SweepScore> seeds) {
   for (std::size_t host = 0; host < hosts; ++host) {
     std::vector<double> errors;
     for (const SweepScore& seed : seeds) {
-      errors.push_back(host < seed.host_errors_ms.size()
-                           ? std::fabs(seed.host_errors_ms[host])
-                           : std::numeric_limits<double>::quiet_NaN());
+      errors.push_back(host < seed.host_errors_ms.size() ? std::fabs(seed.host_errors_ms[host])
+                                                         : kNan);
     }
     all.push_back(make_series(std::move(errors)));
   }
@@ -125,12 +123,11 @@ std::vector<Series> host_series(std::span<const SweepScore> seeds) {
 
 }  // namespace
 
-const Series& ResponseRow::of(std::string_view column) const {
-  const auto columns = sweep_metrics();
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i]->sweep == column) return series[i];
-  }
-  SIMBENCH_ASSERT(false, "a column of sweep.csv");
+const Series& ResponseRow::of(std::string_view column) const { return series[place_of(column)]; }
+
+double ResponseRow::value(const Metric& metric) const {
+  const auto* number = std::get_if<double PooledValues::*>(&metric.place);
+  return number != nullptr ? pooled.**number : of(metric.sweep).median;
 }
 
 std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
@@ -143,8 +140,9 @@ std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<Sweep
     const double pure = sum_of(seeds, "pure_sets");
     ResponseRow row{.point = run.point, .pipeline = run.pipeline};
     for (std::size_t i = 0; i < columns; ++i) row.series.push_back(series_of(seeds, i));
-    row.precision = pure / sum_of(seeds, "emitted_sets");
-    row.recall = pure / sum_of(seeds, "complete_pulses");
+    row.pooled = {.precision = pure / sum_of(seeds, "emitted_sets"),
+                  .recall = pure / sum_of(seeds, "complete_pulses"),
+                  .margin_ms = row.of("margin_ms").median};
     row.hosts = host_series(seeds);
     rows.push_back(std::move(row));
   }

@@ -1,9 +1,67 @@
 #include "evaluation/sweep/task_farm.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "evaluation/sweep/sweep_score.h"
 
 namespace simbench::evaluation {
+namespace {
+
+using nlohmann::json;
+using scenarios::Scenario;
+
+class SweepWorker {
+ public:
+  SweepWorker(const json& setup, WorldFactory make_world)
+      : name_(setup.at("name")),
+        scenario_json_(setup.at("scenario")),
+        make_world_(std::move(make_world)) {}
+
+  std::string work(const std::string& text) {
+    const json task = json::parse(text);
+    try {
+      return score(load(task.at("values")), task);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("{} {}: {}", name_, task.dump(), error.what()));
+    }
+  }
+
+ private:
+  std::string score(const Scenario& scenario, const json& task) {
+    EvaluationOptions options;
+    options.first_seed = task.at("seed");
+    options.seeds = 1;
+    options.jobs = 1;
+    options.pipelines = {task.at("pipeline")};
+    const Results results = evaluate(
+        scenario, [&] { return make_world_(scenario); }, options, nullptr);
+    return text_of(sweep_score(results.rows.front()));
+  }
+
+  const Scenario& load(const json& values) {
+    if (scenario_ && values == values_) return *scenario_;
+    std::vector<scenarios::Override> overrides;
+    for (const json& value : values) overrides.push_back({value.at(0), value.at(1)});
+    scenario_ = scenarios::load_scenario_text(scenario_json_, name_, overrides);
+    values_ = values;
+    return *scenario_;
+  }
+
+  std::string name_;
+  std::string scenario_json_;
+  WorldFactory make_world_;
+  std::optional<Scenario> scenario_;
+  json values_;
+};
+
+}  // namespace
 
 AnswerKeeper one_at_a_time(const AnswerKeeper& keep) {
   return
@@ -26,6 +84,30 @@ void ThreadFarm::run(const Tasks& tasks, const AnswerKeeper& keep) {
   const AnswerKeeper keep_safely = one_at_a_time(keep);
   run_jobs_with_workers(tasks.count, {.threads = tasks.threads},
                         task_workers(tasks, make_worker_, keep_safely));
+}
+
+Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs) {
+  Tasks tasks;
+  tasks.setup = json{{"name", plan.scenario}, {"scenario", plan.scenario_json}}.dump();
+  tasks.count = runs.size();
+  tasks.task = [&plan, &runs](std::size_t task) {
+    const SweepRun run = plan.run(runs[task]);
+    json values = json::array();
+    for (const scenarios::Override& value : plan.overrides(run.point)) {
+      values.push_back({value.pointer, value.value});
+    }
+    return json{{"values", values}, {"pipeline", plan.pipelines[run.pipeline]}, {"seed", run.seed}}
+        .dump();
+  };
+  return tasks;
+}
+
+TaskWorkerFactory sweep_workers(WorldFactory make_world) {
+  return [make_world = std::move(make_world)](const std::string& setup) -> TaskWorker {
+    // Shared: std::function copies what it holds.
+    auto worker = std::make_shared<SweepWorker>(json::parse(setup), make_world);
+    return [worker](const std::string& task) { return worker->work(task); };
+  };
 }
 
 }  // namespace simbench::evaluation

@@ -1,15 +1,14 @@
-// Tasks that are texts, so that they can be worked on anywhere: by threads of this process
-// (ThreadFarm) or by the ranks of a cluster (cli/mpi/main.cc).
+// The runs of a sweep as tasks, worked on by threads of this process (ThreadFarm) or by the ranks
+// of a cluster (cli/mpi/main.cc).
 //
-// A task and its answer are texts: a farm need not know what they are about and can carry them to
-// other processes. A worker is made once for each thread, from `setup`, which all tasks share.
-// Order, errors and threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
+// Tasks and answers are texts: a farm does not interpret them and can send them to other processes.
+// A worker is made once for each thread, from `setup`, which all tasks share. Order, errors and
+// threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
-//   ThreadFarm farm([](const std::string& setup) {
-//     return [setup](const std::string& task) { return answer_in(setup, task); };
+//   ThreadFarm farm(sweep_workers(make_world));
+//   farm.run(sweep_tasks(plan, missing), [&](std::size_t task, const std::string& answer) {
+//     scores[missing[task]] = score_of(answer);               // evaluation/sweep/sweep_score.h
 //   });
-//   farm.run({.setup = text, .count = 1000, .task = task_text, .threads = 0},
-//            [&](std::size_t task, const std::string& answer) { keep(task, answer); });
 #ifndef SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 #define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 
@@ -17,13 +16,16 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "evaluation/run/evaluate.h"
 #include "evaluation/run/jobs.h"
+#include "evaluation/sweep/sweep_plan.h"
 
 namespace simbench::evaluation {
 
 using TaskWorker = std::function<std::string(const std::string& task)>;
-// Called from the thread that will work.
+// Called on the worker's thread.
 using TaskWorkerFactory = std::function<TaskWorker(const std::string& setup)>;
 // Takes an answer; from any thread of the process that called run(), one call at a time.
 using AnswerKeeper = std::function<void(std::size_t task, const std::string& answer)>;
@@ -38,12 +40,12 @@ struct Tasks {
 class TaskFarm {
  public:
   virtual ~TaskFarm() = default;
-  // Has every task worked on once. If a worker or `keep` throws, no more are begun, those that run
-  // come to their end, and the exception of the first task passes through.
+  // Works on every task once. If a worker or `keep` throws, no further task begins, running ones
+  // finish, and the exception of the first task passes through.
   virtual void run(const Tasks& tasks, const AnswerKeeper& keep) = 0;
 };
 
-// All cores of this machine.
+// Uses all cores of this machine.
 class ThreadFarm final : public TaskFarm {
  public:
   explicit ThreadFarm(TaskWorkerFactory make_worker) : make_worker_(std::move(make_worker)) {}
@@ -53,11 +55,18 @@ class ThreadFarm final : public TaskFarm {
   TaskWorkerFactory make_worker_;
 };
 
-// For those who write a farm: `keep`, whose calls from several threads wait for each other, and
-// workers of this process that work on the tasks and keep the answers. Arguments must outlive them.
+// For implementations of a farm: `keep` with its calls from several threads serialised, and workers
+// of this process that work on tasks and keep the answers. Arguments must outlive them.
 AnswerKeeper one_at_a_time(const AnswerKeeper& keep);
 WorkerFactory task_workers(const Tasks& tasks, const TaskWorkerFactory& make_worker,
                            const AnswerKeeper& keep);
+
+// Returns one task for each of these runs of the plan, in this order. Both must outlive the tasks.
+Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs);
+
+// A worker keeps the scenario of its last task, which the next one mostly shares. It throws what
+// evaluate() throws.
+TaskWorkerFactory sweep_workers(WorldFactory make_world);
 
 }  // namespace simbench::evaluation
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <utility>
 
+#include "evaluation/run/exposure_sets.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
-#include "evaluation/scoring/exposure_sets.h"
 #include "evaluation/statistics/statistics.h"
 #include "reconstruction/desync_pattern.h"
 #include "reconstruction/libraries/mesh_file.h"

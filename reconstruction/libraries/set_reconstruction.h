@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 #include "reconstruction/error_statistics.h"
 #include "reconstruction/libraries/ray_caster.h"
 #include "reconstruction/reprojection.h"

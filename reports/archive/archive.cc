@@ -3,16 +3,24 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string_view>
 
 #include "recording/version.h"
 #include "reports/results/csv.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/text/json_node.h"
+#include "scenarios/document.h"
+#include "scenarios/loader.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string utc_text(std::chrono::system_clock::time_point time) {
   const auto whole = std::chrono::floor<std::chrono::seconds>(time);
@@ -21,7 +29,39 @@ std::string utc_text(std::chrono::system_clock::time_point time) {
                      fmt::gmtime(std::chrono::system_clock::to_time_t(whole)), ms);
 }
 
+bool is_plain(char letter) {
+  constexpr std::string_view kPlain = "_-./=,:+@%";
+  return std::isalnum(static_cast<unsigned char>(letter)) != 0 ||
+         kPlain.find(letter) != std::string_view::npos;
+}
+
+std::string shell_quoted(const std::string& word) {
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    if (letter == '\'') {
+      text += "'\\''";
+    } else {
+      text += letter;
+    }
+  }
+  text += '\'';
+  return text;
+}
+
 }  // namespace
+
+std::string shell_line(const std::vector<std::string>& words) {
+  std::vector<std::string> all;
+  all.reserve(words.size());
+  for (const std::string& word : words) all.push_back(shell_quoted(word));
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
+std::string simbench_line(std::vector<std::string> command) {
+  command.front() = "simbench";
+  return shell_line(command);
+}
 
 std::string manifest_json(const Provenance& provenance, const std::string& more) {
   Json manifest = {{"schema_version", 1},
@@ -32,7 +72,7 @@ std::string manifest_json(const Provenance& provenance, const std::string& more)
                    {"started", utc_text(provenance.started)},
                    {"finished", utc_text(provenance.finished)}};
   manifest.update(Json::parse(more));
-  return manifest.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(manifest);
 }
 
 void write_archive(OutputFolder& output, const evaluation::Results& results,
@@ -46,6 +86,272 @@ void write_archive(OutputFolder& output, const evaluation::Results& results,
   write_frames_csv(results, output.file("frames.csv"));
   write_hosts_csv(results, output.file("hosts.csv"));
   output.publish();
+}
+
+namespace {
+
+using evaluation::Row;
+
+constexpr const char* kAdvice =
+    "`simbench run --output DIR` writes a result archive, and `simbench run --format json > FILE` "
+    "a result without one";
+
+evaluation::Percentile percentile(const JsonNode& published, const char* name) {
+  const JsonNode interval = published[fmt::format("{}_interval", name).c_str()];
+  const std::vector<JsonNode> ends = interval.elements();
+  if (ends.size() != 2) interval.refuse("two numbers");
+  return {published[name].number(), ends[0].number(), ends[1].number()};
+}
+
+std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
+  if (node.is_null()) return std::nullopt;
+  return evaluation::PublishedComparison{.amd_ms = node["amd_ms"].number(),
+                                         .rmdv_ms = node["rmdv_ms"].number(),
+                                         .amd_inside = node["amd_inside"].flag(),
+                                         .rmdv_inside = node["rmdv_inside"].flag(),
+                                         .rmdv_attainable = node["rmdv_attainable"].flag(),
+                                         .amd_percentile = percentile(node, "amd_percentile"),
+                                         .rmdv_percentile = percentile(node, "rmdv_percentile")};
+}
+
+// Archives of simbench 0.1 lack these members: all are of simulations.
+void read_ground_truth(const JsonNode& node, Row& row) {
+  if (!node.has("ground_truth")) return;
+  using evaluation::GroundTruth;
+  const JsonNode name = node["ground_truth"];
+  const std::string text = name.text();
+  bool known = false;
+  for (const GroundTruth truth :
+       {GroundTruth::kSimulation, GroundTruth::kGenlockOrder, GroundTruth::kNone}) {
+    if (text != ground_truth_name(truth)) continue;
+    row.ground_truth = truth;
+    known = true;
+  }
+  if (!known) name.refuse("\"simulation\", \"genlock_order\" or \"none\"");
+  for (const JsonNode& note : node["notes"].elements()) row.notes.push_back(note.text());
+}
+
+void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::Metric& metric,
+                 Row& row) {
+  const JsonNode node = *metric.json_in == '\0' ? row_node[metric.member()]
+                                                : row_node[metric.json_in][metric.member()];
+  if (metric.is_series()) {
+    metric.series(row) = node.series(seeds);
+  } else if (!metric.is_count()) {
+    metric.number(row) = node.number();
+  } else if (metric.needs == evaluation::Needs::kNothing || !node.is_null()) {
+    metric.count(row) = node.count();
+  }
+}
+
+Row read_row(const JsonNode& node, std::size_t seeds) {
+  Row row;
+  row.pipeline = node["pipeline"].text();
+  row.host_sync = node["host_sync"].text();
+  row.device_time = node["device_time"].text();
+  row.gathering = node["gathering"].text();
+  row.offline = node["offline"].flag();
+  for (const evaluation::Metric& metric : evaluation::metrics()) {
+    read_metric(node, seeds, metric, row);
+  }
+  row.published = published(node["published"]);
+  read_ground_truth(node, row);
+  return row;
+}
+
+evaluation::Claim read_claim(const JsonNode& node) {
+  evaluation::Claim claim;
+  claim.id = node["id"].text();
+  claim.text = node["text"].text();
+  if (!node["holds_fraction"].is_null()) claim.holds_fraction = node["holds_fraction"].number();
+  if (!node["needs"].is_null()) claim.needs = node["needs"].text();
+  return claim;
+}
+
+evaluation::Results read_results(const JsonNode& root) {
+  evaluation::Results results;
+  results.scenario = root["scenario"].text();
+  results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
+  results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
+  for (const JsonNode& row : root["rows"].elements()) {
+    results.rows.push_back(read_row(row, results.seed_count));
+  }
+  for (const JsonNode& claim : root["claims"].elements())
+    results.claims.push_back(read_claim(claim));
+  if (const JsonNode floor = root["asymmetry_floor"]; !floor.is_null()) {
+    results.asymmetry_floor =
+        evaluation::AsymmetryFloor{.sigma_ms = floor["sigma_ms"].number(),
+                                   .host_error_ms = floor["host_error_ms"].number(),
+                                   .amd_ms = floor["amd_ms"].number()};
+  }
+  for (const JsonNode& warning : root["warnings"].elements()) {
+    results.warnings.push_back(warning.text());
+  }
+  const JsonNode cost = root["performance"];
+  results.performance = {
+      .events = static_cast<std::uint64_t>(cost["events"].count()),
+      .simulated_seconds = cost["simulated_seconds"].number(),
+      .cpu_seconds = cost["cpu_seconds"].number(),
+      .wall_seconds = cost["wall_seconds"].number(),
+      .events_per_second = cost["events_per_second"].number(),
+      .simulated_seconds_per_second = cost["simulated_seconds_per_second"].number()};
+  return results;
+}
+
+void read_manifest(const JsonFile& file, Archive& archive) {
+  const JsonNode root(file, file.value);
+  root.check_schema_version(kArchiveSchemaVersion);
+  for (const JsonNode& word : root["command"].elements()) archive.command.push_back(word.text());
+  archive.started = root["started"].text();
+  archive.finished = root["finished"].text();
+  archive.scenario_json = root["scenario"].dump();
+  if (const JsonNode name = root["scenario"]["name"]; name.text() != archive.results.scenario) {
+    name.refuse(fmt::format("'{}', as in results.json beside it", archive.results.scenario));
+  }
+}
+
+}  // namespace
+
+Archive read_archive(const std::string& path) {
+  const bool is_folder = std::filesystem::is_directory(path);
+  const std::filesystem::path folder = path;
+  const JsonFile file =
+      read_json_file(is_folder ? (folder / "results.json").string() : path, kAdvice);
+  const JsonNode root(file, file.value);
+  root.check_schema_version(kArchiveSchemaVersion);
+  Archive archive;
+  archive.path = path;
+  archive.version = root["version"].text();
+  archive.commit = root["commit"].text();
+  archive.results = read_results(root);
+  if (is_folder) {
+    read_manifest(read_json_file((folder / "manifest.json").string(), kAdvice), archive);
+  }
+  return archive;
+}
+
+namespace {
+
+using evaluation::SeedScore;
+
+constexpr std::size_t kCells = 5;  // of a line of either file
+
+// One of the archive's CSV files, line by line. The first cell may be quoted (RFC 4180).
+class CsvFile {
+ public:
+  CsvFile(const Archive& archive, const char* name, std::string_view header)
+      : path_((std::filesystem::path(archive.path) / name).string()), in_(path_) {
+    if (!in_) fail("cannot be read; only the folder of an archive has it");
+    if (!next() || line_ != header) fail(fmt::format("line 1 has to be '{}'", header));
+  }
+
+  // Splits the next line, which must have kCells cells; false at the end.
+  bool next_row() {
+    if (!next()) return false;
+    std::string_view rest = line_;
+    name_ = take_name(rest);
+    for (std::size_t i = 1; i < kCells; ++i) {
+      const std::size_t comma = rest.find(',');
+      if ((comma == std::string_view::npos) != (i == kCells - 1)) {
+        fail(fmt::format("allowed: exactly {} cells; was the file cut short?", kCells));
+      }
+      cells_[i] = rest.substr(0, comma);
+      rest.remove_prefix(i == kCells - 1 ? rest.size() : comma + 1);
+    }
+    return true;
+  }
+
+  const std::string& name() const { return name_; }
+  std::string_view text(std::size_t cell) const { return cells_[cell]; }
+  template <class Number>
+  Number number(std::size_t cell) const {
+    const std::string_view text = cells_[cell];
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      fail(fmt::format("found '{}', allowed: a number", scenarios::shown_text(text)));
+    }
+    return value;
+  }
+  // An empty cell is NaN.
+  double value(std::size_t cell) const {
+    return cells_[cell].empty() ? evaluation::kNan : number<double>(cell);
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw scenarios::InputError(fmt::format("{}:{}: {}", path_, number_, problem));
+  }
+
+ private:
+  bool next() {
+    ++number_;
+    return static_cast<bool>(std::getline(in_, line_));
+  }
+
+  // The first cell, without its quotes; leaves what follows the comma.
+  static std::string take_name(std::string_view& rest) {
+    std::string name;
+    bool quoted = false;
+    std::size_t i = 0;
+    for (; i < rest.size() && (quoted || rest[i] != ','); ++i) {
+      if (rest[i] != '"') {
+        name += rest[i];
+      } else if (quoted && i + 1 < rest.size() && rest[i + 1] == '"') {
+        name += rest[++i];
+      } else {
+        quoted = !quoted;
+      }
+    }
+    rest.remove_prefix(std::min(i + 1, rest.size()));
+    return name;
+  }
+
+  std::string path_;
+  std::ifstream in_;
+  std::string line_;
+  std::string name_;
+  std::size_t number_ = 0;
+  std::string_view cells_[kCells];
+};
+
+// The score for a line, which begins with pipeline and seed.
+SeedScore& score_of(const CsvFile& file, evaluation::Results& results) {
+  const auto seed = file.number<std::uint64_t>(1);
+  if (seed < results.first_seed || seed - results.first_seed >= results.seed_count) {
+    file.fail(fmt::format("found seed {}, allowed: {} to {}, the seeds of results.json", seed,
+                          results.first_seed, results.first_seed + results.seed_count - 1));
+  }
+  for (Row& row : results.rows) {
+    if (row.pipeline == file.name()) return row.seeds[seed - results.first_seed];
+  }
+  file.fail(fmt::format("found pipeline '{}', which results.json does not have",
+                        scenarios::shown_text(file.name())));
+}
+
+}  // namespace
+
+void read_seed_details(Archive& archive) {
+  evaluation::Results& results = archive.results;
+  for (Row& row : results.rows) {
+    row.seeds.assign(results.seed_count, SeedScore{});
+    for (std::size_t i = 0; i < row.seeds.size(); ++i) row.seeds[i].seed = results.first_seed + i;
+  }
+  CsvFile frames(archive, "frames.csv", "pipeline,seed,pulse,spread_ms,deviation_ms");
+  while (frames.next_row()) {
+    score_of(frames, results)
+        .pulses.push_back({.pulse = frames.number<std::int64_t>(2),
+                           .spread_ms = frames.value(3),
+                           .deviation_ms = frames.value(4)});
+  }
+  CsvFile hosts(archive, "hosts.csv", "pipeline,seed,host,error_ms,synchronised");
+  while (hosts.next_row()) {
+    SeedScore& score = score_of(hosts, results);
+    if (hosts.number<std::size_t>(2) != score.host_errors_ms.size()) {
+      hosts.fail(fmt::format("found host {}, allowed: {}, the next one", hosts.text(2),
+                             score.host_errors_ms.size()));
+    }
+    score.host_errors_ms.push_back(hosts.value(3));
+  }
 }
 
 }  // namespace simbench::reports

@@ -1,11 +1,20 @@
-// The result archive that --output writes: everything needed to read, check and repeat a run.
+// The result archive that --output writes, with all that is needed to read, check and repeat a run.
 //
 //   manifest.json   the fully resolved scenario, seeds, version, commit, command, start and end
-//   results.json    as reports/results/json.h has it
+//   results.json    see reports/results/json.h
 //   frames.csv      spread and deviation of every evaluated pulse
 //   hosts.csv       mean clock error of every host
 //
 // Only manifest.json (its clock times) and /performance in results.json differ between equal runs.
+//
+// The reader checks everything: it refuses a file that was cut short, edited by hand or written
+// with a newer schema, with file, line and JSON pointer, what was found and what is allowed. It
+// computes medians and bands again from the values, so that an archive cannot contradict itself.
+//
+// Errors: scenarios::InputError in reading, OutputError in writing.
+//
+//   const Archive monday = read_archive("results/monday");
+//   for (const evaluation::Row& row : monday.results.rows) use(row.amd_ms.values);
 #ifndef SIMBENCH_REPORTS_ARCHIVE_ARCHIVE_H_
 #define SIMBENCH_REPORTS_ARCHIVE_ARCHIVE_H_
 
@@ -14,25 +23,53 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reports {
 
-// How a result came about, beside what is in it.
+// The command and the times of a result.
 struct Provenance {
   std::vector<std::string> command;  // argv
   std::chrono::system_clock::time_point started;
   std::chrono::system_clock::time_point finished;
 };
 
-// The members that every manifest has: schema_version, program, version, commit, command, started,
-// finished (ISO 8601, UTC), and `more`, the text of a JSON object, merged in.
+// Returns a command as a POSIX shell takes it.
+std::string shell_line(const std::vector<std::string>& words);
+// The same for an argv of simbench, without the path of the program.
+std::string simbench_line(std::vector<std::string> command);
+
+// Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO
+// 8601, UTC), and `more`, the text of a JSON object, merged in.
 std::string manifest_json(const Provenance& provenance, const std::string& more);
 
-// Writes and publishes. Throws OutputError; then nothing is left.
+// Writes and publishes. After an OutputError nothing is left.
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance);
+
+// The schema of manifest.json and results.json: the written one, and the newest that can be read.
+inline constexpr int kArchiveSchemaVersion = 1;
+
+struct Archive {
+  std::string path;  // as the user stated it
+  std::string version;
+  std::string commit;
+  std::vector<std::string> command{};  // from here to scenario_json: only with a manifest
+  std::string started{};
+  std::string finished{};
+  std::string scenario_json{};  // resolved; load it with scenarios::load_scenario_text
+  // As evaluate() returned them, without Row::seeds: the values of the row's series have the scores
+  // of the seeds, in seed order.
+  evaluation::Results results;
+};
+
+// `path`: an archive's folder, or a results.json alone, without a manifest.
+Archive read_archive(const std::string& path);
+
+// Sets Row::seeds from frames.csv and hosts.csv: seed, pulses, host_errors_ms and nothing else. The
+// archive must be a folder.
+void read_seed_details(Archive& archive);
 
 }  // namespace simbench::reports
 

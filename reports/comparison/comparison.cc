@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "recording/version.h"
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/comparison/comparison_words.h"
+#include "reports/results/csv.h"
+#include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -67,15 +66,16 @@ std::string described(const Archive& archive) {
 }
 
 [[noreturn]] void refuse_worlds(const Archive& a, const Archive& b, const std::string& what) {
-  throw InputError(fmt::format(
-      "{} and {} are of different scenarios, so a difference says nothing about the pipelines: {}. "
-      "What can be compared: pipelines within one of them (--pipelines or --with-baseline), or "
-      "what "
-      "the other world makes of the same pipelines, with --different-scenarios",
-      a.path, b.path, what));
+  throw InputError(
+      fmt::format("{} and {} are of different scenarios, so a difference does not come from the "
+                  "pipelines alone: "
+                  "{}. Compare pipelines within one of them (--pipelines or --with-baseline), or "
+                  "the same pipelines "
+                  "in both worlds with --different-scenarios",
+                  a.path, b.path, what));
 }
 
-// Refuses other worlds, or says what differs in `notes`.
+// Refuses other worlds, or adds the differences to `notes`.
 void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions& options,
                      std::vector<std::string>& notes) {
   const std::string& name_a = a.results.scenario;
@@ -85,7 +85,8 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     if (name_a != name_b && !options.different_scenarios) refuse_worlds(a, b, names);
     if (name_a != name_b) notes.push_back(names);
     notes.emplace_back(
-        "a results.json alone does not hold its scenario: that both are of the same world is "
+        "a results.json alone does not hold its scenario, so whether both are of the same world "
+        "was "
         "not checked");
     return;
   }
@@ -94,8 +95,7 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     const std::string world = first_few(found.world);
     if (!options.different_scenarios) refuse_worlds(a, b, world);
     notes.push_back(fmt::format(
-        "different worlds, as asked for; the differences are theirs and not the pipelines': {}",
-        world));
+        "different worlds (--different-scenarios), which cause the differences: {}", world));
   }
   if (name_a != name_b) notes.push_back(names);
   if (!found.algorithms.empty()) {
@@ -111,7 +111,7 @@ SeedPairing paired_seeds(const Archive& a, const Archive& b, const ComparisonOpt
       options.by_index ? pair_by_index(of_a, of_b) : pair_by_seed(of_a, of_b);
   if (pairing.count == 0) {
     throw InputError(fmt::format(
-        "{} has the seeds {} and {} has {}: none in common. Run one of them with the seeds of the "
+        "{} has the seeds {} and {} has {}, none in common. Run one of them with the seeds of the "
         "other (--first-seed, --seeds), or compare them as independent runs with --by-index, which "
         "needs many more seeds",
         a.path, seeds_text(of_a), b.path, seeds_text(of_b)));
@@ -210,8 +210,6 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-
 Json estimate_json(const evaluation::Estimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
 }
@@ -228,9 +226,6 @@ Json metric_json(const evaluation::PairedComparison& c) {
           {"verdict", verdict_name(c.verdict)},
           {"seeds_needed", c.seeds_needed > 0 ? Json(c.seeds_needed) : Json()}};
 }
-
-// Empty for what does not exist, as in the CSV of a run.
-std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 }  // namespace
 
@@ -257,7 +252,7 @@ std::string comparison_json(const Comparison& comparison) {
     }
     root["pipelines"].push_back(std::move(row));
   }
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 std::string comparison_csv(const Comparison& comparison) {
@@ -273,7 +268,7 @@ std::string comparison_csv(const Comparison& comparison) {
       for (const double value :
            {c.mean_a, c.mean_b, c.median_a, c.median_b, c.difference.value, c.difference.low,
             c.difference.high, c.ratio.value, c.ratio.low, c.ratio.high}) {
-        text += fmt::format(",{}", csv_number(value));
+        text += fmt::format(",{}", csv_cell(value));
       }
       text += fmt::format(",{},{}\n", verdict_name(c.verdict),
                           c.seeds_needed > 0 ? fmt::format("{}", c.seeds_needed) : "");

@@ -1,13 +1,13 @@
-// Two result archives, or pipelines of one, compared by seed: what `simbench compare` says.
+// Compares two result archives, or pipelines of one archive, seed by seed (`simbench compare`).
 //
-// A is what stands first and what B is held against: the older archive, the pipeline to beat. All
-// numbers are of the pairs that both have: the common seeds, the common pipelines. What differs
-// besides (version, commit, seeds, pipelines, parameters of the algorithms) is said in `notes`.
-// The statistics and the verdicts are those of evaluation/statistics/paired.h.
+// A is the reference that B is compared with: the older archive, the pipeline to beat. All numbers
+// are of the pairs that both have: the common seeds, the common pipelines. `notes` has the other
+// differences (version, commit, seeds, pipelines, parameters of the algorithms). Statistics and
+// verdicts are those of evaluation/statistics/paired.h.
 //
-// Errors: scenarios::InputError, which says what differs and what can be compared instead: other
-// worlds (comparison_scenarios.h) unless they are asked for, no common seed unless paired by index,
-// no common pipeline, an unknown name.
+// Errors: scenarios::InputError, which states the difference and what can be compared instead:
+// other worlds (comparison_scenarios.h) unless allowed, no common seed unless paired by index, no
+// common pipeline, an unknown name.
 //
 //   const Archive monday = read_archive("monday");
 //   std::cout << plain(comparison_document(compare_with_baseline(monday, "ntp_last_set", {})));
@@ -19,16 +19,16 @@
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
 
 struct ComparisonOptions {
-  double smallest_effect = 0.05;  // ComparisonRule::smallest_effect
-  bool by_index = false;          // the n-th seed of A with the n-th of B, whatever their numbers
-  bool different_scenarios = false;  // the question is what the world makes of the same pipeline
-  std::vector<std::string> pipelines{};  // of two archives only these; empty: all that both have
+  double smallest_effect = 0.05;         // ComparisonRule::smallest_effect
+  bool by_index = false;                 // pairs the n-th seed of A with the n-th of B
+  bool different_scenarios = false;      // allows other worlds: compares these, not pipelines
+  std::vector<std::string> pipelines{};  // of two archives; empty: all that both have
 };
 
 struct ComparedPipeline {
@@ -46,22 +46,36 @@ struct Comparison {
   std::uint64_t first_seed_b = 0;
   std::uint64_t seed_count = 0;
   double smallest_effect = 0;
-  bool with_baseline = false;  // one pipeline against each of the others
+  bool with_baseline = false;  // each other pipeline compared with one
   std::vector<ComparedPipeline> pipelines;
   std::vector<std::string> notes;
 };
 
-// Pipelines of the same name.
+// Compares pipelines of the same name.
 Comparison compare_archives(const Archive& a, const Archive& b, const ComparisonOptions& options);
-// Two pipelines of one archive.
+// Compares two pipelines of one archive.
 Comparison compare_pipelines(const Archive& archive, const std::string& a, const std::string& b,
                              const ComparisonOptions& options);
-// Each other pipeline of the archive (B) against `baseline` (A).
+// Compares each other pipeline of the archive (B) with `baseline` (A).
 Comparison compare_with_baseline(const Archive& archive, const std::string& baseline,
                                  const ComparisonOptions& options);
 
 // A line for each pipeline and metric, verdicts, notes; with a baseline also in words.
 Document comparison_document(const Comparison& comparison);
+// The texts of the document.
+//
+// "better", "too_few_seeds", ...: for programs.
+const char* verdict_name(evaluation::Verdict verdict);
+
+// "better"; "worse, by less than 5 %"; "no difference seen: all equal"; "too few seeds: 240
+// needed".
+std::string verdict_text(const evaluation::PairedComparison& comparison, double smallest_effect);
+
+// B relative to A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]", "recall 100
+// % in place of 0 %", "absolute error: no difference seen".
+std::string effect_words(const evaluation::Metric& metric,
+                         const evaluation::PairedComparison& comparison, double smallest_effect);
+
 // schema_version 1; members are only ever added. What does not exist is null.
 std::string comparison_json(const Comparison& comparison);
 std::string comparison_csv(const Comparison& comparison);

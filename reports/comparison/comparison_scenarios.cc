@@ -15,18 +15,18 @@
 namespace simbench::reports {
 namespace {
 
-// Members by name, whatever order a file has them in.
+// Members by name, independent of their order in a file.
 using SortedJson = nlohmann::json;
 
 constexpr std::array<const char*, 4> kWords = {"name", "summary", "published", "schema_version"};
 
 SortedJson parsed(const std::string& text) {
   SortedJson root = SortedJson::parse(text, nullptr, false);
-  if (!root.is_object()) throw scenarios::InputError("a resolved scenario is no JSON object");
+  if (!root.is_object()) throw scenarios::InputError("a resolved scenario is not a JSON object");
   return root;
 }
 
-// By name, so that a pipeline that was added moves no other.
+// Pipelines by name, so that an added pipeline moves no other.
 SortedJson by_name(const SortedJson& pipelines) {
   SortedJson named = SortedJson::object();
   if (!pipelines.is_array()) return named;
@@ -68,7 +68,7 @@ std::vector<std::string> differences(const SortedJson& a, const SortedJson& b,
   return found;
 }
 
-// Takes the member out of the scenario.
+// Removes the member from the scenario and returns it.
 SortedJson taken(SortedJson& scenario, const char* key) {
   SortedJson member = scenario.contains(key) ? scenario[key] : SortedJson::object();
   scenario.erase(key);
@@ -97,7 +97,7 @@ ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b
     right.erase(word);
   }
   for (SortedJson* scenario : {&left, &right}) {
-    // Which table is printed.
+    // The choice of the printed table.
     if (scenario->contains("evaluation")) (*scenario)["evaluation"].erase("table");
   }
   result.world = differences(left, right, "");

@@ -1,11 +1,8 @@
-// What makes two results comparable: the same world, and seeds that stand in pairs.
+// Which results can be compared: those of the same world, with seeds in pairs.
 //
-// Where two resolved scenarios differ is divided into what makes their results incomparable and
-// what is under test.
-//
-// The world is what a pipeline is put into: everything but the parameters of the algorithms, the
-// pipelines, published values and the scenario's words about itself. Numbers of different worlds
-// say nothing about the algorithms. Algorithms may differ: that is what comparisons are for.
+// The world is the input of a pipeline: everything except the parameters of the algorithms, the
+// pipelines, published values and the scenario's description of itself. Numbers of different worlds
+// do not compare the algorithms. Algorithms may differ, since comparisons are about them.
 //
 //   const ScenarioDifferences d = compare_scenarios(a.scenario_json, b.scenario_json);
 //   if (!d.world.empty()) refuse(d.world);
@@ -21,21 +18,21 @@
 
 namespace simbench::reports {
 
-// "/network/latency_fixed_ms: 0.1 against 0.2", in alphabetical order. Pipelines are told by name:
-// "/pipelines/oracle/device_time"; one that only one scenario has is no difference.
+// "/network/latency_fixed_ms: 0.1 against 0.2", in alphabetical order. Pipelines stand by name:
+// "/pipelines/oracle/device_time"; a pipeline of one scenario alone is no difference.
 struct ScenarioDifferences {
   std::vector<std::string> world;
   std::vector<std::string> algorithms;
 };
 
-// The texts of two resolved scenarios; JSON, or this throws scenarios::InputError.
+// `a`, `b`: two resolved scenarios. Throws scenarios::InputError if one is not JSON.
 ScenarioDifferences compare_scenarios(const std::string& a, const std::string& b);
 
-// Same for equal content, whatever the spacing and the order of members: a UUID of version 5
-// (SHA-1) of any JSON text.
+// Returns a UUID of version 5 (SHA-1) of a JSON text: equal for equal content, whatever the spacing
+// and the order of members.
 std::string digest_of_json(const std::string& text);
 
-// The first few of many, in one line: "x; y; and 7 more".
+// Joins the first few in one line: "x; y; and 7 more".
 std::string first_few(const std::vector<std::string>& differences);
 
 // `count` consecutive seeds.
@@ -51,12 +48,12 @@ inline SeedRange seeds_of(const evaluation::Results& results) {
 // "1-32"; "7".
 std::string seeds_text(const SeedRange& seeds);
 
-// Which seeds of two results stand in pairs.
+// The pairs of seeds of two results.
 //
 //   const SeedPairing pairing = pair_by_seed(seeds_of(a.results), seeds_of(b.results));
 //   evaluation::pair_up(pairing.of_a(row_a.amd_ms.values), pairing.of_b(row_b.amd_ms.values));
 struct SeedPairing {
-  std::uint64_t skip_a = 0;  // values before the first that has a partner
+  std::uint64_t skip_a = 0;  // values before the first pair
   std::uint64_t skip_b = 0;
   std::uint64_t count = 0;
 
@@ -70,9 +67,9 @@ struct SeedPairing {
   }
 };
 
-// The seeds that both have.
+// Pairs the seeds that both have.
 SeedPairing pair_by_seed(const SeedRange& a, const SeedRange& b);
-// The n-th with the n-th.
+// Pairs the n-th with the n-th.
 SeedPairing pair_by_index(const SeedRange& a, const SeedRange& b);
 
 }  // namespace simbench::reports

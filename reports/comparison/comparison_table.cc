@@ -1,18 +1,115 @@
 // Comparisons for people.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "reports/comparison/comparison.h"
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/comparison/comparison_words.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
 
+using evaluation::Estimate;
 using evaluation::Metric;
 using evaluation::PairedComparison;
+using evaluation::Verdict;
 
-// As the other numbers, but a small ratio keeps its digits.
+bool is_sure(const PairedComparison& comparison) {
+  return comparison.verdict == Verdict::kBetter || comparison.verdict == Verdict::kWorse;
+}
+
+// Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
+std::string factor_text(double factor) {
+  constexpr double kWhole = 999.5;  // rounds to four digits
+  if (std::isnan(factor)) return "-";
+  return std::abs(factor) < kWhole ? fmt::format("{:.3g}", factor) : fmt::format("{:.0f}", factor);
+}
+
+// "AMD ms", "recall %".
+std::string shown_title(const Metric& metric) {
+  return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
+}
+
+// "times" from a factor of two on, else percent.
+std::string factor_words(const Estimate& ratio) {
+  constexpr double kTimes = 2;
+  if (ratio.value >= kTimes) {
+    return fmt::format("{} times larger [{}, {}]", factor_text(ratio.value), factor_text(ratio.low),
+                       factor_text(ratio.high));
+  }
+  if (ratio.value * kTimes <= 1 && ratio.low > 0) {
+    return fmt::format("{} times smaller [{}, {}]", factor_text(1 / ratio.value),
+                       factor_text(1 / ratio.high), factor_text(1 / ratio.low));
+  }
+  const bool is_larger = ratio.value >= 1;
+  const double near = is_larger ? ratio.low : ratio.high;
+  const double far = is_larger ? ratio.high : ratio.low;
+  const auto percent = [](double share) { return factor_text(100 * std::abs(share - 1)); };
+  return fmt::format("{} % {} [{} %, {} %]", percent(ratio.value), is_larger ? "larger" : "smaller",
+                     percent(near), percent(far));
+}
+
+}  // namespace
+
+const char* verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kBetter:
+      return "better";
+    case Verdict::kWorse:
+      return "worse";
+    case Verdict::kNoDifferenceSeen:
+      return "no_difference_seen";
+    case Verdict::kTooFewSeeds:
+      return "too_few_seeds";
+  }
+  return "";
+}
+
+std::string verdict_text(const PairedComparison& comparison, double smallest_effect) {
+  constexpr std::uint64_t kMany = 1'000'000;
+  if (comparison.pairs == 0) return "no values";
+  std::string text;
+  if (comparison.verdict == Verdict::kNoDifferenceSeen) {
+    const bool all_equal = comparison.difference.low == 0 && comparison.difference.high == 0;
+    text = all_equal ? "no difference seen: all equal" : "no difference seen";
+  } else if (is_sure(comparison)) {
+    text = verdict_name(comparison.verdict);
+    if (comparison.within_effect) {
+      text += fmt::format(", by less than {:.3g} %", 100 * smallest_effect);
+    }
+  } else if (comparison.seeds_needed == 0) {
+    text = "too few seeds: more needed";
+  } else if (comparison.seeds_needed > kMany) {
+    text = "too few seeds: over a million needed";
+  } else {
+    text = fmt::format("too few seeds: {} needed", comparison.seeds_needed);
+  }
+  if (comparison.left_out > 0) {
+    text += fmt::format(" ({} left out: no value)", counted(comparison.left_out, "seed"));
+  }
+  return text;
+}
+
+std::string effect_words(const Metric& metric, const PairedComparison& comparison,
+                         double smallest_effect) {
+  if (!is_sure(comparison)) {
+    return fmt::format("{}: {}", metric.title, verdict_text(comparison, smallest_effect));
+  }
+  if (metric.is_share()) {
+    return fmt::format("{} {} in place of {}", metric.title, share_text(comparison.mean_b),
+                       share_text(comparison.mean_a));
+  }
+  if (std::isnan(comparison.ratio.low)) {
+    return fmt::format("{} {} {} in place of {} {}", metric.title, number_text(comparison.mean_b),
+                       metric.unit, number_text(comparison.mean_a), metric.unit);
+  }
+  return fmt::format("{} {}", metric.title, factor_words(comparison.ratio));
+}
+
+namespace {
+
+// Like other numbers, but a small ratio keeps its digits.
 std::string ratio_cell(double ratio) {
   constexpr double kSmall = 0.1;
   return ratio > 0 && ratio < kSmall ? factor_text(ratio) : number_text(ratio);
@@ -58,9 +155,10 @@ std::string pairing_text(const Comparison& comparison) {
   const SeedRange a{comparison.first_seed_a, comparison.seed_count};
   const SeedRange b{comparison.first_seed_b, comparison.seed_count};
   if (!comparison.by_index) {
-    return fmt::format("{} pairs, one for each of the seeds {}", a.count, seeds_text(a));
+    return fmt::format("{}, one for each of the seeds {}", counted(a.count, "pair"), seeds_text(a));
   }
-  return fmt::format("{} pairs by index: seeds {} with {}", a.count, seeds_text(a), seeds_text(b));
+  return fmt::format("{} by index: seeds {} with {}", counted(a.count, "pair"), seeds_text(a),
+                     seeds_text(b));
 }
 
 Block words(const Comparison& comparison) {
@@ -81,10 +179,10 @@ std::string legend(const Comparison& comparison) {
   return fmt::format(
       "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
       "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
-      "interval excludes 0. no difference seen: it includes 0 and any difference is within {:.3g} "
-      "% of A's "
-      "mean (--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds "
-      "needed it is narrower than that, so that one of the others must come out.",
+      "interval excludes 0. no difference seen: it includes 0 and lies within {:.3g} % of A's mean "
+      "(--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds needed "
+      "it "
+      "is so narrow that it leads to one of the other results.",
       100 * comparison.smallest_effect);
 }
 

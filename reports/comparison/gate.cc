@@ -7,7 +7,7 @@
 
 #include "evaluation/statistics/paired.h"
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/comparison/gate_commands.h"
+#include "reports/text/number_text.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -18,7 +18,7 @@ using evaluation::Row;
 using scenarios::InputError;
 
 constexpr const char* kAnew =
-    "If this is the new state of things, write the baseline anew with `simbench gate RESULT "
+    "If the new values are intended, write a new baseline with `simbench gate RESULT "
     "--save-baseline FILE`";
 
 void check_world(const Archive& result, const Baseline& baseline, GateReport& report) {
@@ -28,7 +28,7 @@ void check_world(const Archive& result, const Baseline& baseline, GateReport& re
                                    result.results.scenario, baseline.path, baseline.scenario));
     }
     report.notes.emplace_back(
-        "a results.json alone does not hold its scenario: that it is the baseline's is not "
+        "a results.json alone does not hold its scenario, so whether it is the baseline's was not "
         "checked");
     return;
   }
@@ -65,13 +65,13 @@ SeedPairing statistical_pairing(const SeedRange& expected, const SeedRange& foun
   }
   if (pairing.count >= kFewestGateSeeds) return pairing;
   throw InputError(fmt::format(
-      "{} has {} seeds and the baseline {} has {}, allowed with --mode statistical: at least {} in "
+      "{} has {} and the baseline {} has {}, allowed with --mode statistical: at least {} in "
       "each; run with --seeds {}",
-      report.result_path, found.count, report.baseline_path, expected.count, kFewestGateSeeds,
-      kFewestGateSeeds));
+      report.result_path, counted(found.count, "seed"), report.baseline_path, expected.count,
+      kFewestGateSeeds, kFewestGateSeeds));
 }
 
-// Whether two values are the same but for rounding; NaN is the same as NaN.
+// Whether two values are the same except for rounding; NaN is the same as NaN.
 bool same(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
   return std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
@@ -113,7 +113,7 @@ void decide_exactly(const std::vector<double>& before, const std::vector<double>
   }
 }
 
-// What a check must keep until all p-values are known.
+// The state of a check until all p-values are known.
 struct OpenCheck {
   evaluation::PairedT t;
   bool vanished = false;
@@ -200,12 +200,32 @@ void note_more(const Archive& result, const Baseline& baseline, GateReport& repo
   }
   if (!more.empty()) {
     report.notes.push_back(
-        fmt::format("not in the baseline, so not held to anything: {}", fmt::join(more, ", ")));
+        fmt::format("not in the baseline, so not checked: {}", fmt::join(more, ", ")));
   }
   if (report.passed() && report.count(GateOutcome::kSame) < report.checks.size() &&
       report.mode == GateMode::kExact) {
     report.notes.emplace_back(kAnew);
   }
+}
+
+// The commands that repeat what the gate saw: the run (as in its manifest; for a results.json alone
+// as far as known), then the gate.
+std::string run_command(const Archive& result) {
+  if (!result.command.empty()) return simbench_line(result.command);
+  std::vector<std::string> names;
+  for (const evaluation::Row& row : result.results.rows) names.push_back(row.pipeline);
+  return shell_line({"simbench", "run", "--scenario", result.results.scenario, "--first-seed",
+                     fmt::format("{}", result.results.first_seed), "--seeds",
+                     fmt::format("{}", result.results.seed_count), "--pipelines",
+                     fmt::format("{}", fmt::join(names, ",")), "--output", "results"});
+}
+
+std::vector<std::string> gate_commands(const Archive& result, const Baseline& baseline,
+                                       GateMode mode) {
+  const std::string archive = result.command.empty() ? "results" : result.path;
+  std::vector<std::string> judge = {"simbench", "gate", archive, "--baseline", baseline.path};
+  if (mode == GateMode::kStatistical) judge.insert(judge.end(), {"--mode", "statistical"});
+  return {run_command(result), shell_line(judge)};
 }
 
 }  // namespace

@@ -1,23 +1,21 @@
-// Holds a result to a baseline: what `simbench gate` decides.
+// Holds a result to a baseline (`simbench gate`).
 //
-// Exact, for pinned seeds: the seeds and the world of the baseline are demanded. Whatever changed
-// beyond rounding is reported; a check fails if the metric's table value
+// Exact mode, for pinned seeds: requires the seeds and the world of the baseline. Reports every
+// change beyond rounding. A check fails if the metric's table value
 // (evaluation::Metric::table_value) is worse by more than its margin, the larger of a share and a
-// step, or if a seed that had a value has none now. Nothing is inferred: equal code gives equal
-// numbers.
+// step, or if a seed lost its value. There is no inference: equal code gives equal numbers.
 //
-// Statistical, for 32 or more seeds of any numbers: paired by seed if at least 32 are common, else
-// by index, as independent runs. A check fails only if the mean is worse by more than the margin
-// and its Student's t interval excludes zero after Holm's correction over all checks of the gate
-// (evaluation/statistics/paired.h): a gate cries wolf in fewer than one of twenty runs. Values
-// that vanished fail here too if the seeds are the same, or if none is left.
+// Statistical mode, for 32 or more seeds of any numbers: paired by seed with at least 32 common
+// seeds, else by index, as independent runs. A check fails only if the mean is worse by more than
+// the margin and its Student's t interval excludes zero after Holm's correction over all checks of
+// the gate (evaluation/statistics/paired.h): fewer than one of twenty gates raises a false alarm.
+// Lost values fail here too if the seeds are the same, or if none is left.
 //
-// In both a pipeline of the baseline that the result lacks fails; one that it has more is noted.
-// The algorithms may differ, which is what a gate is for, and this is noted. How fast the run was
-// does not matter.
+// In both modes a pipeline of the baseline that is missing in the result fails; an additional one
+// is noted, and so are differences of the algorithms. The speed of the run does not matter.
 //
-// Errors: scenarios::InputError for a result that cannot be held to this baseline, saying what
-// differs and what to do.
+// Errors: scenarios::InputError for a result that cannot be compared with this baseline, with the
+// difference and the remedy.
 //
 //   const GateReport report = gate(read_archive("results"), read_baseline("mine.json"), {});
 //   if (!report.passed()) std::cout << gate_text(report);
@@ -32,23 +30,22 @@
 #include <vector>
 
 #include "evaluation/statistics/paired.h"
-#include "reports/archive/archive_reader.h"
-#include "reports/archive/baseline.h"
-#include "reports/comparison/comparison_scenarios.h"
+#include "reports/archive/archive.h"
+#include "reports/comparison/baseline.h"
 
 namespace simbench::reports {
 
-// Of two numbers that are equal but for rounding: a baseline's digits, a compiler that contracts.
+// The relative difference that counts as rounding: digits of a baseline, contraction by a compiler.
 inline constexpr double kRounding = 1e-9;
-inline constexpr std::uint64_t kFewestGateSeeds = 32;  // of the statistical gate
+inline constexpr std::uint64_t kFewestGateSeeds = 32;  // in statistical mode
 
 enum class GateMode : std::uint8_t { kExact, kStatistical };
 
 enum class GateOutcome : std::uint8_t {
-  kSame,      // equal but for rounding in every seed
+  kSame,      // equal except for rounding in every seed
   kChanged,   // within the margin
   kBetter,    // by more than the margin
-  kPossible,  // statistical: worse by more than the margin, but as far as is known by chance
+  kPossible,  // statistical: worse by more than the margin, but not significantly
   kFailed,
 };
 
@@ -62,7 +59,7 @@ struct GateCheck {
   double value = std::numeric_limits<double>::quiet_NaN();
   double margin = 0;              // in the metric's unit
   std::size_t changed_seeds = 0;  // pairs that differ beyond rounding
-  std::size_t lost_seeds = 0;     // had a value and have none
+  std::size_t lost_seeds = 0;     // with a value before and none now
   // Statistical mode: the mean difference with its corrected interval and p-value.
   evaluation::Estimate difference;
   double confidence = 0;  // of that interval
@@ -76,7 +73,7 @@ struct GateReport {
   std::string baseline_path;
   std::string baseline_version;
   std::string baseline_commit;
-  SeedRange seeds;           // of the result, those that were compared
+  SeedRange seeds;           // the compared seeds of the result
   SeedRange baseline_seeds;  // likewise
   bool by_index = false;
   std::vector<GateCheck> checks;  // by pipeline and metric, in the baseline's order
@@ -90,7 +87,7 @@ struct GateReport {
 
 GateReport gate(const Archive& result, const Baseline& baseline, GateMode mode);
 
-// One sentence about a check: metric, pipeline, scenario, seeds, what it was, is and may be.
+// One sentence about a check: metric, pipeline, scenario, seeds, old, new and allowed value.
 std::string check_text(const GateReport& report, const GateCheck& check);
 // "same", "changed", "better", "possibly_worse", "failed".
 const char* outcome_name(GateOutcome outcome);
@@ -99,15 +96,13 @@ std::string gate_text(const GateReport& report);
 // schema_version 1; members are only ever added. What does not exist is null.
 std::string gate_json(const GateReport& report);
 
-// A gate's report as JUnit XML, which CI services show beside a change: a suite for the gate, a
+// Returns the report as JUnit XML, which CI services show beside a change: a suite for the gate, a
 // case for each metric of each pipeline, a failure with its numbers and the commands that repeat
-// it.
-//
-// There is no standard; written is the part that GitLab, Jenkins and the common GitHub actions
+// it. There is no standard; this is the part that GitLab, Jenkins and the common GitHub actions
 // read: testsuites, testsuite, testcase (classname, name, time), failure (message, text).
 std::string gate_junit(const GateReport& report);
 
-// Text for an attribute or an element of XML 1.0: what it cannot hold is a question mark.
+// Escapes text for XML 1.0; characters that XML cannot hold become question marks.
 std::string xml_text(std::string_view text);
 
 }  // namespace simbench::reports

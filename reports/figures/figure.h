@@ -1,19 +1,20 @@
 // A figure as plain data: what is drawn, not how.
 //
-// Every picture simbench makes is one of these: the HTML report draws it interactively, `simbench
-// figure` writes it as CSV or has gnuplot draw it, tests look at the numbers.
+// The HTML report draws a figure interactively, `simbench figure` writes it as CSV or has gnuplot
+// draw it, tests examine the numbers.
 //
-// A figure belongs to a place in the results: to all of them, to one pipeline, to one seed, or to
-// one pipeline at one seed. Figures of the same id and different scope are alternatives of each
-// other: a reader sees one of them and switches.
+// A figure belongs to a part of the results: to all of them, one pipeline, one seed, or one
+// pipeline at one seed. Figures with the same id and different scope are alternatives: a reader
+// sees one of them and switches. Units stand in the labels of the axes. NaN in y is a gap.
 //
-// Units stand in the labels of the axes. NaN in y is a gap.
+//   const FigureEntry* entry = find_figure("fig8");   // "synchronisation"
 #ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_H_
 #define SIMBENCH_REPORTS_FIGURES_FIGURE_H_
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace simbench::reports {
@@ -24,9 +25,9 @@ enum class Mark : std::uint8_t { kPoints, kLine, kSteps, kBars };
 struct FigureSeries {
   std::string label;
   Mark mark = Mark::kPoints;
-  std::vector<double> x;  // in ascending order but for kPoints; for kBars: 0, 1, ... (categories)
+  std::vector<double> x;  // ascending except for kPoints; for kBars: 0, 1, ... (categories)
   std::vector<double> y;  // as long as x
-  int colour = 0;         // series of the same thing share a number throughout a figure
+  int colour = 0;         // the same number for the same thing throughout a figure
 };
 
 // A line across the panel, such as a published value.
@@ -57,8 +58,8 @@ struct FigurePanel {
   bool x_is_pulse = false;
 };
 
-// What one camera sees of a clock on a display: the readings shown during its exposure, each with
-// its share of it (they add up to 1). One reading is a sharp picture, several a ghosted one.
+// A clock on a display as one camera sees it: the readings during its exposure, each with its share
+// of it (they add up to 1). One reading is a sharp picture, several a ghosted one.
 struct PhotographedReading {
   std::string text;  // "00:12.345"
   double share = 0;
@@ -73,16 +74,45 @@ struct PhotographRow {
 };
 
 struct Figure {
-  std::string id;  // "frame_errors": what `simbench figure` calls it
+  std::string id;  // "frame_errors", as in `simbench figure`
   std::string title;
-  std::string caption;     // what is seen, what it cannot show
-  std::string paper;       // "Fig. 9, 10" of the paper that it is drawn after; empty: of none
-  std::string pipeline{};  // empty: not of one pipeline
+  std::string caption;                  // the content and its limits
+  std::string paper;                    // the corresponding "Fig. 9, 10" of the paper; empty: none
+  std::string pipeline{};               // empty: not of one pipeline
   std::optional<std::uint64_t> seed{};  // nothing: not of one seed
   std::vector<FigurePanel> panels{};
   std::vector<PhotographRow> photographs{};
-  std::string absent{};  // why there is nothing to draw; then there are no panels
+  std::string absent{};  // the reason if there is nothing to draw; then there are no panels
 };
+
+// The scope of a figure: a figure of kRun exists once for each pipeline and seed, one of kResults
+// once. A few exist for each pipeline (Figure::pipeline) besides their scope.
+enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun };
+
+struct FigureEntry {
+  std::string id;
+  std::string title;
+  std::string paper;                 // "Fig. 9, 10"; empty: none
+  std::vector<std::string> aliases;  // "fig9", "fig10"
+  FigureScope scope = FigureScope::kRun;
+};
+
+// All figures, in the order of a report.
+const std::vector<FigureEntry>& figure_catalogue();
+
+// By id or alias; null if there is none.
+const FigureEntry* find_figure(std::string_view name);
+
+// Returns a figure as tidy CSV, one line for each point:
+//
+//   panel,series,x,y
+//   Sensor stamp,camera 0,225,22.222
+//
+// A gap has an empty y; on an axis of categories x is the category. A line such as a published
+// value is a series of one point without x (or y, if it is vertical), a shaded stretch one of two
+// points without y. Photographs: the pipeline is the panel, the camera the series, the reading x,
+// its share y.
+std::string figure_csv(const Figure& figure);
 
 }  // namespace simbench::reports
 

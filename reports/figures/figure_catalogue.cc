@@ -1,6 +1,6 @@
-#include "reports/figures/figure_catalogue.h"
-
 #include <algorithm>
+
+#include "reports/figures/figure.h"
 
 namespace simbench::reports {
 

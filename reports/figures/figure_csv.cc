@@ -1,11 +1,10 @@
-#include "reports/figures/figure_csv.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 #include <string_view>
 
+#include "reports/figures/figure.h"
 #include "reports/results/csv.h"
 
 namespace simbench::reports {

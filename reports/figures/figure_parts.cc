@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "algorithms/ports/assert.h"
-#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure.h"
 
 namespace simbench::reports {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 // A bucket gives two points, and each may be followed by a gap.
 constexpr std::size_t kPointsOfABucket = 4;
 
-// The indices to keep, in order, gaps aside: of each bucket the first of the smallest and the first
-// of the largest.
+// The indices to keep, in order, without gaps: of each bucket the first smallest and the first
+// largest value.
 std::vector<std::size_t> extremes(const std::vector<double>& y, std::size_t buckets) {
   std::vector<std::size_t> kept = {0};
   for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
@@ -55,12 +55,12 @@ FigureSeries thinned(FigureSeries series, std::size_t most) {
   SIMBENCH_ASSERT(most >= 8, "room for the ends, a bucket and gaps");
   SIMBENCH_ASSERT(series.x.size() == series.y.size(), "a y for every x");
   if (series.x.size() <= most) return series;
-  // The first and the last point may be beside those of the buckets, and have a gap each.
+  // The first and the last point are additional to those of the buckets, each with a gap.
   const std::vector<std::size_t> kept =
       extremes(series.y, (most - kPointsOfABucket) / kPointsOfABucket);
   FigureSeries thin = {.label = std::move(series.label), .mark = series.mark, .x = {}, .y = {}};
   thin.colour = series.colour;
-  std::size_t next = 0;  // of those not looked at
+  std::size_t next = 0;  // the first unchecked index
   for (const std::size_t index : kept) {
     for (; next < index && !std::isnan(series.y[next]); ++next) {
     }

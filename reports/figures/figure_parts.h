@@ -1,4 +1,4 @@
-// What the makers of figures share; for the files of this folder.
+// Shared parts of the makers of figures; for the files of this folder.
 #ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
 #define SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
 
@@ -15,11 +15,11 @@ namespace simbench::reports {
 // Points of a series beyond which it is thinned.
 inline constexpr std::size_t kMostPoints = 600;
 
-// A figure with the id's title and place in the paper, and nothing in it yet.
+// An empty figure with the id's title and place in the paper.
 Figure catalogued(std::string_view id);
-// The same of one run.
+// The same for one run.
 Figure of_run(std::string_view id, const evaluation::RunDetail& run);
-// The same without anything to draw.
+// The figure with nothing to draw, and the reason.
 Figure absent(Figure figure, std::string why);
 
 // An empty panel.
@@ -28,22 +28,21 @@ FigureSeries series(std::string label, Mark mark, int colour);
 
 // "host 1, camera 3"; "camera 3" where there is one host.
 std::string camera_label(const evaluation::RunDetail& run, std::size_t camera);
-// The first so many kept cameras of a host.
+// The first kept cameras of a host, at most `most`.
 std::vector<std::size_t> cameras_of_host(const evaluation::RunDetail& run, std::size_t host,
                                          std::size_t most);
-// Says so if the rig has more cameras than are drawn; else empty. Begins with a blank.
+// A note if the rig has more cameras than are drawn; else empty. Begins with a blank.
 std::string camera_note(const evaluation::RunDetail& run);
 
-// Where the stamps of a camera are drawn: against the pulse, or against the number of the frame
-// where no pulse exposed them.
+// The x axis of a camera's stamps: the pulse, or the number of the frame if no pulse exposed them.
 std::string frame_axis(const evaluation::RunDetail& run);
 double frame_position(const evaluation::RunDetail& run, const evaluation::CameraDetail& camera,
                       std::size_t frame);
 
-// What stamps of one pulse are compared with; see run_figures.h.
+// The reference of the stamps of one pulse; see run_figures.h.
 class CommonReference {
  public:
-  // `stamp`: which one the median is of where there is no truth.
+  // `stamp`: the stamp whose median is the reference without truth.
   CommonReference(const evaluation::RunDetail& run, double evaluation::FrameDetail::*stamp);
   // NaN where there is none.
   double of(const evaluation::FrameDetail& frame) const;
@@ -58,19 +57,19 @@ class CommonReference {
 FigureSeries stamp_series(const evaluation::RunDetail& run, std::size_t camera,
                           double evaluation::FrameDetail::*stamp, const CommonReference& reference,
                           int colour);
-// What its y axis says, and what a caption has to add; the second begins with a blank.
+// The label of its y axis, and an addition to the caption, which begins with a blank.
 std::string reference_axis(const evaluation::RunDetail& run);
 std::string truth_note(const evaluation::RunDetail& run);
 
 // Thinning of long series: fewer points, the same picture.
 //
-// The series is cut into buckets of equally many points, and of each the smallest and the largest
-// are kept, in their order, with the first and the last of all: a spike stays, however short. A gap
+// The series is divided into buckets of equally many points. Kept are the smallest and the largest
+// of each, in their order, and the first and the last of all: a spike stays, however short. A gap
 // (NaN) between two kept points stays a gap.
 //
 //   figure.panels[0].series.push_back(thinned(std::move(dense), 1000));
 
-// At most `most` points, at least 8. A shorter series is returned as it is. O(n).
+// Returns at most `most` (at least 8) points. A shorter series stays as it is. O(n).
 FigureSeries thinned(FigureSeries series, std::size_t most);
 
 }  // namespace simbench::reports

@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "reports/text/output_file.h"
-#include "reports/text/output_folder.h"
 
 extern char** environ;
 
@@ -33,16 +32,20 @@ namespace fs = std::filesystem;
 
 constexpr int kRowHeight = 130;
 constexpr std::size_t kReadingsInPhotograph = 3;  // more lines do not fit a photograph
-constexpr double kFaintest = 0.35;                // brightness of a reading of no share
+constexpr double kFaintest = 0.35;                // brightness of a reading without a share
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
-  return out;
+// A single quote is doubled; a line of gnuplot ends with its line.
+std::string in_quotes(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'') out += '\'';
+    out += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out + '\'';
 }
 
 std::string label(const std::string& text, double x, double y, const std::string& look) {
-  return fmt::format("set label '{}' at {},{} {}\n", escaped(text), x, y, look);
+  return fmt::format("set label {} at {},{} {}\n", in_quotes(text), x, y, look);
 }
 
 // White text on black, the fainter the smaller its share.
@@ -113,16 +116,6 @@ constexpr int kTitleHeight = 40;
 constexpr double kPointsPerInch = 100;
 constexpr double kFewTics = 12;  // of whole numbers, none between them
 
-// A single quote is doubled; a line of gnuplot ends with its line.
-std::string in_quotes(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') out += '\'';
-    out += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return out + '\'';
-}
-
 std::string datablock(std::size_t number, const FigureSeries& series) {
   std::string text = fmt::format("$data{} << END\n", number);
   for (std::size_t i = 0; i < series.x.size(); ++i) {
@@ -135,7 +128,7 @@ std::string datablock(std::size_t number, const FigureSeries& series) {
   return text + "END\n";
 }
 
-// What the labels of the series of one colour have in common.
+// The common part of the labels of the series of one colour.
 std::string common_label(const std::string& a, const std::string& b) {
   if (a == b || b.starts_with(a + ",")) return a;
   const auto differ = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
@@ -179,8 +172,7 @@ std::string style(const FigureSeries& series) {
   return "";
 }
 
-// By the label of a shaded stretch, for all panels of a figure.
-
+// Colours by the label of a shaded stretch, for all panels of a figure.
 SpanColours span_colours(const Figure& figure) {
   SpanColours colours;
   for (const FigurePanel& panel : figure.panels) {
@@ -191,7 +183,7 @@ SpanColours span_colours(const Figure& figure) {
   return colours;
 }
 
-// Shaded stretches lie behind the data, and stand in the legend.
+// Shaded stretches, behind the data and in the legend.
 std::string spans(const FigurePanel& panel, const SpanColours& colours,
                   std::vector<std::string>& plots) {
   std::string text;
@@ -207,7 +199,7 @@ std::string spans(const FigurePanel& panel, const SpanColours& colours,
   return text;
 }
 
-// A line named after a series ("mine, published") has its colour.
+// The colour of a line: that of the series in its name ("mine, published").
 std::string line_colour(const FigurePanel& panel, const FigureLine& line) {
   for (const FigureSeries& series : panel.series) {
     if (line.label.starts_with(series.label + ",")) return colour_of(series);
@@ -228,7 +220,7 @@ std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
   return text;
 }
 
-// The smallest and the largest of what is to lie within an axis.
+// The smallest and the largest value within an axis.
 struct Range {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -std::numeric_limits<double>::infinity();
@@ -277,7 +269,7 @@ std::string y_range(const FigurePanel& panel) {
   if (panel.log_y) {
     return fmt::format("set yrange [{}:{}]\n", range.least / 1.3, range.greatest * 1.3);
   }
-  // A constant gets a range in which its last digits would not be drawn as a mountain.
+  // A constant gets a range that does not magnify its last digits.
   const double room =
       std::max({(range.greatest - range.least) * 0.06, std::abs(range.greatest) * 1e-4, 1e-6});
   return fmt::format("set yrange [{}:{}]\n", range.least - room, range.greatest + room);
@@ -335,7 +327,7 @@ std::string terminal(PlotFormat format, int height) {
                      kWidth / kPointsPerInch, height / kPointsPerInch);
 }
 
-// Panels are of one height, which has room for the longest legend.
+// All panels have one height, with room for the longest legend.
 int panels_height(const Figure& figure) {
   std::size_t entries = 0;
   for (const FigurePanel& panel : figure.panels) {
@@ -345,7 +337,7 @@ int panels_height(const Figure& figure) {
   return panel * static_cast<int>(figure.panels.size());
 }
 
-// Of all panels, so that their axes stand below each other.
+// For all panels, so that their axes stand below each other.
 bool has_legends(const Figure& figure) {
   return std::any_of(figure.panels.begin(), figure.panels.end(), has_legend);
 }
@@ -354,7 +346,7 @@ constexpr const char* kAbsent =
     "SVG and PDF are drawn by gnuplot, which is not installed; run `apt-get install gnuplot-nox`, "
     "or name a .csv file";
 
-// Runs gnuplot on a script; what it says goes to `log`. Returns its exit status.
+// Runs gnuplot on a script, with its output in `log`. Returns its exit status.
 int run_gnuplot(const fs::path& script, const fs::path& log) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -431,7 +423,7 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
 std::string drawn_svg(const Figure& figure) {
   const fs::path picture =
       fs::temp_directory_path() / fmt::format("simbench_{}_{}.svg", figure.id, ::getpid());
-  std::error_code ignored;  // of tidying up
+  std::error_code ignored;
   try {
     draw(figure, PlotFormat::kSvg, picture);
   } catch (const OutputError&) {

@@ -1,10 +1,10 @@
-// Figures on paper: a gnuplot script of a figure, and gnuplot at work on it.
+// Figures on paper: the gnuplot script of a figure, and its execution.
 //
 // The script holds the data and needs nothing else. Panels stand one above the other, legends
-// beside the axes. Series of one colour are one entry of the legend, named by what their labels
-// have in common. Colours are those of Okabe and Ito ("Color Universal Design", 2008), which people
-// with any colour vision can tell apart; more series than colours differ in their marks and dashes.
-// Photographs are text on dark rectangles, the fainter the smaller its share.
+// beside the axes. Series of one colour are one entry of the legend, with the common part of their
+// labels. Colours are those of Okabe and Ito ("Color Universal Design", 2008), distinct for any
+// colour vision; more series than colours differ in their marks and dashes. Photographs are text on
+// dark rectangles, the fainter the smaller its share.
 //
 //   draw(figure, PlotFormat::kPdf, "fig8.pdf");
 #ifndef SIMBENCH_REPORTS_FIGURES_GNUPLOT_H_
@@ -20,15 +20,15 @@ namespace simbench::reports {
 
 enum class PlotFormat : std::uint8_t { kSvg, kPdf };
 
-// Writes to the file `output` when gnuplot runs it. `figure` has something to draw.
+// Returns the script, which writes the file `output`. `figure` must have something to draw.
 std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::string& output);
 
-// Has gnuplot draw the figure. The file appears whole or not at all. Throws OutputError: no gnuplot
-// (saying what to install), gnuplot failed (with its words), the file cannot be written.
+// Draws the figure with gnuplot. The file appears complete or not at all. Throws OutputError: no
+// gnuplot (with the package to install), gnuplot failed (with its message), the file cannot be
+// written.
 void draw(const Figure& figure, PlotFormat format, const std::filesystem::path& output);
 
-// The same as the text of an SVG: for a folder in which nothing of gnuplot's may be left when it is
-// killed.
+// Returns the text of an SVG, so that a killed gnuplot leaves nothing in the output folder.
 std::string drawn_svg(const Figure& figure);
 
 }  // namespace simbench::reports

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "evaluation/budget/ideal_world.h"
+#include "evaluation/budget/budget.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/text/number_text.h"
@@ -24,6 +24,7 @@ using evaluation::Budget;
 using evaluation::BudgetPart;
 using evaluation::ErrorParts;
 using evaluation::PulseScore;
+using Published = evaluation::PublishedComparison;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::SeedScore;
@@ -39,7 +40,7 @@ struct RowRef {
   int colour = 0;
 };
 
-// The paper's rows, or the first ones; with a number that is the same in all figures.
+// The paper's rows, or the first ones, each with its colour in all figures.
 std::vector<RowRef> four_rows(const Results& results) {
   std::vector<RowRef> rows;
   for (const std::string_view name : kPaperRows) {
@@ -68,8 +69,8 @@ const SeedScore* seed_of(const Row& row, std::uint64_t seed) {
   return found == row.seeds.end() ? nullptr : &*found;
 }
 
-// Makes the y axis logarithmic if nothing is negative and some of the rest is far from the rest.
-// Zeros are then gaps, and curves of nothing else are left out.
+// Makes the y axis logarithmic if no value is negative and the values span more than kLogSpan.
+// Zeros are then gaps, and curves of zeros alone are left out.
 void choose_scale(FigurePanel& panel) {
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0;
@@ -97,8 +98,7 @@ bool empty(const FigurePanel& panel) {
                      [](const FigureSeries& series) { return series.x.empty(); });
 }
 
-void add_published(const std::vector<RowRef>& rows, double evaluation::PublishedComparison::*metric,
-                   FigurePanel& panel) {
+void add_published(const std::vector<RowRef>& rows, double Published::*metric, FigurePanel& panel) {
   for (const RowRef& ref : rows) {
     if (!ref.row->published) continue;
     const double value = (*ref.row->published).*metric;
@@ -127,12 +127,12 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
   return made;
 }
 
-// A score's values over seeds, ascending.
-FigurePanel quantile_panel(const std::vector<RowRef>& rows, std::string title, std::string axis,
-                           evaluation::Series Row::*score) {
-  FigurePanel made = panel(std::move(title), "share of seeds (%)", std::move(axis));
+// A metric's values over seeds, ascending.
+FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Metric& metric) {
+  FigurePanel made = panel(capitalised(metric.title), "share of seeds (%)",
+                           fmt::format("{} ({})", metric.title, metric.unit));
   for (const RowRef& ref : rows) {
-    std::vector<double> values = (ref.row->*score).values;
+    std::vector<double> values = metric.series(*ref.row).values;
     std::erase_if(values, [](double value) { return std::isnan(value); });
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
@@ -144,26 +144,23 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, std::string title, s
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
   choose_scale(made);
+  if (metric.id == std::string_view("amd_ms")) add_published(rows, &Published::amd_ms, made);
+  if (metric.id == std::string_view("rmdv_ms")) add_published(rows, &Published::rmdv_ms, made);
   return made;
 }
 
 Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
   Figure figure = catalogued("distributions");
-  FigurePanel amd = quantile_panel(rows, "AMD", "AMD (ms)", &Row::amd_ms);
-  add_published(rows, &evaluation::PublishedComparison::amd_ms, amd);
-  FigurePanel rmdv = quantile_panel(rows, "RMDV", "RMDV (ms)", &Row::rmdv_ms);
-  add_published(rows, &evaluation::PublishedComparison::rmdv_ms, rmdv);
-  for (FigurePanel& made : std::vector<FigurePanel>{
-           std::move(amd), std::move(rmdv),
-           quantile_panel(rows, "Absolute error", "mean |error| (ms)", &Row::absolute_error_ms),
-           quantile_panel(rows, "Host clocks", "mean |host error| (ms)", &Row::host_error_ms)}) {
+  for (const evaluation::Metric& metric : evaluation::metrics()) {
+    if (metric.band_heading == nullptr) continue;
+    FigurePanel made = quantile_panel(rows, metric);
     if (!empty(made)) figure.panels.push_back(std::move(made));
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has any of these scores.");
   figure.caption = fmt::format(
-      "Scores of {} seeds in ascending order: the curve at 50 % is the median. A line is a "
-      "published value, which is one recording.",
-      results.seed_count);
+      "Scores of {} in ascending order: the curve at 50 % is the median. A line is a published "
+      "value, which is one recording.",
+      counted(results.seed_count, "seed"));
   if (std::any_of(figure.panels.begin(), figure.panels.end(),
                   [](const FigurePanel& made) { return made.log_y; })) {
     figure.caption += kLogNote;
@@ -216,7 +213,7 @@ Figure order_figure(const std::vector<RowRef>& rows) {
   return figure;
 }
 
-// One of the first pipelines together, then one for each.
+// A figure of the first pipelines together, then one for each.
 template <class Make>
 std::vector<Figure> together_and_each(const Results& results, const Make& make) {
   std::vector<Figure> figures = {make(first_rows(results))};
@@ -265,10 +262,10 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed) {
     return absent(std::move(figure),
                   "No pulse was delivered by all cameras, or the archive has no frames.csv.");
   }
-  add_published(rows, &evaluation::PublishedComparison::amd_ms, amd);
+  add_published(rows, &Published::amd_ms, amd);
   FigurePanel rmdv = pulse_panel(rows, seed, "Terms of RMDV", "deviation from the median (ms)",
                                  &PulseScore::deviation_ms);
-  add_published(rows, &evaluation::PublishedComparison::rmdv_ms, rmdv);
+  add_published(rows, &Published::rmdv_ms, rmdv);
   figure.panels = {std::move(amd), std::move(rmdv)};
   figure.caption =
       "One point for every pulse that all cameras delivered; the mean of a curve is the pipeline's "
@@ -311,10 +308,12 @@ Figure budget_figure(const Budget& budget) {
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   figure.caption = fmt::format(
-      "What an ideal stage would take off the error, averaged over all orders in which the stages "
-      "can be replaced (Shapley values), {} seeds. Parts and remainder add up to the whole; a part "
-      "below zero cancels another.",
-      budget.amd_ms.total.values.size());
+      "The reduction of the error by an ideal stage, averaged over all orders in which the stages "
+      "can "
+      "be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
+      "zero "
+      "cancels another.",
+      counted(budget.amd_ms.total.values.size(), "seed"));
   return figure;
 }
 

@@ -1,4 +1,4 @@
-// Figures of finished results, without running anything again.
+// Figures of finished results, without another run.
 //
 //   Archive archive = read_archive("results/monday");
 //   read_seed_details(archive);
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "evaluation/budget/budget.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {
@@ -21,20 +21,18 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed);
 // The same for all seeds of the archive, in order.
 std::vector<Figure> frame_errors(const Archive& archive);
 
-// The scores of all seeds in ascending order against the share of seeds that have no larger one
-// (the quantile function, of which the empirical distribution is the inverse), with the published
-// values as lines. First one of up to 12 pipelines together, then one for each pipeline.
+// The scores of all seeds in ascending order against the share of seeds with no larger score (the
+// quantile function), with the published values as lines: a panel for each metric whose band the
+// tables show. First one figure of up to 12 pipelines together, then one for each pipeline.
 std::vector<Figure> distributions(const Archive& archive);
 
 // The clock errors of the hosts by their place in the session: the paper's procedure synchronises
-// one after another. First one of up to 12 pipelines together, then one for each pipeline.
-// Needs read_seed_details().
+// one after another. The same figures as above. Needs read_seed_details().
 std::vector<Figure> host_order(const Archive& archive);
 
-// The error budget of a pipeline as bars: the part of each stage, and what remains.
-
-// A panel each for AMD, the absolute error and the physical spread: means over the seeds as bars,
-// the ends of the band from 5 to 95 % as points.
+// The error budget of a pipeline, with a panel each for AMD, the absolute error and the physical
+// spread: the mean part of each stage and the remainder as bars, the ends of the 5-95 % band as
+// points.
 Figure budget_figure(const evaluation::Budget& budget);
 
 }  // namespace simbench::reports

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "reports/figures/figure_parts.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -28,7 +29,7 @@ using evaluation::SetDetail;
 void add_span(std::string label, double from_ms, double to_ms, double panel_from_ms,
               FigurePanel& panel) {
   const double from = std::fmax(from_ms, panel_from_ms);
-  if (!(to_ms > from)) return;  // also where one of them is not known
+  if (!(to_ms > from)) return;  // also if one of them is unknown
   panel.spans.push_back({std::move(label), from / 1000, to_ms / 1000});
 }
 
@@ -58,17 +59,17 @@ FigurePanel clock_panel(const RunDetail& run, std::string title, double from_ms)
 
 constexpr double kBucketsOfACamera = 480;  // marks closer than this share of the axis are one
 
-// What became of a frame.
+// The fate of a frame in gathering.
 enum class Lot : std::uint8_t { kGathered, kMixed, kPartial, kLeftOver, kDropped };
 constexpr std::size_t kLots = 5;
 constexpr std::array<const char*, kLots> kLotNames = {"in a complete set of one pulse",
                                                       "in a set of several pulses",
                                                       "in a partial set", "in no set", "dropped"};
 
-// Beside the line of the camera's gathered frames, so that it stays to be seen.
+// The distance from the line of the camera's gathered frames, which stays visible.
 constexpr std::array<double, kLots> kBesideCamera = {0, 0.3, 0.3, -0.3, 0.3};
 
-// Where the frames of each lot are, by camera: buckets of the x axis.
+// The frames of each lot by camera, as buckets of the x axis.
 struct Timeline {
   double first = 0;   // position
   double bucket = 1;  // width
@@ -107,7 +108,7 @@ bool drawn(const RunDetail& run, const FrameDetail& frame) {
   return run.has_pulses ? frame.evaluated : !frame.in_warm_up;
 }
 
-// Of a lost frame: its pulse, or by the frame before it. NaN: not among those drawn.
+// The position of a lost frame: its pulse, or derived from the next frame. NaN: not drawn.
 double lost_position(const RunDetail& run, const LostFrame& lost) {
   if (lost.pulse >= 0) {
     const bool evaluated =
@@ -155,7 +156,7 @@ Timeline timeline_of(const RunDetail& run) {
   return timeline;
 }
 
-// A line over every unbroken run of buckets.
+// A line over every run of adjacent buckets.
 FigureSeries unbroken(const Timeline& timeline, std::size_t camera) {
   constexpr auto kLot = static_cast<std::size_t>(Lot::kGathered);
   FigureSeries line = series(kLotNames[kLot], Mark::kLine, static_cast<int>(kLot));
@@ -223,7 +224,7 @@ FigurePanel sets_panel(const RunDetail& run) {
 }
 
 constexpr std::size_t kCamerasOfAHost = 3;   // as in the paper's figures
-constexpr std::size_t kFramesOfStamps = 60;  // more could not be told apart beside each other
+constexpr std::size_t kFramesOfStamps = 60;  // more are not distinguishable
 constexpr double kFirstSeconds = 10;
 
 constexpr const char* kNoFrames = "No camera of the master host has frames after the warm-up.";
@@ -266,7 +267,7 @@ FigurePanel frame_panel(const RunDetail& run, std::string title, std::string y_l
 
 bool has_points(const FigureSeries& series) { return !series.x.empty(); }
 
-// Differences to the first of the series, where they have the same x.
+// Differences to the first series at the same x.
 FigurePanel differences(const RunDetail& run, const FigurePanel& stamps) {
   FigurePanel made = frame_panel(run, "Arrivals less those of the first camera", "difference (ms)");
   const FigureSeries& first = stamps.series.front();
@@ -301,7 +302,7 @@ bool has_stamps(const FigurePanel& panel) {
   return std::any_of(panel.series.begin(), panel.series.end(), has_points);
 }
 
-// What x is zero at in the figure of the first seconds.
+// The zero of x in the figure of the first seconds.
 double capture_start_ms(const RunDetail& run, const CameraDetail& camera) {
   if (!std::isnan(run.capture_start_ms)) return run.capture_start_ms;
   return run.has_truth ? camera.frames.front().exposure_start_ms : camera.frames.front().arrival_ms;
@@ -331,7 +332,7 @@ Figure host_clocks(const RunDetail& run) {
     return absent(std::move(figure), "There is one host: its clock is the master's.");
   }
   if (run.clocks.empty()) {
-    return absent(std::move(figure), "Only a simulated world shows its clocks.");
+    return absent(std::move(figure), "Only a simulated world has the true clock errors.");
   }
   constexpr double kAll = -std::numeric_limits<double>::infinity();
   figure.panels.push_back(clock_panel(run, "All of the run", kAll));
@@ -342,7 +343,7 @@ Figure host_clocks(const RunDetail& run) {
   }
   figure.caption = "System clock of each slave host minus the master's at the same instant.";
   if (run.clocks.size() > 1) {
-    figure.caption += fmt::format(" Looked at every {:.0f} ms, and at every scored pulse.",
+    figure.caption += fmt::format(" Sampled every {:.0f} ms, and at every scored pulse.",
                                   run.clocks[1].at_ms - run.clocks[0].at_ms);
   }
   if (run.host_count > run.clocks.front().errors_ms.size()) {
@@ -360,11 +361,14 @@ Figure gathering(const RunDetail& run) {
   FigurePanel sets = sets_panel(run);
   if (!sets.series.empty()) figure.panels.push_back(std::move(sets));
   const evaluation::SetCounts& counts = run.score.sets;
+  const auto of = [](std::int64_t count, const char* thing) {
+    return counted(static_cast<std::uint64_t>(count), thing);
+  };
   figure.caption = fmt::format(
-      "{} complete sets, {} of them of one pulse; {} partial; {} of {} frames dropped. All cameras "
-      "delivered {} pulses.{}",
-      counts.emitted, counts.pure, counts.partial, run.score.frames.dropped,
-      run.score.frames.expected, counts.complete_pulses, camera_note(run));
+      "{}, {} of them of one pulse; {} partial; {} of {} dropped. All cameras delivered {}.{}",
+      of(counts.emitted, "complete set"), counts.pure, counts.partial, run.score.frames.dropped,
+      of(run.score.frames.expected, "frame"), of(counts.complete_pulses, "pulse"),
+      camera_note(run));
   return figure;
 }
 
@@ -422,8 +426,8 @@ Figure global_stamps(const RunDetail& run) {
   if (!has_stamps(figure.panels.front())) return absent(std::move(figure), kNoFrames);
   figure.caption =
       "Global stamps by eq. (1) on the cameras of the master host, whichever device_time the "
-      "pipeline has. The paper plots the stamps themselves, where no difference can be seen; "
-      "both include the delay from exposure to arrival.";
+      "pipeline has. The paper plots the stamps themselves, where no difference is visible; both "
+      "include the delay from exposure to arrival.";
   figure.caption += truth_note(run);
   return figure;
 }
@@ -468,8 +472,9 @@ Figure first_seconds(const RunDetail& run) {
   }
   figure.panels.push_back(std::move(made));
   figure.caption =
-      "The pipeline's device_time, here from each camera's first frame on. The paper found "
-      "cameras unsteady for 5 s and discards them; so does every score.";
+      "The pipeline's device_time from each camera's first frame on. The paper found cameras "
+      "unsteady "
+      "for 5 s and discards these; so does every score.";
   return figure;
 }
 

@@ -1,9 +1,9 @@
 // Figures of one run: one pipeline at one seed.
 //
-// The paper plots stamps against the frame, where offsets of milliseconds vanish in seconds. Where
-// a figure is about differences, the stamps here are less what the master's clock read at the
-// mid-exposure of the same pulse (of the master's first camera, or the first that has the pulse);
-// in captures without truth, less the median of the pulse's stamps.
+// The paper plots stamps against the frame, where offsets of milliseconds are invisible beside
+// seconds. Figures of differences subtract the reading of the master's clock at the mid-exposure of
+// the same pulse (of the master's first camera, or the first that has the pulse) from the stamps;
+// in captures without truth, the median of the pulse's stamps.
 //
 // Series of cameras of one host share a colour where hosts are compared.
 #ifndef SIMBENCH_REPORTS_FIGURES_RUN_FIGURES_H_
@@ -20,7 +20,7 @@ namespace simbench::reports {
 Figure stamp_intervals(const evaluation::RunDetail& run);
 // Fig. 3: sensor and arrival stamps of the cameras of one host.
 Figure stamps(const evaluation::RunDetail& run);
-// Fig. 4: global stamps by regression over the last 30 frames and over all.
+// Fig. 4: global stamps by regression over the last 30 frames and over all frames.
 Figure global_stamps(const evaluation::RunDetail& run);
 // Fig. 5: global stamps of the cameras of one host, and of two.
 Figure hosts(const evaluation::RunDetail& run);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "reports/figures/figure_parts.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -25,7 +26,7 @@ constexpr double kStepMs = 1000 / kDisplayRateHz;
 constexpr std::int64_t kMostReadings = 24;
 constexpr double kLeastShare = 0.01;
 
-// Minutes, seconds and milliseconds of the display's frame `step`: whole ones, as clocks count.
+// Minutes, seconds and whole milliseconds of the display's frame `step`.
 std::string reading(std::int64_t step) {
   // A step is 25/3 ms: whole numbers, so that equal steps have equal texts.
   const std::int64_t ms = step >= 0 ? step * 25 / 3 : -((-step * 25 + 2) / 3);
@@ -42,7 +43,7 @@ constexpr std::array<std::string_view, 2> kNtp = {"ntp_last_set", "ntp_w32time"}
 constexpr std::size_t kPhotographs = 6;
 constexpr std::size_t kMostRows = 3;
 
-// The first of these names that has a run; null if none has.
+// The run of the first of these names that has one; null if none has.
 const RunDetail* run_named(std::span<const RunDetail> runs, Names names) {
   for (const std::string_view name : names) {
     for (const RunDetail& run : runs) {
@@ -52,7 +53,7 @@ const RunDetail* run_named(std::span<const RunDetail> runs, Names names) {
   return nullptr;
 }
 
-// Runs with the smallest and the largest AMD; null where no run has one.
+// Runs with the smallest and the largest AMD; null if no run has one.
 std::pair<const RunDetail*, const RunDetail*> best_and_worst(std::span<const RunDetail> runs) {
   const RunDetail* best = nullptr;
   const RunDetail* worst = nullptr;
@@ -76,7 +77,7 @@ FigurePanel all_cameras(const RunDetail& run, std::string_view what) {
   return made;
 }
 
-// The evaluated frame of the master's first camera in the middle of the capture; null: it has none.
+// The evaluated frame of the master's first camera in the middle of the capture; null without any.
 const FrameDetail* middle_frame(const RunDetail& run) {
   const auto camera = std::find_if(run.cameras.begin(), run.cameras.end(),
                                    [](const CameraDetail& c) { return c.host == 0; });
@@ -104,7 +105,7 @@ std::vector<std::size_t> photographers(const RunDetail& run) {
   return cameras;
 }
 
-// The frame whose global stamp is nearest; null: there is none.
+// The frame with the nearest global stamp; null without any.
 const FrameDetail* nearest_frame(const CameraDetail& camera, double global_ms) {
   const FrameDetail* nearest = nullptr;
   for (const FrameDetail& frame : camera.frames) {
@@ -117,7 +118,7 @@ const FrameDetail* nearest_frame(const CameraDetail& camera, double global_ms) {
   return nearest;
 }
 
-// Nothing if there is nothing to photograph.
+// Without photographs if there is nothing to photograph.
 PhotographRow photograph_row(const RunDetail& run) {
   PhotographRow row{.label = run.pipeline, .photographs = {}};
   const FrameDetail* middle = middle_frame(run);
@@ -131,7 +132,7 @@ PhotographRow photograph_row(const RunDetail& run) {
   return row;
 }
 
-// GenLock, the proposed method and NTP as far as they are there, else the first ones.
+// The runs of GenLock, the proposed method and NTP that exist, else the first ones.
 std::vector<const RunDetail*> photographed_runs(std::span<const RunDetail> runs) {
   std::vector<const RunDetail*> chosen;
   for (const Names names : {Names(kGenlock), Names(kProposed), Names(kNtp)}) {
@@ -184,12 +185,13 @@ Figure synchronisation(std::span<const RunDetail> runs) {
   if (with != nullptr) figure.panels.push_back(all_cameras(*with, "With"));
   const RunDetail& shown = with != nullptr ? *with : *without;
   figure.caption = fmt::format(
-      "Global stamps of {} cameras on {} hosts, one colour for each host. Note the different "
+      "Global stamps of {} on {}, one colour for each host. Note the different "
       "scales: cameras of one host agree without synchronisation, hosts do not.{}{}{}",
-      shown.camera_count, shown.host_count,
-      stand_in ? " The paper's pipelines are not all here; those with the largest and the smallest "
-                 "AMD stand in for them."
-               : "",
+      counted(shown.camera_count, "camera"), counted(shown.host_count, "host"),
+      stand_in
+          ? " The results do not have all of the paper's pipelines; those with the largest and "
+            "the smallest AMD replace them."
+          : "",
       camera_note(shown), truth_note(shown));
   return figure;
 }
@@ -201,13 +203,14 @@ Figure digital_clocks(std::span<const RunDetail> runs) {
     if (!row.photographs.empty()) figure.photographs.push_back(std::move(row));
   }
   if (figure.photographs.empty()) {
-    return absent(std::move(figure), "What a camera sees needs the true exposures, and frames.");
+    return absent(std::move(figure), "Photographs need frames and their true exposures.");
   }
   figure.caption = fmt::format(
       "Simulated photographs of a clock on a {:.0f} Hz display, in the frames that each pipeline "
       "takes for simultaneous (global stamps nearest to the master's first camera, in the middle "
-      "of the capture). Equal readings mean synchronised cameras, but no better than the display's "
-      "steps of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
+      "of the capture). Equal readings mean cameras that are synchronised within the display's "
+      "steps "
+      "of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
       kDisplayRateHz, 1000 / kDisplayRateHz);
   return figure;
 }

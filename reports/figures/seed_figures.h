@@ -1,7 +1,7 @@
 // Figures that compare pipelines at one seed: the same pulses, the same cameras.
 //
-// Each takes the runs that are there, in any order. It looks for the pipelines of the paper by name
-// and takes others where these are missing, which the caption then says.
+// Each takes the existing runs, in any order. It uses the pipelines of the paper by name, or others
+// if these are missing; the caption then states so.
 #ifndef SIMBENCH_REPORTS_FIGURES_SEED_FIGURES_H_
 #define SIMBENCH_REPORTS_FIGURES_SEED_FIGURES_H_
 
@@ -17,25 +17,22 @@ namespace simbench::reports {
 // reference (as in run_figures.h).
 Figure synchronisation(std::span<const evaluation::RunDetail> runs);
 
-// Fig. 11 to 13: what six cameras see of a millisecond clock on a 120 Hz display, in the frames
-// that a pipeline takes for simultaneous: those whose global stamps are nearest to that of the
-// master's first camera at a pulse in the middle of the capture. The display shows a new reading
-// every 1/120 s, so frames that differ by less may look alike.
+// Fig. 11 to 13: a millisecond clock on a 120 Hz display as six cameras see it, in the frames that
+// a pipeline takes for simultaneous: those whose global stamps are nearest to that of the master's
+// first camera at a pulse in the middle of the capture. The display shows a new reading every 1/120
+// s, so frames that differ by less may look alike.
 Figure digital_clocks(std::span<const evaluation::RunDetail> runs);
 
 // Both, in this order.
 std::vector<Figure> seed_figures(std::span<const evaluation::RunDetail> runs);
 
-// A clock on a display, as a camera sees it: the paper's millisecond clock on a 120 Hz tablet.
-//
-// The display shows true time, as it is at the beginning of each of its frames, for 1/120 s. Its
-// frames begin at true zero.
-
+// The display is the paper's millisecond clock on a 120 Hz tablet. It shows the true time at the
+// beginning of each of its frames for 1/120 s. Its frames begin at true zero.
 inline constexpr double kDisplayRateHz = 120;
 
-// What is on the display from `start_ms` to `end_ms` (true time), with the shares of that time; an
-// exposure of no length sees one reading. What is shown for less than 1 % of it leaves no trace. At
-// most 24 readings, the first ones. The shares add up to 1.
+// Returns the readings of the display from `start_ms` to `end_ms` (true time) with their shares of
+// that time, which add up to 1; one reading for an exposure without length. Readings of less than 1
+// % are invisible. At most the first 24 readings.
 std::vector<PhotographedReading> display_readings(double start_ms, double end_ms);
 
 }  // namespace simbench::reports

@@ -1,14 +1,35 @@
-// The frame of every report: the style, the script that draws figures, uPlot, and whatever stands
-// between them. One file that opens offline and asks nothing of any server.
+// The frame of every HTML report, and figures as the data that its script draws.
 //
-// The script draws figures (reports/page/html_figures.h) into each <div class="figures"> of an
+// A page has the style, the script, uPlot and the report's own content in one file, which opens
+// offline and needs no server. The script draws figures into each <div class="figures"> of an
 // <article class="archive">: the n-th data into the n-th article.
+//
+// Figures are JSON, small enough for a mail:
+//
+//   {"figures": [figures with their panels, series and photographs, names as in figure.h],
+//    "columns": [...]}
+//
+// The x and y of a series are numbers of columns; equal columns are stored once. A column has the
+// form that takes least room and is exact to 3e-8 of its range (whole numbers: exact):
+//
+//   {"n", "from", "step"}   equal steps
+//   {"min", "unit", "u24"}  min + k unit; k in three bytes, least significant first, in base64;
+//                           0xffffff is NaN
+//   {"f64"}                 eight bytes each, little endian, in base64: logarithmic axes, and whole
+//                           numbers too far apart for three bytes
+//
+// Long series are thinned without hiding an extreme (thinned() of reports/figures/figure_parts.h).
 #ifndef SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_
 #define SIMBENCH_REPORTS_PAGE_HTML_PAGE_H_
 
+#include <cstddef>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "reports/figures/figure.h"
 
 namespace simbench::reports {
 
@@ -21,16 +42,29 @@ struct HtmlPage {
 
 std::string html_page(const HtmlPage& page);
 
-// <p class="style">text</p>, the text escaped; nothing of an empty text.
+// <p class="style">text</p>, the text escaped; "" for an empty text.
 std::string html_paragraph(std::string_view style, const std::string& text);
-// A list of notes; nothing of none.
+// A list of notes; "" without notes.
 std::string html_notes(const std::vector<std::string>& notes);
-// An entry of the commands that reproduce a result.
+// A command that reproduces a result.
 std::string html_command(std::string_view what, const std::string& command);
 
-// An argv as its user typed it, for a POSIX shell: whatever the program's path was, it is called
-// simbench.
-std::string simbench_line(const std::vector<std::string>& command);
+std::string figures_json(const std::vector<Figure>& figures);
+
+// RFC 4648, with padding.
+std::string base64(const std::string& bytes);
+
+// Columns in the order of their first use, equal ones once.
+class HtmlColumns {
+ public:
+  // Returns the number of the column. `relative`: exact relative to each value, not to the range.
+  std::size_t add(const std::vector<double>& values, bool relative);
+  const nlohmann::ordered_json& json() const { return columns_; }
+
+ private:
+  nlohmann::ordered_json columns_ = nlohmann::ordered_json::array();
+  std::map<std::string, std::size_t> known_;  // by their text
+};
 
 }  // namespace simbench::reports
 

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "algorithms/ports/assert.h"
-#include "reports/comparison/gate_commands.h"
-#include "reports/page/html_figures.h"
 #include "reports/page/html_page.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
 #include "reports/text/html_text.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "scenarios/choices.h"
 
@@ -22,23 +20,18 @@ namespace {
 
 using evaluation::Row;
 using evaluation::Series;
-using Json = nlohmann::ordered_json;
 
-std::string seeds_text(const evaluation::Results& results) {
-  if (results.seed_count == 1) return fmt::format("1 seed ({})", results.first_seed);
-  return fmt::format("{} seeds ({} to {})", results.seed_count, results.first_seed,
-                     results.first_seed + results.seed_count - 1);
-}
-
-// A member of the resolved scenario; `otherwise` where the archive holds none.
+// A text member of the resolved scenario; "" if it or the scenario is missing.
 std::string scenario_text(const Archive& archive, const char* pointer) {
   if (archive.scenario_json.empty()) return "";
   return Json::parse(archive.scenario_json).value(Json::json_pointer(pointer), std::string());
 }
 
 std::string provenance_line(const Archive& archive) {
-  std::string line = fmt::format("{} of simbench {} ({})", seeds_text(archive.results),
-                                 archive.version, archive.commit);
+  const evaluation::Results& results = archive.results;
+  std::string line =
+      fmt::format("{} of simbench {} ({})", counted_seeds(results.first_seed, results.seed_count),
+                  archive.version, archive.commit);
   if (!archive.started.empty()) {
     line += fmt::format(", run from {} to {}", archive.started, archive.finished);
   }
@@ -72,7 +65,7 @@ std::string scenario_details(const Archive& archive) {
       html_escaped(Json::parse(archive.scenario_json).dump(2)));
 }
 
-// The tables of a run or a leaderboard, as `simbench run` prints them, below what it warned of.
+// The warnings and tables of a run or a leaderboard, as `simbench run` prints them.
 std::vector<Block> blocks_of(const Archive& archive) {
   std::vector<Block> blocks;
   const auto append = [&blocks](const std::vector<Block>& more) {
@@ -88,7 +81,7 @@ std::vector<Block> blocks_of(const Archive& archive) {
   return blocks;
 }
 
-// The part of the page that changes with the archive: `number` is its place among them.
+// The part of the page for one archive; `number`: its place among them.
 std::string archive_part(const ReportedArchive& reported, std::size_t number,
                          const ReportInput& input) {
   const Archive& archive = reported.archive;
@@ -122,7 +115,7 @@ std::string cell_of(const Archive& archive, const std::string& pipeline, Series 
                      ground_truth_label(*row) == "unverified" ? " (unverified)" : "");
 }
 
-// Of all archives, in the order in which they come.
+// The pipelines of all archives, in order.
 std::vector<std::string> pipelines_of(const std::vector<ReportedArchive>& archives) {
   std::vector<std::string> pipelines;
   for (const ReportedArchive& reported : archives) {
@@ -135,7 +128,7 @@ std::vector<std::string> pipelines_of(const std::vector<ReportedArchive>& archiv
   return pipelines;
 }
 
-// Nothing of a single archive.
+// Empty for a single archive.
 std::vector<Block> side_by_side(const std::vector<ReportedArchive>& archives) {
   if (archives.size() < 2) return {};
   std::vector<Field<std::string>> fields = {
@@ -152,8 +145,8 @@ std::vector<Block> side_by_side(const std::vector<ReportedArchive>& archives) {
   }
   return {{.heading = "The archives side by side",
            .table = table_of(fields, pipelines_of(archives)),
-           .prose = {"Median over the seeds with the band from 5 to 95 %. Whether a difference is "
-                     "more than chance: simbench compare."}}};
+           .prose = {"Median over the seeds with the band from 5 to 95 %. simbench compare tests "
+                     "whether a difference is significant."}}};
 }
 
 }  // namespace

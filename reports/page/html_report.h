@@ -1,10 +1,9 @@
 // One self-contained HTML file of one or more result archives: tables, figures, and how to
-// reproduce them. It opens offline, in light and dark, prints, and asks nothing of any server.
+// reproduce them. It opens offline, in light and dark, and prints.
 //
-// The tables stand in the file as HTML; they are the blocks that `simbench run` prints
-// (reports/results/results_document.h, leaderboard_report.h). The figures stand in it as data
-// (reports/page/html_figures.h) and are drawn by the page's own JavaScript (reports/web/) with
-// uPlot, which is embedded too. Whatever comes from an archive is escaped.
+// The tables are HTML: the blocks that `simbench run` prints (reports/results/results_document.h,
+// leaderboard_report.h). The figures are data (reports/page/html_page.h), which the page's
+// JavaScript (reports/web/) draws with the embedded uPlot. All text from an archive is escaped.
 //
 //   const ReportInput input = {.archives = {{.archive = read_archive("results/monday"),
 //                                            .figures = figures, .notes = {}}},
@@ -16,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 
 namespace simbench::reports {
@@ -24,12 +23,12 @@ namespace simbench::reports {
 struct ReportedArchive {
   Archive archive;
   std::vector<Figure> figures{};
-  std::vector<std::string> notes{};  // what a reader of the figures has to know
+  std::vector<std::string> notes{};  // about the figures
 };
 
 struct ReportInput {
   std::vector<ReportedArchive> archives;  // at least one
-  std::vector<std::string> command;       // that makes the report, argv
+  std::vector<std::string> command;       // argv of the report
 };
 
 std::string html_report(const ReportInput& input);

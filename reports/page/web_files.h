@@ -1,5 +1,5 @@
-// The page of the report and what it is drawn with, as the build embedded them
-// (reports/embed_web.cmake): the files of reports/web/, and uPlot.
+// The page of the report and its scripts, embedded by the build (reports/embed_web.cmake): the
+// files of reports/web/, and uPlot.
 #ifndef SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
 #define SIMBENCH_REPORTS_PAGE_WEB_FILES_H_
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <set>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
+#include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -24,20 +26,78 @@ using scenarios::PublishedReprojection;
 using scenarios::Studio;
 using scenarios::StudioSubject;
 
+struct Point {
+  double x = 0;
+  double y = 0;
+};
+using Curve = std::vector<Point>;
+
+// The points that have a value, by x.
+Curve curve_of(const std::vector<CurvePoint>& points, double CurvePoint::*x) {
+  Curve curve;
+  for (const CurvePoint& point : points) {
+    const double y = evaluation::median(point.mean_cm);
+    if (!std::isnan(y)) curve.push_back({point.*x, y});
+  }
+  std::stable_sort(curve.begin(), curve.end(),
+                   [](const Point& a, const Point& b) { return a.x < b.x; });
+  return curve;
+}
+
+// The first point above `y`, not before `from`.
+std::size_t first_above(const Curve& curve, double y, std::size_t from) {
+  while (from < curve.size() && !(curve[from].y > y)) ++from;
+  return from;
+}
+
+double slope_before(const Curve& curve, std::size_t end) {
+  const Point& a = curve[end - 1];
+  const Point& b = curve[end];
+  return (b.y - a.y) / (b.x - a.x);
+}
+
+SyncLimit limit_of(const std::vector<CurvePoint>& points) {
+  SyncLimit limit{.speed_m_per_s = points.front().speed_m_per_s,
+                  .speed_factor = points.front().speed_factor,
+                  .limit_ms = std::nullopt};
+  const Curve curve = curve_of(points, &CurvePoint::desync_ms);
+  if (curve.empty()) return limit;
+  limit.floor_cm = curve.front().y;
+  limit.last_ms = curve.back().x;
+  if (curve.size() < 2) return limit;
+  const double tolerated = limit.floor_cm * (1 + kToleratedGrowth);
+  const std::size_t above = first_above(curve, tolerated, 1);
+  const std::size_t end = std::min(above, curve.size() - 1);
+  limit.cost_cm_per_ms = slope_before(curve, end);
+  if (above < curve.size()) {
+    limit.limit_ms = curve[end - 1].x + (tolerated - curve[end - 1].y) / limit.cost_cm_per_ms;
+  }
+  return limit;
+}
+
+double mean_at(const ReprojectionRow& row, std::uint64_t seed) {
+  for (const reconstruction::SeedReprojection& each : row.seeds) {
+    if (each.seed == seed) return each.errors.mean_cm;
+  }
+  return reconstruction::kNoError;
+}
+
 constexpr const char* kErrorLegend =
     "error: distance between a vertex of the reconstructed mesh and the point that a depth camera "
     "measured where it sees that vertex. A value is the median over the seeds, [a, b] their band "
     "from 5 to 95 %.";
 constexpr const char* kDesyncLegend =
-    "desynchronisation: how far apart the true mid-exposures of a frame set are. For every row "
-    "frames are grouped by the nearest global stamp, without a threshold; seeds without a gathered "
-    "set: where the pipeline's own gathering emitted none at all.";
+    "desynchronisation: how far apart the true mid-exposures of a frame set are. In every row "
+    "frames "
+    "are grouped by the nearest global stamp, without a threshold; seeds without a gathered set: "
+    "those in which the pipeline's own gathering emitted none.";
 constexpr const char* kPublishedLegend =
     "published: the paper's Table 4, one recording. inside: within the band.";
 constexpr const char* kLimitLegend =
-    "desynchronisation up to: at which the median error stays within 10 % of its floor, the error "
-    "at the smallest desynchronisation of the curve (interpolated). cost: the local slope of the "
-    "curve there, or at its end.";
+    "desynchronisation up to: the largest one at which the median error stays within 10 % of its "
+    "floor, the error at the smallest desynchronisation of the curve (interpolated). cost: the "
+    "local "
+    "slope of the curve there, or at its end.";
 
 std::string motion_text(const StudioSubject& subject) {
   std::string text = fmt::format("motion \"{}\"", to_text(subject.motion));
@@ -57,21 +117,22 @@ std::string subject_note(const StudioSubject& subject) {
       subject.kind == scenarios::SubjectKind::kMesh
           ? fmt::format("The subject is the mesh {}", subject.mesh_file)
           : fmt::format("The subject is a simulated person of {:g} m", subject.height_m);
-  return fmt::format("{}, {}; the paper says \"moving person\" and no more.", who,
+  return fmt::format("{}, {}; the paper states \"moving person\" and no more.", who,
                      motion_text(subject));
 }
 
 std::string assumptions_note(const Studio& studio) {
   return fmt::format(
       "Assumptions: calibration errors of {:g} mm and {:g} degrees per axis, depth noise of {:g} "
-      "px "
-      "of disparity; a vertex counts as seen up to {:g} mm behind the mesh's own z-buffer, spread "
-      "by {} pixels.",
+      "px of "
+      "disparity; a vertex counts as seen up to {:g} mm behind the mesh's own z-buffer, spread by "
+      "{} "
+      "pixels.",
       studio.calibration_translation_sigma_mm, studio.calibration_rotation_sigma_deg,
       studio.subpixel_error_px, studio.visibility_tolerance_mm, studio.visibility_spread_px);
 }
 
-// The row with the smallest published mean hardly sees time at all.
+// A note if the row with the smallest published mean does not depend on time.
 std::string floor_note(const std::vector<ReprojectionRow>& rows, const StudioSubject& subject) {
   const ReprojectionRow* best = nullptr;
   for (const ReprojectionRow& row : rows) {
@@ -84,7 +145,7 @@ std::string floor_note(const std::vector<ReprojectionRow>& rows, const StudioSub
   if (!(moved_cm < best->mean_cm().median)) return "";
   return fmt::format(
       "In the {} ms of {} the subject moves {} cm: that row measures calibration and depth noise, "
-      "and cannot be told from a perfect synchronisation.",
+      "and cannot be distinguished from a perfect synchronisation.",
       ms_text(ms), best->pipeline, cm_text(moved_cm));
 }
 
@@ -93,7 +154,7 @@ std::string speed_phrase(const CurvePoint& point) {
   return fmt::format("{:g} times the stated one", point.speed_factor);
 }
 
-// Medians and bands: what the speed that is found between two of them is worth.
+// Medians and bands of the points, which show the accuracy of the interpolated speed.
 std::string points_text(const std::vector<CurvePoint>& points) {
   std::string text;
   for (const CurvePoint& point : points) {
@@ -104,12 +165,9 @@ std::string points_text(const std::vector<CurvePoint>& points) {
 }
 
 std::string title_line(const ReconstructionResults& results) {
-  const std::string seeds = results.seeds == 1
-                                ? fmt::format("1 seed ({})", results.first_seed)
-                                : fmt::format("{} seeds ({}-{})", results.seeds, results.first_seed,
-                                              results.first_seed + results.seeds - 1);
-  return fmt::format("{}: {}, {} frame {} each", results.scenario.name, seeds, results.frames,
-                     results.frames == 1 ? "set" : "sets");
+  return fmt::format("{}: {}, {} each", results.scenario.name,
+                     counted_seeds(results.first_seed, results.seeds),
+                     counted(results.frames, "frame set"));
 }
 
 Field<ReprojectionRow> pipeline_field() {
@@ -213,15 +271,6 @@ Block legend(const ReconstructionResults& results) {
   return block;
 }
 
-Block stages_block(const ReconstructionResults& results) {
-  Block block{.heading = "Pipelines = host_sync + device_time + gathering"};
-  for (const ReprojectionRow& row : results.rows) {
-    block.items.push_back(fmt::format("{} = {} + {} + {}", row.pipeline, row.host_sync,
-                                      row.device_time, row.gathering));
-  }
-  return block;
-}
-
 constexpr const char* kErrorAxis = "median mean error, cm";
 
 std::vector<FigureLine> published_lines(const ReconstructionResults& results) {
@@ -273,6 +322,47 @@ FigurePanel speed_panel(const reconstruction::SpeedNeeded& needed) {
 }
 
 }  // namespace
+
+std::vector<SyncLimit> sync_limits(const std::vector<CurvePoint>& curve) {
+  std::vector<SyncLimit> limits;
+  for (auto begin = curve.begin(); begin != curve.end();) {
+    const auto end = std::find_if(begin, curve.end(), [&](const CurvePoint& point) {
+      return point.speed_factor != begin->speed_factor;
+    });
+    limits.push_back(limit_of({begin, end}));
+    begin = end;
+  }
+  return limits;
+}
+
+std::optional<PublishedRatio> published_ratio(const std::vector<ReprojectionRow>& rows) {
+  const ReprojectionRow* worst = nullptr;
+  const ReprojectionRow* best = nullptr;
+  for (const ReprojectionRow& row : rows) {
+    if (!row.published) continue;
+    const double mean = row.published->mean_cm;
+    if (worst == nullptr || mean > worst->published->mean_cm) worst = &row;
+    if (best == nullptr || mean < best->published->mean_cm) best = &row;
+  }
+  if (worst == best) return std::nullopt;
+  std::vector<double> ratios;
+  for (const reconstruction::SeedReprojection& seed : worst->seeds) {
+    ratios.push_back(seed.errors.mean_cm / mean_at(*best, seed.seed));
+  }
+  return PublishedRatio{.worst = worst->pipeline,
+                        .best = best->pipeline,
+                        .ratio = evaluation::make_series(std::move(ratios)),
+                        .published = worst->published->mean_cm / best->published->mean_cm};
+}
+
+std::optional<double> speed_factor_for(const std::vector<CurvePoint>& points, double mean_cm) {
+  const Curve curve = curve_of(points, &CurvePoint::speed_factor);
+  if (curve.empty()) return std::nullopt;
+  const std::size_t above = first_above(curve, mean_cm, 0);
+  if (above == curve.size()) return std::nullopt;
+  if (above == 0) return curve.front().x;
+  return curve[above - 1].x + (mean_cm - curve[above - 1].y) / slope_before(curve, above);
+}
 
 std::string cm_text(double cm) { return std::isnan(cm) ? "-" : fmt::format("{:.2f}", cm); }
 
@@ -369,7 +459,7 @@ Document reconstruction_document(const ReconstructionResults& results) {
   if (!results.scenario.summary.empty()) document.head.push_back(results.scenario.summary);
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "Reprojection error", .table = table_4(results)});
-  blocks.push_back({.heading = "How it came about", .table = sets_table(results)});
+  blocks.push_back({.heading = "The frame sets", .table = sets_table(results)});
   if (Block found = conclusions(results); !found.prose.empty()) blocks.push_back(std::move(found));
   if (!results.curve.empty()) {
     blocks.push_back({.heading = "Median mean error in cm, all hosts off by a known amount",
@@ -380,7 +470,7 @@ Document reconstruction_document(const ReconstructionResults& results) {
   if (Block notes = row_notes(results); !notes.items.empty()) blocks.push_back(std::move(notes));
   blocks.push_back(legend(results));
   blocks.push_back({.heading = "What was simulated", .items = honest_notes(results)});
-  blocks.push_back(stages_block(results));
+  blocks.push_back(stages_block(results.rows));
   blocks.push_back({.prose = {fmt::format("Cost: {:.1f} s; {:.1f} s for a frame set on one thread.",
                                           results.wall_s, results.seconds_per_set)}});
   return document;
@@ -393,13 +483,13 @@ Figure reconstruction_figure(const ReconstructionResults& results) {
   figure.caption = fmt::format(
       "Over desynchronisation: all hosts off by a known amount, exposures of a host's cameras "
       "coincide, the hosts are spread over it. Over speed: the exposures that the pipeline has. "
-      "Medians over {} {}.",
-      results.seeds, results.seeds == 1 ? "seed" : "seeds");
+      "Medians over {}.",
+      counted(results.seeds, "seed"));
   if (!results.curve.empty()) figure.panels.push_back(desync_panel(results));
   if (results.speed_needed && !results.speed_needed->points.empty()) {
     figure.panels.push_back(speed_panel(*results.speed_needed));
   }
-  if (figure.panels.empty()) figure.absent = "the curve was not asked for";
+  if (figure.panels.empty()) figure.absent = "the curve was not requested";
   return figure;
 }
 

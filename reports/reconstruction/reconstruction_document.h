@@ -1,38 +1,77 @@
-// A reconstruction experiment for people: the paper's Table 4 over seeds, and how good a
-// synchronisation has to be for a subject.
+// A reconstruction experiment for people: the paper's Table 4 over seeds, and how good the
+// synchronisation must be for a subject of some speed.
 //
 // A row for each pipeline with mean and standard deviation of the reprojection error beside the
-// published ones; how they came about; the curve of error over desynchronisation; the largest
-// desynchronisation that each speed forgives; what is assumed. No line of a table is wider than 100
-// columns with pipeline names of up to 21.
+// published ones; details of the sets; the curve of error over desynchronisation; the largest
+// tolerable desynchronisation for each speed; the assumptions. No line of a table is wider than 100
+// columns with pipeline names of up to 21. Medians are over seeds. Between the points of the curve
+// values are interpolated linearly.
 //
 //   std::cout << plain(reconstruction_document(results));
 #ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
 #define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reconstruction/results.h"
 #include "reports/figures/figure.h"
-#include "reports/reconstruction/reconstruction_limits.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
 
+// The tolerable excess of the error over its floor.
+inline constexpr double kToleratedGrowth = 0.10;
+
+// The limit for one speed of the subject. The floor is the error at the smallest desynchronisation
+// of the curve: calibration and depth noise, no effect of time.
+struct SyncLimit {
+  double speed_m_per_s = 0;
+  double speed_factor = 1;
+  double floor_cm = reconstruction::kNoError;
+  // The largest desynchronisation at which the error stays within kToleratedGrowth of the floor;
+  // nothing: beyond last_ms.
+  std::optional<double> limit_ms;
+  double last_ms = 0;
+  // The slope of the curve at the limit, or at its end.
+  double cost_cm_per_ms = reconstruction::kNoError;
+};
+
+// Returns a limit for each speed, in the curve's order. Points without a value are left out.
+std::vector<SyncLimit> sync_limits(const std::vector<reconstruction::CurvePoint>& curve);
+
+// The mean error of the row with the largest published mean, divided by that of the row with the
+// smallest, seed by seed (NaN where one of them has none).
+struct PublishedRatio {
+  std::string worst;
+  std::string best;
+  evaluation::Series ratio;
+  double published = 0;
+};
+
+// Returns nothing unless two rows have a published value.
+std::optional<PublishedRatio> published_ratio(
+    const std::vector<reconstruction::ReprojectionRow>& rows);
+
+// Returns the factor on the script's speeds at which the median mean error over `points` first
+// reaches `mean_cm`.
+std::optional<double> speed_factor_for(const std::vector<reconstruction::CurvePoint>& points,
+                                       double mean_cm);
+
 // Its first block is Table 4.
 Document reconstruction_document(const reconstruction::ReconstructionResults& results);
 
-// The cells and sentences it is made of.
+// Its cells and sentences.
 //
 // "2.39"; "-" for NaN.
 std::string cm_text(double cm);
 // Median and band: "2.39 [1.80, 2.95]".
 std::string cm_text(const evaluation::Series& series);
-// "6.1 [5.0, 7.2]"; "0.125" needs its digits where a millisecond is much.
+// "6.1", with more digits below a millisecond: "0.125". With a band: "6.1 [5.0, 7.2]".
 std::string ms_text(double ms);
 std::string ms_text(const evaluation::Series& series);
-// "1.20 m/s", or "x 1.5" where the script does not walk.
+// "1.20 m/s", or "x 1.5" for a script without walking.
 std::string speed_text(double speed_m_per_s, double speed_factor);
 // "9.70, outside"; "-" without a published value.
 std::string published_text(const std::optional<scenarios::PublishedReprojection>& published,
@@ -45,19 +84,16 @@ std::string cost_text(const SyncLimit& limit);   // "0.0123"
 
 // "ntp_last_set : yoon2021_both = 3.2 [2.9, 3.9] in the mean error, seed by seed (published 4.05)."
 std::string ratio_sentence(const PublishedRatio& ratio);
-// Which speed of the subject the largest published mean would need.
+// The speed of the subject that the largest published mean would need.
 std::string speed_sentence(const reconstruction::SpeedNeeded& needed);
-// What was simulated and assumed, and what the numbers cannot tell; then what the results note.
+// The simulated subject, the assumptions and the limits of the numbers, then the results' notes.
 std::vector<std::string> honest_notes(const reconstruction::ReconstructionResults& results);
 
-// What a millisecond costs, as a figure (reports/figures/figure.h), which anything that draws
-// figures can draw.
+// The experiment as a figure (reports/figures/figure.h).
 //
 // One panel: the median mean error over desynchronisation, a curve for each speed of the subject,
-// and the published means as lines. A second one, where it was looked for: the error over the
-// speed, at the desynchronisation of the row with the largest published mean. With neither there is
-// nothing to draw (Figure::absent).
-
+// and the published means as lines. A second one, if computed: the error over the speed, at the
+// desynchronisation of the row with the largest published mean. Without either, Figure::absent.
 Figure reconstruction_figure(const reconstruction::ReconstructionResults& results);
 
 }  // namespace simbench::reports

@@ -3,18 +3,95 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
-#include "reports/figures/figure_csv.h"
+#include "reconstruction/paint.h"
+#include "recording/version.h"
+#include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/page/html_page.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/reconstruction/reconstruction_json.h"
+#include "reports/text/html_text.h"
+#include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
 
 using reconstruction::ReconstructionResults;
+using reconstruction::ReprojectionRow;
+
+std::string section(std::string_view heading, const std::string& content) {
+  return fmt::format("<section>\n<h3>{}</h3>\n{}</section>\n", html_escaped(heading), content);
+}
+
+std::string css_colour(double error_m) {
+  const Eigen::Vector3f colour = reconstruction::error_colour(error_m);
+  const auto part = [](float value) { return std::lround(value * 255); };
+  return fmt::format("rgb({} {} {})", part(colour.x()), part(colour.y()), part(colour.z()));
+}
+
+std::string colour_scale() {
+  constexpr int kSteps = 20;
+  std::string stops;
+  for (int i = 0; i <= kSteps; ++i) {
+    stops += fmt::format(", {}", css_colour(reconstruction::kPaintedUpTo * i / kSteps));
+  }
+  return fmt::format(
+      "<div class=\"colour-scale\"><span>0 cm</span><div role=\"img\" aria-label=\"colour of the "
+      "error\" style=\"background: linear-gradient(to right{})\"></div><span>{:g} cm and "
+      "more</span></div>\n",
+      stops, reconstruction::kPaintedUpTo * 100);
+}
+
+std::string picture_html(const ReconstructionPicture& picture) {
+  const std::string caption = fmt::format(
+      "{}: {} ms of desynchronisation, error {} cm ± {} cm", picture.pipeline,
+      ms_text(picture.desync_ms), cm_text(picture.errors.mean_cm), cm_text(picture.errors.std_cm));
+  return fmt::format(
+      "<figure class=\"mesh\"><img src=\"data:image/png;base64,{0}\" alt=\"reconstructed mesh of "
+      "{1}\"><figcaption>{1}</figcaption></figure>\n",
+      base64(picture.png), html_escaped(caption));
+}
+
+// In the order of the table.
+std::string pictures_html(const ReconstructionPage& page) {
+  if (page.pictures.empty()) return "";
+  std::string pictures;
+  for (const ReprojectionRow& row : page.results.rows) {
+    for (const ReconstructionPicture& picture : page.pictures) {
+      if (picture.pipeline == row.pipeline) pictures += picture_html(picture);
+    }
+  }
+  return section("What the reconstruction looks like",
+                 fmt::format("<div class=\"meshes\">\n{}</div>\n{}{}", pictures, colour_scale(),
+                             html_paragraph("legend",
+                                            "One frame set of the first seed each, after the "
+                                            "paper's Figure 1: a vertex has the colour of its mean "
+                                            "error, grey where no camera sees it.")));
+}
+
+std::string reproduce_html(const ReconstructionPage& page) {
+  std::string text =
+      fmt::format("<dl>\n{}</dl>\n", html_command("All of this", simbench_line(page.command)));
+  if (!page.results.scenario.resolved_json.empty()) {
+    text += fmt::format(
+        "<details><summary>The resolved scenario</summary>\n<pre class=\"scroll\" "
+        "tabindex=\"0\">{}</pre>\n</details>\n",
+        html_escaped(page.results.scenario.resolved_json));
+  }
+  return fmt::format("<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}</section>\n",
+                     text);
+}
+
+std::string provenance_line(const ReconstructionResults& results) {
+  return fmt::format("{} from {} on, {} each, simbench {} ({})", counted(results.seeds, "seed"),
+                     results.first_seed, counted(results.frames, "frame set"), version(), commit());
+}
 
 std::string file_name(const std::string& pipeline) {
   std::string name = pipeline;
@@ -37,12 +114,24 @@ std::vector<std::string> own_files(const std::map<std::string, std::string>& nam
   return files;
 }
 
-std::string table_for_file(const ReconstructionResults& results) {
-  const FilePage page;
-  return plain(reconstruction_document(results));
-}
-
 }  // namespace
+
+std::string reconstruction_html(const ReconstructionPage& page) {
+  const ReconstructionResults& results = page.results;
+  const std::string& name = results.scenario.name;
+  const std::vector<Block> blocks = reconstruction_document(results).blocks;
+  const std::string main = fmt::format(
+      "<article class=\"archive\" data-archive=\"0\" data-name=\"{0}\">\n<h2>{0}</h2>\n{1}{2}{3}{4}"
+      "{5}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{6}</article>\n",
+      html_escaped(name), html_paragraph("summary", results.scenario.summary),
+      html_paragraph("provenance", provenance_line(results)), html(blocks.front()),
+      pictures_html(page), html(std::vector<Block>(blocks.begin() + 1, blocks.end())),
+      reproduce_html(page));
+  return html_page({.title = fmt::format("simbench reconstruct {}", name),
+                    .subtitle = "what desynchronisation costs a reconstruction",
+                    .main = main,
+                    .data = {figures_json({reconstruction_figure(results)})}});
+}
 
 std::map<std::string, std::string> mesh_names(const scenarios::Scenario& scenario) {
   std::map<std::string, std::string> names;
@@ -75,7 +164,10 @@ std::string ReconstructionFolder::write(const ReconstructionResults& results,
   std::string not_drawn;
   output_.file("manifest.json") << manifest_json(provenance, R"({"kind": "reconstruction"})");
   output_.file("scenario.json") << results.scenario.resolved_json;
-  output_.file("table.txt") << table_for_file(results);
+  {
+    const FilePage page;
+    output_.file("table.txt") << plain(reconstruction_document(results));
+  }
   output_.file("results.json") << reconstruction_json(results);
   if (!figure.panels.empty()) {
     output_.file("curve.csv") << figure_csv(figure);

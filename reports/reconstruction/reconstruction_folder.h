@@ -1,17 +1,18 @@
 // The folder that `simbench reconstruct -o` writes: Table 4, the meshes and their pictures, the
-// curve, the page. It appears whole or not at all (reports/text/output_folder.h).
+// curve, the page. It appears whole or not at all (reports/text/output_file.h).
 //
 //   manifest.json           version, commit, command, start and end
 //   scenario.json           the resolved scenario: repeats the experiment
 //   table.txt               reports/reconstruction/reconstruction_document.h
 //   results.json            reports/reconstruction/reconstruction_json.h
-//   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; what is not a letter,
-//                           a digit, '.', '_' or '-' in the name of a pipeline becomes '_'
-//   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG where there
-//                           is a gnuplot
-//   report.html             reports/reconstruction/reconstruction_html.h
+//   PIPELINE.ply, .png      a mesh painted with its errors, and its picture; other characters than
+//                           letters, digits, '.', '_' and '-' in the name become '_'
+//   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG needs gnuplot
+//   report.html             one self-contained file (reports/page/html_page.h): Table 4, the
+//   painted
+//                           meshes side by side as in the paper's Figure 1, the curve, the command
 //
-// While the experiment runs keep() writes each mesh, at the end write() the rest:
+// keep() writes each mesh while the experiment runs, write() the rest at the end:
 //
 //   ReconstructionFolder folder("results/table4", scenario);
 //   folder.keep(mesh);
@@ -26,13 +27,28 @@
 #include <vector>
 
 #include "reconstruction/experiment.h"
+#include "reconstruction/results.h"
 #include "reports/archive/archive.h"
-#include "reports/reconstruction/reconstruction_html.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::reports {
 
-// The name of a pipeline's files, without an ending; no two of a scenario share one.
+struct ReconstructionPicture {
+  std::string pipeline;
+  std::string png;  // the bytes of the file
+  double desync_ms = 0;
+  reconstruction::ErrorSummary errors;  // of the shown set
+};
+
+struct ReconstructionPage {
+  const reconstruction::ReconstructionResults& results;
+  const std::vector<ReconstructionPicture>& pictures;  // in any order
+  std::vector<std::string> command;                    // argv
+};
+
+std::string reconstruction_html(const ReconstructionPage& page);
+
+// Returns the name of each pipeline's files, without an ending, unique in a scenario.
 std::map<std::string, std::string> mesh_names(const scenarios::Scenario& scenario);
 
 class ReconstructionFolder {
@@ -41,7 +57,7 @@ class ReconstructionFolder {
 
   // Writes the mesh and its picture; only the picture stays in memory. One call at a time.
   void keep(const reconstruction::ShownMesh& mesh);
-  // Writes the rest and publishes. Returns why the SVG could not be drawn; mostly empty.
+  // Writes the rest and publishes. Returns why the SVG could not be drawn; empty if it was.
   std::string write(const reconstruction::ReconstructionResults& results,
                     const Provenance& provenance);
 

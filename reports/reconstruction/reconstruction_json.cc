@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/results/csv.h"
+#include "reports/text/json_node.h"
 
 namespace simbench::reports {
 namespace {
@@ -19,14 +19,6 @@ using reconstruction::CurvePoint;
 using reconstruction::ReconstructionResults;
 using reconstruction::ReprojectionRow;
 using reconstruction::SeedReprojection;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-
-Json series_json(const Series& series) {
-  return {{"median", series.median},
-          {"p05", series.p05},
-          {"p95", series.p95},
-          {"values", series.values}};
-}
 
 std::int64_t json_total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
   std::int64_t sum = 0;
@@ -174,7 +166,7 @@ std::string reconstruction_json(const ReconstructionResults& results) {
       {"speed_needed", speed_needed_json(results.speed_needed)},
       {"notes", honest_notes(results)},
       {"performance", {{"wall_s", results.wall_s}, {"seconds_per_set", results.seconds_per_set}}}};
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 std::string reconstruction_csv(const ReconstructionResults& results) {

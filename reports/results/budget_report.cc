@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "recording/version.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -14,7 +14,6 @@ namespace {
 using evaluation::Budget;
 using evaluation::BudgetPart;
 using evaluation::ErrorParts;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 std::string band(const BudgetPart& part) {
   return fmt::format("[{}, {}]", number_text(part.p05), number_text(part.p95));
@@ -54,9 +53,8 @@ Table budget_table(const Budget& budget) {
 }
 
 std::string budget_heading(const BudgetReport& report, const Budget& budget) {
-  return fmt::format("Error budget of {} in {}, {} seed{} from {}", budget.pipeline,
-                     report.scenario, report.seeds, report.seeds == 1 ? "" : "s",
-                     report.first_seed);
+  return fmt::format("Error budget of {} in {}, {} from {}", budget.pipeline, report.scenario,
+                     counted(report.seeds, "seed"), report.first_seed);
 }
 
 std::string budget_legend(const Budget& budget) {
@@ -66,10 +64,11 @@ std::string budget_legend(const Budget& budget) {
           : "In some of the worlds gathering finds no set, so errors are over the true pulses and "
             "gathering has no part in them.";
   return over +
-         " A stage's part is its Shapley value over all 128 worlds with some stages ideal; parts "
+         " A stage's part is its Shapley value over all 128 worlds with some stages ideal. Parts "
          "and "
-         "remainder add up to the total, and a part below zero cancels others. Physical: how far "
-         "apart the exposures of a pulse really were, which no clock can remove.";
+         "remainder add up to the total; a part below zero cancels others. Physical: how far apart "
+         "the "
+         "exposures of a pulse really were, which no clock can remove.";
 }
 
 Json part_json(const BudgetPart& part) {
@@ -114,7 +113,7 @@ std::string budget_json(const BudgetReport& report) {
                                {"absolute_error_ms", error_json(budget.absolute_error_ms)},
                                {"physical_ms", error_json(budget.physical_ms)}});
   }
-  return root.dump(2) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

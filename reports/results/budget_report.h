@@ -1,4 +1,4 @@
-// Error budgets as text, Markdown or JSON: what each stage adds to a pipeline's error.
+// Error budgets as text, Markdown or JSON: the part of each stage in a pipeline's error.
 //
 // JSON: {"schema_version", "version", "commit", "scenario", "seeds", "budgets": [{"pipeline",
 // "amd_of_sets", "amd_ms": {"total", "remainder", "stages": [{"stage", "mean", "p05", "p95",

@@ -11,10 +11,10 @@
 
 namespace simbench::reports {
 
-// One line per pipeline: the metrics (evaluation/scoring/metrics.h says in which columns), and the
+// One line per pipeline: the metrics in the columns of evaluation/scoring/metrics.h, with the
 // published values before those of CsvColumns::kValueAtEnd. If a row is not of a simulation, three
-// more columns at the end: ground_truth (as in reports/results/json.h), verified ("verified" or
-// "unverified") and notes.
+// more columns: ground_truth (as in reports/results/json.h), verified ("verified" or "unverified")
+// and notes.
 std::string csv(const evaluation::Results& results);
 
 // frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.
@@ -23,7 +23,7 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 // hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0).
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
-// A cell: quoted where it has to be (RFC 4180).
+// A cell, quoted where necessary (RFC 4180); NaN is empty.
 std::string csv_cell(std::string_view text);
 std::string csv_cell(double value);
 

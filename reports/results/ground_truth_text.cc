@@ -54,7 +54,7 @@ std::string unverified_legend(const Results& results) {
     return ground_truth_label(row) == "unverified";
   });
   if (!any) return "";
-  return "unverified: nothing tells which frames belong together, so AMD and RMDV are over the "
+  return "unverified: it is unknown which frames belong together, so AMD and RMDV are over the "
          "sets "
          "that gathering emitted, and \"pulses scored\" counts these. A gatherer that mixes "
          "neighbours consistently looks perfect there; capture in genlock to verify it.";

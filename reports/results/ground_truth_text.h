@@ -1,6 +1,6 @@
-// How reports say on what ground truth a score rests, and what went wrong while it was recorded.
+// The words of reports about the ground truth of a score and about failures in its recording.
 //
-// Results of simulations alone say nothing about it: they look as they always did.
+// Results of simulations alone have none.
 #ifndef SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
 #define SIMBENCH_REPORTS_RESULTS_GROUND_TRUTH_TEXT_H_
 
@@ -17,10 +17,10 @@ const char* ground_truth_name(evaluation::GroundTruth truth);
 // For people: "simulation", "GenLock order", "unverified"; "-" for a row without any recording.
 std::string ground_truth_label(const evaluation::Row& row);
 
-// Whether a row needs such a label: it is not of a simulation.
+// Whether a row is not of a simulation and needs such a label.
 bool has_real_rows(const evaluation::Results& results);
 
-// What "unverified" means; empty if no row is.
+// The meaning of "unverified"; empty if no row is.
 std::string unverified_legend(const evaluation::Results& results);
 
 // The notes of all rows, a line each: "PIPELINE, repetition 3: ...".

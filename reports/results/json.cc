@@ -1,21 +1,11 @@
 #include "reports/results/json.h"
 
-#include <nlohmann/json.hpp>
-
 #include "recording/version.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/text/json_node.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
-
-Json series_json(const evaluation::Series& series) {
-  return {{"median", series.median},
-          {"p05", series.p05},
-          {"p95", series.p95},
-          {"values", series.values}};
-}
 
 Json published_json(const std::optional<evaluation::PublishedComparison>& published) {
   if (!published) return nullptr;
@@ -90,8 +80,7 @@ std::string json(const evaluation::Results& results) {
                          {"simulated_seconds_per_second", cost.simulated_seconds_per_second},
                          {"cpu_seconds", cost.cpu_seconds},
                          {"wall_seconds", cost.wall_seconds}};
-  // A note may quote what another machine said.
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

@@ -1,19 +1,19 @@
 // results.json: the results for programs.
 //
-// schema_version 1. Members only ever get added within a version. What does not exist (0/0, no
+// schema_version 1; within a version members are only added. A value that does not exist (0/0, no
 // truth, no recording of that seed) is null. The text is a function of the results alone: equal
 // results give equal bytes, with every compiler and any number of threads; only /performance
-// differs from run to run.
+// differs between runs.
 //
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
-//              each metric under the id and in the object that evaluation/scoring/metrics.h says,
+//              each metric under the id and in the object of evaluation/scoring/metrics.h,
 //              {"median", "p05", "p95", "values": [in seed order]}, a number or a count: "amd_ms",
 //              ..., "gathering_score": {"precision", ...}, "frames": {"expected", ...}, ...,
 //              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
-//                needs pulses is null), "notes": [what went wrong, "repetition 3: ..."],
+//                needs pulses is null), "notes": [failures, "repetition 3: ..."],
 //              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside",
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/results/results_document.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -20,7 +20,6 @@ using evaluation::Rank;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 Table error_table(const Board& board) {
   const auto name = [&board](const Rank& rank) {
@@ -67,7 +66,7 @@ Table gathering_table(const Board& board) {
   return sets_table(rows);
 }
 
-// "host = host_sync x hull_300 + yoon2021": which stage the board varies, and what the others are.
+// "each host_sync + hull_300 + yoon2021": the stage that the board varies, and the other ones.
 std::string composition(const Board& board) {
   std::vector<const Row*> rows;
   for (const Rank& rank : board.online) rows.push_back(rank.row);
@@ -85,25 +84,23 @@ std::string composition(const Board& board) {
 std::string order_legend(const Results& results) {
   return fmt::format(
       "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's clock|. "
-      "Ratios are medians over the seeds, each seed against the same seed: to the row of the board "
-      "with the oracle in its place, and to the paper's proposal. {} Online stamps a frame when it "
-      "arrives; offline has seen the whole recording.",
+      "Ratios are medians over the seeds, seed by seed: to the row of the board with the oracle in "
+      "its "
+      "place, and to the paper's proposal. {} Online stamps a frame when it arrives; offline needs "
+      "the "
+      "whole recording.",
       has_real_rows(results) ? "Every repetition of a pipeline is a capture of its own."
                              : "Every pipeline meets the same worlds.");
-}
-
-Json ratio_json(const Series& ratio) {
-  return {{"median", ratio.median}, {"p05", ratio.p05}, {"p95", ratio.p95}};
 }
 
 Json ranks_json(const std::vector<Rank>& ranks) {
   Json entries = Json::array();
   for (const Rank& rank : ranks) {
     entries.push_back({{"pipeline", rank.row->pipeline},
-                       {"error_to_oracle", ratio_json(rank.to_oracle.error)},
-                       {"amd_to_oracle", ratio_json(rank.to_oracle.amd)},
-                       {"error_to_paper", ratio_json(rank.to_paper.error)},
-                       {"amd_to_paper", ratio_json(rank.to_paper.amd)}});
+                       {"error_to_oracle", band_json(rank.to_oracle.error)},
+                       {"amd_to_oracle", band_json(rank.to_oracle.amd)},
+                       {"error_to_paper", band_json(rank.to_paper.error)},
+                       {"amd_to_paper", band_json(rank.to_paper.amd)}});
   }
   return entries;
 }
@@ -128,8 +125,8 @@ std::vector<Block> board_blocks(const Results& results) {
 }
 
 Document leaderboard_document(const Results& results, const std::string& summary) {
-  Document document{.title = fmt::format("{}: {} seeds from {}", results.scenario,
-                                         results.seed_count, results.first_seed),
+  Document document{.title = fmt::format("{}: {} from {}", results.scenario,
+                                         counted(results.seed_count, "seed"), results.first_seed),
                     .blocks = board_blocks(results)};
   if (!summary.empty()) document.head.push_back(summary);
   if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
@@ -151,7 +148,7 @@ std::string leaderboard_json(const Results& results) {
                                    {"online", ranks_json(board.online)},
                                    {"offline", ranks_json(board.offline)}});
   }
-  return root.dump(2) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

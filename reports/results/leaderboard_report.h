@@ -1,5 +1,5 @@
-// A leaderboard for people and for scripts (evaluation/run/leaderboard.h): the boards of a scenario
-// whose /evaluation/table is "leaderboard", each sorted by absolute error.
+// Leaderboards as text and JSON (evaluation/run/leaderboard.h): the boards of a scenario whose
+// /evaluation/table is "leaderboard", each sorted by absolute error.
 //
 // JSON: the document of reports/results/json.h with a member "leaderboard": [{"board", "online":
 // [...], "offline": [...]}], whose entries are {"pipeline", "error_to_oracle", "amd_to_oracle",
@@ -16,10 +16,10 @@
 
 namespace simbench::reports {
 
-// The boards, each a block, and what their columns mean.
+// The boards, a block each, and the meaning of their columns.
 std::vector<Block> board_blocks(const evaluation::Results& results);
 
-// These and whatever else the results have to say. `summary`: the scenario's line about itself.
+// The boards and the notes of the results. `summary`: the scenario's own description.
 Document leaderboard_document(const evaluation::Results& results, const std::string& summary);
 std::string leaderboard_json(const evaluation::Results& results);
 

@@ -26,12 +26,6 @@ bool any_published(const Results& results) {
                      [](const Row& row) { return row.published.has_value(); });
 }
 
-std::string seeds_text(const Results& results) {
-  if (results.seed_count == 1) return fmt::format("1 seed ({})", results.first_seed);
-  return fmt::format("{} seeds ({}-{})", results.seed_count, results.first_seed,
-                     results.first_seed + results.seed_count - 1);
-}
-
 Field<Row> pipeline_field() {
   return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
 }
@@ -71,7 +65,7 @@ RowFields published_rmdv_fields() {
           })};
 }
 
-// The paper's two metrics, beside what the paper says.
+// The paper's two metrics beside the published values.
 Table paper_table(const Results& results) {
   const bool published = any_published(results);
   RowFields fields = {pipeline_field()};
@@ -90,7 +84,7 @@ Table paper_table(const Results& results) {
   return table_of(fields, results.rows);
 }
 
-// What a real rig cannot measure about itself.
+// Metrics that a real rig cannot measure.
 Table truth_table(const Results& results) {
   RowFields fields = {pipeline_field()};
   for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
@@ -99,11 +93,11 @@ Table truth_table(const Results& results) {
   return table_of(fields, results.rows);
 }
 
-// What the columns of a table mean, as the metrics say it.
+// Adds the legends of a table's metrics.
 void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
   for (const Metric* metric : evaluation::table_metrics(table)) {
-    const bool is_told = table == &TablePlaces::sets && metric->tables.truth > 0;
-    if (is_told || metric->legend[0] == '\0') continue;
+    const bool is_explained = table == &TablePlaces::sets && metric->tables.truth > 0;
+    if (is_explained || metric->legend[0] == '\0') continue;
     if (metric->legend_continues && !lines.empty()) {
       lines.back().append(" ").append(metric->legend);
     } else {
@@ -125,7 +119,7 @@ bool gatherings_differ(const Results& results) {
   });
 }
 
-// A line each: what the columns mean.
+// The meaning of the columns, line by line.
 std::vector<std::string> results_legend(const Results& results) {
   std::vector<std::string> lines = {
       has_real_rows(results)
@@ -177,7 +171,7 @@ std::string cost_line(const Results& results) {
       short_text(cost.events_per_second), short_text(cost.simulated_seconds_per_second));
 }
 
-// With the first reason, which is mostly the reason of all.
+// With the first reason, mostly the reason of all.
 std::string unsynchronised_line(const Row& row) {
   const std::string times =
       row.unsynchronised_hosts == 1 ? "once" : count_text(row.unsynchronised_hosts) + " times";
@@ -194,15 +188,6 @@ Block failures_block(const Results& results) {
   Block block;
   for (const Row& row : results.rows) {
     if (row.unsynchronised_hosts > 0) block.prose.push_back(unsynchronised_line(row));
-  }
-  return block;
-}
-
-Block stages_block(const Results& results) {
-  Block block{.heading = "Pipelines = host_sync + device_time + gathering"};
-  for (const Row& row : results.rows) {
-    block.items.push_back(fmt::format("{} = {} + {} + {}", row.pipeline, row.host_sync,
-                                      row.device_time, row.gathering));
   }
   return block;
 }
@@ -237,8 +222,9 @@ std::vector<std::string> sets_legend(const Results& results) {
   append_legends(&TablePlaces::sets, lines);
   if (has_real_rows(results)) {
     lines.emplace_back(
-        "Arrivals on a real rig are read from the hosts' own clocks: where these are apart, "
-        "\"emitted after\" is wrong by as much, and may be negative.");
+        "Arrivals on a real rig are read from the hosts' own clocks: their difference is an error "
+        "of "
+        "\"emitted after\", which may be negative.");
   }
   return lines;
 }
@@ -254,14 +240,14 @@ std::string asymmetry_line(const Results& results) {
 }
 
 Document results_document(const Results& results, const std::string& summary) {
-  Document document{.title = fmt::format("{}: {}", results.scenario, seeds_text(results))};
+  Document document{.title = fmt::format("{}: {}", results.scenario,
+                                         counted_seeds(results.first_seed, results.seed_count))};
   if (!summary.empty()) document.head.push_back(summary);
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
-  blocks.push_back(
-      {.heading = "What only known true time can tell", .table = truth_table(results)});
+  blocks.push_back({.heading = "Metrics that need true time", .table = truth_table(results)});
   if (gatherings_differ(results)) {
-    blocks.push_back({.heading = "What gathering made of the stamps, over all seeds",
+    blocks.push_back({.heading = "Gathered sets, over all seeds",
                       .table = sets_table(pointers_to(results.rows))});
   }
   if (Block failures = failures_block(results); !failures.prose.empty()) {
@@ -271,7 +257,7 @@ Document results_document(const Results& results, const std::string& summary) {
     blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
   }
   blocks.push_back({.heading = "How to read it", .items = results_legend(results)});
-  blocks.push_back(stages_block(results));
+  blocks.push_back(stages_block(results.rows));
   if (!results.claims.empty()) {
     blocks.push_back(
         {.heading = "The paper's claims, and the fraction of seeds in which each holds",

@@ -1,14 +1,12 @@
-// Results for people: what `simbench run` prints and what the page of the report shows of a run.
+// Results for people: the output of `simbench run` and the tables of the HTML report.
 //
-// The columns are those of evaluation::metrics(): a metric that names its table stands in it.
-//
-// A block each, with a row per pipeline: the paper's metrics beside the published values, and what
-// only a bench with true time can tell; a third about the gathered sets if the pipelines gather in
-// different ways. Rows that are not of a simulation say what ground truth they rest on;
-// "unverified" are those without (evaluation/scoring/unverified_scores.h). Below them what went
-// wrong, if anything, a legend that a newcomer can start from, the paper's claims with the fraction
-// of seeds in which each holds, and what the run cost. About 145 columns wide. Source of the
-// definitions: docs/design.md section 8.
+// A block each, with a row per pipeline: the paper's metrics beside the published values, and the
+// metrics that need true time; a third about the gathered sets if the pipelines gather in different
+// ways. The columns are the entries of evaluation::metrics() that name the table. Rows of real rigs
+// state their ground truth; those without any are "unverified"
+// (evaluation/scoring/unverified_scores.h). Then follow failures, a legend for newcomers, the
+// paper's claims with the fraction of seeds in which each holds, and the cost of the run. About 145
+// columns wide. Source of the definitions: docs/design.md section 8.
 //
 //   std::cout << plain(results_document(results, scenario.summary));
 #ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
@@ -23,19 +21,30 @@
 
 namespace simbench::reports {
 
-// `summary` is the scenario's own line about itself; it says where a scenario is a fit.
+// `summary`: the scenario's own description, which states whether it is a fit.
 Document results_document(const evaluation::Results& results, const std::string& summary);
 
 // The columns of a metric in a table of rows: its value and, if it has a heading, its band.
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 
-// What gathering made of the stamps: a line per pipeline, for policies beside each other.
+// The gathered sets: a line per pipeline, to compare policies.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
-// What its columns mean.
+// The meaning of its columns.
 std::vector<std::string> sets_legend(const evaluation::Results& results);
 
-// What unequal links cost two-way methods; empty if they are equal.
+// The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);
+
+// The stages of each pipeline, for rows of any kind that name them.
+template <class Rows>
+Block stages_block(const Rows& rows) {
+  Block block{.heading = "Pipelines = host_sync + device_time + gathering"};
+  for (const auto& row : rows) {
+    block.items.push_back(row.pipeline + " = " + row.host_sync + " + " + row.device_time + " + " +
+                          row.gathering);
+  }
+  return block;
+}
 
 }  // namespace simbench::reports
 

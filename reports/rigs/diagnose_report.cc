@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "recording/version.h"
 #include "reports/text/block.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 
@@ -20,7 +20,6 @@ using evaluation::Follows;
 using evaluation::GroupVerdict;
 using evaluation::PairDiagnosis;
 using evaluation::SyncStatus;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 const char* status_text(SyncStatus status) {
   switch (status) {
@@ -31,7 +30,7 @@ const char* status_text(SyncStatus status) {
     case SyncStatus::kCannotBeTold:
       break;
   }
-  return "cannot be told";
+  return "cannot be determined";
 }
 
 const char* status_name(SyncStatus status) {
@@ -173,10 +172,10 @@ Json camera_json(const CameraDiagnosis& camera) {
 
 constexpr const char* kDiagnosisLegend = R"(
 How to read it
-  follows: the trigger, if its frame period in host time is that of the others; free-running ones
-    differ by tens of ppm. phase: of the arrivals, against the first camera that follows.
-  intervals: how far the stamps are from whole periods. lost: counted by the camera, never arrived.
-    skipped: periods without a frame that its counter does not know.
+  follows: the trigger, if its frame period in host time is that of the others; free-running cameras
+    differ by tens of ppm. phase: of the arrivals, relative to the first camera that follows.
+  intervals: deviation of the stamps from whole periods. lost: counted by the camera, never arrived.
+    skipped: periods without a frame that its counter did not count.
 )";
 
 }  // namespace
@@ -191,7 +190,7 @@ std::string diagnose_table(const Diagnosis& diagnosis) {
   text += "\nFindings\n";
   if (diagnosis.findings.empty()) text += "  none\n";
   for (const Finding& finding : diagnosis.findings) text += wrapped(finding.text, 2);
-  text += "\nWhat the stamps alone cannot tell\n";
+  text += "\nWhat stamps alone cannot show\n";
   for (const std::string& unknown : diagnosis.cannot_know) text += wrapped(unknown, 2);
   return fitted(text + kDiagnosisLegend);
 }
@@ -227,7 +226,7 @@ std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::str
                                 {"text", finding.text}});
   }
   // A file may name its cameras in bytes that are no UTF-8.
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

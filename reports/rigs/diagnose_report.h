@@ -1,4 +1,4 @@
-// What `simbench diagnose` found, for people and for programs.
+// The findings of `simbench diagnose` as text and JSON.
 //
 // JSON, schema_version 1 (what does not exist is null):
 //   {"schema_version", "version", "commit", "files",

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
-
 #include "recording/version.h"
 #include "reports/text/block.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 
@@ -17,7 +16,6 @@ using evaluation::FitCheck;
 using evaluation::FitSide;
 using evaluation::FittedValue;
 using evaluation::kFitQuantiles;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 constexpr std::size_t kCamerasShown = 24;
 
@@ -62,7 +60,7 @@ std::string check_text(const std::string& heading, const FitCheck& check,
 
 constexpr const char* kFitLegend = R"(
 How to read it
-  excess delay: how much later than the quickest frames of its stream a frame arrived.
+  excess delay: the delay of a frame over the quickest frames of its stream.
   +- is a standard error, [..] a 95 % interval. Drift: device rate / host rate - 1.
   Hold-out: fitted to the first half of each stream, compared with the second half.
 )";
@@ -140,7 +138,7 @@ std::string fit_json(const FitReport& report) {
                      {"evidence", report.study.model.evidence},
                      {"not_identified", report.study.model.not_identified},
                      {"checks", checks}};
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

@@ -1,5 +1,5 @@
-// A fit to a recording as text or JSON: what was fitted on what evidence, and how well the
-// simulated model agrees with the recording.
+// A fit to a recording as text or JSON: the fitted values with their evidence, and the agreement of
+// the simulated model with the recording.
 //
 // JSON: {"schema_version", "version", "commit", "inputs", "base", "model", "evidence": [text],
 // "not_identified": [text], "checks": [{"check": "whole" | "hold_out", "ks", "ks_limit",
@@ -19,7 +19,7 @@ namespace simbench::reports {
 struct FitReport {
   std::vector<std::string> inputs;
   std::string capture;               // of a recording folder; else empty
-  std::string base;                  // the scenario that gives the rest
+  std::string base;                  // the base scenario
   std::string model;                 // the file
   std::vector<std::string> cameras;  // names
   evaluation::FitStudy study;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "evaluation/statistics/statistics.h"
@@ -16,33 +15,15 @@ namespace {
 
 using evaluation::Results;
 using evaluation::Row;
-using evaluation::Series;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 constexpr int kSchemaVersion = 1;
-constexpr const char* kAdvice = "`simbench validate-model` says how to measure and keep one";
-
-struct StudyMetric {
-  const char* name;
-  double MeasuredSeed::*seed;
-  Series Row::*series;
-};
-
-constexpr StudyMetric kMetrics[] = {
-    {"host_error_ms", &MeasuredSeed::host_error_ms, &Row::host_error_ms},
-    {"amd_ms", &MeasuredSeed::amd_ms, &Row::amd_ms},
-    {"rmdv_ms", &MeasuredSeed::rmdv_ms, &Row::rmdv_ms},
-    {"absolute_error_ms", &MeasuredSeed::absolute_error_ms, &Row::absolute_error_ms}};
+constexpr const char* kAdvice = "`simbench validate-model` explains how to measure and keep one";
 
 MeasuredPipeline measured_pipeline(const Row& row) {
   MeasuredPipeline pipeline{.pipeline = row.pipeline, .seeds = {}, .notes = row.notes};
   for (const evaluation::SeedScore& score : row.seeds) {
     if (!score.recorded) continue;
-    pipeline.seeds.push_back({.seed = score.seed,
-                              .host_error_ms = score.host_error_ms,
-                              .amd_ms = score.amd_ms,
-                              .rmdv_ms = score.rmdv_ms,
-                              .absolute_error_ms = score.absolute_error_ms});
+    pipeline.seeds.push_back({score, score.seed});
   }
   return pipeline;
 }
@@ -52,10 +33,10 @@ MeasuredSeed read_seed(const JsonNode& node, std::set<std::uint64_t>& known) {
   seed.seed = static_cast<std::uint64_t>(node["seed"].count());
   if (!known.insert(seed.seed).second)
     node["seed"].fail(fmt::format("{} is there twice", seed.seed));
-  for (const StudyMetric& metric : kMetrics) {
-    const JsonNode value = node[metric.name];
-    seed.*metric.seed = value.number();
-    if (seed.*metric.seed < 0) value.refuse("a number from 0, or null");
+  for (const char* id : evaluation::kGapMetrics) {
+    const JsonNode value = node[id];
+    evaluation::metric(id).of_seed(seed) = value.number();
+    if (value.number() < 0) value.refuse("a number from 0, or null");
   }
   return seed;
 }
@@ -95,10 +76,11 @@ Results results_of(const MeasuredStudy& study) {
     Row row;
     row.pipeline = pipeline.pipeline;
     row.notes = pipeline.notes;
-    for (const StudyMetric& metric : kMetrics) {
+    for (const char* id : evaluation::kGapMetrics) {
+      const evaluation::Metric& metric = evaluation::metric(id);
       std::vector<double> values;
-      for (const MeasuredSeed& seed : pipeline.seeds) values.push_back(seed.*metric.seed);
-      row.*metric.series = evaluation::make_series(std::move(values));
+      for (const MeasuredSeed& seed : pipeline.seeds) values.push_back(metric.of_seed(seed));
+      metric.series(row) = evaluation::make_series(std::move(values));
     }
     results.seed_count = std::max<std::uint64_t>(results.seed_count, pipeline.seeds.size());
     results.rows.push_back(std::move(row));
@@ -115,7 +97,9 @@ std::string measured_study_json(const MeasuredStudy& study) {
         {"pipeline", pipeline.pipeline}, {"notes", pipeline.notes}, {"seeds", Json::array()}};
     for (const MeasuredSeed& seed : pipeline.seeds) {
       Json entry = {{"seed", seed.seed}};
-      for (const StudyMetric& metric : kMetrics) entry[metric.name] = seed.*metric.seed;
+      for (const char* id : evaluation::kGapMetrics) {
+        entry[id] = evaluation::metric(id).of_seed(seed);
+      }
       row["seeds"].push_back(std::move(entry));
     }
     root["rows"].push_back(std::move(row));

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "evaluation/model/evidence.h"
 #include "recording/version.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -18,19 +18,21 @@ using evaluation::Evidence;
 using evaluation::GapSide;
 using evaluation::ModelGapRow;
 using evaluation::StageEvidence;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 constexpr std::array kGapLegend = {
     "A value is in milliseconds: a quantile over the repetitions (measured) or the seeds "
     "(simulated), which are independent of each other.",
     "KS: largest distance between the two distribution functions, 0 (equal) to 1 (no overlap). "
-    "From the critical distance on they differ at the 5 % level; it is exact for these sample "
-    "sizes, and coarse for few repetitions: with 5 against 5 only 1 is significant; none: so few "
-    "that no distance is.",
-    "gap: of the simulated median from the measured one. within 20 %: of medians above 0.05 ms; "
-    "below that noise decides.",
-    "The experiment validates how transport and protocols are implemented. It has no cameras: see "
-    "what each stage rests on."};
+    "From the critical distance on they differ at the 5 % level. It is exact for these sample "
+    "sizes, "
+    "and coarse for few repetitions: with 5 against 5 only 1 is significant; none: no distance is "
+    "significant.",
+    "gap: (simulated - measured) / measured median. within 20 %: for medians above 0.05 ms; "
+    "smaller "
+    "ones depend on noise.",
+    "The experiment validates the implementation of transport and protocols. It has no cameras: "
+    "see "
+    "the evidence for each stage."};
 
 std::string quantiles_text(const GapSide& side, std::size_t low, std::size_t high) {
   if (side.count == 0) return "-";
@@ -79,7 +81,7 @@ Table gap_table(const std::vector<ModelGapRow>& rows) {
   return block;
 }
 
-// The reasons are long: they stand below.
+// The long reasons stand below the table.
 Block evidence_block() {
   Table table({{"stage", Align::kLeft}});
   for (const Evidence evidence : evaluation::kAllEvidence) {
@@ -87,7 +89,7 @@ Block evidence_block() {
     std::replace(name.begin(), name.end(), ' ', '\n');
     table.columns.push_back({name, Align::kLeft});
   }
-  Block block{.heading = "What each stage of the model rests on"};
+  Block block{.heading = "Evidence for each stage of the model"};
   for (const StageEvidence& stage : evaluation::model_evidence()) {
     std::vector<std::string> cells = {std::string(stage.stage)};
     for (const Evidence evidence : evaluation::kAllEvidence) {
@@ -100,7 +102,7 @@ Block evidence_block() {
   return block;
 }
 
-// The sentence that sums up: how many of the judged rows are within the limit.
+// Summary: how many of the judged rows are within the limit.
 std::string summary_line(const std::vector<ModelGapRow>& rows) {
   const auto judged = std::count_if(rows.begin(), rows.end(), [](const ModelGapRow& row) {
     return row.within_20_percent.has_value();
@@ -168,9 +170,9 @@ Document model_gap_document(const ModelGapReport& report) {
   const MeasuredStudy& measured = report.measured;
   Document document{
       .title = fmt::format("{}: measured beside simulated", measured.scenario),
-      .head = {fmt::format(
-          "Measured {} on {} (simbench {}); simulated with {} seeds (simbench {}).", measured.date,
-          measured.machine, measured.commit, report.simulated_seeds, commit())}};
+      .head = {fmt::format("Measured {} on {} (simbench {}); simulated with {} (simbench {}).",
+                           measured.date, measured.machine, measured.commit,
+                           counted(report.simulated_seeds, "seed"), commit())}};
   document.blocks.push_back({.heading = "The gap",
                              .table = gap_table(report.rows),
                              .prose = {summary_line(report.rows)}});
@@ -197,7 +199,7 @@ std::string model_gap_json(const ModelGapReport& report) {
       {"notes", notes_of(measured)},
       {"evidence", evidence_json()}};
   for (const ModelGapRow& row : report.rows) root["rows"].push_back(row_json(row));
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

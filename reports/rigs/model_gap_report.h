@@ -1,5 +1,5 @@
-// What `simbench validate-model` prints: measured beside simulated distributions, the distance
-// between them, and what each stage of the model rests on.
+// The output of `simbench validate-model`: measured beside simulated distributions, the distance
+// between them, and the evidence for each stage of the model.
 //
 // JSON: {"schema_version": 1, "version", "commit", "scenario",
 //        "measured_on": {"date", "machine", "commit"}, "simulated_seeds": ...,
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/model/model_gap.h"
+#include "evaluation/model/evidence.h"
 #include "evaluation/scoring/results.h"
 #include "reports/rigs/measured_study.h"
 #include "reports/text/block.h"

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/results/json.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -19,14 +19,14 @@ namespace {
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 constexpr const char* kOfPulses[] = {"amd_ms", "rmdv_ms", "host_error_ms", "absolute_error_ms"};
 constexpr const char* kOfSets[] = {"set_amd_ms"};
 
 constexpr const char* kPredictionLegend =
     "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
-    "simulated 5-95 % band, which this one number cannot distinguish from such a world; outside: "
+    "simulated 5-95 % band, so this number does not distinguish the rig from such a world; "
+    "outside: "
     "the scenario does not describe this rig (simbench fit makes one that does).";
 constexpr const char* kOneRepetition = "One repetition has a value and no band.";
 
@@ -40,7 +40,7 @@ std::span<const char* const> metrics_of(const Row& measured) {
   return kOfSets;
 }
 
-// Real rigs cannot measure errors: AMD is always shown, what nobody could measure is not.
+// AMD is always shown, other metrics only if measured: real rigs cannot measure errors.
 bool is_predicted(std::string_view metric, std::size_t measured) {
   return measured > 0 || metric == "amd_ms" || metric == "set_amd_ms";
 }
@@ -74,10 +74,6 @@ Table prediction_table(const std::vector<Prediction>& rows) {
                number_text(row.simulated.median), band_text(row.simulated), inside_text(row)});
   }
   return table;
-}
-
-Json band_json(const Series& series) {
-  return {{"median", series.median}, {"p05", series.p05}, {"p95", series.p95}};
 }
 
 Json prediction_json(const Prediction& row) {
@@ -125,8 +121,8 @@ Block prediction_block(const Results& measured, const Results& simulated) {
   const bool one = std::any_of(rows.begin(), rows.end(),
                                [](const Prediction& row) { return row.measured_count == 1; });
   return {
-      .heading = fmt::format("Measured beside predicted ({} simulated seed{})",
-                             simulated.seed_count, simulated.seed_count == 1 ? "" : "s"),
+      .heading = fmt::format("Measured beside predicted ({})",
+                             counted(simulated.seed_count, "simulated seed")),
       .table = prediction_table(rows),
       .prose = {one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition) : kPredictionLegend}};
 }
@@ -140,7 +136,7 @@ std::string json_with_prediction(const Results& measured, const Results& simulat
   root["prediction"] = {
       {"seeds", {{"first", simulated.first_seed}, {"count", simulated.seed_count}}},
       {"rows", std::move(rows)}};
-  return root.dump(2) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

@@ -1,7 +1,7 @@
-// What a real rig did beside what the simulator predicts for the same scenario.
+// Measured results of a real rig beside the simulator's prediction for the same scenario.
 //
-// The measured median of each pipeline and metric stands beside the simulated band: inside the band
-// means that this rig is one of the simulated worlds as far as this number can tell, no more. One
+// The measured median of each pipeline and metric stands beside the simulated band. Inside the band
+// means only that this number does not distinguish the rig from the simulated worlds. One
 // repetition has a value and no band. An unverified row (evaluation/scoring/unverified_scores.h) is
 // compared by the range of its gathered sets, which simulated rows have too; the others by AMD,
 // RMDV and, where they exist, the errors.
@@ -32,8 +32,8 @@ struct Prediction {
   std::optional<bool> inside;
 };
 
-// In the order of `measured`. A pipeline that `simulated` lacks has no prediction; one that was
-// never measured has, with nothing beside it.
+// Returns predictions in the order of `measured`. A pipeline that `simulated` lacks has none; one
+// without measurements has a prediction alone.
 std::vector<Prediction> predictions(const evaluation::Results& measured,
                                     const evaluation::Results& simulated);
 

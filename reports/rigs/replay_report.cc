@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "recording/text_fields.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
 #include "reports/text/block.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 
@@ -23,7 +23,6 @@ using evaluation::GatheringReplay;
 using evaluation::Replay;
 using evaluation::RigReplay;
 using evaluation::RigRow;
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 
 bool has_other_streams(const Replay& replay, const CameraReplay& camera) {
   return std::any_of(replay.cameras.begin(), replay.cameras.end(), [&](const CameraReplay& other) {
@@ -96,7 +95,7 @@ std::string rig_text(const RigReplay& rig) {
       number_text(rig.first_arrival_range_ms),
       rig.common_start_plausible
           ? "less than half a period, as after a common start."
-          : "half a period or more, so without a common start; its AMD and RMDV mean nothing.");
+          : "half a period or more, so without a common start; its AMD and RMDV are meaningless.");
   Table table({{"device_time", Align::kLeft},
                {"frames matched by", Align::kLeft},
                {"sets"},
@@ -119,9 +118,9 @@ constexpr const char* kReplayLegend = R"(
 How to read it
   host_sync cannot be replayed: it had its effect on the clocks that stamped the arrivals.
   drift: (host rate / device rate - 1) in ppm, by least squares; by envelope: by the earliest frames.
-  excess: how much later than the earliest frames the others arrived. missing: by the frame counter.
+  excess: delay of the arrivals over the earliest frames. missing: by the frame counter.
   jitter: standard deviation of (interval of global stamps - interval of sensor stamps).
-  residual: arrival minus global stamp, mean taken off: what the estimator takes for delay.
+  residual: arrival minus global stamp, less its mean: the delay by the estimator.
 )";
 
 void append_ms(fmt::memory_buffer& text, Nanoseconds time) {
@@ -271,7 +270,7 @@ std::string replay_json(const evaluation::Replay& replay, const std::vector<std:
     root["rigs"].push_back(rig_json(replay, rig));
   }
   // A file may name its cameras in bytes that are no UTF-8.
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return file_text(root);
 }
 
 }  // namespace simbench::reports

@@ -1,4 +1,4 @@
-// What `simbench replay` found, for people and for programs.
+// The results of `simbench replay` as text, JSON and CSV.
 //
 // JSON, schema_version 1 (what does not exist is null):
 //   {"schema_version", "version", "commit", "files", "notes",

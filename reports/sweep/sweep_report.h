@@ -1,4 +1,4 @@
-// The results of a sweep: blocks for people, CSV for scripts.
+// The results of a sweep: blocks for people, CSV for scripts, figures.
 #ifndef SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 #define SIMBENCH_REPORTS_SWEEP_SWEEP_REPORT_H_
 
@@ -7,18 +7,18 @@
 
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_score.h"
+#include "reports/figures/figure.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
 
-// The manifest of a sweep, which is its identity (reports/sweep/sweep_folder.h). `study`: its name,
-// or
+// The manifest of a sweep, which identifies it (reports/sweep/sweep_folder.h). `study`: its name or
 // "".
 std::string sweep_manifest(const evaluation::SweepPlan& plan, const std::string& study);
 
-// sweep.csv, one line for each point, pipeline and seed: what is swept under its JSON pointers,
-// pipeline, seed, and the columns of evaluation::sweep_metrics(). Numbers are the shortest that
-// read back as the same double; what does not exist is an empty cell.
+// sweep.csv, one line for each point, pipeline and seed: the swept values under their JSON
+// pointers, pipeline, seed, and the columns of evaluation::sweep_metrics(). Numbers are the
+// shortest that read back as the same double; a value that does not exist is an empty cell.
 std::string sweep_csv(const evaluation::SweepPlan& plan,
                       const std::vector<evaluation::SweepScore>& scores);
 
@@ -27,8 +27,8 @@ std::string sweep_csv(const evaluation::SweepPlan& plan,
 std::string sweep_hosts_csv(const evaluation::SweepPlan& plan,
                             const std::vector<evaluation::SweepScore>& scores);
 
-// The response: median AMD with its band, absolute error, host error, precision, recall and margin
-// of each pipeline at each point.
+// The response of each pipeline at each point: the metrics with TablePlaces::response, the first
+// one with its band.
 Block response_block(const evaluation::SweepPlan& plan,
                      const std::vector<evaluation::ResponseRow>& rows);
 
@@ -36,9 +36,23 @@ Block response_block(const evaluation::SweepPlan& plan,
 Block host_order_block(const evaluation::SweepPlan& plan,
                        const std::vector<evaluation::ResponseRow>& rows);
 
-// How near the median AMD of n seeds comes to that of all, and how many are needed.
+// The 95 % interval of the median AMD of n seeds, and the number of seeds for a given interval.
 Block seeds_needed_block(const evaluation::SweepPlan& plan,
                          const std::vector<evaluation::ResponseRow>& rows);
+
+// A panel for each metric with TablePlaces::response_panel. x is the first axis of the sweep: its
+// first pointer's values, or 1, 2, ... for words. There is a curve for each pipeline and each step
+// of the other axes. With a single point, Figure::absent.
+Figure response_figure(const evaluation::SweepPlan& plan,
+                       const std::vector<evaluation::ResponseRow>& rows);
+
+// One panel: each host's median clock error, in the order of the sessions.
+Figure host_order_figure(const evaluation::SweepPlan& plan,
+                         const std::vector<evaluation::ResponseRow>& rows);
+
+// One panel: the 95 % interval of the median AMD of n seeds, in percent, against n.
+Figure seeds_needed_figure(const evaluation::SweepPlan& plan,
+                           const std::vector<evaluation::ResponseRow>& rows);
 
 }  // namespace simbench::reports
 

@@ -24,7 +24,7 @@ std::string markdown_cell(const std::string& text) {
   return escaped;
 }
 
-// What begins a document needs no empty line before it.
+// Without the empty line before the first part of a document.
 std::string without_first_break(std::string text) {
   if (text.starts_with('\n')) text.erase(0, 1);
   return text;

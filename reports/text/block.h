@@ -1,6 +1,6 @@
-// What a report says, as plain data, and the three ways to draw it: text for a terminal, Markdown,
-// HTML. Whoever has something to report builds blocks once; no renderer decides about columns,
-// cells or sentences, so terminal and page cannot differ.
+// The content of a report as plain data, and its three renderings: text for a terminal, Markdown,
+// HTML. A report builds blocks once; no renderer chooses columns, cells or sentences, so terminal
+// and page cannot differ.
 //
 //   Document document{.title = "sample: 2 seeds"};
 //   Block block{.heading = "The paper's metrics", .table = Table({{"pipeline", Align::kLeft},
@@ -10,12 +10,12 @@
 //   std::cout << plain(document);
 //
 // A header may have several lines ('\n'); Markdown and HTML join them by blanks. Headers and cells
-// are text: renderers escape what their format reads. Plain cells are taken for ASCII: their width
-// is their length. Every line ends with '\n', none with a blank.
+// are text, which renderers escape. Plain cells count as ASCII: their width is their length. Every
+// line ends with '\n', none with a blank.
 //
 // Plain text is laid out for the page of reports/text/plain_text.h. A table wider than the page is
-// divided into parts, each with the key columns first; long prose in cells goes on below. Only a
-// word wider than the page stands out. Markdown and HTML know no page.
+// divided into parts, each with the key columns first; long prose in cells wraps. Only a word wider
+// than the page exceeds it. Markdown and HTML have no page.
 #ifndef SIMBENCH_REPORTS_TEXT_BLOCK_H_
 #define SIMBENCH_REPORTS_TEXT_BLOCK_H_
 
@@ -34,11 +34,11 @@ enum class Align : std::uint8_t { kLeft, kRight };
 struct Column {
   std::string header;
   Align align = Align::kRight;
-  std::string legend{};  // what it means; HTML shows it when pointed at
+  std::string legend{};  // its meaning; a tooltip in HTML
 };
 
 struct Table {
-  // The first `keys` columns say what a row is about: every part of a wide table repeats them.
+  // The first `keys` columns identify a row: every part of a wide table repeats them.
   explicit Table(std::vector<Column> its_columns, std::size_t keys = 1)
       : columns(std::move(its_columns)), key_columns(keys) {}
   // As many cells as there are columns.
@@ -49,7 +49,7 @@ struct Table {
   std::vector<std::vector<std::string>> rows{};
 };
 
-// A column, and its cell for a row that is about a `Subject`.
+// A column, and its cell for a row about a `Subject`.
 template <class Subject>
 struct Field {
   Column column;
@@ -93,9 +93,9 @@ std::string plain(const Document& document);
 std::string markdown(const Table& table);
 std::string markdown(const Document& document);
 
-// `caption` is for who cannot see the heading above.
+// `caption`: for screen readers.
 std::string html(const Table& table, const std::string& caption);
-// A <section>. A document's title and head are the page's own affair.
+// A <section>. The page itself has a document's title and head.
 std::string html(const Block& block);
 std::string html(const std::vector<Block>& blocks);
 

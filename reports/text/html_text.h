@@ -1,7 +1,7 @@
-// Pieces of HTML from text that nobody has checked: names, paths, messages.
+// Pieces of HTML from unchecked text: names, paths, messages.
 //
 //   html_escaped("a < b & \"c\"")   "a &lt; b &amp; &quot;c&quot;", for content and attributes
-//   script_safe(json)               JSON that no parser of HTML takes for an end of the script
+//   script_safe(json)               JSON in which no HTML parser finds the end of a script
 #ifndef SIMBENCH_REPORTS_TEXT_HTML_TEXT_H_
 #define SIMBENCH_REPORTS_TEXT_HTML_TEXT_H_
 
@@ -17,8 +17,8 @@ std::string html_escaped(std::string_view text);
 // In JSON '<' stands in strings only, where an escape means the same.
 std::string script_safe(std::string_view json);
 
-// A template's {{name}} replaced by its value; what is put in is not searched again. A name without
-// a value is a programming error.
+// Replaces each {{name}} of a template by its value, which is not searched again. A name without a
+// value is a programming error.
 std::string filled(std::string_view page,
                    const std::vector<std::pair<std::string_view, std::string>>& values);
 

@@ -18,10 +18,9 @@ namespace {
 using nlohmann::json;
 using scenarios::InputError;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kLargestCount = std::numeric_limits<std::int64_t>::max();
 
-// "FILE:LINE", as far as it can be told.
+// "FILE:LINE", or "FILE" if the line is unknown.
 std::string place_of(const JsonFile& file, const std::string& pointer) {
   try {
     const auto lines = scenarios::parse_document(file.text).lines;
@@ -34,7 +33,7 @@ std::string place_of(const JsonFile& file, const std::string& pointer) {
   return file.path;
 }
 
-// What is wrong with a text that is no JSON.
+// Throws the error of a text that is not JSON.
 [[noreturn]] void fail_syntax(const std::string& path, const std::string& text) {
   try {
     scenarios::parse_document(text);
@@ -42,7 +41,7 @@ std::string place_of(const JsonFile& file, const std::string& pointer) {
     throw InputError(fmt::format("{}:{}:{}: {}; was the file cut short or edited?", path,
                                  error.line(), error.column(), error.what()));
   }
-  throw InputError(fmt::format("{}: is no JSON", path));
+  throw InputError(fmt::format("{}: is not JSON", path));
 }
 
 }  // namespace
@@ -53,7 +52,7 @@ JsonFile read_json_file(const std::string& path, const std::string& advice) {
   JsonFile file{path, {std::istreambuf_iterator<char>(in), {}}, {}};
   try {
     file.value = json::parse(file.text);
-  } catch (const json::exception&) {  // no JSON, or a number that no double holds
+  } catch (const json::exception&) {  // not JSON, or a number beyond a double
     fail_syntax(path, file.text);
   }
   return file;
@@ -102,7 +101,7 @@ bool JsonNode::flag() const {
 }
 
 double JsonNode::number() const {
-  if (value_.is_null()) return kNaN;
+  if (value_.is_null()) return evaluation::kNan;
   if (!value_.is_number()) refuse("a number or null");
   return value_.get<double>();
 }
@@ -124,7 +123,7 @@ std::vector<double> JsonNode::numbers(std::size_t seeds) const {
   for (const json& value : value_) {
     const bool is_right = value.is_number() || value.is_null();
     if (!is_right) elements()[all.size()].refuse("a number or null");
-    all.push_back(value.is_null() ? kNaN : value.get<double>());
+    all.push_back(value.is_null() ? evaluation::kNan : value.get<double>());
   }
   return all;
 }
@@ -140,6 +139,20 @@ void JsonNode::check_schema_version(int newest) const {
     version.refuse(fmt::format("at most {}; a newer simbench wrote this, use that one", newest));
   }
   if (found < 1) version.refuse(fmt::format("1 to {}", newest));
+}
+
+Json band_json(const evaluation::Series& series) {
+  return {{"median", series.median}, {"p05", series.p05}, {"p95", series.p95}};
+}
+
+Json series_json(const evaluation::Series& series) {
+  Json json = band_json(series);
+  json["values"] = series.values;
+  return json;
+}
+
+std::string file_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace simbench::reports

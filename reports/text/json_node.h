@@ -1,8 +1,8 @@
-// JSON files that may have been cut short or edited by hand, read value by value.
+// Reads JSON files that may be cut short or edited by hand, value by value.
 //
-// A value knows where it stands, so that each refusal names file, line and JSON pointer, what was
-// found and what is allowed. Lines are looked for only when something is wrong: the files are large
-// and mostly right.
+// A value knows its place, so that each refusal names file, line and JSON pointer, what was found
+// and what is allowed. Lines are determined only for an error: the files are large and mostly
+// right.
 //
 // Errors: scenarios::InputError.
 //
@@ -28,7 +28,7 @@ struct JsonFile {
   nlohmann::json value;
 };
 
-// `advice` is what to do where there is no such file.
+// `advice`: the remedy for a missing file.
 JsonFile read_json_file(const std::string& path, const std::string& advice);
 
 class JsonNode {
@@ -40,7 +40,7 @@ class JsonNode {
   [[noreturn]] void refuse(const std::string& allowed) const;
   [[noreturn]] void fail(const std::string& problem) const;
 
-  // A member that has to be there.
+  // A member, which must exist.
   JsonNode operator[](const char* key) const;
   bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
   std::vector<JsonNode> elements() const;
@@ -54,7 +54,7 @@ class JsonNode {
   std::int64_t count() const;
   // Numbers or nulls, one for each seed.
   std::vector<double> numbers(std::size_t seeds) const;
-  // The member "values" with its median and band computed anew.
+  // The member "values", with median and band computed from it.
   evaluation::Series series(std::size_t seeds) const;
   // The member "schema_version": 1 to `newest`.
   void check_schema_version(int newest) const;
@@ -65,6 +65,16 @@ class JsonNode {
   const nlohmann::json& value_;
   std::string pointer_;
 };
+
+// For writing: keeps members in order; NaN becomes null.
+using Json = nlohmann::ordered_json;
+
+// {"median", "p05", "p95"}; series_json() has "values" in seed order too.
+Json band_json(const evaluation::Series& series);
+Json series_json(const evaluation::Series& series);
+
+// The text of a JSON file: indented by two, ends with a line feed, other bytes than UTF-8 replaced.
+std::string file_text(const Json& json);
 
 }  // namespace simbench::reports
 

@@ -60,4 +60,23 @@ std::string short_text(double value) {
   return fmt::format("{:.3g}", value);
 }
 
+std::string counted(std::uint64_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+std::string counted_seeds(std::uint64_t first, std::uint64_t count) {
+  const std::string seeds = counted(count, "seed");
+  return count == 1 ? fmt::format("{} ({})", seeds, first)
+                    : fmt::format("{} ({}-{})", seeds, first, first + count - 1);
+}
+
+double shown_value(const evaluation::Metric& metric, double value) {
+  return metric.is_share() ? 100 * value : value;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
+  return text;
+}
+
 }  // namespace simbench::reports

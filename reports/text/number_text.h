@@ -1,4 +1,4 @@
-// Numbers as people read them in a table: a sensible number of digits, "-" for what does not exist.
+// Numbers as people read them: a sensible number of digits, "-" for a value that does not exist.
 #ifndef SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
 #define SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
 
@@ -27,6 +27,18 @@ std::string count_text(std::int64_t count);
 
 // A large number in short: "950", "12.3 k", "4.56 M", "1.20 G".
 std::string short_text(double value);
+
+// A count with its noun: "1 seed", "32 seeds".
+std::string counted(std::uint64_t count, const char* thing);
+
+// The seeds of a result: "1 seed (7)", "32 seeds (1-32)".
+std::string counted_seeds(std::uint64_t first, std::uint64_t count);
+
+// A metric's value in the units of reports: milliseconds unchanged, shares in percent.
+double shown_value(const evaluation::Metric& metric, double value);
+
+// "absolute error" as a title: "Absolute error".
+std::string capitalised(std::string text);
 
 }  // namespace simbench::reports
 

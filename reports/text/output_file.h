@@ -1,22 +1,36 @@
-// A file that appears whole or not at all.
+// Files and folders of results that appear complete or not at all.
 //
-// It is written under a temporary name beside its own; publish() renames. Nothing is left if that
-// is not reached, and an earlier file of the name stays until then. A link stays one: what it leads
-// to is replaced.
+// They are written under a temporary name beside their own; publish() renames. Without publish()
+// nothing is left, and an earlier result in that place stays. A link stays one: its target is
+// replaced. An OutputFolder replaces only an earlier result of simbench: it refuses a folder with
+// anything else in it.
 //
-//   OutputFile file("fig8.csv");     // before the work: refuses what cannot be written
+//   OutputFile file("fig8.csv");              // before the work: refuses what cannot be written
 //   file.write(text);
 //   file.publish();
 //
-// Errors: OutputError, whose message says what to do.
+//   OutputFolder output("results/monday");
+//   output.file("table.txt") << text;
+//   output.publish();
+//
+// Errors: OutputError, whose message states the remedy.
 #ifndef SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_
 #define SIMBENCH_REPORTS_TEXT_OUTPUT_FILE_H_
 
 #include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace simbench::reports {
+
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class OutputFile {
  public:
@@ -26,22 +40,46 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // The temporary name, for those who write by other means.
+  // The temporary name, for other programs that write the file.
   const std::filesystem::path& path() const { return temporary_; }
   void write(std::string_view content) const;
   void publish() const;
 
  private:
-  std::string named_;  // as the user did
+  std::string named_;  // as the user stated it
   std::filesystem::path path_;
   std::filesystem::path temporary_;
 };
 
-// All of it at once.
+// Makes, writes and publishes a file.
 void write_file(const std::string& path, std::string_view content);
 
-// Why the last call of the system failed, in the system's words.
+// Returns the system's reason for the last failed call.
 std::string system_reason();
+
+class OutputFolder {
+ public:
+  // Checks that `folder` may be written and makes the temporary one. `more_own_files`: files that
+  // an earlier result there may hold besides those of an archive.
+  explicit OutputFolder(const std::filesystem::path& folder,
+                        const std::vector<std::string>& more_own_files = {});
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Finishes the preceding file and starts the next: at most one is open.
+  std::ostream& file(const std::string& name);
+  // Finishes the last file and gives the folder its name.
+  void publish();
+
+ private:
+  void finish_file();
+
+  std::filesystem::path folder_;
+  std::filesystem::path temporary_;
+  std::filesystem::path open_name_;
+  std::ofstream open_;
+};
 
 }  // namespace simbench::reports
 

@@ -18,7 +18,7 @@ std::optional<std::size_t> the_page_width;
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kNarrowest = 12;
 
-// Which column of the table, and how wide it is set.
+// A column of the table and its width in a part.
 struct Slot {
   std::size_t column;
   std::size_t width;
@@ -46,7 +46,7 @@ std::string pad(const std::string& text, std::size_t width, Align align) {
   return align == Align::kLeft ? text + blanks : blanks + text;
 }
 
-// What a column takes: as it is, and narrowed as far as it may be.
+// The width of a column: natural, and narrowed as far as possible.
 struct Need {
   std::size_t natural = 0;
   std::size_t least = 0;
@@ -72,8 +72,7 @@ std::size_t width_of(const Part& part) {
   return width;
 }
 
-// Widens what was narrowed to what is left of the page: the narrowest first, so that the widest
-// give most.
+// Widens narrowed columns to the page's width, the narrowest first, so that the widest lose most.
 void widen(Part& part, const std::vector<Need>& needs, std::size_t page_width) {
   const std::size_t used = width_of(part);
   for (std::size_t left = page_width - std::min(page_width, used); left > 0; --left) {
@@ -89,7 +88,7 @@ void widen(Part& part, const std::vector<Need>& needs, std::size_t page_width) {
   }
 }
 
-// Where even one column does not fit beside the keys, only its longest words stand out.
+// If even one column does not fit beside the keys, only its longest words exceed it.
 void narrow_last(Part& part, std::size_t page_width) {
   const std::size_t used = width_of(part);
   if (used <= page_width) return;
@@ -97,7 +96,7 @@ void narrow_last(Part& part, std::size_t page_width) {
   width -= std::min(used - page_width, width - std::min(width, kNarrowest));
 }
 
-// The columns in order, as many to a part as fit.
+// The columns in order, as many in a part as fit.
 std::vector<Part> dealt_out(const std::vector<Need>& needs, const Part& keys, std::size_t width) {
   std::vector<Part> parts = {keys};
   for (std::size_t c = keys.size(); c < needs.size(); ++c) {
@@ -118,7 +117,7 @@ std::vector<Part> parts_of(const std::vector<Need>& needs, std::size_t key_colum
     keys.push_back({c, needs[c].least});
   }
   std::vector<Part> parts = dealt_out(needs, keys, page);
-  // As many parts, but of like widths: no column is left over for the last.
+  // The same number of parts, but of similar widths.
   for (std::size_t width = page; width > 0; --width) {
     std::vector<Part> narrower = dealt_out(needs, keys, width);
     if (narrower.size() > parts.size()) break;
@@ -131,8 +130,8 @@ std::vector<Part> parts_of(const std::vector<Need>& needs, std::size_t key_colum
   return parts;
 }
 
-// Cells side by side, each of one line or more; the short ones are filled up at the top (headers
-// stand on the rule) or at the bottom.
+// Cells side by side, each of one line or more; short ones have empty lines at the top (headers) or
+// at the bottom.
 std::string side_by_side(const std::vector<Lines>& cells, const Part& part,
                          const std::vector<Column>& columns, bool fill_top) {
   std::size_t height = 0;
@@ -171,7 +170,7 @@ std::string part_text(const Part& part, const std::vector<Column>& columns, cons
   return out;
 }
 
-// Breaks one line; blanks between words stay as they are, but at the end of a line.
+// Breaks one line; blanks between words stay, except at the end of a line.
 void append_broken(std::string& out, std::string_view line, std::size_t width) {
   constexpr std::size_t kDeeper = 2;
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());

@@ -1,14 +1,14 @@
-// The page that plain text is laid out for, and prose on it. Tables: plain() of
-// reports/text/block.h.
+// The page of plain text, and prose on it. Tables: plain() of reports/text/block.h.
 //
-// The page is as wide as need be until set_page_width() says otherwise: the command does so once at
-// its start, for the terminal it prints to.
+// The page has no limit until set_page_width(), which the command calls once at its start, for its
+// terminal.
 //
-// A table that fits stands in one part. Else its columns are dealt out in order to as few parts as
-// they need, an empty line between two, each with the key columns first. A column of prose (a cell
-// of more than kProseWidth with a blank in it) may be narrowed to that, its cells going on below;
-// as much as a part must, its widest first. A single word is never broken, and a column that does
-// not fit beside the keys has a part of its own, where its longest words stand out.
+// A table that fits stands in one part. Otherwise its columns are distributed in order over as few
+// parts as possible, each with the key columns first and an empty line between two. A column of
+// prose (a cell of more than kProseWidth with a blank in it) may be narrowed to that width, and its
+// cells wrap; a part narrows its widest columns first, as much as necessary. A single word is never
+// broken. A column that does not fit beside the keys has a part of its own, where its longest words
+// exceed it.
 #ifndef SIMBENCH_REPORTS_TEXT_PLAIN_TEXT_H_
 #define SIMBENCH_REPORTS_TEXT_PLAIN_TEXT_H_
 
@@ -20,12 +20,11 @@
 
 namespace simbench::reports {
 
-// The page's width in columns; std::nullopt: as wide as need be. Not for use while another thread
-// prints.
+// The page's width in columns; std::nullopt: no limit. Not while another thread prints.
 void set_page_width(std::optional<std::size_t> columns);
 std::optional<std::size_t> page_width();
 
-// A page as wide as need be while it lives, whatever the terminal: for text that goes to a file.
+// A page without limit during its lifetime, for text in a file.
 class FilePage {
  public:
   FilePage() : width_(page_width()) { set_page_width(std::nullopt); }
@@ -40,16 +39,16 @@ class FilePage {
 inline constexpr std::size_t kTextWidth = 140;
 inline constexpr std::size_t kProseWidth = 24;
 
-// Prose in lines of at most kTextWidth columns, on a narrower page of its width (a longer word has
-// a line of its own), each after `indent` blanks and ended by '\n'.
+// Prose in lines of at most kTextWidth columns or the page's width (a longer word has a line of its
+// own), each after `indent` blanks and ended by '\n'.
 std::string wrapped(std::string_view text, std::size_t indent = 0);
 
-// The text with every line that is wider than the page broken at a blank; what follows stands two
-// blanks deeper than its line. Unchanged where the page is as wide as need be.
+// Breaks every line that is wider than the page at a blank; the rest is indented by two more
+// blanks. Unchanged without a limit.
 std::string fitted(std::string_view text);
 
 // The words of `text` in lines of at most `width`, one blank between words; a longer word has a
-// line of its own. No line for no words.
+// line of its own.
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t width);
 
 }  // namespace simbench::reports

@@ -1,10 +1,10 @@
-// What happened in one simulated run, kept for a timeline: pulses, the way of every frame,
-// messages, clocks and gathered sets, in order of true time.
+// The events of one simulated run for a timeline: pulses, the way of every frame, messages, clocks
+// and gathered sets, in order of true time.
 //
-// Kept by TraceRecorder (trace_recorder.h), drawn by write_chrome_trace() (trace_chrome.h) and
-// write_trace_csv() (trace_csv.h). Its size is bounded: what begins outside the wanted window is
-// left out, and so is everything that begins after the instant at which the number of events would
-// exceed the limit. Both are told in `left_out`. A thing is there whole or not at all.
+// TraceRecorder (trace_recorder.h) makes a trace; write_chrome_trace() and write_trace_csv() write
+// it. Its size is bounded: it omits things that begin outside the window, and those that begin
+// after the instant at which the number of events would exceed the limit. `left_out` counts both. A
+// thing is complete or absent.
 //
 // Units: true time (recording/true_time.h), nanoseconds.
 #ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_H_
@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@
 namespace simbench::reports {
 
 struct TraceOptions {
-  // What begins in [from, to) is wanted; a set belongs to its first frame.
+  // Things that begin in [from, to) are kept; a set belongs to its first frame.
   TrueTime from = TrueTime::min();
   TrueTime to = TrueTime::max();
   std::uint64_t max_events = 200'000;
@@ -31,14 +32,14 @@ struct TraceOptions {
 struct TraceFrame {
   ObservedFrame way;
   DeviceStamp sensor{};             // delivered frames only
-  std::optional<GlobalTime> stamp;  // that device_time gave it, if it did
-  HostTime reference{};             // that it should have given
+  std::optional<GlobalTime> stamp;  // by device_time
+  HostTime reference{};             // the correct stamp
   std::optional<std::uint32_t> set;
   bool leads_set = false;  // it is the set's first
 };
 
 struct TraceSet {
-  std::vector<std::uint32_t> frames;  // those that are kept
+  std::vector<std::uint32_t> frames;  // the kept ones
   std::size_t members = 0;
   bool complete = false;
   Nanoseconds range{};  // of the members' stamps
@@ -54,8 +55,8 @@ struct TraceClock {
 };
 
 struct TraceAdjustment {
-  // Worked out from the host's steady clock between two instants at which both are known: to
-  // microseconds, or to what a host without cameras has drifted since the world's start.
+  // From the host's steady clock, between two instants at which both are known: accurate to
+  // microseconds, for a host without cameras to its drift since the world's start.
   TrueTime at{};
   std::uint32_t host = 0;
   SteadyTime at_steady{};
@@ -91,7 +92,7 @@ struct Trace {
   TraceLeftOut left_out;
 };
 
-// When a thing begins, and the most events that it can become.
+// The begin of a thing, and the largest number of its events.
 inline TrueTime begin_of(const ObservedPulse& pulse) { return pulse.at; }
 inline TrueTime begin_of(const TraceFrame& frame) { return frame.way.exposure_start; }
 inline TrueTime begin_of(const ObservedMessage& message) { return message.left; }
@@ -107,8 +108,39 @@ inline std::uint64_t events_of(const ObservedMessage&) { return 4; }
 inline std::uint64_t events_of(const TraceClock&) { return 1; }
 inline std::uint64_t events_of(const TraceAdjustment&) { return 1; }
 
-// A sentence for each reason why something was left out; none if all is there.
+// Returns a sentence for each reason why something was left out.
 std::vector<std::string> left_out_notes(const Trace& trace);
+
+// A trace in the Chrome trace event format (JSON object format), which the Perfetto UI
+// (ui.perfetto.dev) and chrome://tracing open.
+//
+// `ts` and `dur` are microseconds with three decimals, in true time from true zero, the start of
+// host synchronisation, or from the first event before that. otherData has that zero, the run and
+// the omissions. One line per event, in order of time, names first. The same trace gives the same
+// bytes. Cost: memory for the events, the text is streamed.
+// Source: "Trace Event Format", the Chromium project.
+void write_chrome_trace(const Trace& trace, std::ostream& out);
+
+inline constexpr std::uint32_t kTraceCsvPlaces = 100;
+
+// A trace as a table of series over time, which PlotJuggler opens: one strictly increasing column
+// `time_s`, seconds of true time, and a cell only where a series has a value.
+//
+//   trigger/pulse                number of the pulse
+//   hostN/clock_error_us         system clock minus the master's (N > 0)
+//   hostN/clock_step_us          step of the clock
+//   cameraN/latency_ms           middle of the exposure to delivery, at the delivery
+//                                (cameraN/colour/latency_ms: of the colour stream)
+//   cameraN/stamp_error_us       the pipeline's stamp minus the correct one, at the delivery
+//   gathering/stamps_range_us    of the set emitted then
+//   gathering/frames             in that set
+//
+// Of two values of a series at one instant the later is shown. Columns are those of the first
+// kTraceCsvPlaces hosts and cameras; the rest is left out.
+void write_trace_csv(const Trace& trace, std::ostream& out);
+
+// A sentence if columns are left out, besides left_out_notes().
+std::vector<std::string> trace_csv_notes(const Trace& trace);
 
 }  // namespace simbench::reports
 

@@ -1,20 +1,17 @@
-#include "reports/timeline/trace_chrome.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "recording/version.h"
+#include "reports/text/json_node.h"
+#include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"
 
 namespace simbench::reports {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double us(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
 
@@ -88,7 +85,7 @@ class ChromeWriter {
     line_ += '}';
   }
 
-  // "bp": the arrow holds on to the slice around its point, not to the next one.
+  // "bp": the arrow attaches to the slice around its point, not to the next one.
   void write_arrow(const TraceEvent& event) {
     const char* kind = event.what == TraceWhat::kFrameArrow ? "frame" : "message";
     const char* binding = event.phase == TracePhase::kArrowBegin ? "" : R"(,"bp":"e")";

@@ -1,11 +1,11 @@
-#include "reports/timeline/trace_csv.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <map>
 #include <tuple>
+
+#include "reports/timeline/trace.h"
 
 namespace simbench::reports {
 namespace {
@@ -16,7 +16,7 @@ std::string seconds_text(TrueTime at) {
   return fmt::format("{:.9f}", static_cast<double>(at.time_since_epoch().count()) * 1e-9);
 }
 
-// The columns in their order; only those that have a value are written.
+// The columns in their order; only those with a value are written.
 enum class Series : std::uint8_t { kPulse, kClock, kStep, kLatency, kStampError, kRange, kFrames };
 struct Column {
   std::uint8_t group = 0;

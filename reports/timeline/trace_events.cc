@@ -93,7 +93,7 @@ class TimelineBuilder {
     }
   }
 
-  // The pulse that a frame's arrow can come from.
+  // The pulse at the begin of a frame's arrow.
   std::optional<EventIndex> pulse_before(const ObservedFrame& way) const {
     const auto pulse = pulse_slices_.find(way.pulse);
     if (pulse == pulse_slices_.end()) return std::nullopt;
@@ -148,7 +148,6 @@ class TimelineBuilder {
     std::uint32_t last = 0;  // message
     std::optional<EventIndex> received;
     std::uint64_t arrow = 0;
-    bool goes_on = false;  // the arrow has a begin
   };
 
   void add_messages() {
@@ -309,7 +308,7 @@ void TraceTracks::lay_out(const TrackKey& key, BaseTrack& base) {
   }
 }
 
-// To what is free until the next slice begins.
+// Shortens nominal lengths to the begin of the next slice.
 void TraceTracks::shorten_nominal(const std::vector<EventIndex>& slices) {
   for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
     TraceEvent& event = timeline_.events[slices[i]];

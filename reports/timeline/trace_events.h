@@ -1,18 +1,17 @@
 // A trace as the events of a timeline: slices on tracks, arrows between them, counters, instants.
 //
-// Processes: the trigger (pid 1), then the hosts in order (pid 2 is the master). Tracks are those
-// of the Chrome trace format's threads; slices on a track never overlap: what would goes to a
-// further track of the same name, "(2)". Per host: clock; gathering (of the master, which has no
-// other place); for each stream of a camera exposure, usb (offered to the bus -> transferred) and
-// host stack (copied to the kernel -> delivered); a channel for each peer, with what leaves for
-// there and what has come from there.
+// Processes: the trigger (pid 1), then the hosts in order (pid 2 is the master). Tracks are the
+// threads of the Chrome trace format. Slices on a track never overlap: an overlapping one goes to a
+// further track of the same name, "(2)". Per host: clock; gathering (shown at the master); for each
+// stream of a camera exposure, usb (offered to the bus -> transferred) and host stack (copied to
+// the kernel -> delivered); a channel for each peer, with the messages to and from it.
 //
 // Arrows: trigger pulse -> exposure -> host stack -> gathered set for each frame, as far as it got;
-// along the messages of a link for as long as each answers the one before it within 50 ms.
+// along the messages of a link as long as each answers the preceding one within 50 ms.
 //
-// A slice lasts at least 1 ns so that arrows hold on to it. Pulses, and messages that leave or
-// arrive, have no length: they are shown with a nominal one, or less where the next slice of the
-// track follows sooner.
+// A slice lasts at least 1 ns, so that arrows can attach to it. Pulses, and messages that leave or
+// arrive, have no length: they have a nominal one, or less if the next slice of the track follows
+// sooner.
 //
 //   const TraceTimeline timeline = trace_timeline(trace);
 #ifndef SIMBENCH_REPORTS_TIMELINE_TRACE_EVENTS_H_
@@ -43,8 +42,8 @@ enum class TracePhase : char {
   kArrowEnd = 'f',
 };
 
-// What an event shows, and the list of the trace that its `subject` counts in. An arrow's points
-// have none.
+// The kind of an event, with the list of the trace that `subject` is an index of. Points of an
+// arrow have no subject.
 enum class TraceWhat : std::uint8_t {
   kPulse,         // pulses
   kCaptureStart,  // none
@@ -70,7 +69,7 @@ struct TraceEvent {
   TraceWhat what = TraceWhat::kPulse;
   std::uint32_t subject = 0;
   std::uint32_t track = 0;
-  std::uint64_t arrow = 0;  // number of it, among those of its kind
+  std::uint64_t arrow = 0;  // its number among the arrows of its kind
 };
 
 struct TraceTrack {
@@ -80,16 +79,16 @@ struct TraceTrack {
 
 struct TraceTimeline {
   std::vector<std::string> processes;  // [i] has pid i + 1
-  std::vector<TraceTrack> tracks;      // by process, in the order to be shown; all are used
+  std::vector<TraceTrack> tracks;      // by process, in the order of display; all are used
   std::vector<TraceEvent> events;      // by time; at the same instant slices before their arrows
 };
 
 TraceTimeline trace_timeline(const Trace& trace);
 
-// The tracks of a timeline, made out as slices, marks and arrows are put on them.
+// Builds the tracks of a timeline from slices, marks and arrows.
 //
-// A track is known by its key; slices that would overlap go to further tracks of the same name when
-// all are known. An arrow's point is on the track of the slice that it touches.
+// A track is identified by its key; lay_out() moves overlapping slices to further tracks of the
+// same name. An arrow's point is on the track of the slice that it touches.
 //
 //   TraceTracks tracks;
 //   const std::size_t pulse = tracks.slice(trigger_track(), TraceWhat::kPulse, 0, begin, end);
@@ -106,7 +105,7 @@ enum class TrackKind : std::uint8_t {
   kChannel,
 };
 
-// In the order in which they are shown.
+// In the order of display.
 struct TrackKey {
   std::uint32_t process = 0;
   std::uint8_t group = 0;   // cameras' tracks are together, by camera
@@ -128,18 +127,18 @@ class TraceTracks {
  public:
   using EventIndex = std::size_t;
 
-  // A slice lasts at least 1 ns.
+  // Adds a slice, of at least 1 ns.
   EventIndex slice(const TrackKey& track, TraceWhat what, std::uint32_t subject, TrueTime begin,
                    TrueTime end);
-  // A counter or an instant.
+  // Adds a counter or an instant.
   void mark(const TrackKey& track, TracePhase phase, TraceWhat what, std::uint32_t subject,
             TrueTime at);
-  // A point of an arrow on a slice, as near to `at` as the slice goes.
+  // Adds a point of an arrow on a slice, as near to `at` as the slice reaches.
   void point(TracePhase phase, TraceWhat what, std::uint64_t arrow, EventIndex slice, TrueTime at);
 
   const TraceEvent& event(EventIndex index) const { return timeline_.events[index]; }
 
-  // Everything in order. Call once; the names of the processes are the caller's to add.
+  // Returns all in order, without the names of the processes. Call once.
   TraceTimeline lay_out();
 
  private:

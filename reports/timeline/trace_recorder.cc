@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/ports/host_sync.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -52,7 +53,7 @@ void TraceRecorder::on_frame(const FrameRecord& frame, const FrameTruth* truth) 
 void TraceRecorder::on_adjustment(const ClockAdjustment& adjustment) {
   ForwardingSink::on_adjustment(adjustment);
   std::vector<Anchor>& anchors = anchors_[adjustment.host];
-  if (anchors.empty()) {  // the setting that the world starts with
+  if (anchors.empty()) {  // the initial setting
     anchors.push_back({adjustment.at, trace_.world_start});
     return;
   }
@@ -209,7 +210,7 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
   return trace;
 }
 
-// Steady clocks are read at the start of the world and with a frame every second.
+// Anchors are at the start of the world and at a frame every second.
 TrueTime TraceRecorder::true_time(std::uint32_t host, SteadyTime at) const {
   const std::vector<Anchor>& anchors = anchors_[host];
   const auto after =
@@ -250,7 +251,7 @@ std::uint32_t* TraceRecorder::find(const FrameKey& key) {
   return found != index_.end() && found->key == key ? &found->frame : nullptr;
 }
 
-// So that a set is counted with its first frame and left out with it.
+// Marks the first frame of each set: the set is counted and left out with it.
 void TraceRecorder::mark_leaders() {
   for (const KeptSet& set : sets_) {
     std::uint32_t* first = nullptr;
@@ -304,15 +305,16 @@ std::vector<std::string> left_out_notes(const Trace& trace) {
   std::vector<std::string> notes;
   const TraceLeftOut& left_out = trace.left_out;
   if (left_out.outside > 0) {
-    notes.push_back(
-        fmt::format("{} events are left out: they begin outside the window of --from-ms, --to-ms",
-                    left_out.outside));
+    notes.push_back(fmt::format("{} left out: outside the window of --from-ms, --to-ms",
+                                counted(left_out.outside, "event")));
   }
   if (left_out.too_many > 0) {
-    notes.push_back(fmt::format(
-        "{} events are left out, all that begin {:.6f} ms after true zero or later: more than "
-        "--max-events {}; raise it, or choose a window with --from-ms and --to-ms",
-        left_out.too_many, to_ms(left_out.cut_at.time_since_epoch()), trace.options.max_events));
+    notes.push_back(
+        fmt::format("{} left out, all from {:.6f} ms after true zero on: more than --max-events "
+                    "{}; raise it, or "
+                    "choose a window with --from-ms and --to-ms",
+                    counted(left_out.too_many, "event"), to_ms(left_out.cut_at.time_since_epoch()),
+                    trace.options.max_events));
   }
   return notes;
 }

@@ -1,10 +1,9 @@
-// Keeps a simulated run for a timeline while it is scored as any run is.
+// Records a simulated run for a timeline while it is scored.
 //
-// Sees the recording on its way to the scorer, the world behind it, and what the scorer makes of
-// it: so the sets are those that evaluation counts (evaluation/scoring/set_counter.h), by the
-// pipeline's own device_time and gathering. Memory: some 100 bytes for each of at most twice
-// TraceOptions::max_events events, and 24 bytes for each frame of a set, which is less than what
-// the scorer keeps of it.
+// Observes the recording on its way to the scorer, the world behind it, and the stamps and sets of
+// the scorer: so the sets are those that evaluation counts (evaluation/scoring/set_counter.h), by
+// the pipeline's own device_time and gathering. Memory: some 100 bytes for each of at most twice
+// TraceOptions::max_events events, and 24 bytes for each frame of a set.
 //
 //   const Trace trace = record_trace(scenario, choice, /*seed=*/1, *source,
 //                                    {.max_events = 50'000});
@@ -31,7 +30,7 @@ class TraceRecorder final : public ForwardingSink,
                             public WorldObserver,
                             public evaluation::ScoreObserver {
  public:
-  // `scorer`, which this watches, outlives this; `scored` is the stream that it scores.
+  // Watches `scorer`, which must outlive this; `scored`: the stream that it scores.
   TraceRecorder(evaluation::PipelineScorer& scorer, StreamKind scored, const TraceOptions& options);
 
   void on_start(const RigLayout& layout) override;
@@ -51,12 +50,11 @@ class TraceRecorder final : public ForwardingSink,
   void on_set(std::span<const GatherFrame> set, bool complete, GlobalTime now) override;
   void on_shift(Nanoseconds shift) override { shift_ = shift; }
 
-  // When the scorer has finished. Call once; names of scenario and pipeline are the caller's to
-  // add.
+  // Call once, after the scorer has finished. The trace lacks the names of scenario and pipeline.
   Trace finish();
 
  private:
-  // What scorer and gatherer know a frame by.
+  // How scorer and gatherer identify a frame.
   struct FrameKey {
     std::uint32_t camera = 0;
     std::uint32_t sensor_us = 0;
@@ -88,7 +86,7 @@ class TraceRecorder final : public ForwardingSink,
   void take(std::vector<Thing>& list, Thing thing);
   template <class Function>
   void for_each_list(const Function& function);
-  // Leaves out what begins too late for the limit.
+  // Removes things that begin too late for the limit.
   void cut_to_limit();
   void cut_at(TrueTime instant);
 
@@ -105,7 +103,7 @@ class TraceRecorder final : public ForwardingSink,
   Trace trace_;
   std::uint64_t kept_events_ = 0;
   TrueTime last_seen_{};
-  TraceFrame under_way_{};  // what the recording says of the frame that the world tells next
+  TraceFrame under_way_{};  // the recorded part of the frame that the world reports next
   FrameKey under_way_key_{};
   Nanoseconds shift_{};
   std::vector<std::vector<Anchor>> anchors_;  // by host, in order of time
@@ -118,7 +116,7 @@ class TraceRecorder final : public ForwardingSink,
   std::vector<Indexed> index_;  // by key
 };
 
-// Runs the pipeline once. Throws what the source does.
+// Runs the pipeline once. Throws what the source throws.
 Trace record_trace(const scenarios::Scenario& scenario, const evaluation::PipelineChoice& choice,
                    std::uint64_t seed, RecordingSource& source, const TraceOptions& options);
 

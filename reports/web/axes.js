@@ -1,4 +1,4 @@
-// Axes of a chart: what they span, their steps and texts, and the texts and colours of all charts.
+// Axes of a chart: their ranges, steps and texts, and the texts and colours of all charts.
 //
 // Colours are read from the style sheet at every drawing, so that a change of theme, or printing,
 // needs nothing but a redraw.
@@ -58,7 +58,7 @@ function extent(values, lines) {
   return [low, high];
 }
 
-// Zoomed in, exactly what was asked for; else everything, with a little room for points.
+// The zoomed range exactly; else the whole range, with a margin for points.
 function xRange(panel) {
   return (chart, min, max) => {
     if (panel.categories.length) return [-0.5, panel.categories.length - 0.5];
@@ -99,7 +99,7 @@ const kAxisLook = {
   ticks: {stroke: () => themeColour('--grid'), width: 1, size: 4},
 };
 
-// As many decimals as tell one step from the next.
+// Enough decimals to distinguish the steps.
 function tickTexts(chart, splits, axis, space, step) {
   const decimals = Math.min(12, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9) + 1));
   const text = (value) => Math.abs(value) >= 1e7 || (value !== 0 && Math.abs(value) < 1e-4) ?

@@ -1,4 +1,4 @@
-// The data of the figures: columns of numbers as reports/html_figures.h stores them, and the one
+// The data of the figures: columns of numbers as reports/page/html_page.h stores them, and the one
 // table that uPlot wants of all series of a chart.
 
 const kNoNumber = 0xffffff;

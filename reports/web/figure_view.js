@@ -1,9 +1,9 @@
-// One figure of the page: what is seen of its alternatives, and its own switches.
+// One figure of the page, with its alternatives and its own switches.
 //
-// Figures of one id are alternatives of each other. A view shows the one that comes nearest to what
-// is wished for: {pipeline, seed}, '' for no wish. It draws when it comes into sight.
+// Figures with one id are alternatives. A view shows the one nearest to the reader's choice {pipeline,
+// seed} ('' without a choice). It draws when it becomes visible.
 
-// Shown where a figure exists for single pipelines only and none is wished for: the paper's own.
+// The default of a figure that exists for single pipelines only: the paper's own.
 const kPaperPipeline = 'yoon2021_both';
 
 function nearest(alternatives, wish) {

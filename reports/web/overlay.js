@@ -1,5 +1,5 @@
-// What is drawn over and under the series of a chart: shaded spans, lines across with their labels,
-// the marked pulse.
+// Draws over and under the series of a chart: shaded spans, lines across with their labels, the marked
+// pulse.
 
 function drawSpans(chart, panel) {
   const {ctx, bbox} = chart;

@@ -1,6 +1,6 @@
-// The page of a report: one archive at a time, its figures, what the reader has chosen.
+// The page of a report: one archive at a time, its figures, the reader's choices.
 //
-// What is chosen is in the fragment of the address, so that a link shows another reader the same:
+// The choices are in the fragment of the address, so that a link shows another reader the same:
 //   #archive=0&pipeline=yoon2021_both&seed=1&figure=frame_errors&pulse=312
 
 const kPrintWidth = 680;  // CSS pixels: a page of A4 or Letter less its margins
@@ -35,7 +35,7 @@ function writeFragment() {
   history.replaceState(null, '', `#${new URLSearchParams(chosen)}`);
 }
 
-// A frame of a figure was clicked, or (no pulse) its link asked for.
+// Handles a click on a frame of a figure, or (without a pulse) on its link.
 function choseFrame(view, pulse) {
   state.figure = view.id;
   state.pipeline = view.shown.pipeline || state.pipeline;

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/figures/figure_catalogue.h"
+#include "reports/figures/figure.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
 #include "tests/nonempty.h"

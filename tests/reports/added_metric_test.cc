@@ -9,7 +9,7 @@
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/sweep/sweep_score.h"
-#include "reports/archive/baseline.h"
+#include "reports/comparison/baseline.h"
 #include "reports/comparison/comparison.h"
 #include "reports/comparison/gate.h"
 #include "reports/results/csv.h"

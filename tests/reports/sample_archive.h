@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 
 namespace simbench::reports {
 

@@ -42,7 +42,7 @@ TEST_F(DiagnoseCommand, SaysThatItDoesNot) {
   const ProgramResult result = run({"diagnose", file("rig.csv", recording(60))});
   EXPECT_EQ(result.status, 0) << "the exit status says whether there was an answer";
   EXPECT_THAT(result.out, StartsWith("Depth 0: hardware sync does not work, because free-running"));
-  EXPECT_THAT(result.out, HasSubstr("moves 3.6 ms per minute against camera left"));
+  EXPECT_THAT(result.out, HasSubstr("drifts 3.6 ms per minute relative to camera left"));
 }
 
 TEST_F(DiagnoseCommand, JsonIsAllThatIsOnStandardOutput) {

@@ -231,7 +231,7 @@ TEST_F(SweepTest, TwoAtOnceAreRefused) {
   const ProgramResult result = run(command("out"));
   close(lock);
   EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("another simbench is working on this sweep"));
+  EXPECT_THAT(result.err, HasSubstr("another simbench runs this sweep"));
 }
 
 TEST_F(SweepTest, WrongInputLeavesNothing) {

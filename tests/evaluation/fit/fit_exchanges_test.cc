@@ -1,12 +1,11 @@
-#include "evaluation/fit/fit_exchanges.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "evaluation/statistics/two_sample_ks.h"
+#include "evaluation/fit/fit.h"
+#include "evaluation/statistics/statistics.h"
 #include "sim/engine/random.h"
 
 namespace simbench::evaluation {

@@ -1,5 +1,3 @@
-#include "evaluation/model/model_gap.h"
-
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/model/evidence.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {

@@ -1,5 +1,3 @@
-#include "evaluation/statistics/seeds_needed.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

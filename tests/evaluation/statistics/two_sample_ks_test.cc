@@ -1,5 +1,3 @@
-#include "evaluation/statistics/two_sample_ks.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -8,6 +6,8 @@
 #include <numeric>
 #include <random>
 #include <vector>
+
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {

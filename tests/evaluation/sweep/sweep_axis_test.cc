@@ -1,11 +1,10 @@
-#include "evaluation/sweep/sweep_axis.h"
-
 #include <gmock/gmock.h>
 
 #include <charconv>
 #include <random>
 #include <string>
 
+#include "evaluation/sweep/sweep_plan.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {

@@ -1,5 +1,3 @@
-#include "reports/archive/archive_reader.h"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -159,7 +157,7 @@ TEST_F(ArchiveReader, RefusesDamagedLinesOfFrames) {
 
 TEST_F(ArchiveReader, RefusesSeedsAndPipelinesThatResultsDoNotHave) {
   edit("frames.csv", "yoon2021_both,2,", "yoon2021_both,9,");
-  EXPECT_THAT(problem(), HasSubstr("found seed 9, allowed: the 2 seeds from 1"));
+  EXPECT_THAT(problem(), HasSubstr("found seed 9, allowed: 1 to 2, the seeds"));
   edit("frames.csv", "yoon2021_both,1,", "yoon2020_both,1,");
   EXPECT_THAT(problem(), HasSubstr("found pipeline 'yoon2020_both'"));
 }

@@ -10,8 +10,8 @@
 #include <limits>
 #include <string>
 
-#include "reports/figures/figure_csv.h"
-#include "reports/text/output_folder.h"
+#include "reports/figures/figure.h"
+#include "reports/text/output_file.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reports {

@@ -37,7 +37,7 @@ TEST(SeedFiguresTest, OtherPipelinesStandInForThePapers) {
   ASSERT_THAT(figure.panels, SizeIs(2));
   EXPECT_EQ(figure.panels[0].title, "Without: bad");
   EXPECT_EQ(figure.panels[1].title, "With: good");
-  EXPECT_THAT(figure.caption, HasSubstr("stand in"));
+  EXPECT_THAT(figure.caption, HasSubstr("replace them"));
 }
 
 TEST(SeedFiguresTest, NoRunsNoFigures) {

@@ -1,6 +1,4 @@
 // Columns of numbers: read back by a decoder that is written from the description alone.
-#include "reports/page/html_figures.h"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "reports/page/html_page.h"
 #include "tests/reports/sample_results.h"
 
 namespace simbench::reports {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "reports/page/html_figures.h"
+#include "reports/page/html_page.h"
 #include "reports/results/results_document.h"
 #include "reports/text/html_text.h"
 #include "tests/reports/sample_figures.h"

@@ -47,7 +47,7 @@ TEST(ReconstructionFigure, WithoutACurveThereIsNothingToDraw) {
   results.speed_needed.reset();
   const Figure figure = reconstruction_figure(results);
   EXPECT_TRUE(figure.panels.empty());
-  EXPECT_EQ(figure.absent, "the curve was not asked for");
+  EXPECT_EQ(figure.absent, "the curve was not requested");
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 // The page as text: what stands in it, and what may not. How it looks is tested in a browser.
-#include "reports/reconstruction/reconstruction_html.h"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "reports/reconstruction/reconstruction_folder.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {
@@ -103,7 +102,7 @@ TEST(ReconstructionHtml, WithoutPicturesOrCurveTheirPartsAreLeftOut) {
       {.results = results, .pictures = {}, .command = {"simbench", "reconstruct"}});
   EXPECT_FALSE(has(page, "What the reconstruction looks like"));
   EXPECT_FALSE(has(page, "How good must my"));
-  EXPECT_TRUE(has(page, "the curve was not asked for"));
+  EXPECT_TRUE(has(page, "the curve was not requested"));
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "reports/reconstruction/reconstruction_limits.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>

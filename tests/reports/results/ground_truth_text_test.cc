@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"

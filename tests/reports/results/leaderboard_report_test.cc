@@ -40,6 +40,13 @@ TEST(LeaderboardReport, SaysWhatABoardVariesAndTheRatios) {
   EXPECT_THAT(text, Not(HasSubstr("Floor")));
 }
 
+TEST(LeaderboardReport, CountsItsSeeds) {
+  evaluation::Results results = boards();
+  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("2 seeds from 1"));
+  results.seed_count = 1;
+  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("1 seed from 1"));
+}
+
 TEST(LeaderboardReport, PrintsTheFloorOfUnequalLinks) {
   evaluation::Results results = boards();
   results.asymmetry_floor = evaluation::asymmetry_floor(0.01, 6);

@@ -32,7 +32,7 @@ pipeline       median ms            5-95 %     AMD ms  AMD is     [95 % interval
 yoon2021_both      2.000    [1.500, 2.500]      2.438  inside         50 % [1-99]      0.750  [0.500, 1.000]      1.804  not attainable
 free_running    750250.0  [500.0, 1.5e+06]          -  -                        -      250.0  [200.0, 300.0]          -  -
 
-What only known true time can tell
+Metrics that need true time
 
                absolute error    absolute error     bias  host clock error  host clock error   exposure      sets:   sets:  margin   frames  pulses
 pipeline            median ms            5-95 %       ms         median ms            5-95 %  spread ms  precision  recall      ms  dropped  scored
@@ -45,9 +45,9 @@ yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 How to read it
   Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, [a, b] their band from 5 to 95 %.
   AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
-  absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with its sign. AMD is blind to what all share.
+  absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
   host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
-  precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: from the range to the limit of a set.
+  precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit of the range less its 99.9 % quantile.
   published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 Pipelines = host_sync + device_time + gathering
@@ -66,11 +66,11 @@ Cost: 1.23 M events in 0.25 s (0.50 s of CPU): 4.94 M events/s, 256 simulated se
 }
 
 TEST(Table, GatheringHasABlockOnlyIfThePipelinesDiffer) {
-  EXPECT_THAT(table(sample_results(), ""), Not(HasSubstr("What gathering made")));
+  EXPECT_THAT(table(sample_results(), ""), Not(HasSubstr("Gathered sets")));
   evaluation::Results results = sample_results();
   results.rows[1].gathering = "epsilon";
   EXPECT_THAT(table(results, ""), HasSubstr(
-                                      R"(What gathering made of the stamps, over all seeds
+                                      R"(Gathered sets, over all seeds
 
                           complete      sets:   sets:   index  partial     frames   AMD of  abs. error  emitted after  emitted after
 pipeline       gathering      sets  precision  recall  errors     sets  discarded  sets ms  of sets ms        mean ms     largest ms
@@ -93,7 +93,7 @@ A fit, stated as such.
 | yoon2021_both | 2.000 | [1.500, 2.500] | 2.438 | inside | 50 % [1-99] | 0.750 | [0.500, 1.000] | 1.804 | not attainable |
 | free_running | 750250.0 | [500.0, 1.5e+06] | - | - | - | 250.0 | [200.0, 300.0] | - | - |
 
-### What only known true time can tell
+### Metrics that need true time
 
 | pipeline | absolute error median ms | absolute error 5-95 % | bias ms | host clock error median ms | host clock error 5-95 % | exposure spread ms | sets: precision | sets: recall | margin ms | frames dropped | pulses scored |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
@@ -106,9 +106,9 @@ yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 
 - Every pipeline meets the same worlds, one per seed. A value is the median over the seeds, [a, b] their band from 5 to 95 %.
 - AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
-- absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: with its sign. AMD is blind to what all share.
+- absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
 - host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
-- precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: from the range to the limit of a set.
+- precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit of the range less its 99.9 % quantile.
 - published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 ### Pipelines = host_sync + device_time + gathering

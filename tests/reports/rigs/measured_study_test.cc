@@ -8,7 +8,7 @@
 #include <string>
 
 #include "recording/version.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
 #include "tests/scratch_folder.h"

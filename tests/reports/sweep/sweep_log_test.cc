@@ -1,12 +1,11 @@
-#include "reports/sweep/sweep_log.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <random>
 #include <string>
 
-#include "reports/text/output_folder.h"
+#include "reports/sweep/sweep_folder.h"
+#include "reports/text/output_file.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reports {

@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/sweep/sweep_figure.h"
-
 namespace simbench::reports {
 namespace {
 
@@ -79,8 +77,10 @@ TEST(SweepReport, TheResponseIsOfAllSeeds) {
   ASSERT_EQ(all.size(), 8U);
   EXPECT_EQ(all[0].of("amd_ms").median, 0.5);
   EXPECT_EQ(all[7].of("amd_ms").median, 14.5);
-  EXPECT_EQ(all[3].recall, 0.75);
-  EXPECT_EQ(all[3].precision, 1);
+  EXPECT_EQ(all[3].pooled.recall, 0.75);
+  EXPECT_EQ(all[3].pooled.precision, 1);
+  EXPECT_EQ(all[3].value(evaluation::metric("recall")), 0.75);
+  EXPECT_EQ(all[7].value(evaluation::metric("amd_ms")), 14.5);
   EXPECT_EQ(all[3].hosts[2].median, 2);
   const std::string table = plain({.blocks = {response_block(plan(), all)}});
   EXPECT_THAT(table, HasSubstr("4 points, 2 pipelines, 2 seeds"));
@@ -111,6 +111,10 @@ TEST(SweepReport, SeedsNeededUpToThoseThatWereRun) {
 TEST(SweepFigure, ACurveForEachPipelineAndOtherStep) {
   const Figure figure = response_figure(plan(), rows());
   ASSERT_EQ(figure.panels.size(), 4U);
+  std::vector<std::string> axes;
+  for (const FigurePanel& panel : figure.panels) axes.push_back(panel.y_label);
+  EXPECT_THAT(axes, ElementsAre("median AMD, ms", "median absolute error, ms", "recall, %",
+                                "median margin, ms"));
   const FigurePanel& amd = figure.panels[0];
   EXPECT_EQ(amd.x_label, "/hosts/count");
   ASSERT_EQ(amd.series.size(), 4U);

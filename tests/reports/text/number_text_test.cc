@@ -58,5 +58,17 @@ TEST(NumberText, LargeNumbersInShort) {
   EXPECT_EQ(short_text(1.2e9), "1.2 G");
 }
 
+TEST(NumberText, NounsFollowTheirCount) {
+  EXPECT_EQ(counted(1, "seed"), "1 seed");
+  EXPECT_EQ(counted(0, "seed"), "0 seeds");
+  EXPECT_EQ(counted_seeds(7, 1), "1 seed (7)");
+  EXPECT_EQ(counted_seeds(1, 32), "32 seeds (1-32)");
+}
+
+TEST(NumberText, TitlesBeginWithACapital) {
+  EXPECT_EQ(capitalised("absolute error"), "Absolute error");
+  EXPECT_EQ(capitalised("AMD"), "AMD");
+}
+
 }  // namespace
 }  // namespace simbench::reports

@@ -6,7 +6,6 @@
 
 #include <fstream>
 
-#include "reports/text/output_folder.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reports {

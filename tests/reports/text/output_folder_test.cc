@@ -1,11 +1,10 @@
-#include "reports/text/output_folder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 
+#include "reports/text/output_file.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reports {
@@ -84,7 +83,7 @@ TEST_F(OutputFolderTest, RefusesWhatIsNotItsOwn) {
   root_.write("mine/manifest.json", "{}");
   EXPECT_THAT(refusal(root_ / "mine"), HasSubstr("holds other files (notes.txt)"));
   root_.write("data/frames.csv", "mine");
-  EXPECT_THAT(refusal(root_ / "data"), HasSubstr("no earlier result"));
+  EXPECT_THAT(refusal(root_ / "data"), HasSubstr("nor an earlier result"));
   root_.write("file", "mine");
   EXPECT_THAT(refusal(root_ / "file"), HasSubstr("is a file"));
   EXPECT_THAT(refusal(root_ / "no/such"), HasSubstr("make it first"));

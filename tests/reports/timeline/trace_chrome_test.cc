@@ -1,6 +1,4 @@
 // Traces made by hand, so that every event is known.
-#include "reports/timeline/trace_chrome.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"
 #include "tests/reports/timeline/trace_format.h"
 

@@ -1,10 +1,10 @@
-#include "reports/timeline/trace_csv.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
+
+#include "reports/timeline/trace.h"
 
 namespace simbench::reports {
 namespace {

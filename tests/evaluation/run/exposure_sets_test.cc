@@ -1,4 +1,4 @@
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
-#include "reports/archive/baseline.h"
+#include "reports/comparison/baseline.h"
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "reports/comparison/comparison_scenarios.h"
@@ -13,7 +12,6 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keeps members in order; writes NaN as null
 using evaluation::judged_metrics;
 
 constexpr const char* kKind = "simbench baseline";
@@ -21,7 +19,7 @@ constexpr const char* kEdited =
     "only margins may be edited by hand; write a baseline with `simbench gate RESULT "
     "--save-baseline FILE`";
 
-// The number that 12 digits leave, which JSON writes with no more.
+// Rounds to 12 digits, so that JSON writes no more.
 double rounded(double value) { return std::stod(fmt::format("{:.12g}", value)); }
 
 Json values_json(const std::vector<double>& values) {
@@ -86,7 +84,7 @@ void check_digest(const JsonNode& root, const char* digest, const char* member) 
 Baseline make_baseline(const Archive& archive) {
   if (archive.scenario_json.empty()) {
     throw scenarios::InputError(fmt::format(
-        "{}: a results.json alone does not hold its scenario, which a baseline must; name the "
+        "{}: a results.json alone does not hold its scenario, which a baseline needs; name the "
         "folder that `simbench run --output DIR` wrote",
         archive.path));
   }

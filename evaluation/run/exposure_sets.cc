@@ -1,4 +1,4 @@
-#include "evaluation/scoring/exposure_sets.h"
+#include "evaluation/run/exposure_sets.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,17 +9,17 @@
 
 #include "algorithms/device_time/unwrap.h"
 #include "evaluation/scoring/pipeline_scorer.h"
-#include "evaluation/scoring/pulse_table.h"
+#include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/score_observer.h"
 #include "recording/forwarding_sink.h"
 
 namespace simbench::evaluation {
 namespace {
 
-// How far from the anchor's stamp a frame may be, in frame periods.
+// The largest distance of a frame from the anchor's stamp, in frame periods.
 constexpr double kFarthestPeriods = 0.75;
 
-// More than two stamps can be apart (PulseTable::clamped_ns).
+// More than the difference of any two stamps (PulseTable::clamped_ns).
 constexpr std::int64_t kFarthest = std::numeric_limits<std::int64_t>::max();
 
 struct StampedFrame {
@@ -35,17 +35,17 @@ struct CapturedCamera {
     std::uint32_t counter = 0;
   };
   DeviceStampUnwrapper unwrapper;
-  std::map<DeviceTime, Exposed> exposed;  // by sensor stamp, by which the scorer knows a frame
-  std::vector<StampedFrame> frames;       // that device_time stamped
+  std::map<DeviceTime, Exposed> exposed;  // by sensor stamp, which identifies a frame in the scorer
+  std::vector<StampedFrame> frames;       // stamped by device_time
 };
 
-// Whether the frames that are scored are exposed by trigger pulses.
+// Whether trigger pulses expose the scored frames.
 bool is_triggered(const scenarios::Scenario& scenario) {
   const scenarios::Stream* scored = scenario.scored_stream();
   return scored == nullptr || scenario.cameras.follows_trigger(*scored);
 }
 
-// Keeps the true exposures of frames on their way to the scorer, and the stamps that come out.
+// Keeps the true exposures of frames on their way to the scorer, and their stamps.
 class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
  public:
   ExposureKeeper(PipelineScorer& scorer, StreamKind stream, bool triggered)
@@ -63,7 +63,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     if (frame.stream != stream_) return ForwardingSink::on_frame(frame, truth);
     if (truth == nullptr) {
       throw RecordingFailed(
-          "when frames were really exposed is not known: only a simulation knows");
+          "the true exposure times of the frames are unknown: only a simulation has them");
     }
     CapturedCamera& camera = cameras_.at(frame.camera);
     camera.exposed[camera.unwrapper.unwrap(frame.sensor)] = {truth->mid_exposure(), frame.counter};
@@ -77,7 +77,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     ForwardingSink::on_pulse(truth);
   }
 
-  // Only for the register of the camera's clock, which the scorer unwraps over polls too.
+  // Polls unwrap the register of the camera's clock too, as in the scorer.
   void on_poll(const DevicePoll& poll) override {
     cameras_.at(poll.camera).unwrapper.unwrap(poll.device);
     ForwardingSink::on_poll(poll);
@@ -91,10 +91,10 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
   }
 
   void on_set(std::span<const GatherFrame>, bool, GlobalTime) override {}
-  // What all stamps share moves no frame nearer to another.
+  // A shift of all stamps changes no distance.
   void on_shift(Nanoseconds) override {}
 
-  // When the scorer is done.
+  // Call after the scorer has finished.
   std::vector<ExposureSet> sets(std::size_t count) {
     std::vector<ExposureSet> sets;
     for (CapturedCamera& camera : cameras_) {
@@ -122,7 +122,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     return pulse >= layout_.first_pulse && pulse < layout_.first_pulse + layout_.pulses;
   }
 
-  // The master's first camera; if that has no frame, the first that has. Null: none has.
+  // The master's first camera with frames, else the first with frames; null without any.
   const CapturedCamera* anchor_camera() const {
     const CapturedCamera* any = nullptr;
     for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
@@ -133,7 +133,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     return any;
   }
 
-  // The stamps of the anchor's evaluated frames: where all cameras' stamps overlap, if they do.
+  // Stamps of the anchor's evaluated frames, where all cameras' stamps overlap if they do.
   std::vector<std::int64_t> anchors() const {
     std::int64_t begin = -kFarthest;
     std::int64_t end = kFarthest;

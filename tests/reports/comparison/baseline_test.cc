@@ -1,4 +1,4 @@
-#include "reports/archive/baseline.h"
+#include "reports/comparison/baseline.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "reports/comparison/comparison_scenarios.h"
-#include "reports/text/output_folder.h"
+#include "reports/text/output_file.h"
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/reports/sample_archive.h"

@@ -1,5 +1,5 @@
-// What a build is held to: the gated metrics of every pipeline, seed by seed, in a small file that
-// lives beside the sources.
+// The baseline of a build: the gated metrics of every pipeline, seed by seed, in a small file
+// beside the sources.
 //
 //   {"schema_version": 1, "kind": "simbench baseline", "version": ..., "commit": ...,
 //    "scenario": "18cam_6host_45fps", "seeds": {"first": 1, "count": 32},
@@ -9,28 +9,27 @@
 //    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,
 //                   seed_recall likewise}, ...]}
 //
-// Margins are meant to be edited by hand. The rest is not: two digests (comparison_scenarios.h)
-// show it, and the scenario is there to say where another one differs. Values have 12 digits, a
-// thousand times finer than the rounding that a gate forgives (kRounding in gate.h). A value that
-// does not exist is null.
+// Margins may be edited by hand. Two digests (comparison_scenarios.h) reveal any other edit, and
+// the scenario shows where another one differs. Values have 12 digits, a thousand times finer than
+// the tolerated rounding (kRounding in gate.h). A value that does not exist is null.
 //
 // Errors: scenarios::InputError with file, line and pointer for a file that was cut short, edited
 // or written by a newer simbench; OutputError for one that cannot be written.
 //
 //   write_baseline(make_baseline(read_archive("results")), "reports/baselines/mine.json");
-#ifndef SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
-#define SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
+#ifndef SIMBENCH_REPORTS_COMPARISON_BASELINE_H_
+#define SIMBENCH_REPORTS_COMPARISON_BASELINE_H_
 
 #include <string>
 #include <vector>
 
 #include "evaluation/scoring/metrics.h"
-#include "reports/archive/archive_reader.h"
+#include "reports/archive/archive.h"
 #include "reports/comparison/comparison_scenarios.h"
 
 namespace simbench::reports {
 
-inline constexpr int kBaselineSchemaVersion = 1;  // written, and the newest that is read
+inline constexpr int kBaselineSchemaVersion = 1;  // written, and the newest that can be read
 
 struct BaselinePipeline {
   std::string name;
@@ -38,7 +37,7 @@ struct BaselinePipeline {
 };
 
 struct Baseline {
-  std::string path;  // as the user named it; empty if it is no file yet
+  std::string path;  // as the user stated it; empty without a file
   std::string version;
   std::string commit;
   std::string scenario;
@@ -48,11 +47,11 @@ struct Baseline {
   std::vector<BaselinePipeline> pipelines;
 };
 
-// With the default margins. Throws InputError for a result without its scenario: a results.json
-// alone.
+// Uses the default margins. Throws InputError for a result without its scenario (a results.json
+// alone).
 Baseline make_baseline(const Archive& archive);
 
-// What the file holds: a line for each pipeline's metric, so that a change is seen in a diff.
+// Returns the content of the file: a line for each metric of a pipeline, for readable diffs.
 std::string baseline_json(const Baseline& baseline);
 
 // The file appears whole or not at all.
@@ -62,4 +61,4 @@ Baseline read_baseline(const std::string& path);
 
 }  // namespace simbench::reports
 
-#endif  // SIMBENCH_REPORTS_ARCHIVE_BASELINE_H_
+#endif  // SIMBENCH_REPORTS_COMPARISON_BASELINE_H_

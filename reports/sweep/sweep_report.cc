@@ -1,0 +1,384 @@
+#include "reports/sweep/sweep_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "evaluation/statistics/statistics.h"
+#include "recording/version.h"
+#include "reports/results/csv.h"
+#include "reports/text/json_node.h"
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Metric;
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+using evaluation::SweepRun;
+using evaluation::SweepScore;
+using evaluation::TablePlaces;
+
+// The columns that identify the run.
+std::string run_header(const SweepPlan& plan) {
+  std::string header;
+  for (const std::string& pointer : plan.pointers()) header.append(csv_cell(pointer)).append(",");
+  return header + "pipeline,seed";
+}
+
+std::string run_cells(const SweepPlan& plan, const SweepRun& run) {
+  std::string cells;
+  for (const std::string& value : plan.values(run.point)) cells.append(csv_cell(value)).append(",");
+  return cells + fmt::format("{},{}", csv_cell(plan.pipelines[run.pipeline]), run.seed);
+}
+
+// A value of an axis: a number where it is one, else a word.
+Json value_of(const std::string& text) {
+  Json value = Json::parse(text, nullptr, false);
+  return value.is_discarded() ? Json(text) : value;
+}
+
+constexpr std::array<std::int64_t, 8> kSeedCounts = {8, 16, 32, 64, 128, 256, 512, 1024};
+constexpr std::array<double, 4> kWanted = {0.20, 0.10, 0.05, 0.02};
+
+// "/hosts/clock/tick_ms" on three lines: columns of numbers are narrow.
+std::string header_of(const std::string& pointer) {
+  std::string header;
+  for (const char c : pointer) {
+    if (c == '/' && !header.empty()) header += '\n';
+    header += c;
+  }
+  return header;
+}
+
+std::vector<Column> point_columns(const SweepPlan& plan) {
+  std::vector<Column> columns;
+  for (const std::string& pointer : plan.pointers()) columns.push_back({header_of(pointer)});
+  columns.push_back({"pipeline", Align::kLeft});
+  return columns;
+}
+
+std::vector<std::string> point_cells(const SweepPlan& plan, const ResponseRow& row) {
+  std::vector<std::string> cells = plan.values(row.point);
+  cells.push_back(plan.pipelines[row.pipeline]);
+  return cells;
+}
+
+std::string heading(const SweepPlan& plan) {
+  return fmt::format("{}: {}, {}, {}", plan.scenario, counted(plan.points(), "point"),
+                     counted(plan.pipelines.size(), "pipeline"), counted(plan.seeds, "seed"));
+}
+
+std::string percent_text(double share) {
+  return share != share ? "-" : fmt::format("{:.1f} %", share * 100);
+}
+
+constexpr double kLogFromRatio = 50;  // of the largest value to the smallest
+constexpr std::size_t kMostCurves = 24;
+
+// The place of each step of the first axis on x.
+struct XAxis {
+  std::string label;
+  std::vector<double> at;                 // by step
+  std::vector<std::string> categories{};  // if they are words
+};
+
+XAxis x_axis(const SweepPlan& plan) {
+  const evaluation::SweepAxis& axis = plan.axes.front();
+  XAxis x;
+  x.label = axis.pointers.front();
+  for (const std::string& text : axis.values.front()) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size()) {
+      x.categories = axis.values.front();
+      x.at.resize(axis.steps());
+      std::iota(x.at.begin(), x.at.end(), 0.0);
+      x.label += " (in the order given)";
+      return x;
+    }
+    x.at.push_back(value);
+  }
+  return x;
+}
+
+// "tick_ms" of "/hosts/clock/tick_ms": a legend has little room.
+std::string last_key(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
+// The label of a curve: the pipeline, and the steps of the other axes.
+std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
+  std::string label =
+      plan.pipelines.size() > 1 || plan.axes.size() < 2 ? plan.pipelines[row.pipeline] : "";
+  const std::vector<std::size_t> steps = plan.steps(row.point);
+  for (std::size_t axis = 1; axis < plan.axes.size(); ++axis) {
+    if (!label.empty()) label += ", ";
+    label += fmt::format("{}={}", last_key(plan.axes[axis].pointers.front()),
+                         plan.axes[axis].values.front()[steps[axis]]);
+  }
+  return label;
+}
+
+void use_log_scale_if_wide(FigurePanel& panel) {
+  double low = INFINITY;
+  double high = 0;
+  for (const FigureSeries& series : panel.series) {
+    for (const double y : series.y) {
+      if (std::isnan(y)) continue;
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  }
+  panel.log_y = low > 0 && high > kLogFromRatio * low;
+}
+
+// The next curve of the panel; null if it has the most curves already.
+FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark) {
+  if (panel.series.size() == kMostCurves) return nullptr;
+  const int colour = static_cast<int>(panel.series.size());
+  return &panel.series.emplace_back(
+      FigureSeries{.label = label, .mark = mark, .x = {}, .y = {}, .colour = colour});
+}
+
+std::string axis_label(const Metric& metric) {
+  if (metric.is_share()) return fmt::format("{}, %", metric.title);
+  return fmt::format("median {}, {}", metric.title, metric.unit);
+}
+
+FigurePanel response_panel(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                           const XAxis& x, const Metric& metric) {
+  std::vector<std::string> labels;  // in the order of the rows
+  std::map<std::string, std::map<double, double>> curves;
+  for (const ResponseRow& row : rows) {
+    const std::string label = curve_label(plan, row);
+    if (!curves.contains(label)) labels.push_back(label);
+    curves[label][x.at[plan.steps(row.point).front()]] = shown_value(metric, row.value(metric));
+  }
+  FigurePanel panel = {
+      .title = capitalised(metric.title), .x_label = x.label, .y_label = axis_label(metric)};
+  panel.categories = x.categories;
+  for (const std::string& label : labels) {
+    FigureSeries* series =
+        add_curve(panel, label, x.categories.empty() ? Mark::kLine : Mark::kBars);
+    if (series == nullptr) break;
+    for (const auto& [at, value] : curves[label]) {
+      series->x.push_back(at);
+      series->y.push_back(value);
+    }
+  }
+  return panel;
+}
+
+Figure new_figure(const SweepPlan& plan, const std::string& id, const std::string& title) {
+  Figure figure;
+  figure.id = id;
+  figure.title = plan.pipelines.size() > 1
+                     ? fmt::format("{}: {}", plan.scenario, title)
+                     : fmt::format("{}, {}: {}", plan.scenario, plan.pipelines.front(), title);
+  figure.caption =
+      fmt::format("{}, {} each.", counted(plan.points(), "point"), counted(plan.seeds, "seed"));
+  return figure;
+}
+
+}  // namespace
+
+std::string sweep_manifest(const SweepPlan& plan, const std::string& study) {
+  Json axes = Json::array();
+  for (const evaluation::SweepAxis& axis : plan.axes) {
+    Json pointers = Json::object();
+    for (std::size_t i = 0; i < axis.pointers.size(); ++i) {
+      Json& values = pointers[axis.pointers[i]] = Json::array();
+      for (const std::string& value : axis.values[i]) values.push_back(value_of(value));
+    }
+    axes.push_back(std::move(pointers));
+  }
+  Json manifest = {{"schema_version", 1},
+                   {"program", "simbench"},
+                   {"kind", "sweep"},
+                   {"version", version()},
+                   {"commit", commit()}};
+  if (!study.empty()) manifest["study"] = study;
+  manifest["axes"] = std::move(axes);
+  manifest["pipelines"] = plan.pipelines;
+  manifest["seeds"] = {{"first", plan.first_seed}, {"count", plan.seeds}};
+  manifest["scenario"] = Json::parse(plan.scenario_json);
+  return file_text(manifest);
+}
+
+std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
+  std::string csv = run_header(plan);
+  for (const evaluation::Metric* metric : evaluation::sweep_metrics()) {
+    csv.append(",").append(metric->sweep);
+  }
+  csv += '\n';
+  for (std::size_t index = 0; index < scores.size(); ++index) {
+    csv += run_cells(plan, plan.run(index));
+    for (const double value : scores[index].values) csv.append(",").append(csv_cell(value));
+    csv += '\n';
+  }
+  return csv;
+}
+
+std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
+  std::string csv = run_header(plan) + ",host,error_ms\n";
+  for (std::size_t index = 0; index < scores.size(); ++index) {
+    const std::string cells = run_cells(plan, plan.run(index));
+    const std::vector<double>& errors = scores[index].host_errors_ms;
+    for (std::size_t host = 0; host < errors.size(); ++host) {
+      csv += fmt::format("{},{},{}\n", cells, host, csv_cell(errors[host]));
+    }
+  }
+  return csv;
+}
+
+Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  const std::vector<const Metric*> metrics = evaluation::table_metrics(&TablePlaces::response);
+  std::vector<Column> columns = point_columns(plan);
+  for (const Metric* metric : metrics) {
+    columns.push_back({metric->heading});
+    if (metric == metrics.front()) columns.push_back({metric->band_heading});
+  }
+  Table table(std::move(columns));
+  for (const ResponseRow& row : rows) {
+    std::vector<std::string> cells = point_cells(plan, row);
+    for (const Metric* metric : metrics) {
+      const double value = row.value(*metric);
+      cells.push_back(metric->is_share() ? share_text(value) : number_text(value));
+      if (metric == metrics.front()) cells.push_back(band_text(row.of(metric->sweep)));
+    }
+    table.add(std::move(cells));
+  }
+  return {.heading = heading(plan),
+          .table = std::move(table),
+          .prose = {"Medians over the seeds; precision and recall over all of them. Margin: the "
+                    "gathering interval less the 99.9 % quantile of a seed's spreads."}};
+}
+
+Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  std::size_t hosts = 0;
+  for (const ResponseRow& row : rows) hosts = std::max(hosts, row.hosts.size());
+  std::vector<Column> columns = point_columns(plan);
+  for (std::size_t host = 1; host < hosts; ++host) columns.push_back({fmt::format("{}", host)});
+  Table table(std::move(columns));
+  for (const ResponseRow& row : rows) {
+    std::vector<std::string> cells = point_cells(plan, row);
+    for (std::size_t host = 1; host < hosts; ++host) {
+      cells.push_back(host < row.hosts.size() ? number_text(row.hosts[host].median) : "");
+    }
+    table.add(std::move(cells));
+  }
+  return {.heading = "Clock error of each slave, in the order of their sessions",
+          .table = std::move(table),
+          .prose = {"Milliseconds: the median over the seeds of a host's |mean clock error| during "
+                    "the capture. Host 1 is synchronised first and has run free the longest."}};
+}
+
+Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  std::vector<Column> columns = point_columns(plan);
+  columns.push_back({"AMD\nms"});
+  std::vector<std::int64_t> counts;
+  for (const std::int64_t count : kSeedCounts) {
+    if (count <= static_cast<std::int64_t>(plan.seeds)) counts.push_back(count);
+  }
+  for (const std::int64_t count : counts) {
+    columns.push_back({fmt::format("+-\nn = {}", count)});
+  }
+  for (const double wanted : kWanted) {
+    columns.push_back({fmt::format("seeds for\n+-{:.0f} %", wanted * 100)});
+  }
+  Table table(std::move(columns));
+  for (const ResponseRow& row : rows) {
+    const std::vector<double>& values = row.of("amd_ms").values;
+    std::vector<std::string> cells = point_cells(plan, row);
+    cells.push_back(number_text(row.of("amd_ms").median));
+    for (const std::int64_t count : counts) {
+      cells.push_back(percent_text(evaluation::median_interval(values, count).relative));
+    }
+    for (const double wanted : kWanted) {
+      const std::optional<std::int64_t> seeds = evaluation::seeds_for(values, wanted);
+      cells.push_back(seeds ? count_text(*seeds) : "-");
+    }
+    table.add(std::move(cells));
+  }
+  return {.heading =
+              fmt::format("How far the median AMD of n seeds is from that of all {}", plan.seeds),
+          .table = std::move(table),
+          .prose = {
+              "In 95 % of studies with n seeds the median lies within +- this percentage. The "
+              "last columns show the inverse: the seeds needed for a percentage; beyond the seeds "
+              "run they use the distribution of these. Differences between pipelines need fewer "
+              "seeds: they are paired by seed."}};
+}
+
+Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  Figure figure = new_figure(plan, "sweep", "response");
+  if (plan.points() < 2) {
+    figure.absent = "a single point has no response";
+    return figure;
+  }
+  const XAxis x = x_axis(plan);
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::response_panel)) {
+    figure.panels.push_back(response_panel(plan, rows, x, *metric));
+    const bool may_be_log = metric->better == evaluation::Better::kLower;
+    if (may_be_log) use_log_scale_if_wide(figure.panels.back());
+  }
+  const std::size_t curves = rows.size() / plan.axes.front().steps();
+  if (curves > kMostCurves) {
+    figure.caption +=
+        fmt::format(" Only the first {} of {} curves are drawn.", kMostCurves, curves);
+  }
+  return figure;
+}
+
+Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  Figure figure = new_figure(plan, "sweep_host_order", "clock error in the order of the sessions");
+  FigurePanel panel = {.title = "Clock error of the slaves",
+                       .x_label = "host, in the order of the sessions",
+                       .y_label = "median |mean clock error|, ms"};
+  for (const ResponseRow& row : rows) {
+    std::string label = plan.pipelines[row.pipeline];
+    for (const scenarios::Override& value : plan.overrides(row.point)) {
+      label += fmt::format(", {}={}", last_key(value.pointer), value.value);
+    }
+    FigureSeries* series = add_curve(panel, label, Mark::kLine);
+    if (series == nullptr) break;
+    for (std::size_t host = 1; host < row.hosts.size(); ++host) {
+      series->x.push_back(static_cast<double>(host));
+      series->y.push_back(row.hosts[host].median);
+    }
+  }
+  use_log_scale_if_wide(panel);
+  figure.panels = {std::move(panel)};
+  return figure;
+}
+
+Figure seeds_needed_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  Figure figure = new_figure(plan, "sweep_seeds_needed", "seeds needed");
+  FigurePanel panel = {.title = "95 % interval of the median AMD",
+                       .x_label = "seeds",
+                       .y_label = "+-, % of the median"};
+  for (const ResponseRow& row : rows) {
+    FigureSeries* series = add_curve(panel, curve_label(plan, row), Mark::kLine);
+    if (series == nullptr) break;
+    for (std::size_t seeds = 8; seeds <= plan.seeds; seeds += std::max<std::size_t>(1, seeds / 8)) {
+      const auto interval =
+          evaluation::median_interval(row.of("amd_ms").values, static_cast<std::int64_t>(seeds));
+      series->x.push_back(static_cast<double>(seeds));
+      series->y.push_back(interval.relative * 100);
+    }
+  }
+  use_log_scale_if_wide(panel);
+  figure.panels = {std::move(panel)};
+  return figure;
+}
+
+}  // namespace simbench::reports
