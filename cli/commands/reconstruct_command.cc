@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "app/interrupt.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"

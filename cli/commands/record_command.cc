@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "app/interrupt.h"
-#include "app/record_captures.h"
+#include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"

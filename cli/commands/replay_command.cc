@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/recorded_run.h"
+#include "app/recordings.h"
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/report_figures.h"
+#include "app/figure_source.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"

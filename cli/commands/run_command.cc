@@ -6,7 +6,6 @@
 
 #include "app/interrupt.h"
 #include "app/results.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"

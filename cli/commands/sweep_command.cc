@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/interrupt.h"
 #include "app/results.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/simulated.h"
+#include "app/interrupt.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"

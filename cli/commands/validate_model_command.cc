@@ -15,7 +15,6 @@
 
 #include "app/experiment_source.h"
 #include "app/interrupt.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"

@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/simulated.h"
+#include "app/interrupt.h"
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "evaluation/sweep/task_farm.h"
