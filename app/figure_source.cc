@@ -43,7 +43,7 @@ constexpr const char* kBudget = "budget";
 constexpr std::uint64_t kRunsOfABudget = 128;  // a seed; only for the progress
 constexpr std::size_t kMostNotes = 6;
 
-// The ids of what is wanted.
+// The ids of the wanted figures.
 std::vector<std::string> wanted_ids(const FigureOptions& options) {
   std::vector<std::string> ids;
   std::vector<std::string> known;
@@ -60,7 +60,7 @@ std::vector<std::string> wanted_ids(const FigureOptions& options) {
   return ids;
 }
 
-// The row's AMD at this seed; nothing if there is none to compare with.
+// The pipeline's AMD at this seed; nothing if the results have none.
 std::optional<double> amd_of(const evaluation::Results& results, const std::string& pipeline,
                              std::uint64_t seed) {
   const auto row = std::find_if(results.rows.begin(), results.rows.end(),
@@ -82,7 +82,7 @@ class FigureMaker {
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
 
-  // What stands in the archive.
+  // The figures of what the archive holds.
   void add_result_figures() {
     if (archive_.results.rows.empty()) return;
     if (wants("distributions")) add(reports::distributions(archive_));
@@ -91,7 +91,7 @@ class FigureMaker {
     for (const std::uint64_t seed : options_.seeds) add({reports::frame_errors(archive_, seed)});
   }
 
-  // What has to be run again.
+  // The figures that need the runs again.
   void add_run_figures(const Scenario& scenario) {
     const std::vector<PipelineChoice> choices =
         evaluation::choose_pipelines(scenario, options_.pipelines);
@@ -209,7 +209,7 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
     maker.add_run_figures(scenario_of(archive));
   } else {
     maker.note(
-        fmt::format("{} has no manifest: what needs a repeated run is left out; `simbench "
+        fmt::format("{} has no manifest: figures that need a repeated run are left out; `simbench "
                     "run --output DIR` writes archives that have one",
                     archive.path));
   }
@@ -301,7 +301,7 @@ void draw(ReportedArchive& reported, const std::vector<Step>& steps,
   }
 }
 
-// What stands in the archive, without running anything.
+// The figures of what the archive holds; runs nothing.
 void draw_stored(ReportedArchive& reported, const FigureOptions& options) {
   Archive stored = reported.archive;
   stored.scenario_json.clear();
@@ -363,8 +363,8 @@ std::string detail_note(const Archive& archive, const ReportDetail& detail) {
   std::string note;
   if (detail.seeds < archive.results.seed_count) {
     note = fmt::format(
-        "Tables and distributions are of all {} seeds; stamps, clocks and single pulses are shown "
-        "of the first {} (--seeds-in-detail).",
+        "Tables and distributions cover all {} seeds; stamps, clocks and single pulses are shown "
+        "for the first {} (--seeds-in-detail).",
         archive.results.seed_count, *detail.seeds);
   }
   if (detail.pipelines.size() < archive.results.rows.size()) {

@@ -1,4 +1,5 @@
-// Ctrl-C: stops the jobs at their next frame instead of in the middle of something.
+// Ctrl-C, which stops jobs at their next frame, and the simulator with it: the worlds that the
+// command line runs.
 //
 //   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
