@@ -13,7 +13,7 @@ constexpr Nanoseconds kLeastPatience = std::chrono::seconds(1);
 constexpr Nanoseconds kStartPatience = std::chrono::seconds(4);
 constexpr int kPatiencePeriods = 10;
 constexpr Nanoseconds kBetweenNotes = std::chrono::seconds(10);
-// A counter that goes forward by more than this went back: the camera restarted.
+// A counter that went forward by more than this has gone back: the camera restarted.
 constexpr std::uint32_t kLargestGap = 1U << 31;
 constexpr std::int64_t kClockToleranceUs = 1'000'000;
 
@@ -44,8 +44,8 @@ StreamWatch::StreamWatch(const CameraSettings& settings, bool waits) : waits_(wa
 }
 
 bool StreamWatch::Limit::permits(MonotonicTime now) {
-  if (told && now - at < kBetweenNotes) return false;
-  told = true;
+  if (used && now - at < kBetweenNotes) return false;
+  used = true;
   at = now;
   return true;
 }
