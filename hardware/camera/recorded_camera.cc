@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "hardware/camera/stream_watch.h"
+#include "hardware/descriptor.h"
 
 namespace simbench::hardware {
 namespace {
@@ -58,12 +59,11 @@ struct TriggerFile {
 
 TriggerFile read_trigger(const std::string& path) {
   TriggerFile result;
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return result;
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.good()) return result;
   result.exists = true;
   char buffer[40];
-  const ssize_t size = ::read(file, buffer, sizeof(buffer));
-  ::close(file);
+  const ssize_t size = ::read(file.number(), buffer, sizeof(buffer));
   std::string_view text(buffer, size > 0 ? static_cast<std::size_t>(size) : 0);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) {
     text.remove_suffix(1);

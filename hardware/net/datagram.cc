@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "hardware/net/wire.h"
-
 namespace simbench::hardware {
 namespace {
 

@@ -17,8 +17,8 @@
 #include <optional>
 #include <span>
 
-#include "hardware/net/sealing.h"
 #include "hardware/net/secure_stream.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 

@@ -23,7 +23,6 @@
 #include "hardware/net/connect.h"
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/net/notice.h"
-#include "hardware/net/sealing.h"
 #include "hardware/net/wire.h"
 
 namespace simbench::hardware {
