@@ -1,8 +1,8 @@
 // A program started as a child, which cannot outlive its parent.
 //
-// It dies with the thread that started it (PR_SET_PDEATHSIG: SIGKILL), and the destructor ends it:
-// SIGTERM, SIGKILL if that does not help, and its status is collected. Its standard output is read
-// line by line; standard error goes to a file.
+// It dies with the thread that started it (PR_SET_PDEATHSIG: SIGKILL). The destructor ends it with
+// SIGTERM, then SIGKILL, and collects its status. Its standard output is read line by line;
+// standard error goes to a file.
 //
 // Errors: ChildError, with the last lines of its standard error.
 //
