@@ -54,7 +54,7 @@ void write_all(const std::string& path, int file, const std::string& text) {
 
 SecretKey SecretKey::from_file(const std::string& path) {
   start_sodium();
-  // Not blocking: a pipe is refused, not waited for.
+  // Without blocking: a pipe is refused at once.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.good()) {
     refuse(path, errno == ENOENT ? fmt::format("found no such file; make one with: "

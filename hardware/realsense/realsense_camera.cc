@@ -77,7 +77,7 @@ class RealsenseCamera::Outlet {
     }
   }
 
-  // Whether there is a camera, to be told with `event`; none is watched meanwhile.
+  // Reports `event`; while no camera is connected its streams are not watched.
   void set_connected(bool connected, const CameraEvent& event) {
     const std::lock_guard lock(mutex_);
     if (!open_) return;
@@ -144,7 +144,7 @@ void RealsenseCamera::open_sensors() {
   }
 }
 
-// What a camera that is gone answers does not matter.
+// Ignores the errors of an unplugged camera.
 void RealsenseCamera::close_sensors() {
   for (; opened_ > 0; --opened_) {
     const rs2::sensor& sensor = sensors_[opened_ - 1].sensor;
