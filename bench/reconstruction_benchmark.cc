@@ -10,7 +10,7 @@
 #include "reconstruction/libraries/quiet_errors.h"
 #include "reconstruction/libraries/set_reconstruction.h"
 #include "reconstruction/libraries/surface.h"
-#include "reconstruction/person.h"
+#include "reconstruction/subject.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reconstruction {

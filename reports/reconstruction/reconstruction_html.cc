@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "reconstruction/paint.h"
+#include "reconstruction/reprojection.h"
 #include "recording/version.h"
 #include "reports/page/html_figures.h"
 #include "reports/page/html_page.h"
