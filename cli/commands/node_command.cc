@@ -23,6 +23,7 @@
 #include "hardware/node/journal.h"
 #include "hardware/node/node.h"
 #include "hardware/rig/rig.h"
+#include "recording/counted.h"
 
 namespace simbench::cli {
 namespace {
@@ -162,8 +163,8 @@ void serve(const NodeOptions& options) {
   node.start();
   print_result(fmt::format("node {}: listening on {}:{}\n", options.name, rig.hosts[me].address,
                            node.port()));
-  log_line(fmt::format("{}: {} cameras, journals in {}", options.name, rig.hosts[me].cameras.size(),
-                       settings.journal_folder));
+  log_line(fmt::format("{}: {}, journals in {}", options.name,
+                       counted(rig.hosts[me].cameras.size(), "camera"), settings.journal_folder));
   context.run();
 }
 

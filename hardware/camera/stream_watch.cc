@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "recording/counted.h"
+
 namespace simbench::hardware {
 namespace {
 
@@ -90,8 +92,9 @@ void StreamWatch::compare(const Stream& before, const CameraFrame& frame,
     lost_ += forward - 1;
     if (!losses_.permits(frame.arrived)) return;
     report({CameraEvent::Kind::kNote,
-            fmt::format("{}: the frame counter went from {} to {}: {} frames lost since the start",
-                        to_text(frame.stream), before.counter, frame.counter, lost_)});
+            fmt::format("{}: the frame counter went from {} to {}: {} lost since the start",
+                        to_text(frame.stream), before.counter, frame.counter,
+                        counted(lost_, "frame"))});
   }
 }
 

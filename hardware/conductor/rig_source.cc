@@ -22,6 +22,7 @@
 #include "hardware/conductor/node_link.h"
 #include "hardware/conductor/trigger_switch.h"
 #include "hardware/net/notice.h"
+#include "recording/counted.h"
 #include "recording/version.h"
 
 namespace simbench::hardware {
@@ -342,8 +343,8 @@ Task<void> RigSession::end_all() {
       give_up(host, "the end of its journal did not come");
     }
     if (state.journal.damaged() > 0) {
-      note(fmt::format("{}: {} damaged lines of its journal were left out", state.report.name,
-                       state.journal.damaged()));
+      note(fmt::format("{}: {} of its journal left out", state.report.name,
+                       counted(state.journal.damaged(), "damaged line")));
     }
     // The node has already reported these in notices.
     for (const std::string& line : state.journal.notes()) {
@@ -555,8 +556,8 @@ void RigSession::give_up(std::size_t host, const std::string& why) {
   state.report.lost = true;
   state.ended = true;
   state.fetched = true;
-  note(fmt::format("{} was lost: {}; {} frames of it are kept", state.report.name, why,
-                   state.journal.frames()));
+  note(fmt::format("{} was lost: {}; {} of it kept", state.report.name, why,
+                   counted(state.journal.frames(), "frame")));
 }
 
 RigSource::RigSource(Rig rig, SecretKey key, const scenarios::Scenario& scenario,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hardware/net/notice.h"
+#include "recording/counted.h"
 
 namespace simbench::hardware {
 namespace {
@@ -141,8 +142,8 @@ Task<CameraProblems> Session::stop() {
   cameras_ = Cameras::kPrepared;
   note_problems(problems);
   journal_.flush();
-  world_.log(
-      fmt::format("session {}: cameras stopped, {} frames so far", plan_.id, journal_.frames()));
+  world_.log(fmt::format("session {}: cameras stopped, {} so far", plan_.id,
+                         counted(journal_.frames(), "frame")));
   co_return problems;
 }
 
@@ -154,17 +155,18 @@ Task<void> Session::end(std::string reason) {
   feed_->drain();
   note_problems(problems);
   if (feed_->dropped() > 0) {
-    note(fmt::format("{} frames dropped: the host was too busy", feed_->dropped()));
+    note(counted(feed_->dropped(), "frame") + " dropped: the host was too busy");
   }
   if (journal_.frames_not_kept() > 0) {
-    note(fmt::format("{} frames not kept", journal_.frames_not_kept()));
+    note(counted(journal_.frames_not_kept(), "frame") + " not kept");
   }
   feed_->close();
   journal_.close();
   // The next session's host observes the same clock.
   if (!sync_runs_) host_.reset();
-  world_.log(fmt::format("session {} ended ({}): {} frames, {} not kept", plan_.id, reason,
-                         journal_.frames(), journal_.frames_not_kept() + feed_->dropped()));
+  world_.log(fmt::format("session {} ended ({}): {}, {} not kept", plan_.id, reason,
+                         counted(journal_.frames(), "frame"),
+                         journal_.frames_not_kept() + feed_->dropped()));
 }
 
 Task<void> Session::end_host_sync() {

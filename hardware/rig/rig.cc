@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "recording/counted.h"
 #include "scenarios/document.h"
 #include "scenarios/schema.h"
 
@@ -256,10 +257,6 @@ bool is_loopback(const std::string& address) {
 
 [[noreturn]] void fail(const Rig& rig, const std::string& pointer, const std::string& problem) {
   throw InputError(fmt::format("{}: {}: {}", scenarios::shown_text(rig.file), pointer, problem));
-}
-
-std::string counted(std::size_t count, const std::string& thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
 void check_cameras(const Rig& rig, const Scenario& scenario) {
