@@ -47,9 +47,9 @@ void add_diagnose_command(CommandLine& line) {
   command.texts("files", "FILE.csv...", options->files, "Recordings").required();
   command.format(options->format, {"table", "json"});
   command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
-                 "The trigger's rate. Default: that of most cameras");
+                 "The trigger's rate. Default: the rate of most cameras");
   command.flag("--one-host", options->one_host,
-               "One computer stamped all arrivals, whatever the files say");
+               "One computer stamped all arrivals, even if the files name several hosts");
   command.footer(kDiagnoseExamples);
   command.runs([options] { return run_diagnose(*options); });
 }
