@@ -73,7 +73,7 @@ class Played {
   TrueTime zero_;
 };
 
-// What each host's clocks read at an instant.
+// The readings of each host's clocks at an instant.
 class Clocks {
  public:
   Clocks(std::vector<hardware::NodeOscillator> oscillators, const KeptRecording& captured)

@@ -4,7 +4,7 @@
 //
 // A run is a pure function of scenario, pipeline and seed, so a repeated run is the archive's. Its
 // AMD is still compared with the archive's: another version of simbench may give another run. The
-// figures of that pipeline and seed are then left out, and a note says so. An archive without a
+// figures of that pipeline and seed are then left out, with a note. An archive without a
 // manifest (a results.json alone) gets only the figures of what it holds.
 //
 //   reports::Archive archive = reports::read_archive("results/monday");
@@ -74,7 +74,7 @@ ReportDetail bounded(const ReportDetail& detail, const reports::Archive& archive
                      std::size_t archives);
 
 // The archive with its figures and notes. `detail` is what bounded() returned. What cannot be drawn
-// (no manifest, a scenario that this version does not take) is left out, and a note says so.
+// (no manifest, a scenario that this version does not take) is left out, with a note.
 reports::ReportedArchive with_figures(reports::Archive archive, const ReportDetail& detail,
                                       const evaluation::Progress& progress);
 

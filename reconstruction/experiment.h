@@ -70,7 +70,7 @@ class ReconstructionCancelled final : public std::runtime_error {
 
 // Throws scenarios::InputError: the scenario has no studio, or too many cameras for it; a pipeline
 // is not known; a mesh file cannot be used; no camera sees the subject. ReconstructionCancelled.
-// What simulation throws passes through, but a capture that fails (RecordingFailed) is a note of
+// Exceptions of the simulation pass through, but a failed capture (RecordingFailed) is a note of
 // its row.
 ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const evaluation::SourceFactory& make_source,

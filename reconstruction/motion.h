@@ -25,7 +25,7 @@
 //   const Motion motion(studio.subject);
 //   const MotionState state = motion.at(/*seconds=*/0.25);
 //
-// Source: the paper says "moving person" and no more; the scripts are those of the reconstruction
+// Source: the paper states only "moving person"; the scripts are those of the reconstruction
 // study (docs/reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
 #ifndef SIMBENCH_RECONSTRUCTION_MOTION_H_
 #define SIMBENCH_RECONSTRUCTION_MOTION_H_

@@ -22,7 +22,7 @@ Examples:
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
-Exit status: 0 ok, whatever was found, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input.)";
 
 struct DiagnoseOptions {
   std::vector<std::string> files;

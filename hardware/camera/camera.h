@@ -66,7 +66,7 @@ struct CameraFrame {
   MonotonicTime arrived{};
 };
 
-// What happened to a camera during a capture other than a frame.
+// An event of a camera during a capture, other than a frame.
 struct CameraEvent {
   enum class Kind : std::uint8_t {
     kDisconnected,     // unplugged

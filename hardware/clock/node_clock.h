@@ -63,7 +63,7 @@ class NodeClock : public HostClock {
   // The readings of the clocks at an instant, now or in the recent past (the last 64 adjustments).
   virtual SteadyTime steady_at(MonotonicTime at) const { return oscillator().steady(at); }
   virtual HostTime system_at(MonotonicTime at) const = 0;
-  // When the system clock will read `at`, not before `now`, if nobody adjusts it meanwhile.
+  // When the system clock will read `at`, not before `now`, unless it is adjusted meanwhile.
   virtual MonotonicTime when(HostTime at, MonotonicTime now) const = 0;
 
   virtual ClockAdjustment present(MonotonicTime now) const = 0;

@@ -41,7 +41,7 @@ TriggerSwitch::TriggerSwitch(boost::asio::io_context& context, std::optional<Rig
 std::string TriggerSwitch::problem(bool on) const {
   if (trigger_->manual) {
     const char* text = on ? "Switch the trigger on now" : "Switch the trigger off now";
-    if (!prompt_) return "it is switched by hand, and there is nobody to ask";
+    if (!prompt_) return "it is switched by hand, and there is no prompt";
     return prompt_(text) ? "" : "given up at the prompt";
   }
   return run(on ? trigger_->on_command : trigger_->off_command);

@@ -57,7 +57,7 @@ std::vector<std::uint16_t> free_ports(std::size_t count) {
   return ports;
 }
 
-// For /bin/sh.
+// Quotes for /bin/sh.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -29,7 +29,7 @@ inline constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
 
 class Newcomers {
  public:
-  // Null: it was refused.
+  // `stream` is null if the newcomer was refused.
   using Outcome = std::function<void(std::unique_ptr<SecureStream> stream)>;
 
   Newcomers(boost::asio::io_context& context, SecretKey key, PeerName me);

@@ -49,7 +49,7 @@ inline void put_number(std::span<std::byte> to, std::uint64_t number) {
   }
 }
 
-// From at most 8 bytes.
+// Reads a number of at most 8 bytes.
 inline std::uint64_t number_in(std::span<const std::byte> from) {
   std::uint64_t number = 0;
   for (std::size_t i = from.size(); i-- > 0;) {
@@ -60,7 +60,7 @@ inline std::uint64_t number_in(std::span<const std::byte> from) {
 
 using KeyBytes = std::array<unsigned char, SecretKey::kBytes>;
 
-// What a seal adds to the length of a message.
+// The bytes that a seal adds to a message.
 inline constexpr std::size_t kSealBytes = 16;
 
 // Prepares libsodium, once; the functions below and SecretKey call it themselves.

@@ -428,7 +428,7 @@ SessionWorld Node::State::world(const std::string& session) {
           .log = log_};
 }
 
-// Also for a session that has ended by itself.
+// Ends the session, or finds that it has ended by itself.
 Task<json> Node::State::end(json arguments) {
   const std::string id = session_id_of(arguments);
   const std::shared_ptr<Session> session = session_;

@@ -86,7 +86,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Task<CameraProblems> start();
   // When it returns, all frames are on disk.
   Task<CameraProblems> stop();
-  // Once; `reason` is for the log.
+  // Ends the session, once; `reason` is for the log.
   Task<void> end(std::string reason);
 
  private:

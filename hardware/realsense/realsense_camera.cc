@@ -39,7 +39,8 @@ CameraInfo realsense_info(const rs2::device& device) {
   });
 }
 
-// Between librealsense's threads and the handlers: outlives the camera where a callback is late.
+// Passes frames from librealsense's threads to the handlers; outlives the camera if a callback is
+// late.
 class RealsenseCamera::Outlet {
  public:
   ~Outlet() { close(); }

@@ -33,7 +33,7 @@ namespace simbench::hardware {
 // Throws scenarios::InputError, which names the member, what was found and what is allowed.
 void check_relay_can(const scenarios::Scenario& scenario);
 
-// What became of the messages of one direction.
+// Counts of the messages of one direction.
 struct LawCounts {
   std::uint64_t datagrams = 0;
   std::uint64_t lost = 0;

@@ -29,7 +29,7 @@ using Error = boost::system::error_code;
 constexpr std::size_t kLargestDatagram = 65536;
 constexpr Nanoseconds kPauseAfterError = std::chrono::milliseconds(10);
 
-// Loopback, or an address of RFC 1918, which nobody routes.
+// Loopback, or a private address of RFC 1918.
 bool is_private(const boost::asio::ip::address& address) {
   if (address.is_loopback()) return true;
   if (!address.is_v4()) return false;

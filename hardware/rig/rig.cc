@@ -28,7 +28,7 @@ using scenarios::InputError;
 using scenarios::Scenario;
 using scenarios::shown_text;
 
-// Far above a rig of a thousand hosts, and small enough to read before refusing.
+// Far above a rig of a thousand hosts, and small enough to be read.
 constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& reason) {

@@ -19,9 +19,9 @@ struct LoadedMesh {
   std::vector<std::string> notes;
 };
 
-// Reads a PLY, OBJ, OFF or STL file whose z axis is up. Its size tells its unit: a longest side of
-// more than 500 means millimetres, of more than 20 centimetres, else metres; a note states it.
-// Holes are allowed and noted (rays that enter through them see the inside). Throws
+// Reads a PLY, OBJ, OFF or STL file whose z axis is up. Its size determines its unit: a longest
+// side of more than 500 means millimetres, of more than 20 centimetres, else metres; a note states
+// it. Holes are allowed and noted (rays that enter through them see the inside). Throws
 // scenarios::InputError: no such file, no mesh in it, no faces, corners that do not exist or are
 // not finite, no extent.
 LoadedMesh load_subject_mesh(const std::string& path);
