@@ -171,7 +171,7 @@ void Command::sets(std::vector<std::string>& values) {
   command_
       ->add_option("--set", values,
                    "Change a parameter of the scenario, repeatable;\n"
-                   "`simbench describe SCENARIO` names them all")
+                   "`simbench describe SCENARIO` lists all parameters")
       ->type_name("/POINTER=VALUE")
       ->allow_extra_args(false)
       ->check(CLI::Validator(check, ""));

@@ -19,8 +19,8 @@ Examples:
   simbench compare results/monday --with-baseline ntp_last_set
   simbench compare results/monday --pipelines yoon2021_network,yoon2021_both --format json
 
-Exit status: 0 ok, for any verdict (`simbench gate` has exit statuses), 1 internal error, 2 bad usage
-or input.)";
+Exit status: 0 ok, for any verdict (`simbench gate` judges), 1 internal error, 2 bad usage or
+input.)";
 
 struct CompareOptions {
   std::vector<std::string> archives;

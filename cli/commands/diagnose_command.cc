@@ -43,8 +43,8 @@ int run_diagnose(const DiagnoseOptions& options) {
 
 void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
-  Command command(line, "diagnose", "Is the hardware sync of a recorded rig working at all?");
-  command.texts("files", "FILE.csv...", options->files, "Recordings").required();
+  Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
+  command.texts("files", "FILE.csv...", options->files, "CSV recordings").required();
   command.format(options->format, {"table", "json"});
   command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
                  "The trigger's rate. Default: the rate of most cameras");

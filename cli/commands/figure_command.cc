@@ -28,8 +28,8 @@ using reports::FigureScope;
 using scenarios::InputError;
 
 constexpr const char* kFigureExamples = R"(
-Figures of finished results and of single runs, which are repeated in the simulator. SVG and PDF are
-drawn by gnuplot (Debian: gnuplot-nox); CSV has the data, a line for each point: panel,series,x,y.
+Draws figures of finished results, and of single runs, which it repeats in the simulator. gnuplot
+(Debian: gnuplot-nox) draws SVG and PDF; CSV has the data, a line for each point: panel,series,x,y.
 
 Examples:
   simbench figure --list

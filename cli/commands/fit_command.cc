@@ -175,9 +175,9 @@ void add_fit_command(CommandLine& line) {
                "Default: the recording's own; for CSV files a built-in one with their counts "
                "and rate");
   command.text("--pipeline", "NAME", options->pipeline,
-               "The capture of a folder with several. Default: the first");
+               "Pipeline of the capture, in a folder with several. Default: the first");
   command.whole_number("--seed", "K", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
-                       "Likewise: the capture's seed, or its repetition on a rig");
+                       "Likewise: seed of the capture, or its repetition on a rig");
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
   command.format(options->format, {"table", "json"});

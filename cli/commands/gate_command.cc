@@ -12,10 +12,10 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kGateExamples = R"(
-Exact mode needs the seeds and the scenario of the baseline. It fails if a value of the table is worse
-by more than its margin: a share plus a step, stated in the baseline file. Statistical mode takes any
-32 seeds. It fails if a mean is worse by more than the margin and its interval, Holm-corrected over
-all metrics, excludes zero.
+Exact mode needs the seeds and the scenario of the baseline. It fails if a value of the table is
+worse by more than its margin: a share plus a step, stated in the baseline file. Statistical mode
+takes any 32 seeds. It fails if a mean is worse by more than the margin and its interval,
+Holm-corrected over all metrics, excludes zero.
 
 Examples:
   simbench run --scenario 18cam_6host_45fps --output results

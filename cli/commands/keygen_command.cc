@@ -11,9 +11,9 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kKeygenExamples = R"(
-Nodes and the command that conducts them speak only to holders of the same key. It permits to set the
-rig's clocks and to start its captures: keep it like a password. Without a key a node speaks to its
-own machine only.
+Nodes and the command that conducts them speak only to holders of the same key. It permits to set
+the rig's clocks and to start its captures: keep it like a password. Without a key a node speaks to
+its own machine only.
 
 Examples:
   simbench keygen rig.key

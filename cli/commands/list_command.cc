@@ -222,7 +222,7 @@ std::string study_list() {
 
 void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  Command command(line, "list", "List scenarios, and the algorithms of each stage");
+  Command command(line, "list", "List scenarios, algorithms, pipelines, cameras or studies");
   command.word("what", "WHAT", options->what,
                {"scenarios", "pipelines", "algorithms", "cameras", "studies"},
                "scenarios, pipelines, algorithms (with parameters and sources), cameras or "

@@ -26,9 +26,10 @@ namespace {
 using reconstruction::ReconstructionResults;
 
 constexpr const char* kExamples = R"(
-Simulates depth cameras around a moving subject, each of which exposes when its synchronisation lets
-it. Fuses their depth maps to a mesh and compares the mesh with the depth maps. Needs a simbench with
-Embree and Open3D (tools/run --with-reconstruction) and a scenario with a studio.
+Simulates depth cameras around a moving subject, each of which exposes at the instant that its
+synchronisation gives it. Fuses their depth maps to a mesh and compares the mesh with the depth
+maps. Needs a simbench with Embree and Open3D (tools/run --with-reconstruction) and a scenario with
+a studio.
 
 Examples:
   simbench reconstruct --scenario 18cam_6host_30fps_studio

@@ -25,10 +25,10 @@ constexpr const char* kRelayExamples = R"(
 A tool for tests: nodes on one machine communicate through it as if the scenario's network lay
 between them, with its latency, loss, duplication and reordering. `simbench validate-model` uses it.
 
-Each node has a rig file of its own, given here in the order of the hosts: its own entry states where
-it listens, the others are addresses on which the relay listens. Addresses are loopback or private.
-Prints "ready" when it listens, and its statistics as a line of JSON when it ends: on SIGTERM or
-SIGINT, after --for, or with the program that started it.
+Each node has a rig file of its own, given here in the order of the hosts: its own entry states
+where it listens, the others are addresses on which the relay listens. Addresses are loopback or
+private. Prints "ready" when it listens, and its statistics as a line of JSON when it ends: on
+SIGTERM or SIGINT, after --for, or with the program that started it.
 
 Examples:
   simbench relay --scenario 6node_relay --nodes node0.json,node1.json

@@ -19,8 +19,8 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kReplayExamples = R"(
-Takes a folder that `simbench record` wrote, and prints the table of the recorded run. It scores what
-it finds of a recording that was cut off or is damaged, and notes that.
+Takes a folder that `simbench record` wrote, and prints the table of the recorded run. It scores
+what it finds of a recording that was cut off or is damaged, and notes that.
 
 Or takes the CSV of librealsense's rs-data-collect:
   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)

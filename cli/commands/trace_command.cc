@@ -154,7 +154,7 @@ void add_trace_command(CommandLine& line) {
   command.scenario(options->scenario);
   command.seed("--seed", options->seed, "The seed of the run. Default: 1");
   command.text("--pipeline", "NAME", options->pipeline,
-               "One of the scenario's. Default: yoon2021_both, or its first if it has none");
+               "The pipeline to run. Default: yoon2021_both, else the scenario's first");
   command.sets(options->sets);
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();

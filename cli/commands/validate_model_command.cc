@@ -29,8 +29,8 @@ namespace {
 
 constexpr const char* kValidateModelExamples = R"(
 Measures the simulator's own error. The scenario's hosts run as processes on this machine, with real
-sockets, clocks and timers, a relay as the scenario's network, and cameras that play a recording. All
-processes share one monotonic clock, so the true errors of their clocks are known. Then the same
+sockets, clocks and timers, a relay as the scenario's network, and cameras that play a recording.
+All processes share one monotonic clock, so the true errors of their clocks are known. Then the same
 scenario is simulated, and both distributions are printed side by side.
 
 It validates transport, protocols and the costs of hosts, not cameras: see the matrix of evidence.
