@@ -5,8 +5,6 @@
 // share this clock, so the truth of the real-network experiment is known.
 //
 // Source: clock_gettime(2).
-//
-//   const PairedReading reading = paired_reading(read_system_clock, monotonic_now);
 #ifndef SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
 #define SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
 
