@@ -1,13 +1,23 @@
 // The real-network experiment as a backend: one record() is one repetition with fresh processes.
 //
-// Each request: the cameras' capture of the request's seed is simulated and written as a recording,
-// a rig of processes is made that plays it (hardware/experiment), with clocks that start wrong by
-// amounts drawn for the seed, the conductor runs a session of the request's pipeline on it, and
-// the capture is told to the sink with its truth (app/experiment_truth.h). So every pipeline
-// meets the same exposures and the same clocks for the same seed, and the machine's real sockets,
-// schedulers and timers between them.
+// For each request the cameras' capture of its seed is simulated and written as a recording, and a
+// rig of processes plays it (hardware/experiment), with clocks that start wrong by amounts drawn
+// for the seed. The conductor runs a session of the request's pipeline on that rig, and the capture
+// goes to the sink with its truth. So every pipeline of a seed meets the same exposures and clocks,
+// and this machine's real sockets, schedulers and timers.
 //
-// Errors: RecordingFailed for a repetition that went wrong; others may succeed.
+// The truth is known as exactly as in a simulation. All processes share the machine's monotonic
+// clock, which is the true time here. The exposures are those of the played capture, whose zero is
+// the earliest exposure that a pulse began (camera/recorded_frames.h); a node's system clock
+// follows from its oscillator and its log of adjustments:
+//
+//   exposure = trigger zero + (exposure in the played capture - its zero)
+//   clock of host h at t = map of h's adjustments (steady clock of h at t)
+//
+// Frames are identified by camera, stream and counter, which are played unchanged.
+//
+// Errors: RecordingFailed for a repetition that went wrong (also a host without a clock log, or a
+// frame that was not played); others may succeed.
 //
 //   ExperimentSource source(scenario, {.namespaces = !NetworkSandbox::enter()});
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, scorer);
@@ -18,7 +28,8 @@
 #include <string>
 #include <vector>
 
-#include "hardware/experiment/temporary_folder.h"
+#include "hardware/clock/node_clock.h"
+#include "hardware/experiment/experiment_rig.h"
 #include "recording/event.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
@@ -29,9 +40,9 @@ struct ExperimentOptions {
   bool namespaces = false;                             // the caller is in a NetworkSandbox
   std::function<void(const std::string&)> progress{};  // a line for each step; may be empty
   std::function<bool()> cancelled{};                   // may be empty
-  // Told the relay's after each repetition, a line of JSON (hardware/relay/relay.h); may be empty.
-  std::function<void(const std::string&)> relay_statistics{};
-  std::string program = "/proc/self/exe";  // simbench
+  // Gets the relay's statistics after each repetition, a line of JSON (hardware/relay/relay.h).
+  std::function<void(const std::string&)> relay_statistics{};  // may be empty
+  std::string program = "/proc/self/exe";                      // simbench
 };
 
 class ExperimentSource final : public RecordingSource {
@@ -42,7 +53,7 @@ class ExperimentSource final : public RecordingSource {
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override;
 
  private:
-  // Of the seed, in played_ and in a folder; returns its name as a rig file has it.
+  // Simulates the cameras' capture into played_ and a folder; returns its name for a rig file.
   std::string record_cameras(std::uint64_t seed);
 
   const scenarios::Scenario& scenario_;
@@ -50,6 +61,16 @@ class ExperimentSource final : public RecordingSource {
   hardware::TemporaryFolder folder_;
   KeptRecording played_;
 };
+
+struct ExperimentTruth {
+  const KeptRecording& played;                        // with truth
+  MonotonicTime zero;                                 // when its zero was played
+  std::vector<hardware::NodeOscillator> oscillators;  // by host
+};
+
+// Hands all of `captured` to `sink`, with the played capture's layout, truth and pulses. Throws
+// RecordingFailed.
+void add_truth(const ExperimentTruth& truth, const KeptRecording& captured, RecordingSink& sink);
 
 }  // namespace simbench::app
 

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "app/simulated.h"
+#include "app/interrupt.h"
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
+#include "recording/version.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/result_figures.h"
 #include "reports/figures/run_figures.h"
@@ -29,13 +31,19 @@ using reports::Archive;
 using reports::Figure;
 using reports::FigureEntry;
 using reports::FigureScope;
+using reports::ReportedArchive;
 using scenarios::InputError;
 using scenarios::Scenario;
 
-// Beyond this share two values of AMD are of different runs; the archive has every digit.
+// Values of AMD that differ by more than this share are of different runs: archives have every
+// digit.
 constexpr double kSameAmd = 1e-9;
 
-// The ids of what is wanted.
+constexpr const char* kBudget = "budget";
+constexpr std::uint64_t kRunsOfABudget = 128;  // a seed; only for the progress
+constexpr std::size_t kMostNotes = 6;
+
+// The ids of the wanted figures.
 std::vector<std::string> wanted_ids(const FigureOptions& options) {
   std::vector<std::string> ids;
   std::vector<std::string> known;
@@ -52,7 +60,7 @@ std::vector<std::string> wanted_ids(const FigureOptions& options) {
   return ids;
 }
 
-// The row's AMD at this seed; nothing if there is none to compare with.
+// The pipeline's AMD at this seed; nothing if the results have none.
 std::optional<double> amd_of(const evaluation::Results& results, const std::string& pipeline,
                              std::uint64_t seed) {
   const auto row = std::find_if(results.rows.begin(), results.rows.end(),
@@ -74,7 +82,7 @@ class FigureMaker {
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
 
-  // What stands in the archive.
+  // The figures of what the archive holds.
   void add_result_figures() {
     if (archive_.results.rows.empty()) return;
     if (wants("distributions")) add(reports::distributions(archive_));
@@ -83,14 +91,14 @@ class FigureMaker {
     for (const std::uint64_t seed : options_.seeds) add({reports::frame_errors(archive_, seed)});
   }
 
-  // What has to be run again.
+  // The figures that need the runs again.
   void add_run_figures(const Scenario& scenario) {
     const std::vector<PipelineChoice> choices =
         evaluation::choose_pipelines(scenario, options_.pipelines);
     if (wants_scope(FigureScope::kRun) || wants("synchronisation") || wants("digital_clocks")) {
       for (const std::uint64_t seed : options_.seeds) add_seed(scenario, choices, seed);
     }
-    if (!wants("budget") || options_.budget_seeds == 0) return;
+    if (!wants(kBudget) || options_.budget_seeds == 0) return;
     for (const PipelineChoice& choice : choices) {
       const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
                                                    .seeds = options_.budget_seeds};
@@ -201,7 +209,7 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
     maker.add_run_figures(scenario_of(archive));
   } else {
     maker.note(
-        fmt::format("{} has no manifest: what needs a repeated run is left out; `simbench "
+        fmt::format("{} has no manifest: figures that need a repeated run are left out; `simbench "
                     "run --output DIR` writes archives that have one",
                     archive.path));
   }
@@ -235,6 +243,135 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
   maker.add_result_figures();
   maker.add_run_figures(scenario);
   return maker.finish();
+}
+
+namespace {
+
+// A call of archive_figures and its share of the work.
+struct Step {
+  FigureOptions options;
+  std::uint64_t runs = 0;
+};
+
+// All figures but error budgets at once, then a budget for each pipeline.
+std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
+  Step first;
+  first.options.pipelines = detail.pipelines;
+  for (const reports::FigureEntry& entry : reports::figure_catalogue()) {
+    if (entry.id != kBudget) first.options.figures.push_back(entry.id);
+  }
+  for (std::uint64_t i = 0; i < detail.seeds.value_or(1); ++i) {
+    first.options.seeds.push_back(archive.results.first_seed + i);
+  }
+  first.runs = first.options.seeds.size() * detail.pipelines.size();
+  std::vector<Step> steps = {first};
+  const std::uint64_t budget_seeds = detail.budget_seeds.value_or(0);
+  for (const std::string& pipeline : detail.pipelines) {
+    if (budget_seeds == 0) break;
+    Step step;
+    step.options.pipelines = {pipeline};
+    step.options.budget_seeds = budget_seeds;
+    step.options.figures = {kBudget};
+    step.runs = budget_seeds * kRunsOfABudget;
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+std::string version_note(const Archive& archive) {
+  if (archive.version == version() && archive.commit == commit()) return "";
+  return fmt::format(
+      "The results are of simbench {} ({}); simbench {} ({}) repeated the runs for the figures.",
+      archive.version, archive.commit, version(), commit());
+}
+
+void draw(ReportedArchive& reported, const std::vector<Step>& steps,
+          const evaluation::Progress& progress) {
+  std::uint64_t all = 0;
+  for (const Step& step : steps) all += step.runs;
+  std::uint64_t before = 0;
+  for (const Step& step : steps) {
+    ArchiveFigures made = archive_figures(
+        reported.archive, step.options, [&](std::uint64_t done, std::uint64_t total) {
+          progress(before + step.runs * done / std::max<std::uint64_t>(total, 1), all);
+        });
+    std::move(made.figures.begin(), made.figures.end(), std::back_inserter(reported.figures));
+    std::move(made.notes.begin(), made.notes.end(), std::back_inserter(reported.notes));
+    before += step.runs;
+  }
+}
+
+// The figures of what the archive holds; runs nothing.
+void draw_stored(ReportedArchive& reported, const FigureOptions& options) {
+  Archive stored = reported.archive;
+  stored.scenario_json.clear();
+  reported.figures = archive_figures(stored, options).figures;
+}
+
+void shorten(std::vector<std::string>& notes) {
+  if (notes.size() <= kMostNotes) return;
+  const std::size_t more = notes.size() - kMostNotes;
+  notes.resize(kMostNotes);
+  notes.push_back(fmt::format("... and {} more notes of this kind", more));
+}
+
+}  // namespace
+
+ReportDetail bounded(const ReportDetail& detail, const Archive& archive, std::size_t archives) {
+  ReportDetail chosen = detail;
+  if (chosen.pipelines.empty()) {
+    for (const evaluation::Row& row : archive.results.rows)
+      chosen.pipelines.push_back(row.pipeline);
+    if (chosen.pipelines.size() > kMostRuns) chosen.pipelines.resize(kMostRuns);
+  }
+  const std::uint64_t each = std::max<std::uint64_t>(chosen.pipelines.size() * archives, 1);
+  const std::uint64_t fitting = std::clamp<std::uint64_t>(kMostRuns / each, 1, kDefaultSeeds);
+  chosen.seeds = std::min(detail.seeds.value_or(fitting), archive.results.seed_count);
+  chosen.budget_seeds = std::min(detail.budget_seeds.value_or(fitting), archive.results.seed_count);
+  return chosen;
+}
+
+ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
+                             const evaluation::Progress& progress) {
+  ReportedArchive reported{.archive = std::move(archive)};
+  const std::vector<Step> steps = steps_of(reported.archive, detail);
+  if (reported.archive.scenario_json.empty()) {
+    reported.notes = {fmt::format(
+        "{} has no manifest, which names the scenario: only the tables and the distributions over "
+        "seeds can be shown; `simbench run --output DIR` writes archives that have one.",
+        reported.archive.path)};
+    draw_stored(reported, steps.front().options);
+    return reported;
+  }
+  reports::read_seed_details(reported.archive);
+  try {
+    draw(reported, steps, progress);
+    shorten(reported.notes);
+    const std::string other = version_note(reported.archive);
+    if (!other.empty()) reported.notes.insert(reported.notes.begin(), other);
+  } catch (const scenarios::InputError& error) {
+    reported.notes = {
+        fmt::format("The runs cannot be repeated, so only what the archive holds is "
+                    "shown: {}",
+                    error.what())};
+    draw_stored(reported, steps.front().options);
+  }
+  return reported;
+}
+
+std::string detail_note(const Archive& archive, const ReportDetail& detail) {
+  std::string note;
+  if (detail.seeds < archive.results.seed_count) {
+    note = fmt::format(
+        "Tables and distributions cover all {} seeds; stamps, clocks and single pulses are shown "
+        "for the first {} (--seeds-in-detail).",
+        archive.results.seed_count, *detail.seeds);
+  }
+  if (detail.pipelines.size() < archive.results.rows.size()) {
+    note += fmt::format("{}In detail: {} of {} pipelines (--pipelines).", note.empty() ? "" : " ",
+                        detail.pipelines.size(), archive.results.rows.size());
+  }
+  return note;
 }
 
 }  // namespace simbench::app

@@ -23,12 +23,12 @@ namespace {
 constexpr std::int64_t kCyclesPerSecond = 8000;
 constexpr std::int64_t kOffsetsPerCycle = 3072;
 constexpr std::int64_t kTicksPerSecond = kCyclesPerSecond * kOffsetsPerCycle;
-constexpr std::int64_t kNsPerTick = 100;  // of the host
+constexpr std::int64_t kNsPerTick = 100;  // the host's ticks
 constexpr std::int64_t kTicksPerMs = 1'000'000 / kNsPerTick;
 constexpr std::size_t kIsoDigits = 27;  // 2020-08-19T12:42:57.7903616
 constexpr std::size_t kRowBytes = 4 * sizeof(double);
 
-// A reading in units of 1/24576000 s, or nothing: cycles and offsets have their limits.
+// A reading in units of 1/24576000 s; nothing if its cycles or offsets exceed their limits.
 std::optional<std::int64_t> cycle_clock_ticks(std::uint32_t reading) {
   const std::int64_t seconds = reading >> 25;
   const std::int64_t cycles = (reading >> 12) & 0x1fff;
@@ -37,7 +37,7 @@ std::optional<std::int64_t> cycle_clock_ticks(std::uint32_t reading) {
   return (seconds * kCyclesPerSecond + cycles) * kOffsetsPerCycle + offsets;
 }
 
-// Makes one count of the readings of a recording.
+// Unwraps the readings of a recording.
 class CycleClock {
  public:
   std::optional<Nanoseconds> stamp(std::uint32_t reading) {

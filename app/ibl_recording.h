@@ -9,7 +9,7 @@
 //
 // The camera clock is an IEEE 1394 cycle clock: seconds in the upper 7 bits, cycles of 1/8000 s in
 // the next 13, offsets of 1/3072 cycle in the lower 12. It starts again every 128 s; the stamps
-// given here go on (half-range rule).
+// returned here are unwrapped (half-range rule).
 //
 // Source: the README of the recordings; github.com/int-brain-lab/ibllib.
 #ifndef SIMBENCH_APP_IBL_RECORDING_H_
@@ -23,12 +23,12 @@
 
 namespace simbench::app {
 
-// Which of the two a file is follows from its name. Sensor stamps count from the zero of the camera
-// clock before the first frame, arrivals from the first frame. Frames without a counter are
-// numbered from 0. Throws CsvError, "FILE:LINE: ..." or "FILE: row N: ...".
+// The file's name tells its kind. Sensor stamps count from the camera clock's last zero before the
+// first frame, arrivals from the first frame. Frames without a counter are numbered from 0. Throws
+// CsvError, "FILE:LINE: ..." or "FILE: row N: ...".
 std::vector<StampedFrame> read_ibl_recording(const std::string& path);
 
-// The same from the content of a file.
+// The same for the content of a file.
 std::vector<StampedFrame> parse_ibl_timestamps(std::string_view text, const std::string& path);
 std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std::string& path);
 

@@ -3,7 +3,9 @@
 #include <atomic>
 #include <utility>
 
+#include "evaluation/sweep/task_farm.h"
 #include "recording/forwarding_sink.h"
+#include "sim/rig/simulation.h"
 
 namespace simbench::app {
 namespace {
@@ -15,7 +17,7 @@ void throw_if_interrupted() {
   if (interrupt_flag.load(std::memory_order_relaxed)) throw Interrupted();
 }
 
-// Hands everything on; frames are frequent enough to notice the flag by.
+// Hands everything on; polls the flag at frames and exchanges, which are frequent.
 class InterruptibleSink final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
@@ -49,8 +51,8 @@ InterruptHandler::InterruptHandler() {
   interrupt_flag = false;
   struct sigaction action = {};
   action.sa_handler = [](int) { interrupt_flag = true; };
-  // The second signal finds the default again. An interrupted write is resumed: the result of a run
-  // that is already complete is not lost.
+  // The second signal meets the default. An interrupted write is resumed, so that the result of a
+  // complete run is not lost.
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, &previous_);
@@ -64,6 +66,14 @@ const std::atomic<bool>& InterruptHandler::flag() { return interrupt_flag; }
 
 std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source) {
   return std::make_unique<InterruptibleSource>(std::move(source));
+}
+
+std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario) {
+  return interruptible(sim::make_simulation(scenario));
+}
+
+evaluation::TaskWorkerFactory simulated_sweep_workers() {
+  return evaluation::sweep_workers(simulated_world);
 }
 
 }  // namespace simbench::app

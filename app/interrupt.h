@@ -1,11 +1,11 @@
-// Ctrl-C: stops the jobs at their next frame instead of in the middle of something.
+// Ctrl-C, which stops jobs at their next frame, and the simulator with it: the worlds that the
+// command line runs.
 //
 //   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
-//   evaluate(
-//       scenario, [&] { return interruptible(make_simulation(scenario)); }, options, progress);
+//   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
-// A second SIGINT ends the program at once, as it always did.
+// A second SIGINT ends the program at once.
 #ifndef SIMBENCH_APP_INTERRUPT_H_
 #define SIMBENCH_APP_INTERRUPT_H_
 
@@ -14,7 +14,9 @@
 #include <exception>
 #include <memory>
 
+#include "evaluation/sweep/task_farm.h"
 #include "recording/recording.h"
+#include "scenarios/scenario.h"
 
 namespace simbench::app {
 
@@ -26,7 +28,7 @@ class InterruptHandler {
   InterruptHandler(const InterruptHandler&) = delete;
   InterruptHandler& operator=(const InterruptHandler&) = delete;
   static bool raised();
-  // What is raised: for work that looks at a flag of its caller's.
+  // The flag itself, for work that polls one.
   static const std::atomic<bool>& flag();
 
  private:
@@ -40,6 +42,11 @@ class Interrupted : public std::exception {
 
 // The same source, but record() throws Interrupted once the flag is raised.
 std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source);
+
+// The simulator, interruptible: an evaluation::WorldFactory. `scenario` outlives the result.
+std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
+// The workers of sweeps, in simulated worlds.
+evaluation::TaskWorkerFactory simulated_sweep_workers();
 
 }  // namespace simbench::app
 

@@ -61,7 +61,7 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
   return reports::response_figure(plan, rows);
 }
 
-// Without a picture a sweep is complete all the same: returns why it was not drawn.
+// Returns why the figure was not drawn, which is no error; empty if it was.
 std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& folder) {
   constexpr const char* kName = "sweep.svg";
   folder.remove(kName);

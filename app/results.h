@@ -1,7 +1,7 @@
-// What is left when a run or a sweep is finished: the text that is printed, and the files.
+// The results of a run or a sweep: the printed text and the files.
 //
 //   RunArchive archive(arguments);              // the run begins
-//   archive.open("results/monday");             // refused before the work, not after it
+//   archive.open("results/monday");             // throws before the work, not after it
 //   const evaluation::Results results = evaluation::evaluate(scenario, make_source, {}, progress);
 //   archive.write(results, scenario);
 #ifndef SIMBENCH_APP_RESULTS_H_
@@ -21,19 +21,19 @@
 
 namespace simbench::app {
 
-// Results in the format that was asked for, as the run of a scenario prints them. `format`: table,
-// markdown, csv or json. `more`: what else a table or Markdown is to say.
+// The results as `simbench run` prints them. `format`: table, markdown, csv or json. `more`: blocks
+// that follow in a table or in Markdown.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, const std::vector<reports::Block>& more = {});
 
-// The result archive of a run, if one is wanted.
+// The result archive of a run; none if no folder is opened.
 class RunArchive {
  public:
   // `command` as given, for the manifest; the run's time counts from here.
   explicit RunArchive(std::vector<std::string> command);
-  // Where it will be; empty: nowhere. Throws reports::OutputError.
+  // Empty: no archive. Throws reports::OutputError.
   void open(const std::string& folder);
-  // False if it is wanted nowhere. Throws reports::OutputError.
+  // False if there is no folder. Throws reports::OutputError.
   bool write(const evaluation::Results& results, const scenarios::Scenario& scenario);
 
  private:
@@ -46,8 +46,8 @@ struct SweepText {
   std::string not_drawn;  // why there is no plot; empty where there is one
 };
 
-// Writes sweep.csv, hosts.csv, sweep.txt and, where gnuplot is, sweep.svg, and puts the log in
-// order. The first of `tables` is drawn. Throws reports::OutputError.
+// Writes sweep.csv, hosts.csv, sweep.txt and, if gnuplot is installed, sweep.svg with the first of
+// `tables`; puts the log in order. Throws reports::OutputError.
 SweepText write_sweep_results(const evaluation::SweepPlan& plan,
                               const std::vector<scenarios::StudyTable>& tables,
                               reports::SweepFolder& folder);

@@ -4,8 +4,8 @@
 //
 // Worlds: A, B (5 ppm sinusoid in the skew), D (a host step of +0.5 ms at 150 s), each with
 // arrivals in whole microseconds; A and B again with arrivals in whole milliseconds, as
-// librealsense's own are. Two-way estimators are given polls and do not see the 8 ms of delivery,
-// so they are 8000 us early by this measure, which is subtracted here.
+// librealsense's own are. Two-way estimators get polls and do not include the 8 ms of delivery: by
+// this measure they are 8000 us early, which is subtracted here.
 #include <fmt/format.h>
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 // its polls (device_time_worlds.h).
 //
 // References in the same run: raw_arrival, which is the cost of the loop alone, and
-// hull_300_recomputed, the windowed hull the plain way. hull_300_convex is the window's worst case,
-// a stream of which every frame is a vertex. A scored run stamps some 13,000 frames within its 5
-// ms.
+// hull_300_recomputed, the windowed hull computed anew for each frame. hull_300_convex is the
+// window's worst case, a stream in which every frame is a vertex. A scored run of 5 ms stamps some
+// 13,000 frames.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace simbench {
 namespace {
 
-// The lower hull of the last 300 frames, from nothing for each frame.
+// The lower hull of the last 300 frames, computed anew for each frame.
 class RecomputedHull final : public DeviceTimeEstimator {
  public:
   GlobalTime stamp(const DeviceSample& sample) override {

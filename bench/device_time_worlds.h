@@ -5,8 +5,8 @@
 // polls of the device's clock every 100 ms, 0.3 ms + Exp(0.1 ms) each way. The host's clock is
 // true.
 //
-// A stamp's error is taken against exposure + D, as no one-way method can know D; a two-way method
-// is D early by that measure.
+// A stamp's error is taken against exposure + D, since no one-way method can know D; a two-way
+// method is D early by that measure.
 // Source: docs/reference/device_time.md section 3.
 #ifndef SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
 #define SIMBENCH_BENCH_DEVICE_TIME_WORLDS_H_
@@ -55,7 +55,7 @@ inline double device_us(const DeviceTimeWorld& world, double t_s) {
   return kDeviceZeroUs + 1e6 * t_s + world.skew_ppm * t_s + wave_us;
 }
 
-// When the device's clock has counted `counted_s` since its zero.
+// The true time at which the device's clock has counted `counted_s` since its zero.
 inline double true_s(const DeviceTimeWorld& world, double counted_s) {
   double t_s = counted_s;
   for (int i = 0; i < 3; ++i) {
@@ -130,7 +130,7 @@ inline std::vector<GlobalTime> device_time_stamps(DeviceTimeEstimator& estimator
   return stamps;
 }
 
-// Errors after the first `skip_s`, in us. Means over runs are of bias and std; worst is the worst.
+// Errors after the first `skip_s`, in us. Over runs, bias and std are means and worst is the worst.
 struct DeviceTimeErrors {
   double bias_us = 0;
   double std_us = 0;

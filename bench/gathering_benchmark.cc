@@ -1,8 +1,8 @@
 // Time per pulse of every registered gatherer, by number of sources.
 //
 // "clean": one frame of every source per pulse, so a set per pulse. "lossy": about one pulse in
-// five lacks a frame. "equal": the same, without noise, so that nothing decides. "noisy": stamps
-// over half a period, so that fronts must be searched.
+// five lacks a frame. "equal": the same without noise, so all stamps of a pulse are equal. "noisy":
+// stamps over half a period, so that fronts must be searched.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>

@@ -2,32 +2,42 @@
 //
 // Two processes, one node each: a software clock (300 ms apart, oscillators of +30 and -30 ppm),
 // the sockets, the algorithm; as in `simbench node` but for cameras. The clocks are functions of
-// the one monotonic clock of the machine, so the true error is known at any instant: the slave
-// prints what its clock reads each 10 ms, the parent subtracts.
+// the machine's monotonic clock, so the true error is known at any instant: both processes sample
+// their clocks every 10 ms, and the parent subtracts.
 //
-// With `flood` it is done a second time while a hostile neighbour sends the slave 10,000 forged,
-// replayed, truncated or oversized datagrams a second (bench/hostile_flood.h; root).
+// With `flood` it measures a second time while a hostile neighbour sends the slave 10,000 forged,
+// replayed, truncated or oversized datagrams a second (root).
 //
 //   build/release/bin/hull_loopback            (10 s, then 5 s of samples)
 //   build/release/bin/hull_loopback flood
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/ip.h>
+#include <netinet/udp.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "algorithms/registry.h"
-#include "bench/hostile_flood.h"
 #include "hardware/clock/software_clock.h"
 #include "hardware/net/peer_network.h"
 #include "hardware/node/real_host.h"
@@ -36,6 +46,102 @@ namespace {
 
 using namespace simbench;
 using namespace simbench::hardware;
+
+struct FloodPlan {
+  std::uint16_t target_port = 0;
+  std::uint16_t pretended_port = 0;
+  int per_second = 10'000;
+  int seconds = 15;
+};
+
+using Payload = std::vector<unsigned char>;
+constexpr std::size_t kKept = 256;        // genuine datagrams, the newest
+constexpr std::size_t kCounterByte = 10;  // hardware/net/datagram.h
+
+// Takes datagrams from the peer to the target off the wire.
+void listen_in(int socket, const FloodPlan& plan, std::vector<Payload>& genuine) {
+  std::array<unsigned char, 2048> packet{};
+  for (;;) {
+    const ssize_t size = recv(socket, packet.data(), packet.size(), MSG_DONTWAIT);
+    if (size <= 0) return;
+    const std::size_t header = (packet[0] & 0x0fU) * 4;
+    udphdr udp{};
+    if (static_cast<std::size_t>(size) <= header + sizeof udp) continue;
+    std::memcpy(&udp, packet.data() + header, sizeof udp);
+    if (ntohs(udp.dest) != plan.target_port || ntohs(udp.source) != plan.pretended_port) continue;
+    if (udp.check == 0) continue;  // our own: without a checksum
+    if (genuine.size() == kKept) genuine.erase(genuine.begin());
+    genuine.emplace_back(packet.begin() + static_cast<std::ptrdiff_t>(header + sizeof udp),
+                         packet.begin() + size);
+  }
+}
+
+void send_hostile(int socket, const FloodPlan& plan, const Payload& payload) {
+  std::vector<unsigned char> packet(sizeof(udphdr) + payload.size());
+  udphdr udp{};
+  udp.source = htons(plan.pretended_port);
+  udp.dest = htons(plan.target_port);
+  udp.len = htons(static_cast<std::uint16_t>(packet.size()));
+  std::memcpy(packet.data(), &udp, sizeof udp);
+  if (!payload.empty()) std::memcpy(packet.data() + sizeof udp, payload.data(), payload.size());
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  sendto(socket, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+         sizeof to);
+}
+
+Payload hostile(const Payload& genuine, int kind) {
+  Payload payload = genuine;
+  switch (kind) {
+    case 0:
+      // A counter of the far future; else it would be refused before its seal is checked.
+      if (payload.size() > kCounterByte) payload[kCounterByte] ^= 1U;
+      break;
+    case 1:
+      break;
+    case 2:
+      payload.resize(payload.size() / 2);
+      break;
+    default:
+      payload.assign(60'000, 0xa5);
+      break;
+  }
+  return payload;
+}
+
+[[noreturn]] void flood(int socket, const FloodPlan& plan) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<Payload> genuine;
+  const int all = plan.per_second * plan.seconds;
+  // Replays the newest datagrams: old ones would be refused for their age alone.
+  for (int i = 0; i < all; ++i) {
+    std::this_thread::sleep_until(begin +
+                                  std::chrono::microseconds(1'000'000LL * i / plan.per_second));
+    listen_in(socket, plan, genuine);
+    // Oversized ones are one in a hundred: 2,500 a second of them would fill the loopback itself.
+    const int kind = i % 100 == 99 ? 3 : i % 3;
+    if (!genuine.empty()) send_hostile(socket, plan, hostile(genuine.back(), kind));
+  }
+  std::_Exit(0);
+}
+
+// Starts a hostile neighbour in a process of its own, which ends by itself: it sends a host's port
+// what must be refused, at a steady rate. Four kinds in turn: forged (a genuine datagram with one
+// bit changed), replayed (genuine ones from the wire), truncated, oversized (60 kB of noise). They
+// have the address and port of the host's own peer, which needs raw sockets (root); loopback only.
+// Returns -1 if raw sockets are not permitted.
+pid_t start_hostile_flood(const FloodPlan& plan) {
+  const int raw = socket(AF_INET, SOCK_RAW, IPPROTO_UDP);
+  if (raw < 0) return -1;
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    flood(raw, plan);
+  }
+  close(raw);
+  return child;
+}
 
 constexpr Nanoseconds kSettle = std::chrono::seconds(10);
 constexpr Nanoseconds kMeasure = std::chrono::seconds(5);
@@ -58,7 +164,7 @@ Task<void> sample(const SoftwareClock& clock, MonotonicTime begin, std::vector<S
   context.stop();
 }
 
-// `master_port` 0: this is the master, which tells its port through the pipe.
+// `master_port` 0: this is the master, which writes its port to the pipe.
 std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe,
                              MonotonicTime begin, bool flooded) {
   boost::asio::io_context context(1);
@@ -98,7 +204,7 @@ std::vector<Sample> run_node(PeerId me, std::uint16_t master_port, int port_pipe
   return samples;
 }
 
-// Everything that the other process samples comes through the pipe.
+// The samples of the other process, from the pipe.
 std::vector<Sample> read_samples(int pipe) {
   std::vector<Sample> samples;
   Sample one{};

@@ -1,5 +1,5 @@
-// What the seals of the nodes' messages cost: beside copying the same bytes, and over the loopback
-// interface beside the same datagrams unsealed; and what refusing a forged datagram costs.
+// The cost of sealing the nodes' messages, beside copying the same bytes and, over the loopback
+// interface, beside unsealed datagrams; and the cost of refusing a forged datagram.
 #include <benchmark/benchmark.h>
 
 #include <array>

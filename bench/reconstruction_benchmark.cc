@@ -1,6 +1,6 @@
-// What one frame set of a reconstruction costs, and what of: the rays of 18 depth maps of 848x480,
-// Poisson's surface, all of it. With hosts together and half a second apart, which makes several
-// people of one. Times are of one thread; peak memory of the process so far stands beside them.
+// The cost of one frame set of a reconstruction and of its parts: the rays of 18 depth maps of
+// 848x480, Poisson's surface, all of it; with hosts together, and half a second apart, which makes
+// several people of one. Times are of one thread, beside the peak memory of the process so far.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -10,7 +10,7 @@
 #include "reconstruction/libraries/quiet_errors.h"
 #include "reconstruction/libraries/set_reconstruction.h"
 #include "reconstruction/libraries/surface.h"
-#include "reconstruction/person.h"
+#include "reconstruction/subject.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reconstruction {

@@ -13,8 +13,7 @@
 namespace simbench::cli {
 namespace {
 
-// The names of the checks, which CLI11 shows nowhere. The words of one_of() follow its name, a line
-// each.
+// The names of the checks, which CLI11 never shows. In one_of() the words follow, a line each.
 constexpr const char* kNumberCheck = "number";
 constexpr const char* kWordsCheck = "one of";
 
@@ -172,7 +171,7 @@ void Command::sets(std::vector<std::string>& values) {
   command_
       ->add_option("--set", values,
                    "Change a parameter of the scenario, repeatable;\n"
-                   "`simbench describe SCENARIO` names them all")
+                   "`simbench describe SCENARIO` lists all parameters")
       ->type_name("/POINTER=VALUE")
       ->allow_extra_args(false)
       ->check(CLI::Validator(check, ""));
@@ -188,7 +187,7 @@ void Command::format(std::string& value, const std::vector<std::string>& formats
       word("--format", "FORMAT", value, formats,
            fmt::format("One of: {}. Default: {}", fmt::join(formats, ", "), value));
   if (std::find(formats.begin(), formats.end(), "json") == formats.end()) return;
-  // Options are carried out in this order, so --format has been.
+  // Options are processed in the order of their addition, so --format is known here.
   json_flag(
       "For scripts: --format json, and progress, warnings and errors on\n"
       "standard error as JSON lines",
@@ -230,6 +229,11 @@ std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& va
     overrides.push_back({text.substr(0, equals), text.substr(equals + 1)});
   }
   return overrides;
+}
+
+std::string usual_pipeline(const std::vector<std::string>& names) {
+  constexpr const char* kUsual = "yoon2021_both";
+  return std::find(names.begin(), names.end(), kUsual) != names.end() ? kUsual : names.front();
 }
 
 void refuse(const std::string& option, const std::string& text) {

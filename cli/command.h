@@ -1,7 +1,6 @@
-// What a subcommand is made of: its options, its help, and what it does. A thin layer over the
-// parser (CLI11), so that the messages of all commands are alike ("--seeds: found 'many', allowed:
-// a whole number from 1 to 1000000"), the shells can complete every value, and no command compiles
-// CLI11, which costs seconds in each file that includes it.
+// A subcommand: its options, its help and its action. A thin layer over the parser (CLI11), so that
+// all commands have the same messages ("--seeds: found 'many', allowed: a whole number from 1 to
+// 1000000"), shells can complete every value, and no command compiles CLI11, which takes seconds.
 //
 //   void add_validate_command(CommandLine& line) {
 //     auto files = std::make_shared<std::vector<std::string>>();
@@ -12,11 +11,11 @@
 //   }
 //
 // Names: "--seed", "-o,--output", or "files" for an argument without a name, which help and
-// messages call by its place holder. A place holder tells the shells what to offer: SCENARIO, DIR
-// or FOLDER, else a file; words and numbers complete themselves. Help lists options in the order in
-// which they are added. What an option writes to must live as long as the action. Texts state the
-// default
-// ("Default: 32"); the value that is there is the default.
+// messages call by its place holder. The place holder also tells the shells what to offer:
+// SCENARIO, DIR or FOLDER, else a file. Help lists options in the order in which they are added.
+// The variable of an option must live as long as the action; its value is the default, which the
+// text states
+// ("Default: 32").
 #ifndef SIMBENCH_CLI_COMMAND_H_
 #define SIMBENCH_CLI_COMMAND_H_
 
@@ -39,10 +38,10 @@ struct CommandLineExtras;
 
 namespace simbench::cli {
 
-// What a subcommand does once its options are parsed; returns the exit status.
+// Runs a subcommand after its options are parsed; returns the exit status.
 using Action = std::function<int()>;
 
-// A command line in the making, to which commands are added.
+// A command line to which commands are added.
 struct CommandLine {
   CLI::App& parser;
   const std::vector<std::string>& arguments;  // as given, with the program's name
@@ -73,7 +72,7 @@ class Command {
   // An option that may be repeated, or all arguments that follow.
   Option texts(const std::string& names, const std::string& place, std::vector<std::string>& values,
                const std::string& text);
-  // "one,two", to be repeated as well.
+  // "one,two"; may be repeated.
   Option list(const std::string& names, const std::string& place, std::vector<std::string>& values,
               const std::string& text);
   Option word(const std::string& names, const std::string& place, std::string& value,
@@ -87,7 +86,7 @@ class Command {
   Option whole_number(const std::string& names, const std::string& place, Number& value,
                       std::uint64_t low, std::uint64_t high, const std::string& text);
 
-  // What many commands have.
+  // Options of many commands.
   //
   // --scenario, required.
   void scenario(std::string& value);
@@ -109,9 +108,10 @@ class Command {
   // --json for a command whose result is a file: messages as JSON lines only.
   void json_messages();
 
-  // What help says below the options: explanation, examples, exit status (cli/manual.h divides it).
+  // The help below the options: explanation, examples, exit status (cli/command_table.h divides
+  // it).
   void footer(const std::string& text);
-  // `check` is called before, while parsing: it may refuse().
+  // `check` is called while parsing: it may refuse().
   void runs(Action action, const std::function<void()>& check = {});
 
  private:
@@ -123,11 +123,15 @@ class Command {
 
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);
 
-// Ends parsing with the message "OPTION: text" and where to read more.
+// The default of commands about one pipeline: yoon2021_both if it is among the names, else the
+// first.
+std::string usual_pipeline(const std::vector<std::string>& names);
+
+// Ends parsing with the message "OPTION: text" and a pointer to the help.
 [[noreturn]] void refuse(const std::string& option, const std::string& text);
 
-// What checks say to whoever completes a command line: the words of an option's word(), empty for
-// another; whether it has a number() or whole_number().
+// For completion: the words of an option's word(), empty for other options; whether it is a
+// number() or whole_number().
 std::vector<std::string> allowed_words(CLI::Option& option);
 bool takes_number(CLI::Option& option);
 

@@ -76,7 +76,7 @@ const std::vector<CommandGroup>& command_groups() {
         cli::add_relay_command}},
       {"Scenarios and algorithms",
        {cli::add_list_command, cli::add_describe_command, cli::add_validate_command}},
-      // Last: `manual` knows those before it.
+      // Last: `manual` lists the commands before it.
       {"The command line itself", {cli::add_completion_command, cli::add_manual_command}}};
   return groups;
 }

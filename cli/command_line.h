@@ -1,5 +1,5 @@
 // The `simbench` command as a function, so that a program with algorithms of its own is the same
-// command: register them (algorithms/registry.h), then hand over the arguments of main().
+// command: register them (algorithms/registry.h), then pass the arguments of main().
 //
 //   int main(int argc, char** argv) {
 //     simbench::register_device_time({...});
@@ -12,21 +12,23 @@
 #ifndef SIMBENCH_CLI_COMMAND_LINE_H_
 #define SIMBENCH_CLI_COMMAND_LINE_H_
 
-#include "reconstruction/experiment.h"
-
 namespace simbench {
 
 namespace evaluation {
 class TaskFarm;
 }
+namespace reconstruction {
+struct Reconstruction;
+}
 
-// What a program may bring along that not every one can have.
+// Optional parts that only some programs are built with.
 struct CommandLineExtras {
   // Works on the runs of `simbench sweep`; null: the cores of this machine, and under mpirun
   // simbench-mpi in place of this program.
   evaluation::TaskFarm* farm = nullptr;
-  // For `simbench reconstruct`; null: simbench-reconstruct in place of this program.
-  reconstruction::RunReconstruction run_reconstruction = nullptr;
+  // For `simbench reconstruct` (reconstruction/experiment.h); null: simbench-reconstruct in place
+  // of this program.
+  const reconstruction::Reconstruction* reconstruction = nullptr;
 };
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras = {});

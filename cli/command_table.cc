@@ -8,7 +8,7 @@
 namespace simbench::cli {
 namespace {
 
-// Where a text breaks its lines is for the help.
+// Joins the lines of a text, whose breaks are for the help.
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;

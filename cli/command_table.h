@@ -1,6 +1,6 @@
-// The commands and options of simbench as data, read off the parser (CLI::App): what completion
-// scripts, man pages and "did you mean" are made of. A command that is added to the parser is in
-// all of them.
+// The commands and options of simbench as data, read from the parser (CLI::App), and the texts made
+// of them: completion scripts and man pages. A command that is added to the parser is in all of
+// them.
 #ifndef SIMBENCH_CLI_COMMAND_TABLE_H_
 #define SIMBENCH_CLI_COMMAND_TABLE_H_
 
@@ -18,7 +18,7 @@ namespace simbench::cli {
 enum class ValueKind : std::uint8_t { kNone, kWord, kScenario, kNumber, kFolder, kFile };
 
 struct OptionEntry {
-  std::vector<std::string> names;  // "-h", "--help"; of an argument its place holder
+  std::vector<std::string> names;  // "-h", "--help"; an argument's place holder
   std::string value_name;          // "SCENARIO"; empty for a flag
   std::string text;                // on one line
   std::string group;
@@ -42,12 +42,30 @@ struct CommandTable {
   std::vector<CommandEntry> commands;
 };
 
-// A value that is no word and no number is told by its place holder: SCENARIO..., DIR... (or
-// FOLDER...), else a file. `app` is not changed; CLI11 has no other way to its checks.
+// The place holder tells the kind of a value that is no word and no number: SCENARIO..., DIR... (or
+// FOLDER...), else a file. `app` is not changed; CLI11 has no const access to its checks.
 CommandTable command_table(CLI::App& app);
 
 // The command that options without one mean: `simbench --scenario S`.
 inline constexpr const char* kDefaultCommand = "run";
+
+// A script that completes simbench's command lines in a shell.
+//
+// Commands, options and fixed words are in the script. It runs `simbench list scenarios --format
+// names` for the names of scenarios, so that a new scenario needs no new script. Other values get
+// files, folders, or nothing (numbers). `simbench --scenario S` is completed as `simbench run
+// --scenario S`.
+std::string bash_completion(const CommandTable& table);
+std::string zsh_completion(const CommandTable& table);
+std::string fish_completion(const CommandTable& table);
+
+// Man pages: troff with the man(7) macros, section 1. First simbench(1), which lists the commands,
+// then simbench-NAME(1) of one of table.commands.
+//
+// A command's footer is divided: paragraphs that begin with "Example" become EXAMPLES, with "Exit
+// status:" EXIT STATUS, the others part of the DESCRIPTION.
+std::string manual_page(const CommandTable& table);
+std::string manual_page(const CommandTable& table, const CommandEntry& command);
 
 }  // namespace simbench::cli
 

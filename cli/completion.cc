@@ -1,11 +1,11 @@
-#include "cli/completion.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "cli/command_table.h"
 
 namespace simbench::cli {
 namespace {
@@ -18,22 +18,41 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-// What stands in a script for the default command.
+// A script with the name of the default command in place of DEFAULT.
 std::string with_default_command(const char* script) {
   return replaced(script, "DEFAULT", kDefaultCommand);
 }
 
-}  // namespace
+// What each shell offers for a kind of value. In bash's and zsh's "{}" stands for the words; fish
+// gets words by an option of their own.
+struct Offer {
+  const char* bash;
+  const char* zsh;
+  const char* fish;
+};
 
-namespace {
+const Offer& offer(ValueKind kind) {
+  static constexpr Offer kOffers[] = {
+      {"-", " ", ""},
+      {"word {}", "({})", " -x -a "},
+      {"scenario", "_simbench_scenarios", " -x -a '(__simbench_scenarios)'"},
+      {"number", " ", " -x"},
+      {"folder", "_files -/", " -x -a '(__fish_complete_directories (commandline -ct))'"},
+      {"file", "_files", " -r -F"}};
+  return kOffers[static_cast<std::size_t>(kind)];
+}
+
+std::string words_of(const OptionEntry& entry) {
+  return fmt::format("{}", fmt::join(entry.words, " "));
+}
 
 constexpr const char* kBashHead =
     R"bash(# bash completion for simbench; made by `simbench completion bash`.
 
 )bash";
 
-// What is asked of the tables: the options of a command; what follows an option of a command; what
-// the argument at a place of a command may be. "-" is no value at all, as of a flag.
+// Uses three functions that are made from the table: the options of a command, the values of an
+// option of a command, the values of an argument. "-" is no value, as for a flag.
 constexpr const char* kBashBody = R"bash(
 # The candidates of a kind of value for the word being typed.
 _simbench_complete() {
@@ -94,21 +113,7 @@ complete -F _simbench simbench
 )bash";
 
 std::string kind_text(const OptionEntry& entry) {
-  switch (entry.value) {
-    case ValueKind::kNone:
-      return "-";
-    case ValueKind::kWord:
-      return fmt::format("word {}", fmt::join(entry.words, " "));
-    case ValueKind::kScenario:
-      return "scenario";
-    case ValueKind::kNumber:
-      return "number";
-    case ValueKind::kFolder:
-      return "folder";
-    case ValueKind::kFile:
-      break;
-  }
-  return "file";
+  return replaced(offer(entry.value).bash, "{}", words_of(entry));
 }
 
 std::string options_case(const CommandEntry& command) {
@@ -215,7 +220,7 @@ std::string quoted_for_zsh(const std::string& text) {
   return fmt::format("'{}'", replaced(text, "'", "'\\''"));
 }
 
-// Within the brackets of an option's explanation, and between colons.
+// Escapes text within the brackets of an option's explanation, and between colons.
 std::string escaped(std::string text) {
   text = replaced(std::move(text), "\\", "\\\\");
   for (const char* special : {"[", "]", ":"}) {
@@ -225,20 +230,7 @@ std::string escaped(std::string text) {
 }
 
 std::string action(const OptionEntry& entry) {
-  switch (entry.value) {
-    case ValueKind::kWord:
-      return fmt::format("({})", fmt::join(entry.words, " "));
-    case ValueKind::kScenario:
-      return "_simbench_scenarios";
-    case ValueKind::kFolder:
-      return "_files -/";
-    case ValueKind::kFile:
-      return "_files";
-    case ValueKind::kNone:
-    case ValueKind::kNumber:
-      break;
-  }
-  return " ";
+  return replaced(offer(entry.value).zsh, "{}", words_of(entry));
 }
 
 std::string option_specs(const OptionEntry& option) {
@@ -323,23 +315,10 @@ std::string quoted_for_fish(std::string text) {
   return fmt::format("'{}'", replaced(replaced(std::move(text), "\\", "\\\\"), "'", "\\'"));
 }
 
-// The options of `complete` that offer what a value may be.
+// The options of `complete` that offer the values.
 std::string candidates(const OptionEntry& entry) {
-  switch (entry.value) {
-    case ValueKind::kNone:
-      return "";
-    case ValueKind::kWord:
-      return " -x -a " + quoted_for_fish(fmt::format("{}", fmt::join(entry.words, " ")));
-    case ValueKind::kScenario:
-      return " -x -a '(__simbench_scenarios)'";
-    case ValueKind::kNumber:
-      return " -x";
-    case ValueKind::kFolder:
-      return " -x -a '(__fish_complete_directories (commandline -ct))'";
-    case ValueKind::kFile:
-      break;
-  }
-  return " -r -F";
+  const std::string offered = offer(entry.value).fish;
+  return entry.value == ValueKind::kWord ? offered + quoted_for_fish(words_of(entry)) : offered;
 }
 
 std::string option_line(const std::string& condition, const OptionEntry& option) {
@@ -352,7 +331,7 @@ std::string option_line(const std::string& condition, const OptionEntry& option)
 }
 
 std::string argument_line(const std::string& condition, const OptionEntry& argument) {
-  // -x is about the value of an option; a plain file is what -F brings back after -f.
+  // -x and -r concern the value of an option; -F offers files in spite of the general -f.
   std::string offered = candidates(argument);
   if (argument.value == ValueKind::kFile) offered = " -F";
   if (argument.value == ValueKind::kNumber) return "";
@@ -375,7 +354,7 @@ std::string fish_completion(const CommandTable& table) {
     const std::string condition =
         command.name == kDefaultCommand ? fmt::format("{}; or __simbench_starts", is) : is;
     for (const OptionEntry& option : command.options) {
-      // --help is simbench's own there.
+      // Without a command --help is simbench's own.
       const bool shared = option.names.back() == "--help";
       text += option_line(shared ? is : condition, option);
     }

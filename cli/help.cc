@@ -21,7 +21,7 @@ constexpr const char* kUngrouped = "Subcommands";  // CLI11's default
 
 std::size_t width() { return std::min(kHelpWidth, reports::page_width().value_or(kHelpWidth)); }
 
-// A name, and beside it what it means; below it where the page is narrow or the name long.
+// A name with its meaning beside it, or below it on a narrow page or after a long name.
 std::string entry_text(const std::string& name, const std::string& text) {
   const std::size_t column = width() < 2 * kTextColumn ? kNarrowTextColumn : kTextColumn;
   std::string words = text;
@@ -40,7 +40,7 @@ std::string entry_text(const std::string& name, const std::string& text) {
   return out + "\n";
 }
 
-// CLI11 makes an empty group of what has none; a footer begins with the line break of its literal.
+// A footer begins with the line break of its literal.
 std::string without_first_break(std::string text) {
   text.erase(0, text.find_first_not_of('\n'));
   return text;
@@ -123,7 +123,7 @@ std::vector<std::string> names_of(const std::vector<OptionEntry>& options) {
   return names;
 }
 
-// The entry of the command that was parsed, else of simbench.
+// The entry of the parsed command, else of simbench.
 CommandEntry used_command(CLI::App& app) {
   const CommandTable table = command_table(app);
   const std::vector<CLI::App*> used = app.get_subcommands();
@@ -153,7 +153,7 @@ std::string unexpected(const CommandEntry& command, const std::string& found) {
                      similar, fmt::join(known, ", "));
 }
 
-// CLI11 says "--scenario is required".
+// Explains a missing scenario; `text` is CLI11's "--scenario is required".
 std::string missing(const CommandEntry& command, const std::string& text) {
   for (const std::vector<OptionEntry>* entries : {&command.options, &command.arguments}) {
     for (const OptionEntry& entry : *entries) {

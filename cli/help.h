@@ -1,4 +1,4 @@
-// What --help shows, and what is said about a command line that cannot be parsed: what was found,
+// The text of --help, and the messages about a command line that cannot be parsed: what was found,
 // what is allowed, and where to read more.
 #ifndef SIMBENCH_CLI_HELP_H_
 #define SIMBENCH_CLI_HELP_H_
@@ -18,19 +18,18 @@ namespace simbench::cli {
 // The widest help, in columns; it is wrapped to the page where that is narrower.
 inline constexpr std::size_t kHelpWidth = 100;
 
-// Gives the help its layout; of subcommands that are added later as well.
+// Sets the layout of the help, also of subcommands that are added later.
 void format_help(CLI::App& app);
 
-// Puts the subcommands that have no group of their own yet into `group`, under which the help lists
-// them.
+// Puts the subcommands without a group into `group`, under which the help lists them.
 void group_commands(CLI::App& app, const std::string& group);
 
-// About the first word of the command line, if it is no command: CLI11 would only say that one is
-// missing. `arguments` with the program's name.
+// The message if the first word of the command line is no command: CLI11 would only report a
+// missing one. `arguments` with the program's name.
 std::optional<std::string> unknown_command(CLI::App& app,
                                            const std::vector<std::string>& arguments);
 
-// About what CLI11 refused.
+// The message about CLI11's error.
 std::string usage_error(CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace simbench::cli

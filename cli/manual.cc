@@ -1,5 +1,3 @@
-#include "cli/manual.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +5,13 @@
 #include <sstream>
 #include <vector>
 
+#include "cli/command_table.h"
 #include "recording/version.h"
 
 namespace simbench::cli {
 namespace {
 
-// A line of text as troff takes it for what it is.
+// A line of text, escaped for troff.
 std::string troff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -124,7 +123,7 @@ std::vector<Lines> paragraphs(const std::string& text) {
   return found;
 }
 
-// Indented lines are set as they are, the others as prose.
+// Indented lines stay as they are, the others become prose.
 std::string body(const Lines& lines) {
   std::string text;
   bool as_it_is = false;
@@ -166,7 +165,7 @@ std::string section(const char* name, const std::string& text) {
 
 constexpr const char* kEnvironment = R"(.TP
 .B COLUMNS
-How wide tables and text may be. Default: as the terminal; as wide as need be for a file or a pipe.
+The width of tables and text. Default: the terminal's; unlimited for a file or a pipe.
 .TP
 .B NO_COLOR
 No colour, if it is not empty.

@@ -1,6 +1,5 @@
-// What a command answers: the result on standard output, the exit status, and on standard error
-// everything else, as text for people, or, with --json, as JSON lines for scripts. One object a
-// line:
+// The output of a command: the result on standard output, the exit status, and everything else on
+// standard error, as text for people or, with --json, as JSON lines for scripts. One object a line:
 //
 //   {"event":"warning","text":"..."}      also "note"
 //   {"event":"error","text":"...","next":"simbench run --help"}    "next" where it is known
@@ -8,7 +7,7 @@
 //
 // Text: "warning: ...", "note: ...", "error: ...\nSee: ...".
 //
-// Not thread-safe, and one setting for the process: so is standard error.
+// Not thread-safe; one setting for the process.
 #ifndef SIMBENCH_CLI_MESSAGES_H_
 #define SIMBENCH_CLI_MESSAGES_H_
 
@@ -20,7 +19,7 @@
 
 namespace simbench::cli {
 
-// What the command's exit status means; part of its interface, scripts rely on it.
+// The exit statuses, part of the command's interface: scripts rely on them.
 enum ExitStatus : int {
   kOk = 0,
   kInternalError = 1,
@@ -33,25 +32,24 @@ enum ExitStatus : int {
 // Writes the result to standard output. Throws std::runtime_error if that fails (a full disk).
 void print_result(const std::string& text);
 
-// True once the arguments of the command line have --json (before any "--"): so that also a message
-// about the arguments themselves is JSON.
+// Chooses JSON if the arguments have --json (before any "--"), so that also messages about the
+// arguments are JSON.
 void choose_message_format(const std::vector<std::string>& arguments);
 bool messages_are_json();
 
 void print_warnings(const std::vector<std::string>& warnings);
 void print_note(const std::string& text);
-// `next`: the command that tells more, if there is one.
+// `next`: the command that explains more, if there is one.
 void print_error(const std::string& text, const std::string& next = "");
 
-// An error that is the program's own: the event is "internal error".
+// An error of the program itself: the event is "internal error".
 void print_internal_error(const std::string& text);
 
-// The event as a line of JSON, ended by '\n'. Bytes that are no UTF-8 are replaced.
+// The event as a line of JSON with its '\n'. Bytes that are no UTF-8 are replaced.
 std::string event_line(const nlohmann::ordered_json& event);
 
-// How wide text on standard output may be, in columns: COLUMNS if it is a number of at least
-// kNarrowest, else the width of the terminal that standard output is; std::nullopt (as wide as need
-// be) for a file or a pipe.
+// The width of text on standard output, in columns: COLUMNS if it is a number of at least
+// kNarrowest, else the terminal's width; std::nullopt (no limit) for a file or a pipe.
 inline constexpr std::size_t kNarrowest = 20;
 std::optional<std::size_t> width_of_output();
 

@@ -30,7 +30,7 @@ struct Launcher {
   const char* size;
   const char* rank;
 };
-// Slurm counts tasks for any job; only with PMIx's rank are they ranks of MPI.
+// Slurm counts tasks of any job; only with PMIx's rank are they ranks of MPI.
 constexpr std::initializer_list<Launcher> kLaunchers = {
     {"OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"},
     {"PMI_SIZE", "PMI_RANK"},
@@ -74,7 +74,7 @@ void become_mpi_program(const std::vector<std::string>& arguments) {
   const std::optional<long> rank = mpi_rank();
   if (arguments.size() < 2 || arguments[1] != "sweep" || !rank) return;
   const int reason = become_sibling("simbench-mpi", arguments);
-  // Rank 0 speaks for all; a status of failure here might end it before it has spoken.
+  // Rank 0 reports for all; a failure here might end it before it has done so.
   if (*rank > 0) std::exit(0);
   throw scenarios::InputError(fmt::format(
       "launched by MPI on more than one rank, but {} cannot be started: {}; build simbench where "

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cli/messages.h"
+#include "recording/counted.h"
 
 namespace simbench::cli {
 namespace {
@@ -30,7 +31,7 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-// Milliseconds are enough; NaN is written as null.
+// Rounded to milliseconds; NaN is written as null.
 double rounded_s(double seconds) { return std::round(seconds * 1000) / 1000; }
 
 }  // namespace
@@ -47,7 +48,7 @@ ProgressStyle progress_style() {
 
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string unit, Clock clock)
     : out_(out), style_(style), unit_(std::move(unit)), clock_(std::move(clock)), start_(clock_()) {
-  if (style_.json) out_ << event_line({{"event", "start"}, {"unit", unit_}}) << std::flush;
+  if (style_.json) out_ << event_line({{"event", "start"}, {"unit", unit_ + "s"}}) << std::flush;
 }
 
 std::chrono::duration<double> Progress::steady_seconds() {
@@ -88,7 +89,7 @@ void Progress::print_event(std::uint64_t done, std::uint64_t total) {
   out_ << event_line({{"event", "progress"},
                       {"done", done},
                       {"total", total},
-                      {"unit", unit_},
+                      {"unit", unit_ + "s"},
                       {"elapsed_s", rounded_s(elapsed_s())},
                       {"eta_s", rounded_s(left_s(done, total))}})
        << std::flush;
@@ -100,7 +101,7 @@ void Progress::print_last_event(const char* event) {
   out_ << event_line({{"event", event},
                       {"done", done_},
                       {"total", total_},
-                      {"unit", unit_},
+                      {"unit", unit_ + "s"},
                       {"elapsed_s", rounded_s(elapsed_s())}})
        << std::flush;
 }
@@ -118,8 +119,8 @@ std::string Progress::time_left(std::uint64_t done, std::uint64_t total) const {
 void Progress::draw(std::uint64_t done, std::uint64_t total) {
   const std::chrono::duration<double> now = clock_();
   if (drawn_ && now - last_drawn_ < kRedrawInterval && done < total) return;
-  const std::string text =
-      fmt::format("{:3} % of {} {}{}", done * 100 / total, total, unit_, time_left(done, total));
+  const std::string text = fmt::format("{:3} % of {}{}", done * 100 / total, counted(total, unit_),
+                                       time_left(done, total));
   // A line that fills the last column would wrap on some terminals.
   const int room = style_.width - 1;
   const int bar = std::min(kWidestBar, room - static_cast<int>(text.size()) - 3);
@@ -139,9 +140,9 @@ void Progress::print_line(std::uint64_t done, std::uint64_t total) {
   if (done * 4 < next_quarter_ * total) return;
   const std::uint64_t quarter = done * 4 / total;
   if (quarter == 4) {
-    out_ << fmt::format("{} {} in {}\n", total, unit_, duration_text(elapsed_s()));
+    out_ << fmt::format("{} in {}\n", counted(total, unit_), duration_text(elapsed_s()));
   } else {
-    out_ << fmt::format("{} of {} {} ({} %){}\n", done, total, unit_, done * 100 / total,
+    out_ << fmt::format("{} of {} ({} %){}\n", done, counted(total, unit_), done * 100 / total,
                         time_left(done, total));
   }
   out_ << std::flush;
@@ -150,8 +151,9 @@ void Progress::print_line(std::uint64_t done, std::uint64_t total) {
 
 void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total) {
   if (messages_are_json()) return;
-  std::cerr << fmt::format("interrupted after {} of {} {}; {}\n", done,
-                           total ? std::to_string(total) : "all", watch.unit, watch.kept);
+  std::cerr << fmt::format("interrupted after {} of {}; {}\n", done,
+                           total ? counted(total, watch.unit) : "all " + watch.unit + "s",
+                           watch.kept);
 }
 
 }  // namespace simbench::cli

@@ -1,21 +1,20 @@
-// How far the work is, on standard error; and how long work is run, which may be interrupted.
+// The progress of work on standard error, and a way to run long, interruptible work.
 //
-// On a terminal: one line with a bar and the time still to go, redrawn at most ten times a second,
+// On a terminal: one line with a bar and the remaining time, redrawn at most ten times a second,
 // never wider than the terminal, erased at the end. Elsewhere (a file, a log): a line at the start
-// and one at every quarter. Colour only on a terminal that has it and where it is wanted
-// (cli/messages.h).
+// and one at every quarter. Colour only on a terminal that has it, if wanted (cli/messages.h).
 //
-// With --json (cli/messages.h) JSON lines, eight of progress a second at most; "eta_s" is null
-// while nothing is done:
+// With --json (cli/messages.h) JSON lines, at most eight of progress a second; "eta_s" is null
+// before the first unit is done:
 //
 //   {"event":"start","unit":"runs"}
 //   {"event":"progress","done":12,"total":96,"unit":"runs","elapsed_s":1.31,"eta_s":9.17}
 //   {"event":"end","done":96,"total":96,"unit":"runs","elapsed_s":10.4}
 //
-// and in place of the last, after Ctrl-C, {"event":"interrupt", ...} with the same members. Work
-// that fails ends with neither, but with an "error".
+// and, after Ctrl-C, {"event":"interrupt", ...} with the same members in place of the last. Work
+// that fails ends with an "error" instead.
 //
-//   Progress progress(std::cerr, progress_style(), "runs");
+//   Progress progress(std::cerr, progress_style(), "run");
 //   evaluate(scenario, make_source, options,
 //            [&](auto done, auto total) { progress.update(done, total); });
 //   progress.finish();
@@ -45,14 +44,14 @@ struct ProgressStyle {
   int width = 80;  // of the terminal, in columns
 };
 
-// What standard error is: terminal or not, its width, whether it takes colour; and --json.
+// The style for standard error: terminal or not, its width, colour; and --json.
 ProgressStyle progress_style();
 
 class Progress {
  public:
   using Clock = std::function<std::chrono::duration<double>()>;
 
-  // `clock` counts seconds from any zero; a test brings its own.
+  // `unit`: what is counted, in the singular. `clock` counts seconds from any zero.
   Progress(std::ostream& out, ProgressStyle style, std::string unit, Clock clock = steady_seconds);
   ~Progress() { erase(); }
   Progress(const Progress&) = delete;
@@ -87,29 +86,28 @@ class Progress {
   bool finished_ = false;
 };
 
-// What watched() says about its work.
+// How watched() reports its work.
 struct Watch {
-  std::string unit = "runs";                   // what it counts, in the plural
-  std::uint64_t total = 0;                     // of them; 0: known only once it has begun
+  std::string unit = "run";                    // what it counts, in the singular
+  std::uint64_t total = 0;                     // how many; 0: unknown until it begins
   std::string kept = "no result was written";  // what an interruption leaves
 };
 
-// After the first Ctrl-C.
+// Reports the first Ctrl-C.
 void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t total);
 
-// Runs work that reports its progress and may be interrupted, the way every long command does.
+// Runs the work of a long command, with progress, until its end or the first Ctrl-C.
 //
-// After the first Ctrl-C the work ends at its next run; then a line says how far it got, and there
-// is no result. With --json all of it is JSON lines; a command needs to do nothing for that but run
-// its work in here.
+// After Ctrl-C the work ends at its next run; a line reports how far it got, and there is no
+// result. With --json all messages are JSON lines.
 //
 //   const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
 //     return evaluation::evaluate(scenario, make_source, options, progress);
 //   });
 //   if (!results) return kInterrupted;
 //
-// `work` returns a Result (or none: an empty std::optional). Everything that it throws passes
-// through, unless it was interrupted.
+// `work` returns a Result, or an empty std::optional. Its exceptions pass through, unless it was
+// interrupted.
 template <class Result, class Work>
 std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
   const app::InterruptHandler handler;

@@ -22,12 +22,12 @@ bool ask_at_terminal(const std::string& text) {
 
 void add_backend_options(Command& command, BackendOptions& options) {
   command.word("--backend", "TEXT", options.backend, {"sim", "hardware"},
-               "Where: in the simulator (sim), or on a real rig whose hosts run\n"
+               "Where to run: in the simulator (sim), or on a real rig whose hosts run\n"
                "`simbench node` (hardware). Default: sim");
   command.text("--rig", "FILE", options.rig, "The rig file (with --backend hardware)");
   command.text("--key-file", "FILE", options.key_file,
-               "The key that the rig's nodes have (see simbench keygen);\n"
-               "without one only nodes of this machine are spoken to");
+               "The key of the rig's nodes (see simbench keygen);\n"
+               "without one only nodes on this machine can be reached");
 }
 
 bool is_hardware(const BackendOptions& options) {

@@ -1,5 +1,5 @@
 // The options of commands that can run on a real rig instead of in the simulator, and the rig as a
-// RecordingSource (hardware/conductor/rig_source.h) that talks to the user of the command line.
+// RecordingSource (hardware/conductor/rig_source.h) that prompts the user of the command line.
 //
 //   BackendOptions backend;
 //   add_backend_options(command, backend);
@@ -32,11 +32,11 @@ void add_backend_options(Command& command, BackendOptions& options);
 // Throws scenarios::InputError: hardware without a rig, a rig without hardware.
 bool is_hardware(const BackendOptions& options);
 
-// The key of --key-file, or the one of those who have none.
+// The key of --key-file; if it is empty, the key that stands in for a missing one.
 hardware::SecretKey key_of(const std::string& key_file);
 
-// Steps are told as notes; the user is asked at the terminal where a trigger is switched by hand;
-// Ctrl-C stops the cameras. Throws scenarios::InputError and hardware::KeyError.
+// Steps become notes; a prompt at the terminal asks the user to switch a manual trigger; Ctrl-C
+// stops the cameras. Throws scenarios::InputError and hardware::KeyError.
 std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& options,
                                                      const scenarios::Scenario& scenario);
 

@@ -9,7 +9,7 @@
 namespace simbench::reconstruction {
 namespace {
 
-// Of z^2, in metres for z in metres.
+// The factor of z^2, in metres for z in metres.
 double sigma_factor(const scenarios::Studio& studio, double focal_px) {
   return studio.subpixel_error_px / (focal_px * studio.stereo_baseline_mm * 1e-3);
 }
@@ -20,7 +20,7 @@ double depth_sigma_m(const scenarios::Studio& studio, double focal_px, double de
   return sigma_factor(studio, focal_px) * depth_m * depth_m;
 }
 
-// A pixel that sees something draws, whatever becomes of it: limits move no other pixel's numbers.
+// Every pixel that sees something draws, also a missing one, so that limits change no other pixel.
 DepthMap measured_depth(const SeenDepth& seen, const scenarios::Studio& studio, double focal_px,
                         const NoiseKey& key) {
   static constexpr sim::ComponentKey kDepthNoise("depth noise");

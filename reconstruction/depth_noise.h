@@ -1,5 +1,5 @@
-// What a stereo depth camera makes of a true depth image: noise that grows with the square of the
-// distance, and pixels without a value.
+// The noise of a stereo depth camera: it grows with the square of the distance, and some pixels
+// have no value.
 //
 // A disparity error of s pixels (subpixel_error_px, standard deviation) is a depth error of
 //
@@ -9,8 +9,8 @@
 // (f = 430, B = 95 mm, s = 0.08) it is 0.00196 z^2: 8 mm at 2 m. A pixel is missing where the
 // surface is nearer than min_distance_m or farther than max_distance_m, met at more than
 // max_incidence_deg, or by chance (missing_share), or where the error would put it at or behind the
-// camera. Pixels are independent of each other: real stereo noise is correlated over its matching
-// window, which this law does not say.
+// camera. Pixels are independent of each other, although real stereo noise is correlated over its
+// matching window.
 //
 //   const DepthMap depth = measured_depth(seen, studio, focal_px, {seed, camera, frame});
 //

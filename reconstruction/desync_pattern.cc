@@ -9,7 +9,7 @@
 namespace simbench::reconstruction {
 namespace {
 
-// Of each host, in [0, 1], both of which occur; of a single host 1/2.
+// The place of each host in [0, 1], with both ends taken; of a single host 1/2.
 std::vector<double> host_places(std::int64_t hosts, std::uint64_t seed) {
   std::vector<double> places;
   for (std::int64_t host = 0; host < hosts; ++host) {

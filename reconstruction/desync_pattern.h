@@ -1,9 +1,9 @@
-// Exposures of a rig whose hosts disagree by a known amount: for the question what a millisecond of
-// desynchronisation costs.
+// Exposures of a rig whose hosts disagree by a known amount, to measure the cost of a millisecond
+// of desynchronisation.
 //
-// Cameras of one host expose together. Hosts are spread over `desync_ms`, the earliest and the
-// latest exactly so far apart, the others uniformly between them; which host has which place is
-// drawn by the seed, the same for every desynchronisation, so that points of a curve are paired.
+// Cameras of one host expose together. Hosts are spread over `desync_ms`: the earliest and the
+// latest are exactly that far apart, the others are uniform between them. The seed draws the hosts'
+// places, the same for every desynchronisation, so that points of a curve are paired.
 #ifndef SIMBENCH_RECONSTRUCTION_DESYNC_PATTERN_H_
 #define SIMBENCH_RECONSTRUCTION_DESYNC_PATTERN_H_
 

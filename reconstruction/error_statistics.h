@@ -1,4 +1,5 @@
-// The distribution of many distances in little memory: mean, standard deviation and quantiles.
+// The distribution of many distances in little memory: mean, standard deviation and quantiles; and
+// the errors of the frame sets of a seed, added up.
 //
 // Mean and standard deviation are exact; quantiles come from a histogram of 0.1 mm bins up to 10 m
 // (farther distances count as 10 m) and are within half a bin. 0.8 MB, however many distances.
@@ -6,12 +7,17 @@
 //   ErrorStatistics errors;
 //   errors.add(0.012);                     // metres
 //   errors.summary().mean_cm;              // 1.2
+//
+//   SeedTally tally;
+//   tally.add(set, reconstructed, errors_of_the_set);   // each set
+//   row.seeds.push_back(tally.finish(seed, gathered));
 #ifndef SIMBENCH_RECONSTRUCTION_ERROR_STATISTICS_H_
 #define SIMBENCH_RECONSTRUCTION_ERROR_STATISTICS_H_
 
 #include <cstdint>
 #include <vector>
 
+#include "evaluation/run/exposure_sets.h"
 #include "reconstruction/results.h"
 
 namespace simbench::reconstruction {
@@ -35,6 +41,18 @@ class ErrorStatistics {
   double sum_ = 0;
   double sum_of_squares_ = 0;
   std::vector<std::int64_t> bins_;
+};
+
+// Adds up the frame sets of one pipeline at one seed.
+class SeedTally {
+ public:
+  void add(const evaluation::ExposureSet& set, bool reconstructed, const ErrorStatistics& errors);
+  SeedReprojection finish(std::uint64_t seed, bool gathered) const;
+
+ private:
+  ErrorStatistics errors_;
+  SeedReprojection counts_;
+  double spread_ms_ = 0;
 };
 
 }  // namespace simbench::reconstruction

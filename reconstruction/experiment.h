@@ -8,10 +8,10 @@
 // pipelines are paired by seed.
 //
 // Jobs run on `jobs` threads, each with one frame set in memory at a time: memory grows neither
-// with frames nor with seeds. Results do not depend on how many threads.
+// with frames nor with seeds. Results do not depend on the number of threads.
 //
 // Needs Embree and Open3D: run_reconstruction() is in simbench::reconstruction_libraries, which is
-// there where they are (cmake/reconstruction.cmake).
+// built where they are found (cmake/reconstruction.cmake).
 //
 //   const ReconstructionResults results = run_reconstruction(
 //       scenario, make_simulated, options, on_mesh, progress);
@@ -43,15 +43,15 @@ struct ReconstructionOptions {
   std::vector<double> curve_speed_factors{};
   std::vector<double> curve_desync_ms{};
   std::int64_t curve_frames = 1;
-  // Factors on the script's speeds at which the published error of the worst row is looked for, by
-  // its own exposures of a subject so much faster: from 1 on upwards or downwards until it is
-  // passed. Each takes all sets of a row. Empty: not looked for.
+  // Factors on the script's speeds, tried from 1 upwards or downwards with the worst row's own
+  // exposures until its published error is passed. Each takes all sets of a row. Empty: no search.
   std::vector<double> search_speed_factors{};
   const std::atomic<bool>* cancel = nullptr;  // once true, no more sets are begun
 };
 
 // The mesh of a pipeline's first set at the first seed, its vertices coloured by error
-// (error_colour in paint.h), and its picture. Called one at a time, from any thread, in any order.
+// (error_colour in reprojection.h), and its picture. Called one at a time, from any thread, in any
+// order.
 struct ShownMesh {
   std::string pipeline;
   TriangleMesh mesh;
@@ -62,7 +62,7 @@ struct ShownMesh {
 };
 using MeshKeeper = std::function<void(const ShownMesh&)>;
 
-// Ended through ReconstructionOptions::cancel.
+// The end after ReconstructionOptions::cancel.
 class ReconstructionCancelled final : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -70,7 +70,7 @@ class ReconstructionCancelled final : public std::runtime_error {
 
 // Throws scenarios::InputError: the scenario has no studio, or too many cameras for it; a pipeline
 // is not known; a mesh file cannot be used; no camera sees the subject. ReconstructionCancelled.
-// What simulation throws passes through, but a capture that fails (RecordingFailed) is a note of
+// Exceptions of the simulation pass through, but a failed capture (RecordingFailed) is a note of
 // its row.
 ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const evaluation::SourceFactory& make_source,
@@ -78,8 +78,10 @@ ReconstructionResults run_reconstruction(const scenarios::Scenario& scenario,
                                          const MeshKeeper& on_mesh,
                                          const evaluation::Progress& progress);
 
-// What a program that has it hands to the command line (cli/command_line.h).
-using RunReconstruction = decltype(&run_reconstruction);
+// What simbench-reconstruct hands to the command line (cli/command_line.h).
+struct Reconstruction {
+  decltype(&run_reconstruction) run = nullptr;
+};
 
 }  // namespace simbench::reconstruction
 

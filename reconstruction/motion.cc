@@ -22,7 +22,7 @@ constexpr double kKneeLead = 0.25;
 constexpr double kShoulderSwing = 20 * kDegree;
 constexpr double kElbowBend = 20 * kDegree;
 
-// Where someone is who walked `distance` to and fro: from 0 up to +kWalkLength / 2 first.
+// The place after walking `distance` to and fro: from 0 up to +kWalkLength / 2 first.
 double to_and_fro(double distance) {
   const double turns = distance / (2 * kWalkLength) + 0.25;
   return kWalkLength * (0.5 - 2 * std::abs(turns - std::floor(turns) - 0.5));

@@ -1,4 +1,4 @@
-// The script a subject follows: where its root is and what its limbs do, at any instant.
+// The script of a subject: the pose of its root and the angles of its limbs at any instant.
 //
 //   stand          at the centre, arms hanging
 //   turn           on the spot, counter-clockwise seen from above, at turn_rate_rad_per_s
@@ -19,13 +19,13 @@
 // swing phase, arms swing against the legs. The root moves evenly: it does not bob. All is
 // continuously differentiable in time but at the ends of `walk`, where the speed changes its sign.
 //
-// A sped-up script (speed_factor) follows the same path: walking, turning and arms all are so many
-// times as fast.
+// A sped-up script (speed_factor) follows the same path; walking, turning and arms are all faster
+// by that factor.
 //
 //   const Motion motion(studio.subject);
 //   const MotionState state = motion.at(/*seconds=*/0.25);
 //
-// Source: the paper says "moving person" and no more; the scripts are those of the reconstruction
+// Source: the paper states only "moving person"; the scripts are those of the reconstruction
 // study (docs/reference/calibration.md section 6), gait figures are common ones (stride 1.4 m).
 #ifndef SIMBENCH_RECONSTRUCTION_MOTION_H_
 #define SIMBENCH_RECONSTRUCTION_MOTION_H_
@@ -56,7 +56,7 @@ struct MotionState {
 
 class Motion {
  public:
-  // Throws std::invalid_argument for a script that there is not.
+  // Throws std::invalid_argument for an unknown script.
   explicit Motion(const scenarios::StudioSubject& subject, double speed_factor = 1.0);
   MotionState at(double seconds) const;
 

@@ -22,7 +22,7 @@ struct Ring {
   double z = 0;
 };
 
-// The longest steps of latitude and longitude that keep a sphere's triangles so near to it.
+// The longest steps of latitude and longitude at which a sphere's triangles keep the largest error.
 //
 // Around the middle of a cell with steps of t, the haversine of the angle d to its corners is at
 // most 2 sin(t / 4)^2; no point of a triangle with these corners is deeper than r (1 - cos d),
@@ -47,7 +47,7 @@ void append_rings(std::vector<Ring>& rings, double radius, double centre_z, doub
   }
 }
 
-// Of rings from top to bottom, of which the first and the last are mere points.
+// Meshes rings from top to bottom; the first and the last are points.
 TriangleMesh revolve(const std::vector<Ring>& rings, int segments) {
   TriangleMesh mesh;
   mesh.vertices.emplace_back(0.0F, 0.0F, static_cast<float>(rings.front().z));
@@ -85,7 +85,7 @@ TriangleMesh make_sphere(double radius_m, double largest_error_m) {
   return make_ellipsoid(Eigen::Vector3d::Constant(radius_m), largest_error_m);
 }
 
-// A unit sphere, stretched: which stretches no distance by more than the longest semi-axis.
+// A stretched unit sphere: no distance grows by more than the longest semi-axis.
 TriangleMesh make_ellipsoid(const Eigen::Vector3d& semi_axes_m, double largest_error_m) {
   for (const double semi_axis : semi_axes_m) require_positive(semi_axis, "a semi-axis");
   require_positive(largest_error_m, "a largest error");

@@ -17,7 +17,7 @@ namespace simbench::reconstruction {
 TriangleMesh make_sphere(double radius_m, double largest_error_m);
 TriangleMesh make_ellipsoid(const Eigen::Vector3d& semi_axes_m, double largest_error_m);
 // The hull of a sphere about the origin and one about (0, 0, -length_m): a limb that hangs down.
-// One sphere inside the other is that other sphere.
+// If one sphere is inside the other, the other sphere alone.
 TriangleMesh make_tapered_capsule(double radius_m, double end_radius_m, double length_m,
                                   double largest_error_m);
 TriangleMesh make_box(const Eigen::Vector3d& sizes_m);

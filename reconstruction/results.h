@@ -1,5 +1,5 @@
-// What a reconstruction experiment found, as plain data: Table 4 over seeds, and what a millisecond
-// of desynchronisation costs.
+// The results of a reconstruction experiment as plain data: Table 4 over seeds, and the cost of a
+// millisecond of desynchronisation.
 //
 // A reprojection error is the distance, in the world's frame, between a vertex of the reconstructed
 // mesh and the point of a depth map at the pixel where that vertex is seen. All errors of all frame
@@ -52,7 +52,7 @@ struct ReprojectionRow {
   std::optional<scenarios::PublishedReprojection> published;
   std::vector<std::string> notes{};
 
-  // Of the seeds that have errors.
+  // Series over the seeds that have errors.
   evaluation::Series mean_cm() const;
   evaluation::Series std_cm() const;
   evaluation::Series median_cm() const;
@@ -60,8 +60,8 @@ struct ReprojectionRow {
   evaluation::Series desync_ms() const;
 };
 
-// All hosts off by a known amount: exposures of a host's cameras coincide, hosts are spread over
-// `desync_ms` (the first and the last so far apart, the others between them, drawn by seed).
+// The error with hosts apart by a known amount: exposures of a host's cameras coincide, hosts are
+// spread over `desync_ms` (desync_pattern.h).
 struct CurvePoint {
   double speed_m_per_s = 0;  // walking speed at the sped-up script (of one without walking: 0)
   double speed_factor = 1;   // of the scenario's script
@@ -70,13 +70,13 @@ struct CurvePoint {
   std::vector<double> std_cm;
 };
 
-// Which speed of the subject gives a row, with the exposures that it has, its published mean error.
+// The speed of the subject at which a row, with its own exposures, has its published mean error.
 struct SpeedNeeded {
   std::string pipeline;  // whose published mean it is
   double desync_ms = 0;  // the median of its row
   double published_mean_cm = 0;
   std::vector<CurvePoint> points;  // the row over speed; that of factor 1 is the row itself
-  // Where the median mean error passes it first; nothing: not up to the last point.
+  // Where the median mean error first passes it; nothing: not up to the last point.
   std::optional<double> speed_m_per_s;
 };
 
@@ -84,12 +84,12 @@ struct ReconstructionResults {
   scenarios::Scenario scenario;
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 0;
-  std::int64_t frames = 0;  // sets asked for at each seed
+  std::int64_t frames = 0;  // requested sets of each seed
   std::vector<ReprojectionRow> rows;
-  std::vector<CurvePoint> curve;  // by speed, then by desynchronisation; empty: not asked for
+  std::vector<CurvePoint> curve;  // by speed, then by desynchronisation; empty: not requested
   std::optional<SpeedNeeded> speed_needed;  // of the row with the largest published mean
   std::vector<std::string> notes;           // about the subject, such as a mesh with holes
-  double wall_s = 0;                        // what it took; /performance
+  double wall_s = 0;                        // wall-clock time; /performance
   double seconds_per_set = 0;               // mean, of one thread
 };
 

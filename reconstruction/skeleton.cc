@@ -10,20 +10,20 @@ using Eigen::Vector3d;
 
 std::size_t index(Segment segment) { return static_cast<std::size_t>(segment); }
 
-// What hangs down goes forwards by `angle`.
+// Turns a hanging limb forwards by `angle`.
 Isometry3d forwards(double angle) {
   return Isometry3d(Eigen::AngleAxisd(-angle, Vector3d::UnitY()));
 }
 
-// What hangs down goes to the left by `angle`.
+// Turns a hanging limb to the left by `angle`.
 Isometry3d leftwards(double angle) {
   return Isometry3d(Eigen::AngleAxisd(angle, Vector3d::UnitX()));
 }
 
 Isometry3d at(const Vector3d& joint) { return Isometry3d(Eigen::Translation3d(joint)); }
 
-// How far a foot's toes point down where the shank leans backwards from top to bottom by `lean`:
-// not at all at first, since the toes would go through the floor, wholly in the end.
+// The angle by which toes point down when the shank leans backwards by `lean`: almost nothing at
+// first, since the toes would go through the floor, all of it in the end.
 double toes_down(double lean) {
   constexpr double kGivesWay = 0.4;  // rad
   return lean * lean * lean / (lean * lean + kGivesWay * kGivesWay);

@@ -4,10 +4,9 @@
 // which it hangs (the trunk's: on the floor below the pelvis), x ahead, y to the left, z up, as it
 // is when the person stands with the arms hanging straight down.
 //
-// The pelvis keeps its height and its bearing, whatever the legs do: where the legs are farthest
-// apart both soles are above the floor, 6 cm at 1.2 m/s and a height of 1.75 m. Feet give way at
-// the ankle so far that no foot goes through the floor. A hanging arm is held kRestingArm to the
-// side, as people hold it.
+// The pelvis keeps its height and its bearing: where the legs are farthest apart both soles are
+// above the floor, 6 cm at 1.2 m/s and a height of 1.75 m. Ankles bend so far that no foot goes
+// through the floor. A hanging arm is held kRestingArm to the side.
 //
 // Source of the lengths: Drillis and Contini 1966, as in Winter, Biomechanics and Motor Control of
 // Human Movement, figure 4.1.

@@ -19,7 +19,7 @@ using scenarios::StreamKind;
 
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
-// What the camera model's profile says of this size of depth image; 0: nothing.
+// The focal length of this size of depth image by the camera model's profile; 0: unknown.
 double known_focal_px(const std::string& model, const scenarios::Stream& stream) {
   const scenarios::CameraProfile* profile = scenarios::find_camera_profile(model);
   const scenarios::StreamProfile* depth =
@@ -41,7 +41,7 @@ Pinhole depth_camera(const scenarios::Scenario& scenario) {
     }
     fail_at(scenario, fmt::format("/cameras/streams/{}", i),
             fmt::format("found depth of {}x{} by {}, whose focal length is not known; the profile "
-                        "of a camera model (simbench list cameras) says it as focal_px of a size",
+                        "of a camera model (simbench list cameras) states it as focal_px of a size",
                         stream.width, stream.height, scenario.cameras.model));
   }
   fail_at(scenario, "/cameras/streams", "found no depth stream, which the studio's cameras need");
@@ -69,7 +69,7 @@ Isometry3d looking_at(const Vector3d& position, const Vector3d& target, bool por
   return pose;
 }
 
-// In the camera's frame: how a calibration gets its pose wrong.
+// The error of a calibration, in the camera's frame.
 Isometry3d calibration_error(const scenarios::Studio& studio, std::uint64_t seed,
                              std::size_t camera) {
   static constexpr sim::ComponentKey kCalibration("studio calibration");
@@ -92,7 +92,7 @@ Isometry3d calibration_error(const scenarios::Studio& studio, std::uint64_t seed
 Studio::Studio(const scenarios::Scenario& scenario, std::uint64_t seed) {
   if (!scenario.studio) {
     fail_at(scenario, "/studio",
-            "found none, which says where the depth cameras of a reconstruction stand and what "
+            "found none, allowed: an object that states where the depth cameras stand and what "
             "they look at; 18cam_6host_30fps_studio has one");
   }
   const scenarios::Studio& studio = *scenario.studio;

@@ -1,9 +1,8 @@
-// The studio: where the depth cameras stand, where their user believes they stand, what they see
-// of a distance.
+// The studio: the true and the believed poses of the depth cameras, and their intrinsics.
 //
 // Cameras stand on a circle of `radius_m` about the vertical through the origin and look at the
-// point at `look_at_height_m` on it. Camera j has the azimuth j / heights, the height j % heights:
-// so the cameras of a host share an azimuth where there are as many heights as cameras per host.
+// point at `look_at_height_m` on it. Camera j has the azimuth j / heights and the height j %
+// heights: the cameras of a host share an azimuth if there are as many heights as cameras per host.
 // Azimuths run counter-clockwise seen from above, beginning on the x axis. Pixels: the scenario's
 // depth stream, with the focal length of the camera model's profile. In portrait the camera is
 // rolled by 90 degrees so that its image's x axis points down (in landscape y does); its image
@@ -27,7 +26,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "reconstruction/pinhole.h"
+#include "reconstruction/depth_map.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::reconstruction {

@@ -1,4 +1,4 @@
-// A surface of triangles, as plain data: what is ray-cast, reconstructed, painted and written.
+// A surface of triangles, as plain data.
 //
 // Units: metres. A triangle is three indices into `vertices`; seen from outside its corners run
 // counter-clockwise. `colours` is empty, or one for each vertex, red, green, blue in [0, 1].

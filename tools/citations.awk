@@ -36,7 +36,7 @@ function cite(line, text,   from, path) {
   }
 }
 
-# A page by its bare name, which nobody finds: "paper.md section 3".
+# A page by its bare name, without its folder: "paper.md section 3".
 function note_bare(text,   name) {
   while (match(text, /(^|[^A-Za-z0-9_.\/-])[a-z][a-z0-9_]*\.md/)) {
     name = substr(text, RSTART, RLENGTH)

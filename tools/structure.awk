@@ -1,6 +1,6 @@
 # One source file against the rules of the house; prints FILE:LINE: what is wrong. For tools/lint,
-# which sets file, allowed (folders and files it may include from), known (all folders) and rooms (of
-# its folder, from the lowest to the highest).
+# which sets file, allowed (folders and files it may include from), known (all folders) and rooms
+# (those of its folder, from the lowest to the highest).
 BEGIN {
   split(allowed, list, " ")
   for (i in list) may[list[i]] = 1

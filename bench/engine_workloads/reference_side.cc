@@ -1,10 +1,9 @@
-// The workloads as one writes them without an engine: a priority queue, plain events, a switch.
+// The workloads without an engine: a priority queue, plain events, a switch.
 #include <limits>
 #include <queue>
 #include <vector>
 
-#include "bench/engine_workloads/hold_model.h"
-#include "bench/engine_workloads/rig_model.h"
+#include "bench/engine_workloads/models.h"
 #include "bench/engine_workloads/workload.h"
 
 namespace simbench::bench {

@@ -1,6 +1,5 @@
 // The workloads through the API that the models of the simulated world use.
-#include "bench/engine_workloads/hold_model.h"
-#include "bench/engine_workloads/rig_model.h"
+#include "bench/engine_workloads/models.h"
 #include "bench/engine_workloads/workload.h"
 #include "sim/engine/engine.h"
 

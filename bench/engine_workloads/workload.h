@@ -1,8 +1,8 @@
 // The two workloads, run by simbench's engine and by the reference they are compared with.
 //
-// The reference is what one writes without an engine: a std::priority_queue of plain events and a
-// switch. Both sides share the models (hold_model.h, rig_model.h), so that only the queue and the
-// dispatch differ. Definitions and checksums: docs/reference/event_engine.md section 1.
+// The reference uses no engine: a std::priority_queue of plain events and a switch. Both sides
+// share the models (models.h), so that only the queue and the dispatch differ. Definitions and
+// checksums: docs/reference/event_engine.md section 1.
 #ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
 #define SIMBENCH_BENCH_ENGINE_WORKLOADS_WORKLOAD_H_
 
@@ -29,7 +29,7 @@ WorkloadResult run_rig_reference(std::uint32_t cameras, std::int64_t duration_ms
 // CPU time of this process in seconds.
 double cpu_seconds();
 
-// What run_rig and run_rig_reference throw.
+// Throws the exception of run_rig and run_rig_reference.
 [[noreturn]] void throw_too_short(std::int64_t duration_ms);
 
 }  // namespace simbench::bench

@@ -16,7 +16,7 @@ void add_run_command(CommandLine& line);
 // The response of every pipeline to parameters of the scenario.
 void add_sweep_command(CommandLine& line);
 // What desynchronisation costs a 3D reconstruction, the paper's Table 4. Goes on as
-// simbench-reconstruct where this program has no reconstruction in it.
+// simbench-reconstruct if this program lacks the libraries.
 void add_reconstruct_command(CommandLine& line);
 
 // Result archives as one HTML file.
@@ -28,7 +28,7 @@ void add_figure_command(CommandLine& line);
 
 // Two archives, or pipelines of one, seed by seed.
 void add_compare_command(CommandLine& line);
-// Holds a result to a baseline.
+// A result against a baseline.
 void add_gate_command(CommandLine& line);
 
 // Captures of a scenario as a recording folder.

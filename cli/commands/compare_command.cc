@@ -10,16 +10,17 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kCompareExamples = R"(
-Two archives: pipelines of the same name, A first, B against it. One archive: two of its pipelines
-(the second against the first), or each against one of them: "how much better than NTP?".
+With two archives A and B: compares the pipelines of the same name, B against A. With one archive:
+compares the second of two pipelines with the first, or every pipeline with one of them ("how much
+better than NTP?").
 
 Examples:
   simbench compare results/monday results/tuesday
   simbench compare results/monday --with-baseline ntp_last_set
   simbench compare results/monday --pipelines yoon2021_network,yoon2021_both --format json
 
-Exit status: 0 ok (whatever the verdicts are; `simbench gate` judges), 1 internal error, 2 bad usage
-or input.)";
+Exit status: 0 ok, for any verdict (`simbench gate` judges), 1 internal error, 2 bad usage or
+input.)";
 
 struct CompareOptions {
   std::vector<std::string> archives;
@@ -35,7 +36,7 @@ reports::Comparison compared(const CompareOptions& options) {
   if (options.archives.size() == 2) {
     if (with_baseline) {
       throw scenarios::InputError(
-          "--with-baseline: compares the pipelines of one archive; name one, found two");
+          "--with-baseline: found two archives, allowed: one, whose pipelines are compared");
     }
     return reports::compare_archives(reports::read_archive(options.archives[0]),
                                      reports::read_archive(options.archives[1]),
@@ -43,8 +44,9 @@ reports::Comparison compared(const CompareOptions& options) {
   }
   if (with_baseline == !pipelines.empty()) {
     throw scenarios::InputError(
-        "of one archive either --pipelines X,Y or --with-baseline PIPELINE says what to compare; "
-        "or name a second archive");
+        "found one archive, allowed with it: either --pipelines X,Y or --with-baseline PIPELINE; "
+        "or "
+        "name a second archive");
   }
   const reports::Archive archive = reports::read_archive(options.archives[0]);
   if (with_baseline) {
@@ -83,7 +85,7 @@ void add_compare_command(CommandLine& line) {
       .required()
       .at_most(2);
   command.list("--pipelines", "NAME,NAME", options->comparison.pipelines,
-               "Of one archive: the two to compare. Of two: only these");
+               "With one archive: the two to compare. With two: only these");
   command.text("--with-baseline", "PIPELINE", options->baseline,
                "Compare each other pipeline of the archive with this one");
   command.number("--smallest-effect", "PERCENT", options->smallest_effect_percent, 0, 1000,
@@ -92,7 +94,7 @@ void add_compare_command(CommandLine& line) {
   command.flag("--by-index", options->comparison.by_index,
                "Pair the n-th seed of A with the n-th of B: for archives without common seeds");
   command.flag("--different-scenarios", options->comparison.different_scenarios,
-               "Compare although the worlds differ: what they make of the same pipelines");
+               "Compare the same pipelines in worlds that differ");
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.footer(kCompareExamples);
   command.runs([options] { return compare(*options); });

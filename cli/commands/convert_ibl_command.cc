@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kExplanation = R"(
 Reads _iblrig_*.timestamps.ssv (ISO time of arrival, cycle clock) and _iblrig_*.frameData.bin (rows
 of four 64-bit floats: host ticks, cycle clock, frame counter, GPIO) and prints the CSV that
-`simbench replay` takes. The camera's cycle clock starts again every 128 s; in the CSV it goes on.
+`simbench replay` takes. The camera's cycle clock starts again every 128 s; the CSV has it
+unwrapped.
 
 Example:
   simbench convert-ibl _iblrig_bodyCamera.timestamps.ssv > body.csv

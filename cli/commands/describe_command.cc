@@ -20,7 +20,7 @@ struct DescribeOptions {
   std::string format;
 };
 
-// A long text or list would make the table too wide; --format json has it whole.
+// Shortens a long text or list, which --format json has in full.
 std::string shortened(const std::string& value) {
   constexpr std::size_t kLongest = 40;
   return value.size() <= kLongest ? value : value.substr(0, kLongest - 3) + "...";

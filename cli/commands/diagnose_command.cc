@@ -22,7 +22,7 @@ Examples:
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
-Exit status: 0 ok, whatever was found, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input.)";
 
 struct DiagnoseOptions {
   std::vector<std::string> files;
@@ -43,13 +43,13 @@ int run_diagnose(const DiagnoseOptions& options) {
 
 void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
-  Command command(line, "diagnose", "Is the hardware sync of a recorded rig working at all?");
-  command.texts("files", "FILE.csv...", options->files, "Recordings").required();
+  Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
+  command.texts("files", "FILE.csv...", options->files, "CSV recordings").required();
   command.format(options->format, {"table", "json"});
   command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
-                 "The trigger's rate. Default: that of most cameras");
+                 "The trigger's rate. Default: the rate of most cameras");
   command.flag("--one-host", options->one_host,
-               "One computer stamped all arrivals, whatever the files say");
+               "One computer stamped all arrivals, even if the files name several hosts");
   command.footer(kDiagnoseExamples);
   command.runs([options] { return run_diagnose(*options); });
 }

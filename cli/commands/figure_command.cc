@@ -27,8 +27,8 @@ using reports::FigureScope;
 using scenarios::InputError;
 
 constexpr const char* kFigureExamples = R"(
-Figures of finished results and of single runs, which are repeated in the simulator. SVG and PDF are
-drawn by gnuplot (Debian: gnuplot-nox); CSV has the data, a line for each point: panel,series,x,y.
+Draws figures of finished results, and of single runs, which it repeats in the simulator. gnuplot
+(Debian: gnuplot-nox) draws SVG and PDF; CSV has the data, a line for each point: panel,series,x,y.
 
 Examples:
   simbench figure --list
@@ -38,7 +38,6 @@ Examples:
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
-constexpr const char* kUsualPipeline = "yoon2021_both";
 constexpr std::uint64_t kUsualSeeds = 32;
 
 struct FigureCommand {
@@ -53,6 +52,20 @@ struct FigureCommand {
   bool list = false;
 };
 
+const char* drawn_for(FigureScope scope) {
+  switch (scope) {
+    case FigureScope::kResults:
+      return "all seeds";
+    case FigureScope::kPipeline:
+      return "a pipeline";
+    case FigureScope::kSeed:
+      return "a seed";
+    case FigureScope::kRun:
+      break;
+  }
+  return "a pipeline and seed";
+}
+
 std::string catalogue_text() {
   using reports::Align;
   reports::Table table({{"figure", Align::kLeft},
@@ -60,22 +73,7 @@ std::string catalogue_text() {
                         {"drawn for", Align::kLeft},
                         {"what it shows", Align::kLeft}});
   for (const FigureEntry& entry : reports::figure_catalogue()) {
-    const char* scope = "";
-    switch (entry.scope) {
-      case FigureScope::kResults:
-        scope = "all seeds";
-        break;
-      case FigureScope::kPipeline:
-        scope = "a pipeline";
-        break;
-      case FigureScope::kSeed:
-        scope = "a seed";
-        break;
-      case FigureScope::kRun:
-        scope = "a pipeline and seed";
-        break;
-    }
-    table.add({entry.id, entry.paper, scope, entry.title});
+    table.add({entry.id, entry.paper, drawn_for(entry.scope), entry.title});
   }
   return plain(table) + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
 }
@@ -106,19 +104,18 @@ bool is_of_one_pipeline(const FigureEntry& entry) {
   return entry.scope == FigureScope::kRun || entry.scope == FigureScope::kPipeline;
 }
 
-// The pipelines to run for it: of those there are, all but where the figure is of one.
+// The pipelines to run: all, or one for a figure of one pipeline. `known`: those that there are.
 std::vector<std::string> chosen_pipelines(const FigureCommand& command, const FigureEntry& entry,
                                           const std::vector<std::string>& known) {
   if (!is_of_one_pipeline(entry)) return command.pipelines;
   if (command.pipelines.size() > 1) {
     throw InputError(
-        fmt::format("--pipelines: found {} names, allowed: one, because {} is of one "
+        fmt::format("--pipelines: found {} names, allowed: one, because {} shows one "
                     "pipeline",
                     command.pipelines.size(), entry.id));
   }
   if (!command.pipelines.empty() || known.empty()) return command.pipelines;
-  const bool usual = std::find(known.begin(), known.end(), kUsualPipeline) != known.end();
-  return {usual ? kUsualPipeline : known.front()};
+  return {usual_pipeline(known)};
 }
 
 app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& entry,
@@ -156,7 +153,7 @@ std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
   });
 }
 
-// Of the figures that were made the one that was meant: of the named pipeline, if there is one.
+// The requested one of the made figures: of the named pipeline, if one is named.
 const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& made) {
   const std::string pipeline = command.pipelines.size() == 1 ? command.pipelines.front() : "";
   for (const Figure& figure : made.figures) {
@@ -195,7 +192,7 @@ int run(const FigureCommand& command) {
   return kOk;
 }
 
-// What CLI11 cannot say: which options go together.
+// Checks which options go together.
 void check(const FigureCommand& command) {
   if (command.list) return;
   if (command.name.empty()) {
@@ -205,7 +202,7 @@ void check(const FigureCommand& command) {
     refuse("DIR, --scenario", "one of them is needed, and not both");
   }
   if (!command.archive.empty() && !command.sets.empty()) {
-    refuse("--set", "goes with --scenario; an archive has its own");
+    refuse("--set", "allowed only with --scenario: an archive has its own parameters");
   }
   if (command.output.empty()) {
     refuse("--output", "is missing: FILE.svg, FILE.pdf or FILE.csv");
@@ -216,23 +213,23 @@ void check(const FigureCommand& command) {
 
 void add_figure_command(CommandLine& line) {
   auto options = std::make_shared<FigureCommand>();
-  Command command(line, "figure", "One figure as SVG, PDF or CSV");
+  Command command(line, "figure", "Draw one figure as SVG, PDF or CSV");
   command.text("name", "NAME", options->name,
-               "Which (see --list): its name, or the paper's number as fig8");
+               "The figure's name (see --list), or the paper's number as fig8");
   command.text("archive", "DIR", options->archive, "Folder that `simbench run --output` wrote");
   command.flag("--list", options->list, "List the figures");
   command.text("--scenario", "SCENARIO", options->scenario,
                "Instead of DIR: name of a scenario or path of a scenario file");
   command.sets(options->sets);
   command.seed("--seed", options->seed,
-               "Of figures of one seed. Default: the archive's first, 1 of a scenario");
+               "The seed of a figure of one seed. Default: the archive's first; 1 for a scenario");
   command.count("--seeds", options->seeds,
-                "Of figures over seeds, how many of a scenario's, and of budgets. Default: 32");
+                "How many seeds, for figures over a scenario's seeds and for budgets. Default: 32");
   command.list("--pipelines", "NAME,NAME", options->pipelines,
-               "Only these. Default: all; yoon2021_both, else the first, where a figure is\n"
-               "of one pipeline");
+               "Only these. Default: all; for a figure of one pipeline yoon2021_both, else the\n"
+               "first");
   command.text("-o,--output", "FILE", options->output,
-               "The file; its ending chooses: .svg, .pdf or .csv. An earlier one is replaced");
+               "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
   command.json_messages();
   command.footer(kFigureExamples);
   command.runs([options] { return run(*options); }, [options] { check(*options); });

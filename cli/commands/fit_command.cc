@@ -20,11 +20,11 @@ namespace {
 
 constexpr const char* kFitExamples = R"(
 Takes a recording folder (simbench record, or a real rig's), or the CSV files that `simbench replay`
-takes. Writes a scenario file with what the recording shows, over a base that gives the rest: drift
-of each camera, distribution and correlation of the delivery delay, dropped frames; with exchanges
-between hosts also the network's latency and the hosts' rates. Prints the evidence of each value,
-what stamps cannot show, and how the simulated model compares with the recording, also with a half
-that it was not fitted to.
+takes. Writes a scenario file: the recording gives the drift of each camera, the distribution and
+correlation of the delivery delay and the dropped frames; with exchanges between hosts also the
+network's latency and the hosts' rates. A base scenario gives the rest. Prints the evidence of each
+value, what stamps cannot show, and how the simulated model compares with the recording, also with a
+half to which it was not fitted.
 
 Examples:
   simbench fit monday -o model.json
@@ -44,14 +44,14 @@ struct FitOptions {
   std::string format;
 };
 
-// What is fitted, over what.
+// The data of a fit, and the scenario that gives the rest.
 struct FitTask {
   evaluation::FitInput input;
   evaluation::FitBase base;
   std::string capture;
 };
 
-// The recording's own scenario: by name if it is a built-in one as it is.
+// The recording's own scenario: by name if it is an unchanged built-in one.
 evaluation::FitBase own_base(const std::string& folder, const std::string& scenario_json) {
   evaluation::FitBase base{.scenario = scenarios::load_scenario_text(
                                scenario_json, folder + "/manifest.json: scenario")};
@@ -151,8 +151,6 @@ int run_fit(const FitOptions& options) {
         evaluation::study_fit(task.input, task.base, options.output, sim::make_simulation);
   } catch (const evaluation::FitError& error) {
     throw scenarios::InputError(error.what());
-  } catch (const RecordingFolderError& error) {
-    throw scenarios::InputError(error.what());
   }
   output.write(report.study.model.text);
   output.publish();
@@ -165,23 +163,23 @@ int run_fit(const FitOptions& options) {
 void add_fit_command(CommandLine& line) {
   auto options = std::make_shared<FitOptions>();
   Command command(line, "fit",
-                  "Make a scenario of a recording: the simulator with a rig's own numbers");
+                  "Fit a scenario to a recording: the simulator with a rig's own numbers");
   command.texts("inputs", "INPUT...", options->inputs, "A recording folder, or CSV files")
       .required();
   command
       .text("-o,--output", "FILE.json", options->output,
-            "The scenario file to write. An earlier one is replaced as a whole")
+            "The scenario file to write. Replaces an earlier file")
       .required();
   command.text("--base", "SCENARIO", options->base,
-               "Scenario, by name or file, that gives what is not fitted.\n"
+               "Scenario (name or file) that gives what is not fitted.\n"
                "Default: the recording's own; for CSV files a built-in one with their counts "
                "and rate");
   command.text("--pipeline", "NAME", options->pipeline,
-               "Of a folder with several captures. Default: the first");
+               "Pipeline of the capture, in a folder with several. Default: the first");
   command.whole_number("--seed", "K", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
-                       "Likewise: the seed, or the repetition of a rig");
+                       "Likewise: seed of the capture, or its repetition on a rig");
   command.flag("--one-host", options->one_host,
-               "One computer stamped all arrivals of the files, whatever they say");
+               "One computer stamped all arrivals, even if the files name several hosts");
   command.format(options->format, {"table", "json"});
   command.footer(kFitExamples);
   command.runs([options] { return run_fit(*options); });

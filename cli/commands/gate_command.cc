@@ -12,16 +12,16 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kGateExamples = R"(
-Exact mode wants the seeds and the scenario of the baseline; fails if a value of the table is worse
-by more than its margin, a share and a step that the baseline file states. Statistical mode takes
-any 32 seeds; fails where a mean is worse by more than the margin and, after Holm's correction over
-all metrics, its interval excludes zero.
+Exact mode needs the seeds and the scenario of the baseline. It fails if a value of the table is
+worse by more than its margin: a share plus a step, stated in the baseline file. Statistical mode
+takes any 32 seeds. It fails if a mean is worse by more than the margin and its interval,
+Holm-corrected over all metrics, excludes zero.
 
 Examples:
   simbench run --scenario 18cam_6host_45fps --output results
   simbench gate results --baseline reports/baselines/18cam_6host_45fps.json
   simbench gate results --baseline mine.json --mode statistical --junit gate.xml
-  simbench gate results --save-baseline mine.json     margins of an earlier file are kept
+  simbench gate results --save-baseline mine.json     keeps the margins of an earlier file
 
 Exit status: 0 passed, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing.)";
 
@@ -53,7 +53,7 @@ std::string formatted(const reports::GateReport& report, const std::string& form
 int gate(const GateOptions& options) {
   if (options.baseline.empty() == options.save_baseline.empty()) {
     throw scenarios::InputError(
-        "either --baseline FILE, to hold the result to it, or --save-baseline FILE, to write one");
+        "either --baseline FILE, to compare with it, or --save-baseline FILE, to write one");
   }
   if (!options.save_baseline.empty()) return save_baseline(options);
   if (!std::filesystem::exists(options.baseline)) {
@@ -78,14 +78,15 @@ int gate(const GateOptions& options) {
 
 void add_gate_command(CommandLine& line) {
   auto options = std::make_shared<GateOptions>();
-  Command command(line, "gate", "Hold a result to a baseline: exit status 3 if it became worse");
+  Command command(line, "gate",
+                  "Compare a result with a baseline: exit status 3 if it became worse");
   command
       .text("result", "DIR", options->result,
             "An archive that `simbench run --output` wrote, or a results.json")
       .required();
-  command.text("--baseline", "FILE", options->baseline, "The baseline to hold it to");
+  command.text("--baseline", "FILE", options->baseline, "The baseline to compare with");
   command.text("--save-baseline", "FILE", options->save_baseline,
-               "Write the result as a baseline, keeping the margins of an earlier one there");
+               "Write the result as a baseline; keeps the margins of an earlier one there");
   command.word("--mode", "MODE", options->mode, {"exact", "statistical"},
                "One of: exact, statistical. Default: exact");
   command.format(options->format, {"text", "json", "junit"});

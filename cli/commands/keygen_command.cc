@@ -11,9 +11,9 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kKeygenExamples = R"(
-Nodes and the command that conducts them speak only to holders of the same key. Who has it may set
-the rig's clocks and start its captures: keep it as you keep a password. Without a key a node speaks
-to its own machine only.
+Nodes and the command that conducts them speak only to holders of the same key. It permits to set
+the rig's clocks and to start its captures: keep it like a password. Without a key a node speaks to
+its own machine only.
 
 Examples:
   simbench keygen rig.key
@@ -29,8 +29,8 @@ int make_key(const std::string& file) {
   }
   print_result(fmt::format(
       "{}: a new key, readable by you only\n"
-      "Copy it to every host of the rig over a safe way (scp -p), and name it there and "
-      "here with --key-file.\n",
+      "Copy it to every host of the rig in a safe way (scp -p), and pass it there and here "
+      "with --key-file.\n",
       file));
   return kOk;
 }
@@ -40,7 +40,7 @@ int make_key(const std::string& file) {
 void add_keygen_command(CommandLine& line) {
   auto file = std::make_shared<std::string>();
   Command command(line, "keygen", "Make the key that the hosts of a rig share");
-  command.text("file", "FILE", *file, "Where to write it; a file that is there is not overwritten")
+  command.text("file", "FILE", *file, "Where to write it; an existing file is not overwritten")
       .required();
   command.json_messages();
   command.footer(kKeygenExamples);

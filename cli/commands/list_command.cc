@@ -33,7 +33,7 @@ constexpr const char* kVariants = R"(
 Any device_time but the oracle may be named with suffixes, as in hull_300_steady_calibrated:
   _steady              fitted on the host's steady clock, mapped by the log of clock adjustments
   _exposure_corrected  arrivals less half of the exposure
-  _calibrated          the same, less the delay (and asymmetry of polls) of the camera model,
+  _calibrated          the same, less the delay (and polls' asymmetry) of the camera model,
                        /cameras/streams/N/calibrated_delay_ms, /cameras/clock_poll
 )";
 
@@ -150,9 +150,10 @@ std::string sync_text(const scenarios::CameraProfile& camera) {
   for (const scenarios::SyncModeProfile& mode : camera.sync_modes) {
     std::vector<std::string_view> triggered;
     for (const scenarios::StreamKind kind : mode.triggered) triggered.push_back(to_text(kind));
-    modes.push_back(triggered.empty() ? fmt::format("{} (runs free)", to_text(mode.mode))
-                                      : fmt::format("{} (the trigger leads {})", to_text(mode.mode),
-                                                    fmt::join(triggered, " and ")));
+    modes.push_back(triggered.empty()
+                        ? fmt::format("{} (runs free)", to_text(mode.mode))
+                        : fmt::format("{} (the trigger drives {})", to_text(mode.mode),
+                                      fmt::join(triggered, " and ")));
   }
   return reports::wrapped(fmt::format("sync modes: {}. {} [{}]", fmt::join(modes, ", "),
                                       camera.sync_wiring, camera.sync_source),
@@ -177,8 +178,7 @@ std::string latency_text(const scenarios::CameraProfile& camera) {
       kIndent);
 }
 
-// The profiles of camera models: streams with sizes and rates, sync modes, stamps, latency, each
-// with its source.
+// The profiles of all camera models, with their sources.
 std::string camera_list_text() {
   std::string text;
   for (const scenarios::CameraProfile& camera : scenarios::camera_profiles()) {
@@ -222,13 +222,13 @@ std::string study_list() {
 
 void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  Command command(line, "list", "List scenarios, and the algorithms of each stage");
+  Command command(line, "list", "List scenarios, algorithms, pipelines, cameras or studies");
   command.word("what", "WHAT", options->what,
                {"scenarios", "pipelines", "algorithms", "cameras", "studies"},
                "scenarios, pipelines, algorithms (with parameters and sources), cameras or "
                "studies.\nDefault: scenarios and algorithms by name");
   command.text("--scenario", "SCENARIO", options->scenario,
-               "Whose pipelines to list. Default: " + options->scenario);
+               "The scenario whose pipelines to list. Default: " + options->scenario);
   command.format(options->format, {"text", "names", "json"});
   command.footer(kListExamples);
   const auto check = [options] {

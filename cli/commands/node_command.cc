@@ -23,21 +23,22 @@
 #include "hardware/node/journal.h"
 #include "hardware/node/node.h"
 #include "hardware/rig/rig.h"
+#include "recording/counted.h"
 
 namespace simbench::cli {
 namespace {
 
 constexpr const char* kNodeExamples = R"(
-Runs until SIGINT or SIGTERM; what happens is a line each on standard error. The rig's conductor
-(simbench run --backend hardware) tells it what to do. A systemd unit comes with simbench:
+Runs until SIGINT or SIGTERM and logs each event as a line on standard error. The rig's conductor
+(simbench run --backend hardware) sends it requests. A systemd unit comes with simbench:
 simbench-node.service.
 
-The clock that is synchronised is the node's own, in software; the system's clock is not touched
-unless --set-system-clock is given.
+The node synchronises a software clock of its own; it changes the system's clock only with
+--set-system-clock.
 
 Examples:
   simbench node --rig rig.json --name host3 --key-file rig.key
-  simbench node --rig rig.json --name host3                   on one machine only, without a key
+  simbench node --rig rig.json --name host3                   without a key: on one machine only
   simbench node --rig rig.json --name host3 --key-file rig.key --set-system-clock --dry-run
 
 Exit status: 0 stopped by a signal, 1 internal error, 2 bad usage or input.)";
@@ -68,7 +69,7 @@ std::string environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-// A folder for each node: several of one rig may run on one machine.
+// A folder for each node, since several of a rig may run on one machine.
 std::string default_journal_folder(std::string name) {
   for (char& c : name) {
     if (c == '/' || c == '.') c = '_';
@@ -79,10 +80,10 @@ std::string default_journal_folder(std::string name) {
   if (!state.empty()) return fmt::format("{}/simbench/{}", state, name);
   const std::string home = environment("HOME");
   if (!home.empty()) return fmt::format("{}/.local/state/simbench/{}", home, name);
-  throw scenarios::InputError("--journal: found neither it nor HOME, allowed: a folder");
+  throw scenarios::InputError("--journal: found none, and no HOME; allowed: a folder");
 }
 
-// What an algorithm asks for and no real host has.
+// What an algorithm needs and no real host has; null if hosts have it.
 const char* lacking(Need need) {
   switch (need) {
     case Need::kHardwareStamps:
@@ -162,15 +163,15 @@ void serve(const NodeOptions& options) {
   node.start();
   print_result(fmt::format("node {}: listening on {}:{}\n", options.name, rig.hosts[me].address,
                            node.port()));
-  log_line(fmt::format("{}: {} cameras, journals in {}", options.name, rig.hosts[me].cameras.size(),
-                       settings.journal_folder));
+  log_line(fmt::format("{}: {}, journals in {}", options.name,
+                       counted(rig.hosts[me].cameras.size(), "camera"), settings.journal_folder));
   context.run();
 }
 
 int run_node(const NodeOptions& options) {
-  // Timers of this process go off when they are due, not up to 50 us later to save power.
+  // Makes timers of this process expire on time instead of up to 50 us later.
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-  // A reader of the log that is gone, and a limit of file size, end no capture.
+  // A closed log and a limit of file size must not end a capture.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
@@ -190,8 +191,7 @@ int run_node(const NodeOptions& options) {
   return kBadInput;
 }
 
-// A test's clock and the system's exclude each other; what is about setting needs
-// --set-system-clock.
+// Options of a test's clock exclude --set-system-clock; options of setting need it.
 void add_clock_options(Command& command, NodeOptions& options) {
   const Option set =
       command.flag("--set-system-clock", options.set_system_clock,
@@ -201,7 +201,7 @@ void add_clock_options(Command& command, NodeOptions& options) {
       .number("--max-step-ms", "MS", options.max_step_ms, 0, 1e9,
               "Refuse to step the system's clock by more. Default: 1000")
       .needs(set);
-  command.flag("--dry-run", options.dry_run, "Say what would be set, and set nothing").needs(set);
+  command.flag("--dry-run", options.dry_run, "Log what would be set, and set nothing").needs(set);
   command
       .number("--clock-offset-ms", "MS", options.clock_offset_ms, -1e7, 1e7,
               "For tests: the node's clock starts ahead of the system's by this. Default: 0")
@@ -223,7 +223,7 @@ void add_node_command(CommandLine& line) {
                "The rig's key (see simbench keygen). Without one the node speaks\n"
                "to its own machine only");
   command.text("--journal", "DIR", options->journal,
-               "Where what is recorded is kept, the newest 100 sessions.\n"
+               "Folder for the recordings of the newest 100 sessions.\n"
                "Default: ~/.local/state/simbench/HOST");
   add_clock_options(command, *options);
   command.footer(kNodeExamples);

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "app/interrupt.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"
@@ -27,9 +26,10 @@ namespace {
 using reconstruction::ReconstructionResults;
 
 constexpr const char* kExamples = R"(
-Depth cameras around a moving subject are simulated, each exposing when its synchronisation makes
-it; their depth maps are fused to a mesh, and the mesh is compared with the depth maps. Needs a
-simbench with Embree and Open3D (tools/run --with-reconstruction) and a scenario with a studio.
+Simulates depth cameras around a moving subject, each of which exposes at the instant that its
+synchronisation gives it. Fuses their depth maps to a mesh and compares the mesh with the depth
+maps. Needs a simbench with Embree and Open3D (tools/run --with-reconstruction) and a scenario with
+a studio.
 
 Examples:
   simbench reconstruct --scenario 18cam_6host_30fps_studio
@@ -45,7 +45,7 @@ painted with its errors, and its picture (.png); curve.csv and curve.svg (drawn 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, or built without the libraries,
 130 interrupted.)";
 
-// Where the published error is looked for, as factors on the script's speeds.
+// Factors on the script's speeds, tried in the search for the published error.
 const std::vector<double> kSearchedFactors = {0.25, 0.5, 1.5, 2, 3};
 constexpr double kMostSpeedFactor = 20;
 constexpr double kMostDesyncMs = 10'000;
@@ -62,10 +62,9 @@ struct ReconstructOptions {
   std::string format;
   std::string output;
   std::vector<std::string> command;
-  reconstruction::RunReconstruction run = nullptr;
+  const reconstruction::Reconstruction* reconstruction_part = nullptr;
 };
 
-// Does not return.
 [[noreturn]] void become_reconstruct_program(std::vector<std::string> arguments) {
   const int reason = become_sibling("simbench-reconstruct", std::move(arguments));
   throw scenarios::InputError(fmt::format(
@@ -76,7 +75,7 @@ struct ReconstructOptions {
       std::strerror(reason)));
 }
 
-// The options about the subject are short for --set, which has the last word.
+// The options of the subject are short for --set, which overrides them.
 std::vector<scenarios::Override> all_overrides(const ReconstructOptions& options) {
   std::vector<scenarios::Override> overrides;
   const auto set_text = [&](const char* pointer, const std::string& text) {
@@ -105,7 +104,7 @@ std::string text_of(const ReconstructionResults& results, const std::string& for
 }
 
 std::optional<ReconstructionResults> reconstruct(
-    reconstruction::RunReconstruction run, const scenarios::Scenario& scenario,
+    const reconstruction::Reconstruction& part, const scenarios::Scenario& scenario,
     const reconstruction::ReconstructionOptions& options, reports::ReconstructionFolder* folder) {
   const auto make_source = [&] { return app::simulated_world(scenario); };
   const auto on_mesh = [folder](const reconstruction::ShownMesh& mesh) {
@@ -113,13 +112,13 @@ std::optional<ReconstructionResults> reconstruct(
   };
   return watched<ReconstructionResults>(
       [&](const evaluation::Progress& progress) {
-        return run(scenario, make_source, options, on_mesh, progress);
+        return part.run(scenario, make_source, options, on_mesh, progress);
       },
-      {.unit = "frame sets"});
+      {.unit = "frame set"});
 }
 
 int run_reconstruct(const ReconstructOptions& options) {
-  if (options.run == nullptr) become_reconstruct_program(options.command);
+  if (options.reconstruction_part == nullptr) become_reconstruct_program(options.command);
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
@@ -131,15 +130,15 @@ int run_reconstruct(const ReconstructOptions& options) {
   std::optional<reports::ReconstructionFolder> folder;
   if (!options.output.empty()) folder.emplace(options.output, scenario);
 
-  reconstruction::ReconstructionOptions asked = options.reconstruction;
-  asked.cancel = &app::InterruptHandler::flag();
+  reconstruction::ReconstructionOptions experiment = options.reconstruction;
+  experiment.cancel = &app::InterruptHandler::flag();
   if (!options.no_curve) {
-    asked.curve_speed_factors = in_order(options.speed_factors);
-    asked.curve_desync_ms = in_order(options.desync_ms);
-    asked.search_speed_factors = kSearchedFactors;
+    experiment.curve_speed_factors = in_order(options.speed_factors);
+    experiment.curve_desync_ms = in_order(options.desync_ms);
+    experiment.search_speed_factors = kSearchedFactors;
   }
   const std::optional<ReconstructionResults> results =
-      reconstruct(options.run, scenario, asked, folder ? &*folder : nullptr);
+      reconstruct(*options.reconstruction_part, scenario, experiment, folder ? &*folder : nullptr);
   if (!results) return kInterrupted;
   provenance.finished = std::chrono::system_clock::now();
   if (folder) {
@@ -162,14 +161,14 @@ void add_subject_options(Command& command, ReconstructOptions& options) {
 
 void add_curve_options(Command& command, ReconstructOptions& options) {
   command.number("--speed-factors", "F,F", options.speed_factors, 0, kMostSpeedFactor,
-                 "Of the curve: factors on the speeds that the scenario states; the table has\n"
-                 "the speeds that result. Default: 0.5,1,1.5");
+                 "For the curve: factors on the scenario's speeds; the table has the resulting\n"
+                 "speeds. Default: 0.5,1,1.5");
   command.number("--desync-ms", "MS,MS", options.desync_ms, 0, kMostDesyncMs,
-                 "Of the curve: how far apart the hosts are, in ms. Default:\n"
+                 "For the curve: how far apart the hosts are, in ms. Default:\n"
                  "0,5,10,20,33,50,100,200,500");
   command.flag("--no-curve", options.no_curve,
-               "The pipelines alone: no curve, and no search for the speed at which the\n"
-               "published error comes about");
+               "Only the pipelines: no curve, and no search for the speed that gives the\n"
+               "published error");
 }
 
 }  // namespace
@@ -177,7 +176,7 @@ void add_curve_options(Command& command, ReconstructOptions& options) {
 void add_reconstruct_command(CommandLine& line) {
   auto options = std::make_shared<ReconstructOptions>();
   options->command = line.arguments;
-  options->run = line.extras.run_reconstruction;
+  options->reconstruction_part = line.extras.reconstruction;
   reconstruction::ReconstructionOptions& experiment = options->reconstruction;
   Command command(line, "reconstruct",
                   "Reconstruct a moving subject, and print what desynchronisation costs");
@@ -187,7 +186,7 @@ void add_reconstruct_command(CommandLine& line) {
       .required();
   command.pipelines(experiment.pipelines);
   command.whole_number("--frames", "N", experiment.frames, 1, 100'000,
-                       "Frame sets to reconstruct of each pipeline and seed. Default: 10");
+                       "Frame sets to reconstruct for each pipeline and seed. Default: 10");
   command.count("--seeds", experiment.seeds, "How many seeds. Default: 5");
   command.seed("--first-seed", experiment.first_seed, "The first seed. Default: 1");
   command.jobs(experiment.jobs);
@@ -196,8 +195,8 @@ void add_reconstruct_command(CommandLine& line) {
   add_curve_options(command, *options);
   command.format(options->format, {"table", "json", "csv"});
   command.text("-o,--output", "DIR", options->output,
-               "Write everything to this folder, with meshes and pictures. An earlier result\n"
-               "there is replaced");
+               "Write everything to this folder, with meshes and pictures. Replaces an earlier\n"
+               "result there");
   command.footer(kExamples);
   command.runs([options] { return run_reconstruct(*options); });
 }

@@ -4,13 +4,14 @@
 #include <optional>
 
 #include "app/interrupt.h"
-#include "app/record_captures.h"
+#include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "cli/rig_backend.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/protocol.h"
+#include "recording/counted.h"
 #include "recording/recording_folder.h"
 #include "sim/rig/simulation.h"
 
@@ -18,10 +19,9 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kRecordExamples = R"(
-One capture for each pipeline, under its host_sync: manifest.json, and for each capture frames.csv
-(a line a frame: all stamps and the truth) and events.csv (pulses, clock adjustments, polls,
-exchanges, outcomes). What is recorded outlives the program at any moment: a folder whose recording
-was cut off can be replayed up to there.
+Records one capture for each pipeline, under its host_sync: manifest.json, and for each capture
+frames.csv (a line a frame: all stamps and the truth) and events.csv (pulses, clock adjustments,
+polls, exchanges, outcomes). A recording that was cut off can be replayed up to that point.
 
 Examples:
   simbench record --scenario 18cam_6host_45fps --seed 7 -o monday
@@ -44,7 +44,7 @@ struct RecordOptions {
   std::string output;
 };
 
-// Who is who, as the rig file names them.
+// Describes the recording, with the names of hosts and cameras in the rig file.
 RecordingDescription description_of(const scenarios::Scenario& scenario,
                                     const std::string& rig_file) {
   RecordingDescription description = {.backend = "sim", .scenario_json = scenario.resolved_json};
@@ -73,10 +73,11 @@ void check_collect_options(const RecordOptions& options, std::size_t pipelines) 
   }
   if (!hardware::is_session_id(session)) {
     throw scenarios::InputError(fmt::format(
-        "--collect: found '{}', allowed: 16 hexadecimal digits, as the capture told", session));
+        "--collect: found '{}', allowed: 16 hexadecimal digits, as the capture reported", session));
   }
   if (pipelines != 1 || options.repeats != 1) {
-    throw scenarios::InputError("--collect: a session is one capture; name its one --pipelines");
+    throw scenarios::InputError(
+        "--collect: a session is one capture; name its pipeline with --pipelines");
   }
 }
 
@@ -98,15 +99,15 @@ int record(const RecordOptions& options) {
                              progress);
         return std::optional(true);
       },
-      {.unit = "captures", .total = wanted, .kept = options.output + " holds what was recorded"});
+      {.unit = "capture", .total = wanted, .kept = options.output + " holds what was recorded"});
   print_warnings(made.warnings);
   if (!finished) return kInterrupted;
   if (made.recorded == 0) {
     print_error("no capture could be made");
     return kBadInput;
   }
-  print_note(
-      fmt::format("{} of {} captures recorded in {}", made.recorded, wanted, options.output));
+  print_note(fmt::format("{} of {} recorded in {}", made.recorded, counted(wanted, "capture"),
+                         options.output));
   return kOk;
 }
 
@@ -114,15 +115,15 @@ int record(const RecordOptions& options) {
 
 void add_record_command(CommandLine& line) {
   auto options = std::make_shared<RecordOptions>();
-  Command command(line, "record", "Record captures of a scenario, to be replayed and studied");
+  Command command(line, "record", "Record captures of a scenario, to replay and to study");
   command.scenario(options->scenario);
-  command.seed("--seed", options->seed, "Default: 1");
+  command.seed("--seed", options->seed, "The first seed. Default: 1");
   command.pipelines(options->pipelines);
   command.count("--repeats", options->repeats, "Captures of each pipeline. Default: 1");
   command.sets(options->sets);
   add_backend_options(command, options->backend);
   command.text("--collect", "SESSION", options->backend.collect_session,
-               "On a rig: no new capture, but what the nodes have of this session");
+               "On a rig: instead of a new capture, fetch what the nodes have of this session");
   command.json_messages();
   command.text("-o,--output", "DIR", options->output, "The folder, which must be new or empty")
       .required();

@@ -22,14 +22,13 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kRelayExamples = R"(
-A tool for tests: nodes on one machine talk through it as if the scenario's network lay between
-them, with its latency, loss, duplication and reordering. It is what `simbench validate-model` puts
-between its nodes.
+A tool for tests: nodes on one machine communicate through it as if the scenario's network lay
+between them, with its latency, loss, duplication and reordering. `simbench validate-model` uses it.
 
-Each node has a rig file of its own, given here in the order of the hosts: its own entry says where
-it listens, the others are addresses for the relay to listen on. Addresses are loopback or private.
-Prints "ready" once it listens, and its statistics as a line of JSON when it ends: on SIGTERM or
-SIGINT, after --for, or with the program that started it.
+Each node has a rig file of its own, given here in the order of the hosts: its own entry states
+where it listens, the others are addresses on which the relay listens. Addresses are loopback or
+private. Prints "ready" when it listens, and its statistics as a line of JSON when it ends: on
+SIGTERM or SIGINT, after --for, or with the program that started it.
 
 Examples:
   simbench relay --scenario 6node_relay --nodes node0.json,node1.json
@@ -48,7 +47,7 @@ struct RelayOptions {
 int run_relay(const RelayOptions& options) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   prctl(PR_SET_TIMERSLACK, 1UL);
-  // Before the nodes, where that is permitted: its own lateness is no part of the network.
+  // Above the nodes' priority, if permitted: the relay's own lateness is no part of the network.
   setpriority(PRIO_PROCESS, 0, -20);
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
@@ -88,16 +87,16 @@ int run_relay(const RelayOptions& options) {
 void add_relay_command(CommandLine& line) {
   auto options = std::make_shared<RelayOptions>();
   Command command(line, "relay",
-                  "Be the network of a scenario between nodes on this machine (for tests)");
+                  "Act as a scenario's network between nodes on this machine (for tests)");
   command.scenario(options->scenario);
   command.sets(options->sets);
   command
       .list("--nodes", "FILE,FILE...", options->nodes,
             "The rig file of each node, in the order of the hosts")
       .required();
-  command.seed("--seed", options->seed, "Of latencies and losses. Default: 1");
+  command.seed("--seed", options->seed, "The seed of latencies and losses. Default: 1");
   command.number("--for", "SECONDS", options->for_s, 0, 86400,
-                 "End after this time. Default: run on");
+                 "End after this time. Default: no limit");
   command.footer(kRelayExamples);
   command.runs([options] { return run_relay(*options); });
 }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/recorded_run.h"
+#include "app/recordings.h"
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
@@ -19,14 +19,14 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kReplayExamples = R"(
-Takes a folder that `simbench record` wrote, and prints the table of the run that was recorded. Of a
-recording that was cut off or is damaged, it scores what there is and says so.
+Takes a folder that `simbench record` wrote, and prints the table of the recorded run. It scores
+what it finds of a recording that was cut off or is damaged, and notes that.
 
 Or takes the CSV of librealsense's rs-data-collect:
   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
 one file per camera, or one file of several cameras with two more columns, `camera` and `host`.
-Arrivals of several cameras must count from one instant. device_time and gathering are run on them;
-host_sync cannot be replayed.
+Arrivals of several cameras must count from one instant. It runs device_time and gathering on these
+files; host_sync cannot be replayed.
 
 Examples:
   simbench replay monday                            a recording folder
@@ -35,7 +35,7 @@ Examples:
   simbench replay front.csv back.csv --format json > replay.json
   simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted (of a folder).)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted (a folder only).)";
 
 struct ReplayOptions {
   std::vector<std::string> files;
@@ -51,7 +51,7 @@ std::string formatted(const evaluation::Replay& replay, const ReplayOptions& opt
   return reports::replay_table(replay);
 }
 
-// What only goes with a recording folder.
+// Refuses options that need a recording folder.
 void check_options_for_files(const ReplayOptions& options) {
   if (options.format == "markdown") {
     throw scenarios::InputError(
@@ -72,7 +72,7 @@ int run_files(const ReplayOptions& options) {
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
   const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
   print_warnings(replay.warnings);
-  print_note("host_sync cannot be replayed; device_time and gathering are");
+  print_note("host_sync cannot be replayed; only device_time and gathering were run");
   provenance.finished = std::chrono::system_clock::now();
   if (output) {
     const nlohmann::ordered_json files = {{"files", options.files}};
@@ -126,11 +126,11 @@ void add_replay_command(CommandLine& line) {
   command.texts("recordings", "FILE.csv...|DIR", options->files, "A recording folder, or CSV files")
       .required();
   command.list("--pipelines", "NAME,NAME", options->pipelines,
-               "Of a folder: only these of the recorded pipelines, in this order");
+               "With a folder: only these of the recorded pipelines, in this order");
   command.format(options->format, {"table", "markdown", "json", "csv"});
   command.text("--output", "DIR", options->output,
-               "Write manifest.json, results.json and frames.csv (of a recording folder also\n"
-               "hosts.csv) to this folder. An earlier result there is replaced");
+               "Write manifest.json, results.json and frames.csv (for a recording folder also\n"
+               "hosts.csv) to this folder. Replaces an earlier result there");
   command.footer(kReplayExamples);
   command.runs([options] { return run_replay(*options); });
 }

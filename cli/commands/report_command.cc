@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/report_figures.h"
+#include "app/figure_source.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMostSeedsInDetail = 1000;
 
 constexpr const char* kReportExamples = R"(
-The file needs nothing else: it opens offline in any browser, can be mailed and printed.
+The file is complete: it opens offline in any browser, and can be mailed and printed.
 
 Examples:
   simbench run --scenario 18cam_6host_45fps --output results/monday
@@ -97,20 +97,20 @@ int run(const ReportOptions& options) {
 void add_report_command(CommandLine& line) {
   auto options = std::make_shared<ReportOptions>();
   options->command = line.arguments;
-  Command command(line, "report", "Result archives as one HTML file: tables and figures");
+  Command command(line, "report", "Make one HTML file of result archives: tables and figures");
   command
       .texts("archives", "DIR...", options->archives,
              "Folders that `simbench run --output` wrote, or a results.json alone")
       .required();
-  command.text("-o,--output", "FILE.html", options->output, "The file; an earlier one is replaced")
+  command.text("-o,--output", "FILE.html", options->output, "The file. Replaces an earlier one")
       .required();
   command.whole_number("--seeds-in-detail", "N", options->detail.seeds, 1, kMostSeedsInDetail,
                        "How many seeds to show with stamps, clocks and single pulses.\n"
-                       "Default: 4, fewer where there are more than 8 pipelines");
+                       "Default: 4, fewer with more than 8 pipelines");
   command.whole_number(
       "--budget-seeds", "N", options->detail.budget_seeds, 0, kMostSeedsInDetail,
-      "Seeds of the error budgets (128 runs for each and every pipeline); 0: none.\n"
-      "Default: 4, fewer where there are more than 8 pipelines");
+      "Seeds of the error budgets (128 runs for each seed and pipeline); 0: none.\n"
+      "Default: 4, fewer with more than 8 pipelines");
   command.list("--pipelines", "NAME,NAME", options->detail.pipelines,
                "Show only these pipelines in detail; the tables have all");
   command.json_messages();

@@ -6,7 +6,6 @@
 
 #include "app/interrupt.h"
 #include "app/results.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
@@ -30,8 +29,8 @@ Examples:
   simbench run --scenario 3cam_1host_30fps --output results/monday
   simbench run --scenario 18cam_6host_45fps --backend hardware --rig rig.json --key-file rig.key
 
-On a real rig each pipeline is captured --seeds times (once, if not said), and the simulator's
-prediction for the same scenario is printed beside what was measured.
+On a real rig it captures each pipeline --seeds times (default: once) and prints the simulator's
+prediction for the same scenario beside the measured values.
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
@@ -60,7 +59,7 @@ std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
       scenario, [&] { return app::simulated_world(scenario); }, options);
 }
 
-// The rig is one: captures are made one after the other.
+// A rig makes one capture after the other.
 std::optional<evaluation::Results> measure_rig(const scenarios::Scenario& scenario,
                                                const RunOptions& options) {
   evaluation::EvaluationOptions evaluation = options.evaluation;
@@ -99,7 +98,7 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
   return kOk;
 }
 
-// What --budget cannot be combined with.
+// Refuses options that cannot be combined with --budget.
 void check_budget_options(const RunOptions& options) {
   if (!options.budget) return;
   if (options.format == "csv") {
@@ -122,7 +121,7 @@ std::string text_with_prediction(const evaluation::Results& measured,
                            {reports::prediction_block(measured, simulated)});
 }
 
-// A table of dashes is no result.
+// Throws if there was no capture at all: a table of dashes is no result.
 void check_anything_was_captured(const evaluation::Results& measured) {
   for (const evaluation::Row& row : measured.rows) {
     for (const evaluation::SeedScore& seed : row.seeds) {
@@ -183,7 +182,7 @@ void add_run_command(CommandLine& line) {
   command.scenario(options->scenario);
   const Option seeds =
       command.count("--seeds", evaluation.seeds,
-                    "How many seeds: runs of each pipeline. Default: 32; on a real rig 1");
+                    "How many seeds, that is, runs of each pipeline. Default: 32; on a real rig 1");
   command.seed("--first-seed", evaluation.first_seed, "The first seed. Default: 1");
   command.jobs(evaluation.jobs);
   command.pipelines(evaluation.pipelines);
@@ -192,7 +191,7 @@ void add_run_command(CommandLine& line) {
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.text("--output", "DIR", options->output,
                "Write a result archive to this folder: manifest.json, results.json,\n"
-               "frames.csv, hosts.csv. An earlier archive there is replaced");
+               "frames.csv, hosts.csv. Replaces an earlier archive there");
   command.flag("--budget", options->budget,
                "Instead of the table, divide each pipeline's error among the stages that\n"
                "cause it (128 runs for every seed)");

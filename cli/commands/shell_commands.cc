@@ -8,8 +8,6 @@
 #include "cli/command.h"
 #include "cli/command_table.h"
 #include "cli/commands/commands.h"
-#include "cli/completion.h"
-#include "cli/manual.h"
 
 namespace simbench::cli {
 namespace {
@@ -28,7 +26,7 @@ constexpr const char* kManualExamples = R"(
 Examples:
   simbench manual | man -l -
   simbench manual run | man -l -
-  simbench manual --names                  the commands that have a page, one a line)";
+  simbench manual --names                  the commands with a page, one a line)";
 
 std::string script(CLI::App& app, const std::string& shell) {
   const CommandTable table = command_table(app);
@@ -74,7 +72,7 @@ void add_manual_command(CommandLine& line) {
   Command command(line, "manual", "Print the man page of simbench or of a command");
   command.word("command", "COMMAND", options->command, names_of(line.parser),
                "The command. Default: simbench itself");
-  command.flag("--names", options->names, "Instead of a page, the names that have one");
+  command.flag("--names", options->names, "Instead of a page, print the commands that have one");
   command.footer(kManualExamples);
   command.runs([options, &app = line.parser] {
     print_result(options->names ? fmt::format("{}\n", fmt::join(names_of(app), "\n"))

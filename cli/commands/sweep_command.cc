@@ -6,14 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "app/interrupt.h"
 #include "app/results.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/task_farm.h"
+#include "recording/counted.h"
 #include "reports/sweep/sweep_folder.h"
 #include "reports/sweep/sweep_report.h"
 #include "scenarios/study.h"
@@ -35,8 +36,8 @@ Examples:
   simbench sweep --study scalability -o results/scalability
   mpirun -n 64 simbench sweep --study seeds_needed --seeds 100000 -o results/seeds
 
-A sweep that was interrupted, killed or ran out of disk space goes on when the same command is
-given again: no run that was finished is lost or repeated, and the results are the same.
+A sweep that was interrupted, killed or ran out of disk space goes on when the same command is given
+again: no finished run is lost or repeated, and the results are the same.
 
 In the folder: sweep.csv has a line for each point, pipeline and seed, hosts.csv one for each host
 of these, sweep.txt the table, sweep.svg the plot (drawn by gnuplot), runs.log the finished runs.
@@ -53,7 +54,7 @@ struct SweepOptions {
   bool restart = false;
 };
 
-// The study's parts that the command line does not replace.
+// Adds the study's parts that the command line does not override.
 void add_study(const Study& study, SweepOptions& options) {
   evaluation::SweepRequest& request = options.request;
   if (!request.axes.empty()) {
@@ -84,7 +85,7 @@ const Study* study_of(SweepOptions& options) {
   return study;
 }
 
-// Runs what is missing in the log; nothing if it was interrupted.
+// Runs what the log lacks. False if it was interrupted.
 bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
                  evaluation::TaskFarm& farm) {
   std::vector<std::size_t> missing;
@@ -93,10 +94,10 @@ bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
   }
   if (log.damaged() > 0) {
     print_warnings(
-        {fmt::format("{} damaged records in runs.log; their runs are done again", log.damaged())});
+        {counted(log.damaged(), "damaged record") + " in runs.log; their runs are done again"});
   }
   if (log.finished() > 0) {
-    print_note(fmt::format("{} of {} runs are there already", log.finished(), plan.runs()));
+    print_note(fmt::format("{} of {} runs are already finished", log.finished(), plan.runs()));
   }
   if (missing.empty()) return true;
   const auto done = watched<bool>([&](const evaluation::Progress& progress) {
@@ -148,7 +149,7 @@ void add_sweep_command(CommandLine& line) {
   auto options = std::make_shared<SweepOptions>();
   evaluation::SweepRequest& request = options->request;
   Command command(line, "sweep",
-                  "Run a scenario with parameters varied, and print how each pipeline responds");
+                  "Vary parameters of a scenario, and print how each pipeline responds");
   command.text("--scenario", "SCENARIO", request.scenario,
                "Name of a scenario (see `simbench list`) or path of a scenario file");
   command.texts("--sweep", "/POINTER=VALUES", request.axes,
@@ -163,9 +164,8 @@ void add_sweep_command(CommandLine& line) {
   command.sets(options->sets);
   command.jobs(options->jobs, "Threads. Default: one for every core; under MPI one for every rank");
   command.text("-o,--output", "DIR", options->output,
-               "The folder of the sweep. One that was not finished is gone on with");
-  command.flag("--restart", options->restart,
-               "Remove the sweep that is in the folder, and start anew");
+               "The folder of the sweep. An unfinished sweep in it is continued");
+  command.flag("--restart", options->restart, "Remove the sweep in the folder, and start anew");
   command.json_messages();
   command.footer(kSweepExamples);
   command.runs([options, farm = line.extras.farm] { return sweep(*options, farm); });

@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "app/simulated.h"
+#include "app/interrupt.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
@@ -20,16 +21,14 @@
 namespace simbench::cli {
 namespace {
 
-// The one that is looked at most, where a scenario has it.
-constexpr const char* kTracedPipeline = "yoon2021_both";
 // Hours of true time.
 constexpr double kFarthestMs = 1e9;
 
 constexpr const char* kTraceExamples = R"(
 Open the file at ui.perfetto.dev ("Open trace file"; nothing is uploaded) or in chrome://tracing.
-Everything is in true time, which the simulated hosts cannot see: a process for the trigger and for
-each host, arrows from pulse to exposure to delivery to gathered set and along the messages of a
-conversation, each host's clock error as a counter.
+Everything is in true time, which the simulated hosts cannot read: a process for the trigger and for
+each host, arrows from pulse to exposure to delivery to gathered set and along the messages between
+hosts, each host's clock error as a counter.
 
 Examples:
   simbench trace --scenario 18cam_6host_45fps --seed 3 -o trace.json
@@ -64,10 +63,9 @@ reports::TraceOptions trace_options(const TraceCommandOptions& options) {
 
 evaluation::PipelineChoice choose(const scenarios::Scenario& scenario, std::string name) {
   if (name.empty()) {
-    const bool has_usual =
-        std::any_of(scenario.pipelines.begin(), scenario.pipelines.end(),
-                    [](const scenarios::Pipeline& p) { return p.name == kTracedPipeline; });
-    name = has_usual ? kTracedPipeline : scenario.pipelines.front().name;
+    std::vector<std::string> names;
+    for (const scenarios::Pipeline& pipeline : scenario.pipelines) names.push_back(pipeline.name);
+    name = usual_pipeline(names);
   }
   return evaluation::choose_pipelines(scenario, {name}).front();
 }
@@ -81,7 +79,7 @@ void write(const reports::Trace& trace, const std::string& format, std::ostream&
   out.flush();
 }
 
-// A place for the result, which is refused before the work if it cannot be written.
+// The destination of the result; throws before the work if it cannot be written.
 class Output {
  public:
   explicit Output(const std::string& name) : name_(name) {
@@ -136,30 +134,31 @@ int run_trace(const TraceCommandOptions& options) {
 
 void add_window_options(Command& command, TraceCommandOptions& options) {
   command.number("--from-ms", "MS", options.from_ms, -kFarthestMs, kFarthestMs,
-                 "Only what begins then or later, in true time: 0 is the start of host\n"
-                 "synchronisation. Default: from the start of the world");
+                 "Only events that begin then or later, in true time: 0 is the start of host\n"
+                 "synchronisation. Default: from the start of the simulation");
   command.number("--to-ms", "MS", options.to_ms, -kFarthestMs, kFarthestMs,
-                 "Only what begins before that. Default: to the end");
-  command.whole_number("--max-events", "N", options.max_events, 1, 10'000'000,
-                       "The most events in the file, names aside; what begins after the instant "
-                       "at\nwhich there are so many is left out, which is noted. Default: 200000");
+                 "Only events that begin before that. Default: to the end");
+  command.whole_number(
+      "--max-events", "N", options.max_events, 1, 10'000'000,
+      "The most events in the file, apart from names; a note reports how many later\n"
+      "ones are left out. Default: 200000");
 }
 
 }  // namespace
 
 void add_trace_command(CommandLine& line) {
   auto options = std::make_shared<TraceCommandOptions>();
-  Command command(line, "trace", "One run as a timeline, for the Perfetto UI or PlotJuggler");
+  Command command(line, "trace", "Write one run as a timeline, for the Perfetto UI or PlotJuggler");
   command.scenario(options->scenario);
-  command.seed("--seed", options->seed, "Default: 1");
+  command.seed("--seed", options->seed, "The seed of the run. Default: 1");
   command.text("--pipeline", "NAME", options->pipeline,
-               "One of the scenario's. Default: yoon2021_both, or its first if it has none");
+               "The pipeline to run. Default: yoon2021_both, else the scenario's first");
   command.sets(options->sets);
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();
   add_window_options(command, *options);
   command.text("-o,--output", "FILE", options->output,
-               "The file, which appears whole or not at all. Default: -, standard output");
+               "The file, written as a whole or not at all. Default: -, standard output");
   command.footer(kTraceExamples);
   command.runs([options] { return run_trace(*options); });
 }

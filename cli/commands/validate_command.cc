@@ -12,9 +12,9 @@ namespace {
 constexpr const char* kValidateExamples = R"(
 Examples:
   simbench validate my_rig.json
-  simbench validate rigs/*.json      checks every one; exit status 2 if any is wrong)";
+  simbench validate rigs/*.json      checks each file; exit status 2 if any is wrong)";
 
-// True if the file is a scenario that could be run.
+// True if the file is a valid scenario.
 bool validate(const std::string& file) {
   try {
     const scenarios::Scenario scenario = scenarios::load_scenario(file);

@@ -15,7 +15,6 @@
 
 #include "app/experiment_source.h"
 #include "app/interrupt.h"
-#include "app/simulated.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
@@ -29,15 +28,15 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kValidateModelExamples = R"(
-The bench's own error: the scenario's hosts run as processes on this machine, with real sockets,
-clocks and timers, a relay between them that is the scenario's network, and cameras that are played.
+Measures the simulator's own error. The scenario's hosts run as processes on this machine, with real
+sockets, clocks and timers, a relay as the scenario's network, and cameras that play a recording.
 All processes share one monotonic clock, so the true errors of their clocks are known. Then the same
 scenario is simulated, and both distributions are printed side by side.
 
-It validates transport, protocols and what hosts cost, not cameras: see the matrix of evidence.
-Nodes get network namespaces of their own where that is permitted, else ports of loopback. A
-repetition of the paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their
-service runs before the capture. The machine should do nothing else meanwhile.
+It validates transport, protocols and the costs of hosts, not cameras: see the matrix of evidence.
+Nodes get network namespaces of their own if permitted, else ports of loopback. A repetition of the
+paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their service runs before the
+capture. The machine should do nothing else meanwhile.
 
 Examples:
   simbench validate-model --scenario 6node_relay
@@ -83,7 +82,7 @@ std::string today() {
   return fmt::format("{:%Y-%m-%d}", utc);
 }
 
-// Where the nodes will be: in namespaces, if this process can have one.
+// Puts the nodes into namespaces if this process may make one; returns the kind of network.
 std::string choose_network(app::ExperimentOptions& options) {
   const std::optional<std::string> refusal = hardware::NetworkSandbox::enter();
   options.namespaces = !refusal;
@@ -92,7 +91,7 @@ std::string choose_network(app::ExperimentOptions& options) {
   return "loopback";
 }
 
-// How late the relay was beyond the scenario's latencies, over all repetitions.
+// The relay's lateness beyond the scenario's latencies, over all repetitions.
 class RelayLateness {
  public:
   void add(const std::string& statistics) {
@@ -113,7 +112,7 @@ class RelayLateness {
   std::vector<double> p95_us_;
 };
 
-// Nothing: interrupted.
+// Nothing if interrupted.
 std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions& options,
                                                       const scenarios::Scenario& scenario) {
   app::ExperimentOptions experiment;
@@ -135,14 +134,14 @@ std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions
              .pipelines = options.pipelines},
             progress);
       },
-      {.unit = "repetitions"});
+      {.unit = "repetition"});
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
   lateness.print();
   return reports::measured_study(*results, today(), machine(network));
 }
 
-// The study's pipelines that the user wants and the scenario has.
+// The study's pipelines that the user wants.
 std::vector<std::string> pipelines_of(const reports::MeasuredStudy& study,
                                       const ValidateModelOptions& options) {
   std::vector<std::string> names;
@@ -191,13 +190,13 @@ int validate_model(const ValidateModelOptions& options) {
 
 void add_measurement_options(Command& command, ValidateModelOptions& options) {
   command.whole_number("--repeats", "N", options.repeats, 1, 1000,
-                       "Repetitions of each pipeline measured. Default: 5");
+                       "Measured repetitions of each pipeline. Default: 5");
   command.seed("--first-seed", options.first_seed,
                "Seed of the first repetition's clocks, cameras and relay. Default: 1");
   command.text("--measured", "FILE", options.measured,
                "Instead of measuring now: a study that --save wrote");
   command.text("--save", "FILE", options.save,
-               "Write what was measured to this file, with date and machine");
+               "Write the measured study to this file, with date and machine");
 }
 
 }  // namespace
@@ -211,7 +210,7 @@ void add_validate_model_command(CommandLine& line) {
   command.list("--pipelines", "NAME,NAME", options->pipelines,
                "Only these pipelines of the scenario");
   add_measurement_options(command, *options);
-  command.count("--seeds", options->seeds, "Seeds of each pipeline simulated. Default: 200");
+  command.count("--seeds", options->seeds, "Simulated seeds of each pipeline. Default: 200");
   command.format(options->format, {"table", "markdown", "json"});
   command.footer(kValidateModelExamples);
   command.runs([options] { return validate_model(*options); });

@@ -1,14 +1,14 @@
 // simbench-mpi: the same command line as simbench, whose sweeps are worked on by all ranks of an
 // MPI job. `mpirun -n 64 simbench sweep ...` becomes this program (cli/process.h).
 //
-// Rank 0 is the command: it reads the arguments, writes the folder and prints; it gives each rank a
-// run, and the next one for every answer, so that a rank which is faster does more; and it works
-// itself. The other ranks know nothing but their tasks: scenario files need only be where rank 0
-// is. A rank that fails sends the reason as its answer; if a rank dies, the launcher ends the job,
-// and what rank 0 has written stays for the next start.
+// Rank 0 is the command: it reads the arguments, writes the folder and prints. It gives each rank a
+// run, and the next one for every answer, so that faster ranks do more, and works itself. The other
+// ranks get only tasks: scenario files need only be where rank 0 is. A rank that fails answers with
+// the reason. If a rank dies, the launcher ends the job, and rank 0's files stay for the next
+// start.
 //
-// Only the main thread of a rank talks to MPI, as MPI_THREAD_FUNNELED asks; it looks for messages
-// often instead of waiting for them, since waiting takes a whole core.
+// Only the main thread of a rank calls MPI, as MPI_THREAD_FUNNELED requires. It polls for messages,
+// since waiting for them takes a whole core.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/simulated.h"
+#include "app/interrupt.h"
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "evaluation/sweep/task_farm.h"
@@ -42,14 +42,14 @@ using evaluation::JobQueue;
 constexpr std::chrono::microseconds kShortestPause{100};
 constexpr std::chrono::microseconds kLongestPause{1600};
 // Tasks that wait at a rank for each of its threads, while there are plenty: sending one takes as
-// long as a look or two, and short runs are not much longer.
+// long as a poll or two, and short runs are not much longer.
 constexpr std::size_t kAhead = 3;
 constexpr std::size_t kPlenty = 8;  // tasks left for each thread
 
 enum Tag : int { kSetup, kTask, kStop, kAnswer, kFailure };
 
-// What ranks tell each other: a number and a text, in one message of plain bytes. (Boost.MPI sends
-// an object of several members as two messages, and to wait for the second takes a whole core.)
+// A message between ranks: a number and a text, in one message of plain bytes. (Boost.MPI sends an
+// object of several members as two messages, and waiting for the second takes a whole core.)
 struct Message {
   std::size_t number = 0;  // of the task; of a setup: threads
   std::string text;        // of a setup, a task, an answer; of a failure: why
@@ -81,7 +81,7 @@ class Outbox {
   std::deque<Sent> sent_;
 };
 
-// A message that is there.
+// Receives a message that has arrived.
 Message receive(const mpi::communicator& world, const mpi::status& waiting) {
   std::string bytes(static_cast<std::size_t>(*waiting.count<char>()), '\0');
   world.recv(waiting.source(), waiting.tag(), bytes.data(), static_cast<int>(bytes.size()));
@@ -92,7 +92,7 @@ Message receive(const mpi::communicator& world, const mpi::status& waiting) {
   return message;
 }
 
-// Between two looks for messages: short while they come, longer while they do not.
+// The pause between two polls: short while messages arrive, longer while they do not.
 class Pause {
  public:
   void take() {
@@ -129,7 +129,7 @@ class MpiFarm final : public evaluation::TaskFarm {
     queue.finish();
   }
 
-  // The others may go. Also where nothing was run.
+  // Ends the other ranks, also if nothing was run.
   void dismiss() {
     for (int rank = 1; rank < world_.size(); ++rank) outbox_.send(rank, kStop, {});
   }
@@ -179,7 +179,8 @@ struct Answer {
   Message message;
 };
 
-// Between a rank's main thread and its workers. An empty task ends a worker.
+// Passes tasks and answers between a rank's main thread and its workers. An empty task ends a
+// worker.
 class Exchange {
  public:
   void add(std::optional<Message> task) {
@@ -225,7 +226,7 @@ void work(const std::string& setup, Exchange& exchange) {
   }
 }
 
-// The side of every other rank: until it is dismissed.
+// The side of every other rank; returns when it is dismissed.
 void serve(const mpi::communicator& world) {
   Exchange exchange;
   Outbox outbox(world);

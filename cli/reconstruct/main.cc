@@ -1,11 +1,12 @@
-// simbench-reconstruct: the command line with Embree and Open3D in it, which `simbench reconstruct`
-// becomes. Its libraries are needed by those who use it only.
+// simbench-reconstruct: the command line with Embree and Open3D, as which `simbench reconstruct`
+// goes on. Only its users need these libraries.
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "reconstruction/experiment.h"
 
 int main(int argc, char** argv) {
   simbench::cli::keep_freed_memory();
-  return simbench::run_command_line(
-      argc, argv, {.run_reconstruction = &simbench::reconstruction::run_reconstruction});
+  const simbench::reconstruction::Reconstruction reconstruction{
+      &simbench::reconstruction::run_reconstruction};
+  return simbench::run_command_line(argc, argv, {.reconstruction = &reconstruction});
 }

@@ -1,5 +1,4 @@
-// A camera as a node sees it, whoever made it: the port that all of hardware/ but one folder is
-// written against.
+// The interface of a camera, whatever its maker: all of hardware/ but one folder uses only this.
 //
 // Two kinds: hardware/realsense (librealsense2, where it is installed) and RecordedCamera, which
 // plays a recording in real time and needs no hardware. A driver finds cameras; a camera is
@@ -9,7 +8,7 @@
 //  - The frame handler and the event handler may be called from any thread, one call at a time per
 //    camera, never after stop() has returned. They must not block for long.
 //  - `arrived` and `backend` are taken as early as the source allows, in monotonic time.
-//  - Nothing a camera does throws out of a handler. What is wrong becomes an event.
+//  - A running camera does not throw; it reports failures as events.
 //
 // Errors: CameraError from open(), configure() and start(): one line that names the camera, what
 // was found, what is allowed or how to get it.
@@ -47,7 +46,7 @@ struct CameraInfo {
   std::string connection;  // "USB 3.2", ...
 };
 
-// What a capture asks of each camera: from the scenario.
+// A capture's settings of each camera, from the scenario.
 struct CameraSettings {
   scenarios::SyncMode sync_mode{};
   std::vector<scenarios::Stream> streams;  // profiles
@@ -67,14 +66,14 @@ struct CameraFrame {
   MonotonicTime arrived{};
 };
 
-// Something that happened to a camera during a capture and is not a frame.
+// An event of a camera during a capture, other than a frame.
 struct CameraEvent {
   enum class Kind : std::uint8_t {
     kDisconnected,     // unplugged
     kReturned,         // plugged in again, and streaming
     kStalled,          // no frame for much longer than a period
-    kMissingMetadata,  // frames lack stamps; told once, with how to get them
-    kEnded,            // a source that has an end is at it; nothing is wrong
+    kMissingMetadata,  // frames lack stamps; reported once, with how to get them
+    kEnded,            // the source has reached its end; not an error
     kNote,             // anything else worth a line
   };
   Kind kind = Kind::kNote;

@@ -1,15 +1,15 @@
-// The driver of all cameras of a host, whatever they are.
+// The driver of all cameras of a host, real and recorded.
 //
-// Cameras to which the rig file gives a recording are played (recorded_camera.h), the others are
-// real ones, found by their serial number (realsense/realsense_driver.h, where librealsense2 was
-// there when simbench was built).
+// Cameras with a recording in the rig file are played (recorded_camera.h). The others are real
+// cameras, found by their serial number (realsense/realsense_driver.h, if simbench was built with
+// librealsense2).
 //
 // Contract
-//  - open() takes the serials that the rig gives to this host, no others; list() has its recorded
-//    cameras and whatever real ones are plugged in.
-//  - Recordings are read when the driver is made. A real camera need not be there before open().
+//  - open() takes only the serials of this host in the rig; list() returns its recorded cameras and
+//    all real cameras that are plugged in.
+//  - Recordings are read by make_camera_driver(). A real camera need not be there before open().
 //
-// Errors: CameraError: of the recordings; real cameras in a simbench without librealsense2.
+// Errors: CameraError for an unusable recording, and for a real camera without librealsense2.
 //
 //   const auto cameras = make_camera_driver(rig, me);
 //   Node node(context, settings, clock, *cameras, make_host_sync, log);

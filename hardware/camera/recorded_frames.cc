@@ -16,15 +16,15 @@
 namespace simbench::hardware {
 namespace {
 
-// Cameras of a recording by number; those that nobody wants are null.
+// Cameras of a recording by number; unwanted ones are null.
 using Played = std::vector<std::shared_ptr<PlayedCamera>>;
 
 [[noreturn]] void fail(const RigCamera& camera, const std::string& problem) {
   throw CameraError(fmt::format("camera {}: {}", camera.serial, problem));
 }
 
-// Which of the recording's cameras this is: by name, else by number; without a word from the user
-// the one of its serial, else the first.
+// The recording's camera to play: `recorded_camera` by name, else by number; by default the camera
+// of the serial, else the first.
 std::size_t chosen_camera(const RigCamera& camera, const std::string& recording,
                           const std::vector<std::string>& names) {
   const std::string& name = camera.recorded_camera.empty() ? camera.serial : camera.recorded_camera;
@@ -59,7 +59,7 @@ Choice choose(const std::string& recording, const std::vector<RigCamera>& wanted
   return choice;
 }
 
-// Counts all cameras' frames from the recording's zero, and has those wanted in order.
+// Counts due times from the recording's zero, sorts the frames and returns the wanted cameras.
 std::vector<std::shared_ptr<const PlayedCamera>> finished(Choice choice, std::int64_t zero_ns,
                                                           const std::string& recording,
                                                           const std::vector<RigCamera>& wanted) {
@@ -120,7 +120,7 @@ class FrameKeeper final : public RecordingSink {
   static std::int64_t true_delivery(const FrameRecord& frame, const FrameTruth& truth) {
     return nanoseconds_of(truth.mid_exposure()) + (frame.arrival_steady - truth.own_steady).count();
   }
-  // What does not fit into two seconds is no stamp of this frame.
+  // A stamp that is more than two seconds off does not belong to this frame.
   static std::int32_t backend_lead_ns(const FrameRecord& frame) {
     constexpr std::int64_t kLongestNs = 2'000'000'000;
     const std::int64_t lead = (frame.arrival - frame.backend).count();
@@ -182,8 +182,8 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_folder(const CaptureName& 
   return finished(std::move(choice), keeper.zero_ns(), name.folder, wanted);
 }
 
-// What a CSV's stream is played as; infrared images are exposed with the depth images, so they
-// stand for them where a camera has no other.
+// The kind as which a CSV's stream is played. Infrared images are exposed with the depth images, so
+// they stand for depth if a camera has none.
 std::optional<StreamKind> kind_of(const CameraStream& stream,
                                   const std::vector<CameraStream>& streams) {
   if (stream.stream.starts_with("Colo")) return StreamKind::kColour;

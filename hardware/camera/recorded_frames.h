@@ -2,17 +2,16 @@
 //
 // A recording is a folder of recording/recording_folder.h (its first capture, or the one that
 // "FOLDER#PIPELINE" or "FOLDER#PIPELINE/SEED" names) or a CSV of recording/rs_csv.h. It is read
-// once for all cameras that are wanted of it; only their frames are kept, 32 bytes each.
+// once for all its wanted cameras; only their frames are kept, 32 bytes each.
 //
-// Due times count from the recording's zero, which is one for all its cameras:
-//  - with truth, the earliest start of an exposure that a trigger pulse began; a frame is due at
-//  its
-//    true mid-exposure plus its delay, as its host's steady clock measured it. So what is played is
-//    the recorded world without its hosts' clocks, which are the player's own;
+// Due times count from the recording's zero, which all its cameras share:
+//  - with truth, the earliest start of an exposure that a trigger pulse began. A frame is due at
+//    its true mid-exposure plus its delay by its host's steady clock: the player replays the
+//    recorded world with clocks of its own;
 //  - without truth (and where no pulse began an exposure), the earliest arrival.
 //
-// Errors: CameraError that names the camera: a recording that cannot be read, that has no such
-// capture or camera (with those there are), no frame of the camera, frames with and without truth.
+// Errors: CameraError that names the camera: an unreadable recording, an unknown capture or camera
+// (the message lists the known ones), no frame of the camera, frames with and without truth.
 // Complexity: linear in the recording.
 #ifndef SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
 #define SIMBENCH_HARDWARE_CAMERA_RECORDED_FRAMES_H_
@@ -28,7 +27,7 @@
 
 namespace simbench::hardware {
 
-// The back-end stamp's place where a recording has none.
+// Stands for the back-end stamp where a recording has none.
 inline constexpr std::int32_t kNoBackend = std::numeric_limits<std::int32_t>::max();
 
 struct PlayedFrame {
@@ -37,7 +36,7 @@ struct PlayedFrame {
   std::uint32_t exposure_us = 0;
   DeviceStamp sensor;
   DeviceStamp frame;
-  std::int32_t backend_lead_ns = kNoBackend;  // of the back-end stamp before the arrival
+  std::int32_t backend_lead_ns = kNoBackend;  // from the back-end stamp to the arrival
   StreamKind stream = StreamKind::kDepth;
   StampDomain domain = StampDomain::kHardwareClock;
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "recording/counted.h"
+
 namespace simbench::hardware {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr Nanoseconds kLeastPatience = std::chrono::seconds(1);
 constexpr Nanoseconds kStartPatience = std::chrono::seconds(4);
 constexpr int kPatiencePeriods = 10;
 constexpr Nanoseconds kBetweenNotes = std::chrono::seconds(10);
-// A counter that goes forward by more than this went back: the camera restarted.
+// A counter that went forward by more than this has gone back: the camera restarted.
 constexpr std::uint32_t kLargestGap = 1U << 31;
 constexpr std::int64_t kClockToleranceUs = 1'000'000;
 
@@ -44,8 +46,8 @@ StreamWatch::StreamWatch(const CameraSettings& settings, bool waits) : waits_(wa
 }
 
 bool StreamWatch::Limit::permits(MonotonicTime now) {
-  if (told && now - at < kBetweenNotes) return false;
-  told = true;
+  if (used && now - at < kBetweenNotes) return false;
+  used = true;
   at = now;
   return true;
 }
@@ -90,8 +92,9 @@ void StreamWatch::compare(const Stream& before, const CameraFrame& frame,
     lost_ += forward - 1;
     if (!losses_.permits(frame.arrived)) return;
     report({CameraEvent::Kind::kNote,
-            fmt::format("{}: the frame counter went from {} to {}: {} frames lost since the start",
-                        to_text(frame.stream), before.counter, frame.counter, lost_)});
+            fmt::format("{}: the frame counter went from {} to {}: {} lost since the start",
+                        to_text(frame.stream), before.counter, frame.counter,
+                        counted(lost_, "frame"))});
   }
 }
 

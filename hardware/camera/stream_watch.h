@@ -1,7 +1,7 @@
-// Watches a camera's streams for what no driver says: that frames stopped, that some were lost.
+// Watches a camera's streams for what drivers do not report: frames that stopped or were lost.
 //
-// A pure class: it is given frames and instants and answers with the events to pass on. One for
-// each camera, for all its streams; used by one thread at a time.
+// Pure: takes frames and instants, and reports events to the given handler. One for each camera,
+// for all its streams; used by one thread at a time.
 //
 //  - A stream without a frame for more than max(10 periods, 1 s): kStalled, once; a kNote when
 //    frames come again. The first frame may take 4 s, as a camera takes time to start; in a mode
@@ -11,7 +11,7 @@
 //  - A counter that starts again, and a device clock that leaves the host's by more than a second
 //    between two frames, modulo its wrap of 2^32 us: a kNote, at most one every 10 s. Both mean
 //    that the camera restarted.
-//  - missing_metadata() is reported once, with how to get it: kMissingMetadata.
+//  - missing_metadata() reports kMissingMetadata once, with how to get it.
 //
 // Source: docs/reference/d455.md sections 1 and 4.
 //
@@ -32,10 +32,10 @@ namespace simbench::hardware {
 
 class StreamWatch {
  public:
-  // `waits`: no frame is expected before the first (genlock).
+  // `waits`: the first frame may take for ever (genlock).
   StreamWatch(const CameraSettings& settings, bool waits);
 
-  // The camera was started: forgets what was before.
+  // The camera was started: forgets the past.
   void start(MonotonicTime now);
   void on_frame(const CameraFrame& frame, const CameraEventHandler& report);
   void check(MonotonicTime now, const CameraEventHandler& report);
@@ -57,7 +57,7 @@ class StreamWatch {
 
   // At most one every 10 s.
   struct Limit {
-    bool told = false;
+    bool used = false;
     MonotonicTime at{};
     bool permits(MonotonicTime now);
   };

@@ -1,9 +1,8 @@
 // The time base of a real host's kernel: CLOCK_MONOTONIC, in nanoseconds.
 //
-// Everything in hardware/ that is stamped is stamped here first: sockets, cameras, timers. A node's
-// clock (node_clock.h) turns these into the steady and the system time that algorithms see. Two
-// processes of one machine share this clock, which is what makes the truth of the real-network
-// experiment known.
+// Sockets, cameras and timers are stamped in this base first. A node's clock (node_clock.h) turns
+// the stamps into the steady and the system time that algorithms see. All processes of a machine
+// share this clock, so the truth of the real-network experiment is known.
 //
 // Source: clock_gettime(2).
 #ifndef SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
@@ -34,6 +33,37 @@ inline MonotonicTime monotonic_now() {
 inline std::chrono::steady_clock::time_point for_timer(MonotonicTime at) {
   return std::chrono::steady_clock::time_point(
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(at.time_since_epoch()));
+}
+
+// What the operating system's clock reads (CLOCK_REALTIME).
+inline HostTime read_system_clock() {
+  return HostTime(
+      std::chrono::duration_cast<Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()));
+}
+
+// A reading of another clock and the monotonic instant at which it was taken.
+struct PairedReading {
+  MonotonicTime at{};
+  HostTime reads{};
+};
+
+// Reads the clock between two readings of the monotonic clock, `tries` times or until a pair is
+// `close_enough`. The closest pair counts, and its middle is the instant: right to half of what a
+// reading takes (some 20 ns), also on a busy machine.
+template <class Clock, class Monotonic>
+PairedReading paired_reading(const Clock& clock, const Monotonic& monotonic, int tries = 8,
+                             Nanoseconds close_enough = Nanoseconds::min()) {
+  PairedReading best;
+  Nanoseconds closest = Nanoseconds::max();
+  for (int i = 0; i < tries && closest > close_enough; ++i) {
+    const MonotonicTime before = monotonic();
+    const HostTime reads = clock();
+    const Nanoseconds took = monotonic() - before;
+    if (took >= closest) continue;
+    closest = took;
+    best = {before + took / 2, reads};
+  }
+  return best;
 }
 
 }  // namespace hardware

@@ -10,7 +10,6 @@
 #include <ctime>
 #include <utility>
 
-#include "hardware/clock/paired_reading.h"
 #include "hardware/clock/software_clock.h"
 
 namespace simbench::hardware {
@@ -32,15 +31,6 @@ class KernelClockCalls final : public ClockCalls {
   }
 };
 
-}  // namespace
-
-ClockCalls& kernel_clock_calls() {
-  static KernelClockCalls calls;
-  return calls;
-}
-
-namespace {
-
 constexpr double kMaxPpm = 500;
 constexpr double kUnitsPerPpm = 65536;
 
@@ -50,8 +40,13 @@ double fraction(long kernel_frequency) {
 
 }  // namespace
 
+ClockCalls& kernel_clock_calls() {
+  static KernelClockCalls calls;
+  return calls;
+}
+
 Nanoseconds OsClockLimits::check_step(HostTime from, HostTime to) const {
-  // As a number that cannot overflow, whatever somebody wants the clock set to.
+  // As a floating-point number, which cannot overflow.
   const double step_s =
       (static_cast<double>(nanoseconds_of(to)) - static_cast<double>(nanoseconds_of(from))) * 1e-9;
   constexpr double kCenturies = 9e9;
@@ -120,7 +115,7 @@ std::string other_keeper(const timex& kernel) {
 
 namespace {
 
-// Closer than this, two readings of how far the clocks are apart are the same number.
+// Two measured distances between the clocks that differ by less are the same.
 constexpr Nanoseconds kSame = std::chrono::microseconds(20);
 
 [[noreturn]] void fail(const char* what, int error) {
@@ -134,74 +129,65 @@ constexpr Nanoseconds kSame = std::chrono::microseconds(20);
       what));
 }
 
-// What an OsClock would do, without doing it: all is checked against the same limits and told, and
-// the node goes by a software clock.
-class DryRunClock final : public NodeClock {
+// Gives the options a log if they have none, and logs a program that already keeps the clock.
+void log_other_keeper(OsClockSettings& options, ClockCalls& calls) {
+  if (!options.log) options.log = [](const std::string&) {};
+  if (const std::string line = other_keeper(read_kernel_clock(calls)); !line.empty()) {
+    options.log(line);
+  }
+}
+
+// A dry run: checks all calls against the limits of an OsClock and logs them; the node runs on this
+// software clock.
+class DryRunClock final : public SoftwareClock {
  public:
-  DryRunClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSettings settings);
+  DryRunClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSettings settings)
+      : SoftwareClock(context, {.host = settings.host,
+                                .oscillator = {},
+                                .offset = {},
+                                .system_clock = [&calls] { return calls.system(); }}),
+        options_(std::move(settings)),
+        limits_(options_.max_step, read_kernel_clock(calls).freq) {
+    log_other_keeper(options_, calls);
+  }
 
-  Task<HostTime> now() override { return clock_.now(); }
-  Task<void> set(HostTime value) override;
-  Task<void> adjust_frequency(double ppb) override;
-  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+  Task<void> set(HostTime value) override {
+    const Nanoseconds step = limits_.check_step(system_at(monotonic_now()), value);
+    options_.log(
+        fmt::format("dry run: would step the system clock by {:+.6f} s", to_seconds(step)));
+    co_await SoftwareClock::set(value);
+  }
 
-  const NodeOscillator& oscillator() const override { return clock_.oscillator(); }
-  HostTime system_at(MonotonicTime at) const override { return clock_.system_at(at); }
-  MonotonicTime when(HostTime at, MonotonicTime now) const override { return clock_.when(at, now); }
-  ClockAdjustment present(MonotonicTime now) const override { return clock_.present(now); }
-  void observe(Observer observer) override { clock_.observe(std::move(observer)); }
-  // As of the operating system's clock: nothing, what would have been set stays.
+  Task<void> adjust_frequency(double ppb) override {
+    limits_.kernel_frequency(ppb);
+    options_.log(fmt::format("dry run: would run the system clock at {:+.3f} ppm", ppb * 1e-3));
+    frequency_ppb_ = ppb;
+    co_await SoftwareClock::adjust_frequency(ppb);
+  }
+
+  Task<void> slew(Nanoseconds offset, double max_rate_ppb) override {
+    double rate_ppb = 0;
+    if (offset.count() != 0) {
+      rate_ppb = limits_.slew_rate_ppb(offset, max_rate_ppb, frequency_ppb_);
+      options_.log(fmt::format("dry run: would slew the system clock by {:+.6f} s at {:.3f} ppm",
+                               to_seconds(offset), rate_ppb * 1e-3));
+    }
+    co_await SoftwareClock::slew(offset, rate_ppb);
+  }
+
+  // Does nothing, as for the operating system's clock.
   void restart() override {}
 
  private:
   OsClockSettings options_;
   OsClockLimits limits_;
   double frequency_ppb_ = 0;
-  SoftwareClock clock_;
 };
-
-DryRunClock::DryRunClock(boost::asio::io_context& context, ClockCalls& calls,
-                         OsClockSettings settings)
-    : options_(std::move(settings)),
-      limits_(options_.max_step, read_kernel_clock(calls).freq),
-      clock_(context,
-             {.host = options_.host, .oscillator = {}, .offset = {}, .system_clock = [&calls] {
-                return calls.system();
-              }}) {
-  if (!options_.log) options_.log = [](const std::string&) {};
-  if (const std::string line = other_keeper(read_kernel_clock(calls)); !line.empty()) {
-    options_.log(line);
-  }
-}
-
-Task<void> DryRunClock::set(HostTime value) {
-  const Nanoseconds step = limits_.check_step(clock_.system_at(monotonic_now()), value);
-  options_.log(fmt::format("dry run: would step the system clock by {:+.6f} s", to_seconds(step)));
-  co_await clock_.set(value);
-}
-
-Task<void> DryRunClock::adjust_frequency(double ppb) {
-  limits_.kernel_frequency(ppb);
-  options_.log(fmt::format("dry run: would run the system clock at {:+.3f} ppm", ppb * 1e-3));
-  frequency_ppb_ = ppb;
-  co_await clock_.adjust_frequency(ppb);
-}
-
-Task<void> DryRunClock::slew(Nanoseconds offset, double max_rate_ppb) {
-  double rate_ppb = 0;
-  if (offset.count() != 0) {
-    rate_ppb = limits_.slew_rate_ppb(offset, max_rate_ppb, frequency_ppb_);
-    options_.log(fmt::format("dry run: would slew the system clock by {:+.6f} s at {:.3f} ppm",
-                             to_seconds(offset), rate_ppb * 1e-3));
-  }
-  co_await clock_.slew(offset, rate_ppb);
-}
 
 }  // namespace
 
 std::unique_ptr<NodeClock> make_os_clock(boost::asio::io_context& context, ClockCalls& calls,
                                          OsClockSettings settings) {
-  if (!settings.log) settings.log = [](const std::string&) {};
   if (settings.dry_run) return std::make_unique<DryRunClock>(context, calls, std::move(settings));
   return std::make_unique<OsClock>(context, calls, std::move(settings));
 }
@@ -212,10 +198,7 @@ OsClock::OsClock(boost::asio::io_context& context, ClockCalls& calls, OsClockSet
       limits_(options_.max_step, read_kernel_clock(calls).freq),
       kernel_frequency_(limits_.original_frequency()),
       slew_timer_(context) {
-  if (!options_.log) options_.log = [](const std::string&) {};
-  if (const std::string line = other_keeper(read_kernel_clock(calls)); !line.empty()) {
-    options_.log(line);
-  }
+  log_other_keeper(options_, calls);
   // Changes nothing, and shows at once whether it is permitted.
   set_kernel_frequency(kernel_frequency_);
   const MonotonicTime now = calls_.monotonic();
@@ -369,8 +352,7 @@ void OsClock::begin(Nanoseconds ahead) {
 }
 
 void OsClock::look_for_others() {
-  if (read_kernel_clock(calls_).freq != kernel_frequency_ &&
-      !std::exchange(told_of_others_, true)) {
+  if (read_kernel_clock(calls_).freq != kernel_frequency_ && !std::exchange(logged_others_, true)) {
     options_.log(
         "system clock: another program has changed its rate; two keepers fight: stop that one "
         "while "

@@ -1,21 +1,20 @@
 // The operating system's clock as the clock of a node (--set-system-clock).
 //
 // Steps are clock_settime, rates are the kernel's frequency (adjtimex), a slew is a change of
-// frequency for as long as it takes. On Linux the kernel's frequency moves the monotonic clock in
-// the same way as the system clock, which therefore stay a fixed number apart between steps; it is
-// the steady clock that runs at another rate against both: here it is what the monotonic clock
-// would be at the frequency that was found.
+// frequency for as long as it takes. On Linux the kernel's frequency moves the monotonic clock and
+// the system clock alike, so these stay a fixed number apart between steps. The steady clock is
+// what the monotonic clock would read at the frequency that was found at the start.
 //
 // Contract
 //  - A step beyond max_step, or a rate beyond the kernel's 500 ppm, is refused (ClockError). A slew
 //    takes what the kernel has left, so it may take longer.
-//  - Without the privilege (CAP_SYS_TIME) construction throws ClockError, which says how to get it.
-//  - `log` is told of each step, and once of another program that keeps or changes this clock.
+//  - Without the privilege (CAP_SYS_TIME) construction throws ClockError, which states how to get
+//  it.
+//  - `log` gets a line for each step, and one if another program keeps or changes this clock.
 //  - The end of a slew is a timer of the context. observe(nullptr) and destruction end a slew at
 //    once; destruction puts the frequency back to what was found. A kill leaves it as it was last.
 //  - restart() does nothing.
-//  - dry_run: all is checked and told to `log`, nothing is set; the node's clock is then a software
-//    clock.
+//  - dry_run: checks and logs everything and sets nothing; the node's clock is a software clock.
 //
 // Source: adjtimex(2); kernel/time/ntp.c (the frequency is part of both clocks' rate).
 //
@@ -39,7 +38,7 @@
 
 namespace simbench::hardware {
 
-// What an OsClock asks of the kernel, so that tests can put a made-up kernel in its place.
+// An OsClock's calls to the kernel, which tests replace by a fake kernel.
 //
 // kernel_clock_calls() are the real ones. Setting a clock needs CAP_SYS_TIME; reading does not.
 //
@@ -58,11 +57,10 @@ class ClockCalls {
 // Live as long as the program.
 ClockCalls& kernel_clock_calls();
 
-// How far a node may change the operating system's clock: the same for the clock itself and for a
-// dry run.
+// How far a node may change the operating system's clock; a dry run has the same limits.
 //
-// The kernel's frequency is a number of 2^-16 ppm between -500 and 500 ppm, and was perhaps already
-// set to something by whoever kept the clock before: a rate is relative to that.
+// The kernel's frequency is a number of 2^-16 ppm between -500 and 500 ppm. It may have been set
+// before by another program: rates are relative to the frequency that was found.
 //
 // Errors: ClockError; nothing has then changed.
 class OsClockLimits {
@@ -71,15 +69,15 @@ class OsClockLimits {
   OsClockLimits(Nanoseconds max_step, long original_frequency)
       : max_step_(max_step), original_frequency_(original_frequency) {}
 
-  // How far a step goes. Throws if that is too far.
+  // The size of a step. Throws if it is too large.
   Nanoseconds check_step(HostTime from, HostTime to) const;
-  // The kernel's frequency (timex::freq) with which the clock runs at `ppb` against what it did
-  // before. Throws if the kernel does not go so far.
+  // The kernel's frequency (timex::freq) at which the clock runs at `ppb` against the frequency
+  // that was found. Throws if that is beyond the kernel's limit.
   long kernel_frequency(double ppb) const;
   // The rate at which a clock that runs at `frequency_ppb` is slewed by `offset`: max_rate_ppb, or
-  // what the kernel has left in that direction. Throws if that is nothing.
+  // what the kernel's limit leaves in that direction. Throws if that is nothing.
   double slew_rate_ppb(Nanoseconds offset, double max_rate_ppb, double frequency_ppb) const;
-  // The rate, against what the clock did before, that a kernel frequency makes.
+  // The rate of a kernel frequency against the frequency that was found.
   double rate_ppb(long kernel_frequency) const;
 
   long original_frequency() const { return original_frequency_; }
@@ -96,7 +94,7 @@ timex read_kernel_clock(ClockCalls& calls);
 std::string other_keeper(const timex& kernel);
 
 struct OsClockSettings {
-  std::uint32_t host = 0;  // under which adjustments are told
+  std::uint32_t host = 0;  // under which adjustments are reported
   Nanoseconds max_step = std::chrono::seconds(1);
   bool dry_run = false;
   std::function<void(const std::string&)> log;
@@ -130,7 +128,7 @@ class OsClock final : public NodeClock {
   void restart() override {}
 
  private:
-  // What held from an instant until the next one's.
+  // Valid from `since` until the next setting.
   struct Setting {
     MonotonicTime since;
     Nanoseconds ahead;  // of the system clock before the monotonic clock
@@ -141,24 +139,24 @@ class OsClock final : public NodeClock {
   const Setting& setting_at(MonotonicTime at) const;
   Nanoseconds measured_ahead() const;
   double slew_left_ns() const;
-  // From now on: this rate, and a slew of this much, at most so fast, on top. Throws ClockError
-  // before anything has changed.
+  // Runs from now on at this frequency plus a slew of slew_ns. Throws ClockError before anything
+  // has changed.
   void run(double frequency_ppb, double slew_ns, double max_slew_ppb, Nanoseconds ahead);
   void end_slew();
   void end_slew_in_time();
   void set_kernel_frequency(long frequency);
   void begin(Nanoseconds ahead);
-  // Notes what another program has done to the clock meanwhile.
+  // Logs what another program has done to the clock meanwhile.
   void look_for_others();
 
   ClockCalls& calls_;
   OsClockSettings options_;
   OsClockLimits limits_;
   long kernel_frequency_;  // as set last
-  bool told_of_others_ = false;
+  bool logged_others_ = false;
   double frequency_ppb_ = 0;  // that stays
   double slew_rate_ppb_ = 0;  // that ends with the slew
-  double max_slew_ppb_ = 0;   // as asked for
+  double max_slew_ppb_ = 0;   // the requested limit
   double slew_ns_ = 0;        // to be added from slew_since_ on
   SteadyTime slew_since_{};
   SteadyTime slew_end_{};

@@ -3,12 +3,10 @@
 #include <chrono>
 #include <utility>
 
-#include "hardware/clock/paired_reading.h"
-
 namespace simbench::hardware {
 namespace {
 
-// Adjustments of the past under which stamps are still read.
+// Past adjustments under which stamps can still be read.
 constexpr std::size_t kHistory = 64;
 
 clocks::DisciplinedClock<NodeOscillator> begin_clock(const SoftwareClock::Settings& settings) {
@@ -17,11 +15,6 @@ clocks::DisciplinedClock<NodeOscillator> begin_clock(const SoftwareClock::Settin
 }
 
 }  // namespace
-
-HostTime read_system_clock() {
-  return HostTime(
-      std::chrono::duration_cast<Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()));
-}
 
 SoftwareClock::SoftwareClock(boost::asio::io_context& context, Settings settings)
     : settings_(std::move(settings)), clock_(begin_clock(settings_)), settle_timer_(context) {}

@@ -1,12 +1,12 @@
 // A node's own clock over the kernel's monotonic clock: what a node disciplines by default.
 //
-// Nothing of the operating system is changed. It begins at what the operating system's clock reads
-// (plus an offset, for nodes of tests), at rate 0, and goes on by itself from there
-// (clocks/disciplined_clock.h has the semantics of adjustments and the precision).
+// It changes nothing of the operating system. It begins at the operating system's clock (plus an
+// offset, for nodes of tests), at rate 0, and runs on by itself (clocks/disciplined_clock.h has the
+// semantics of adjustments and the precision).
 //
-// Calls of HostClock do not suspend: they act on the present instant. While somebody observes, the
-// planned end of a slew is told when it comes, by a timer of `context`; observe(nullptr) ends that
-// timer, so that the context can run out of work.
+// Calls of HostClock do not suspend: they act on the present instant. A timer of `context` notifies
+// the observer of the planned end of a slew; observe(nullptr) ends that timer, so that the context
+// can run out of work.
 //
 //   SoftwareClock clock(context, {.host = 3});
 //   SoftwareClock skewed(context, {.host = 3,
@@ -25,13 +25,10 @@
 
 namespace simbench::hardware {
 
-// What the operating system's clock reads (CLOCK_REALTIME).
-HostTime read_system_clock();
-
-class SoftwareClock final : public NodeClock {
+class SoftwareClock : public NodeClock {
  public:
   struct Settings {
-    std::uint32_t host = 0;     // under which adjustments are told
+    std::uint32_t host = 0;     // under which adjustments are reported
     NodeOscillator oscillator;  // of tests; the default is the kernel's own
     Nanoseconds offset{};       // of tests: ahead of the operating system's clock at the beginning
     std::function<HostTime()> system_clock = read_system_clock;

@@ -1,12 +1,12 @@
-// What the nodes' journals say, joined to one recording.
+// The nodes' journals, joined to one recording.
 //
 // A HostJournal takes a journal's text as it is fetched, in pieces that may end anywhere, and turns
 // whole lines into events. play_in_order() hands the events of all hosts to a sink: frames in order
-// of arrival on their hosts' system clocks, which synchronisation has made one scale; the order of
-// each host is kept whatever its clock does, and what is no frame comes as soon as its turn does.
+// of arrival on their hosts' system clocks, which are synchronised. The order of each host is kept,
+// even where its clock is stepped back; other events come as early as that order allows.
 //
-// A line that is no event is counted and left out (damaged()): nodes are trusted, their disks are
-// not. Memory: the events. Complexity of the merge: n log h.
+// A line that is no event is counted and left out (damaged()). Memory: the events. Complexity of
+// the merge: n log h.
 #ifndef SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
 #define SIMBENCH_HARDWARE_CONDUCTOR_JOURNALS_H_
 
@@ -24,7 +24,7 @@ class HostJournal {
  public:
   void append(std::string_view text);
 
-  std::uint64_t bytes() const { return bytes_; }  // taken so far; where to go on fetching
+  std::uint64_t bytes() const { return bytes_; }  // taken so far: the next offset to fetch
   const std::vector<RecordingEvent>& events() const { return events_; }
   const std::vector<std::string>& notes() const { return notes_; }
   std::uint64_t damaged() const { return damaged_; }

@@ -4,13 +4,12 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "hardware/net/notice.h"
 #include "hardware/net/secure_stream.h"
 
 namespace simbench::hardware {
@@ -65,8 +64,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
       failure = error;
     }
     if (!failure && !pending->reply && !pending->broken) {
-      boost::system::error_code ignored;
-      co_await pending->news.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+      co_await ended(pending->news);
     }
     pending_.erase(request.id);
     if (failure) throw error(kind_of(*failure), failure->what());
@@ -90,19 +88,18 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
   }
 
  private:
-  // Streams name the address themselves.
+  // Errors of streams already begin with the address.
   NodeError error(NodeError::Kind kind, std::string what) const {
     const std::string address = fmt::format("{}:{}", host_.address, host_.port);
     if (what.starts_with(address + ": ")) what.erase(0, address.size() + 2);
     return {kind, fmt::format("{} ({}): {}", host_.name, address, what)};
   }
 
-  // The stream, opened by one of those who ask for it while the others wait.
+  // The stream; one caller opens it while the others wait.
   Task<std::shared_ptr<SecureStream>> open_stream(MonotonicTime deadline) {
     while (opening_ && monotonic_now() < deadline) {
       opened_.expires_at(for_timer(deadline));
-      boost::system::error_code ignored;
-      co_await opened_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+      co_await ended(opened_);
     }
     if (stream_) co_return stream_;
     if (closed_ || opening_) throw error(NodeError::Kind::kLost, "not connected");
@@ -146,7 +143,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
       return;
     }
     const auto found = pending_.find(answer.id);
-    if (found == pending_.end()) return;  // it came after its limit
+    if (found == pending_.end()) return;  // after its limit
     found->second->reply = std::move(answer);
     found->second->news.cancel();
   }

@@ -1,15 +1,15 @@
-// The conductor's line to one node: requests with replies, over a stream that is opened again when
-// it breaks.
+// The conductor's connection to one node: requests with replies, over a stream that is reopened
+// when it breaks.
 //
 // Contract
 //  - ask() sends a request and waits for its reply, opening the stream first if there is none. It
-//    never waits longer than its limit, however often the stream breaks; a request that was sent on
-//    a stream that then broke is not sent again.
-//  - Notices of the node go to the handler as they come.
+//    never waits longer than its limit, however often the stream breaks. A request whose stream
+//    broke is not sent again.
+//  - The node's notices go to the handler as they arrive.
 //  - Any number of requests may be pending. One thread.
 //
 // Errors: NodeError, one line that begins with the host's name and address. kRefused is the node's
-// own answer; every other kind means that it could not be asked.
+// own answer; every other kind means that the request did not reach it or got no answer.
 //
 //   NodeLink link(context, rig.hosts[3], key, [](const Answer& notice) { ... });
 //   nlohmann::json hello = co_await link.ask("hello", {}, std::chrono::seconds(3));
@@ -34,9 +34,9 @@ namespace simbench::hardware {
 class NodeError : public std::runtime_error {
  public:
   enum class Kind : std::uint8_t {
-    kRefused,  // the node said no
+    kRefused,  // the node refused the request
     kLost,     // it cannot be reached, or did not answer in time
-    kForeign,  // another key, another version, or no node at all: trying again is no use
+    kForeign,  // another key, another version, or no node: do not try again
   };
   NodeError(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
   Kind kind() const { return kind_; }
@@ -57,7 +57,7 @@ class NodeLink {
 
   // The result of the reply.
   Task<nlohmann::json> ask(std::string verb, nlohmann::json arguments, Nanoseconds limit);
-  // How often a stream was opened: a change means that the node may have been restarted.
+  // How often a stream was opened; after a change the node may have been restarted.
   std::uint64_t connections() const;
   void close();
 

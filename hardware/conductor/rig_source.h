@@ -1,26 +1,23 @@
-// A real rig as a backend: conducts its nodes through a capture and hands over what they recorded.
+// A real rig as a backend: conducts its nodes through a capture and hands over their recordings.
 //
 // One call of record() is one session on the rig:
 //
-//   1. every node is greeted and the session begun (session ids are fresh, so a lost one never
-//   mixes)
-//   2. cameras are opened and set; what they refuse is a note, or ends it if none is left
-//   3. the scenario's host_sync of the pipeline runs, master and slaves, for real
-//   4. the scenario's wait, then the capture in its sync mode: genlock: trigger off, cameras on,
+//   1. greet every node and begin the session (session ids are fresh, so no two sessions mix)
+//   2. open and set the cameras; a refusal is a note, and ends the session if no camera is left
+//   3. run the pipeline's host_sync, master and slaves, for real
+//   4. wait as the scenario says, then capture in its sync mode: genlock: trigger off, cameras on,
 //      trigger on; other triggered modes: trigger on, cameras on; free-running: cameras on
-//   5. journals are fetched while it runs, the cameras stopped when the scenario's time is over,
-//   the
-//      rest fetched, and all of it told to the sink in order of arrival
+//   5. fetch the journals meanwhile; stop the cameras when the scenario's time is over, fetch the
+//      rest, and hand all events to the sink in order of arrival
 //
-// Failures (a node that is killed, a cable that is pulled, another conductor, another version) cost
-// what they must: a host that is lost for kConductorSilence is given up for this session, with a
-// note, and what was fetched from it is kept. With no host left, or without the master, record()
-// throws RecordingFailed. Nothing waits without a limit.
+// Failures (a killed node, a pulled cable, another conductor, another version) stay local: a host
+// without a reply for kConductorSilence is given up for this session, with a note, and its fetched
+// frames are kept. Without any host, or without the master, record() throws RecordingFailed. Every
+// wait has a limit.
 //
-// There is no truth: the sink gets frames without it. `progress` is told each step, a line each.
-// Request: `pipeline` names the one to run; its host_sync object is only asked for its kind
-// (warm_up(), initial_clocks()), the nodes make their own. An oracle's clocks (kMaster) cannot be
-// had and fail.
+// The sink gets frames without truth. `progress` gets a line for each step. The request's pipeline
+// is the one to run; its host_sync object only tells the kind (warm_up(), initial_clocks()), since
+// the nodes make their own. An oracle's clocks (kMaster) fail: no rig has them.
 //
 //   RigSource source(rig, key, scenario, settings);
 //   source.record({.seed = 1, .pipeline = "yoon2021_both", .host_sync = sync.get()}, sink);
@@ -41,16 +38,16 @@ namespace simbench::hardware {
 
 struct RigSourceSettings {
   std::function<void(const std::string& line)> progress;  // may be empty
-  // For "manual" triggers: shows the text and returns when the user has done it; false: given up.
+  // For "manual" triggers: shows the text and returns when the user is done; false: given up.
   std::function<bool(const std::string& text)> prompt;
-  // Looked at every 50 ms; once true, cameras are stopped and record() throws. May be empty.
+  // Polled every 50 ms; once true, the cameras are stopped and record() throws. May be empty.
   std::function<bool()> cancelled;
-  // Instead of a new session, fetches what the nodes' journals have of this one (record()'s step
-  // 5), after a conductor was killed. Empty: a new session.
+  // The session whose journals are fetched (step 5) after its conductor was killed. Empty: a new
+  // session.
   std::string collect_session;
 };
 
-// What is known of a host after a session.
+// A host after a session.
 struct HostReport {
   std::string name;
   bool lost = false;

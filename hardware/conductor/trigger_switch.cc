@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <future>
 #include <utility>
 
+#include "hardware/net/notice.h"
+
 namespace simbench::hardware {
 namespace {
-
-namespace asio = boost::asio;
 
 // GNU timeout ends a command that hangs; the parentheses keep the user's own redirections.
 std::string run(const std::string& command) {
@@ -37,14 +34,14 @@ std::string run(const std::string& command) {
 
 }  // namespace
 
-TriggerSwitch::TriggerSwitch(asio::io_context& context, std::optional<RigTrigger> trigger,
+TriggerSwitch::TriggerSwitch(boost::asio::io_context& context, std::optional<RigTrigger> trigger,
                              Prompt prompt)
     : context_(context), trigger_(std::move(trigger)), prompt_(std::move(prompt)) {}
 
 std::string TriggerSwitch::problem(bool on) const {
   if (trigger_->manual) {
     const char* text = on ? "Switch the trigger on now" : "Switch the trigger off now";
-    if (!prompt_) return "it is switched by hand, and there is nobody to ask";
+    if (!prompt_) return "it is switched by hand, and there is no prompt";
     return prompt_(text) ? "" : "given up at the prompt";
   }
   return run(on ? trigger_->on_command : trigger_->off_command);
@@ -54,11 +51,8 @@ Task<void> TriggerSwitch::turn(bool on) {
   if (!trigger_) co_return;
   std::future<std::string> done =
       std::async(std::launch::async, [this, on] { return problem(on); });
-  asio::steady_timer timer(context_);
   while (done.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-    timer.expires_after(std::chrono::milliseconds(5));
-    boost::system::error_code ignored;
-    co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await pause(context_.get_executor(), std::chrono::milliseconds(5));
   }
   const std::string problem = done.get();
   if (!problem.empty()) {

@@ -1,11 +1,10 @@
-// The trigger of a rig, switched on and off: by the commands of the rig file, or by the user's
-// hand.
+// The trigger of a rig, switched on and off by the commands of the rig file or by the user's hand.
 //
-// Commands run in the shell (/bin/sh -c) of the machine that conducts, with standard output sent to
-// standard error; switching waits for their end, at most kCommandLimit. The calls are made in a
-// thread of their own, so that the conductor goes on hearing its nodes.
+// Commands run in the shell (/bin/sh -c) of the conducting machine, with standard output sent to
+// standard error; turn() waits for their end, at most kCommandLimitSeconds. They run in a thread of
+// their own, so that the conductor goes on serving its nodes.
 //
-// Errors: TriggerError with the command and how it ended, or that the user gave up.
+// Errors: TriggerError with the command and how it ended, or because the user gave up.
 //
 //   TriggerSwitch trigger(context, rig.trigger, prompt);
 //   co_await trigger.turn(true);
@@ -39,7 +38,7 @@ class TriggerSwitch {
   Task<void> turn(bool on);
 
  private:
-  std::string problem(bool on) const;  // empty: it is done
+  std::string problem(bool on) const;  // empty: done
 
   boost::asio::io_context& context_;
   std::optional<RigTrigger> trigger_;

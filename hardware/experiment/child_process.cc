@@ -30,24 +30,11 @@ struct Pipe {
   Pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ChildError("no pipe can be made");
-    read = ends[0];
-    write = ends[1];
+    read.reset(ends[0]);
+    write.reset(ends[1]);
   }
-  ~Pipe() {
-    close_read();
-    close_write();
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_read() { close_once(read); }
-  void close_write() { close_once(write); }
-  static void close_once(int& end) {
-    if (end >= 0) close(end);
-    end = -1;
-  }
-
-  int read = -1;
-  int write = -1;
+  Descriptor read;
+  Descriptor write;
 };
 
 // What the child needs between fork() and exec(), where only async-signal-safe calls are allowed.
@@ -112,25 +99,25 @@ ChildProcess::ChildProcess(const Settings& settings)
   const Plan plan{.program = settings.program.c_str(),
                   .arguments = arguments.data(),
                   .log = log,
-                  .output = output.write,
+                  .output = output.write.number(),
                   .parent = getpid(),
                   .member = settings.sandbox_member,
-                  .left_hub = left_hub.write,
-                  .connected = connected.read};
-  std::fflush(nullptr);  // else the child has a copy of what is buffered, and may write it again
+                  .left_hub = left_hub.write.number(),
+                  .connected = connected.read.number()};
+  std::fflush(nullptr);  // else the child may write its copy of the buffers again
   process_ = fork();
   if (process_ == 0) become(plan);
   const int fork_error = errno;
   close(log);
   if (process_ < 0) throw ChildError(fmt::format("fork: {}", std::strerror(fork_error)));
-  output_ = std::exchange(output.read, -1);
+  output_.reset(output.read.release());
   if (!settings.sandbox_member) return;
-  left_hub.close_write();
+  left_hub.write.reset();
   char byte = 0;
   try {
-    if (read(left_hub.read, &byte, 1) != 1) fail("has no network namespace of its own");
+    if (read(left_hub.read.number(), &byte, 1) != 1) fail("has no network namespace of its own");
     NetworkSandbox::connect(*settings.sandbox_member, process_);
-    if (write(connected.write, &byte, 1) != 1) fail("ended at once");
+    if (write(connected.write.number(), &byte, 1) != 1) fail("ended at once");
   } catch (...) {
     end(Nanoseconds(0));
     throw;
@@ -140,20 +127,20 @@ ChildProcess::ChildProcess(const Settings& settings)
 ChildProcess::~ChildProcess() { end(kPatience); }
 
 void ChildProcess::fail(const std::string& problem) const {
-  const std::string said = last_lines(log_);
+  const std::string last = last_lines(log_);
   throw ChildError(
-      fmt::format("simbench {}: {}{}{}", name_, problem, said.empty() ? "" : ": ", said));
+      fmt::format("simbench {}: {}{}{}", name_, problem, last.empty() ? "" : ": ", last));
 }
 
 bool ChildProcess::read_more(MonotonicTime deadline) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - monotonic_now());
-    pollfd waits{output_, POLLIN, 0};
+    pollfd waits{output_.number(), POLLIN, 0};
     const int ready = poll(&waits, 1, std::max(0, static_cast<int>(left.count())));
     if (ready == 0) return false;
     if (ready < 0 && errno == EINTR) continue;
     std::array<char, 4096> buffer{};
-    const ssize_t size = read(output_, buffer.data(), buffer.size());
+    const ssize_t size = read(output_.number(), buffer.data(), buffer.size());
     if (size < 0 && errno == EINTR) continue;
     if (size <= 0) return false;
     read_.append(buffer.data(), static_cast<std::size_t>(size));
@@ -194,7 +181,7 @@ std::string ChildProcess::end(Nanoseconds patience) {
     while (read_more(monotonic_now())) {
     }
   }
-  Pipe::close_once(output_);
+  output_.reset();
   return std::exchange(read_, {});
 }
 

@@ -1,8 +1,8 @@
 // A program started as a child, which cannot outlive its parent.
 //
-// It dies with the thread that started it (PR_SET_PDEATHSIG: SIGKILL), and the destructor ends it:
-// SIGTERM, SIGKILL if that does not help, and its status is collected. Its standard output is read
-// line by line; standard error goes to a file.
+// It dies with the thread that started it (PR_SET_PDEATHSIG: SIGKILL). The destructor ends it with
+// SIGTERM, then SIGKILL, and collects its status. Its standard output is read line by line;
+// standard error goes to a file.
 //
 // Errors: ChildError, with the last lines of its standard error.
 //
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "hardware/clock/monotonic_time.h"
+#include "hardware/descriptor.h"
 
 namespace simbench::hardware {
 
@@ -33,7 +34,7 @@ class ChildProcess {
     std::string program;
     std::vector<std::string> arguments;  // without the program's own name
     std::string log;                     // a file; for standard error
-    // The member of a NetworkSandbox whose namespace it runs in; the caller's if there is none.
+    // The member of a NetworkSandbox in whose namespace it runs; none: in the caller's.
     std::optional<unsigned> sandbox_member;
   };
 
@@ -45,19 +46,19 @@ class ChildProcess {
   pid_t id() const { return process_; }
   // The next line of its standard output. Throws ChildError at the deadline, or if there is none.
   std::string read_line(MonotonicTime deadline);
-  // SIGTERM, and what it still wrote to its standard output. Waits `patience` at most.
+  // Sends SIGTERM, SIGKILL after `patience`; returns the rest of its standard output.
   std::string end(Nanoseconds patience);
 
  private:
   [[noreturn]] void fail(const std::string& problem) const;
-  // False: the end of its output, or the deadline.
+  // False at the end of the output and at the deadline.
   bool read_more(MonotonicTime deadline);
   bool collect(Nanoseconds patience);
 
   std::string name_;
   std::string log_;
   pid_t process_ = -1;
-  int output_ = -1;
+  Descriptor output_;
   std::string read_;
 };
 

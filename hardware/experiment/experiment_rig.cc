@@ -22,7 +22,7 @@ namespace {
 using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
 
-// Much more than a machine with fewer cores than nodes takes.
+// Much longer than a machine with fewer cores than nodes needs.
 constexpr Nanoseconds kReadyLimit = std::chrono::seconds(20);
 constexpr Nanoseconds kRelayPatience = std::chrono::seconds(2);
 
@@ -57,15 +57,15 @@ std::vector<std::uint16_t> free_ports(std::size_t count) {
   return ports;
 }
 
-// For /bin/sh.
+// Quotes for /bin/sh.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
 }
 
-// How far the monotonic clock is ahead of /proc/uptime, which a shell can read: nothing but its
-// coarseness, unless this machine has slept, or is a container that counts from its own start.
+// The monotonic clock less /proc/uptime, which a shell can read. They differ if this machine has
+// slept, or is a container that counts from its own start.
 double monotonic_ahead_of_uptime_s() {
   std::ifstream in("/proc/uptime");
   double uptime_s = 0;
@@ -112,7 +112,7 @@ ExperimentRig::ExperimentRig(ExperimentSettings settings) : settings_(std::move(
     write_text(files.back(), rig_text(node));
   }
   for (unsigned node = 0; node < hosts; ++node) start_node(node, files[node]);
-  // Its addresses in the hub are there once the nodes are connected.
+  // After the nodes: connecting them makes the relay's addresses in the hub.
   start_relay(files);
   const MonotonicTime deadline = monotonic_now() + kReadyLimit;
   for (const auto& node : nodes_) node->read_line(deadline);
@@ -138,7 +138,7 @@ void ExperimentRig::place(std::size_t hosts) {
   }
 }
 
-// As a node has it, or the conductor.
+// The rig file of a node; without one, of the conductor.
 std::string ExperimentRig::rig_text(std::optional<unsigned> node) const {
   nlohmann::ordered_json rig = {{"schema_version", 1}, {"name", "experiment"}};
   std::int64_t camera = 0;
@@ -197,9 +197,9 @@ std::optional<MonotonicTime> ExperimentRig::trigger_zero() const {
 
 std::string ExperimentRig::end_relay() {
   if (!relay_) return "";
-  std::string said = relay_->end(kRelayPatience);
+  std::string statistics = relay_->end(kRelayPatience);
   relay_.reset();
-  return said;
+  return statistics;
 }
 
 }  // namespace simbench::hardware

@@ -1,19 +1,18 @@
 // A rig of processes on this machine: a node for each host of a scenario and a relay between them.
 //
-// What the real-network experiment runs one repetition on: `simbench node` once a host, with clocks
-// that start wrong by given offsets and skews and cameras that play a recording, `simbench relay`
-// with the scenario's network, and a conductor's rig file and key for RigSource. All of it lies
-// below one temporary folder and is gone when this is: processes ended and collected, files
-// removed.
+// One repetition of the real-network experiment runs on it: `simbench node` once a host, with
+// clocks that start at given offsets and skews and cameras that play a recording; `simbench relay`
+// with the scenario's network; a conductor's rig file and key for RigSource. All files lie in one
+// temporary folder. The destructor ends all processes and removes all files.
 //
 // Network: with `namespaces` every node has a network namespace of its own, joined to the caller's
-// (which NetworkSandbox::enter() made) by a veth pair; else all is on loopback, with ports of its
-// own. Node i reaches the others through the relay only; the conductor reaches nodes directly.
+// (which NetworkSandbox::enter() made) by a veth pair; else every node has ports of its own on
+// loopback. Node i reaches the others through the relay only; the conductor reaches nodes directly.
 //
 // Trigger: the conductor's on_command writes the instant at which the recording's zero is played,
 // kTriggerLead ahead, and keeps it for trigger_zero().
 //
-// Errors: ChildError, SandboxError, StreamError, and std::runtime_error for files that cannot be
+// Errors: ChildError, SandboxError, StreamError, std::runtime_error for a file that cannot be
 // written.
 //
 //   ExperimentRig rig({.scenario = &scenario, .recording = "folder#played/1", .clocks = starts});
@@ -23,20 +22,47 @@
 #ifndef SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
 #define SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
 
+#include <stdlib.h>
+
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "hardware/clock/monotonic_time.h"
 #include "hardware/experiment/child_process.h"
-#include "hardware/experiment/temporary_folder.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::hardware {
+
+// A folder of its own among the system's temporary files, removed with everything in it.
+class TemporaryFolder {
+ public:
+  // Readable by its owner only. Throws std::runtime_error.
+  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "simbench-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw std::runtime_error(path_ + ": a temporary folder cannot be made here");
+    }
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
 
 // How a node's clock starts.
 struct ClockStart {
@@ -44,11 +70,12 @@ struct ClockStart {
   double skew_ppm = 0;   // of its oscillator
 };
 
-// The largest that the experiment starts clocks with.
+// The limits of draw_clock_starts().
 inline constexpr double kMaxOffsetMs = 500;
 inline constexpr double kMaxSkewPpm = 30;
 
-// Drawn from the scenario's sigmas, cut at these; the master has no offset. Keyed by (seed, host).
+// Draws from the scenario's sigmas, cut at these limits; the master has no offset. Keyed by (seed,
+// host).
 std::vector<ClockStart> draw_clock_starts(const scenarios::Scenario& scenario, std::uint64_t seed);
 
 struct ExperimentSettings {
@@ -75,7 +102,7 @@ class ExperimentRig {
   const SecretKey& key() const { return key_; }
   // When the recording's zero was last played; nothing if the trigger was never switched on.
   std::optional<MonotonicTime> trigger_zero() const;
-  // Ends the relay; its statistics, a line of JSON.
+  // Ends the relay; returns its statistics, a line of JSON.
   std::string end_relay();
 
  private:
@@ -91,7 +118,7 @@ class ExperimentRig {
 
   ExperimentSettings settings_;
   TemporaryFolder folder_;
-  // places_[i][j]: where node i finds host j; [i][i]: where it listens.
+  // places_[i][j]: where node i reaches host j; [i][i]: where it listens.
   std::vector<std::vector<Place>> places_;
   SecretKey key_;
   Rig conductor_;

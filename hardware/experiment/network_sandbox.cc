@@ -19,6 +19,8 @@
 #include <cstring>
 #include <span>
 
+#include "hardware/descriptor.h"
+
 namespace simbench::hardware {
 namespace {
 
@@ -39,25 +41,11 @@ std::string interface_of(unsigned member) { return fmt::format("hub{}", member);
   throw SandboxError(fmt::format("{}: {}", doing, std::strerror(errno)));
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-  bool good() const { return number_ >= 0; }
-
- private:
-  int number_;
-};
-
 // Async-signal-safe. An address of 0: none.
 bool set_up(const char* interface, std::uint32_t address) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return false;
+  const Descriptor opened(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!opened.good()) return false;
+  const int socket = opened.number();
   ifreq request{};
   std::strncpy(request.ifr_name, interface, IFNAMSIZ - 1);
   auto* internet = reinterpret_cast<sockaddr_in*>(&request.ifr_addr);
@@ -73,7 +61,6 @@ bool set_up(const char* interface, std::uint32_t address) {
   good = good && ioctl(socket, SIOCGIFFLAGS, &request) == 0;
   request.ifr_flags = static_cast<short>(request.ifr_flags | IFF_UP);
   good = good && ioctl(socket, SIOCSIFFLAGS, &request) == 0;
-  close(socket);
   return good;
 }
 
@@ -174,7 +161,7 @@ int add_pair(const std::string& interface, pid_t process) {
 void remove_pair(const std::string& interface) {
   LinkRequest request(RTM_DELLINK, 0);
   request.add(IFLA_IFNAME, interface);
-  request.send();  // there is none, as a rule
+  request.send();  // mostly there is none
 }
 
 }  // namespace
@@ -186,7 +173,7 @@ std::optional<std::string> NetworkSandbox::enter() {
     if (errno != EPERM || unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) {
       return fmt::format("no network namespace: {}", std::strerror(errno));
     }
-    // Who this process is, in its new user namespace: root there, the same user to the outside.
+    // In the new user namespace this process is root; outside it stays the same user.
     write_file("/proc/self/setgroups", "deny");
     if (!write_file("/proc/self/uid_map", fmt::format("0 {} 1", user)) ||
         !write_file("/proc/self/gid_map", fmt::format("0 {} 1", group))) {

@@ -1,17 +1,17 @@
 // Network namespaces for processes of one machine, joined by veth pairs to a hub: a rig's network
-// that touches nothing outside and is gone with its processes.
+// that changes nothing outside and ends with its processes.
 //
 //   hub (this thread's namespace)                    member i's own namespace
 //   hub_address(i) 10.77.i.1 --- veth "hub<i>" ... "eth0" --- member_address(i) 10.77.i.2
 //
-// Members reach the hub only, not each other. Nothing is set up with other programs (netlink and
-// ioctl), and the kernel removes a pair when its namespace ends.
+// Members reach the hub only, not each other. All is set up by netlink and ioctl, without other
+// programs; the kernel removes a pair when its namespace ends.
 //
 // Contract
-//  - enter() moves the calling thread (and whoever it starts from then on) into a fresh namespace,
-//    for good: call it before other threads are made. As an ordinary user it also needs a fresh
-//    user namespace, which the kernel gives to processes of one thread only. Where that is not
-//    permitted it returns the reason and nothing has changed.
+//  - enter() moves the calling thread, and all threads and processes that it starts later, into a
+//    fresh namespace for good: call it before there are other threads. An ordinary user also needs
+//    a fresh user namespace, which the kernel gives only to processes of one thread. Where that is
+//    not permitted it returns the reason and nothing has changed.
 //  - leave_hub() is for the member's own process, between fork() and exec(): async-signal-safe.
 //  - connect() is called in the hub once the member has left it.
 //
@@ -39,7 +39,7 @@ class NetworkSandbox {
  public:
   static constexpr unsigned kMaxMembers = 250;
 
-  // Nothing if the thread is in a fresh namespace now; else why not.
+  // Nothing if the thread is in a fresh namespace now; else the reason why not.
   static std::optional<std::string> enter();
 
   static std::string hub_address(unsigned member);
@@ -47,8 +47,8 @@ class NetworkSandbox {
 
   // In the member's process: moves it into a namespace of its own. False: not permitted.
   static bool leave_hub();
-  // In the hub: a pair from here to the process's namespace; sets the hub's side up. Removes what
-  // was left there by an earlier member of the number.
+  // In the hub: makes a pair to the process's namespace and sets the hub's side up. Removes the
+  // pair of an earlier member of that number.
   static void connect(unsigned member, pid_t process);
   // In the member's process, after connect(): sets its side up. False: it failed.
   static bool set_up_member(unsigned member);

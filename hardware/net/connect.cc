@@ -18,7 +18,7 @@ using Kind = StreamError::Kind;
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-// What the handlers of an attempt leave; they may outlive it.
+// The state of an attempt, shared with its handlers, which may outlive it.
 struct Attempt {
   explicit Attempt(const boost::asio::any_io_executor& executor)
       : resolver(executor), socket(executor), done(executor) {}
@@ -36,7 +36,7 @@ struct Attempt {
 
 using Shared = std::shared_ptr<Attempt>;
 
-// Ends what is under way, also when the waiting coroutine is cancelled.
+// Ends the attempt, also when the waiting coroutine is cancelled.
 struct Ending {
   Shared attempt;
   ~Ending() {

@@ -1,5 +1,4 @@
-// Addresses, and a TCP connection by a deadline: names are resolved, and each of a name's addresses
-// is tried.
+// Addresses, and TCP connections by a deadline: resolves a name and tries each of its addresses.
 //
 //   auto socket = co_await connect_socket(context.get_executor(), "host3", 47110, deadline);
 #ifndef SIMBENCH_HARDWARE_NET_CONNECT_H_
@@ -17,13 +16,13 @@ namespace simbench::hardware {
 // "10.0.0.3:47110", "[::1]:47110".
 std::string address_text(const std::string& address, std::uint16_t port);
 
-// Throws StreamError(kUnreachable), also for a name that nobody knows and at the deadline.
+// Throws StreamError(kUnreachable), also for an unknown name and at the deadline.
 Task<boost::asio::ip::tcp::socket> connect_socket(boost::asio::any_io_executor executor,
                                                   std::string address, std::uint16_t port,
                                                   MonotonicTime deadline);
 
-// The same without waiting: an address as a number, or a name by the system's own means. For what
-// is done once at the start.
+// Parses a numeric address, or resolves a name at once (blocking): for the start of a program.
+// Throws StreamError(kUnreachable).
 boost::asio::ip::address resolved_now(const std::string& address);
 
 }  // namespace simbench::hardware

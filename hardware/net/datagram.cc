@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "hardware/net/wire.h"
-
 namespace simbench::hardware {
 namespace {
 
@@ -45,7 +43,7 @@ Bytes DatagramSession::seal_next(std::span<const std::byte> message) {
 
 DatagramVerdict DatagramSession::open(const DatagramHeader& header,
                                       std::span<const std::byte> datagram, Bytes& message) {
-  // First, as it costs nothing; the window moves only for what was sealed with the key.
+  // First, since it costs nothing; the window moves only for datagrams sealed with the key.
   if (!window_.is_fresh(header.counter)) return DatagramVerdict::kReplayed;
   auto opened = open_sealed(receive_key_, header.counter, datagram.first(kDatagramHeaderBytes),
                             datagram.subspan(kDatagramHeaderBytes));

@@ -1,10 +1,10 @@
-// A datagram between two hosts: who sent it and a counter in the clear, the message sealed.
+// A datagram between two hosts: sender and counter in the clear, the message sealed.
 //
 //   bytes  what
 //   0      0xd7
 //   1      kProtocolVersion, its low byte
 //   2-3    the sender's number, least significant byte first
-//   4-11   counter: the nonce, and what a replay is known by
+//   4-11   counter: the nonce, by which replays are detected
 //   12-    sealed message, kSealBytes longer than the message
 //
 // The first twelve bytes are protected by the seal. Keys come from the session of the two hosts'
@@ -17,8 +17,8 @@
 #include <optional>
 #include <span>
 
-#include "hardware/net/sealing.h"
 #include "hardware/net/secure_stream.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 
@@ -32,24 +32,24 @@ struct DatagramHeader {
   std::uint64_t counter = 0;
 };
 
-// Nothing if it is none of this protocol.
+// Nothing if it does not belong to this protocol.
 std::optional<DatagramHeader> parse_datagram(std::span<const std::byte> datagram);
 
-// Which counters of a session's datagrams were accepted: each at most once, and none that is kSize
-// or more behind the highest.
+// The accepted counters of a session's datagrams: each at most once, and none that is kSize or more
+// behind the highest.
 //
 // Source: RFC 6479, with blocks of 64 bits.
 class ReplayWindow {
  public:
   static constexpr std::uint64_t kSize = 1024;
 
-  // Neither accepted before nor too old to tell.
+  // Neither accepted before nor too old.
   bool is_fresh(std::uint64_t counter) const {
     if (empty_ || counter > highest_) return true;
     return highest_ - counter < kSize && (block(counter) & bit(counter)) == 0;
   }
 
-  // Call it for a fresh counter, once what carries it has proved to be authentic.
+  // Call it for a fresh counter, once its datagram has proved to be authentic.
   void accept(std::uint64_t counter) {
     if (empty_ || counter > highest_) {
       move_to(counter);
@@ -58,7 +58,7 @@ class ReplayWindow {
   }
 
  private:
-  // One block more than the window has: the one that the window moves into is cleared as a whole.
+  // One block more than the window, which clears a whole block when it moves into it.
   static constexpr std::uint64_t kBlocks = kSize / 64 + 1;
 
   static std::uint64_t bit(std::uint64_t counter) { return std::uint64_t{1} << (counter % 64); }
@@ -89,11 +89,11 @@ enum class DatagramVerdict : std::uint8_t { kAccepted, kForged, kReplayed };
 class DatagramSession {
  public:
   DatagramSession(const SecureStream& stream, std::uint16_t me, std::uint16_t peer);
-  // For who has the keys already.
+  // With given keys.
   DatagramSession(std::uint16_t me, const KeyBytes& send_key, const KeyBytes& receive_key);
 
   Bytes seal_next(std::span<const std::byte> message);
-  // `message` is what it carries, if it is accepted. A datagram is accepted once.
+  // Sets `message` if the datagram is accepted, which it is at most once.
   DatagramVerdict open(const DatagramHeader& header, std::span<const std::byte> datagram,
                        Bytes& message);
 

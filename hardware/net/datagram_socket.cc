@@ -14,7 +14,7 @@ namespace {
 using boost::asio::ip::udp;
 using boost::system::error_code;
 
-// A flood must not crowd out what is waiting to be read.
+// Large enough that a flood does not crowd out waiting datagrams.
 constexpr int kBufferBytes = 1 << 20;
 
 udp::endpoint endpoint_of(const sockaddr_storage& from) {
@@ -58,7 +58,7 @@ Task<bool> DatagramSocket::readable() {
   co_await socket_.async_wait(udp::socket::wait_read,
                               boost::asio::redirect_error(boost::asio::use_awaitable, error));
   if (error || closed_) co_return false;
-  // The wait ends for transmit stamps as well, and would at once if they stayed.
+  // Transmit stamps end the wait as well, and would end the next one at once.
   take_stamps();
   co_return true;
 }
@@ -94,13 +94,9 @@ void DatagramSocket::restart_numbers() {
 }
 
 bool DatagramSocket::take_stamps() {
-  bool some = false;
-  while (const auto stamp = next_transmit_stamp(socket_.native_handle())) {
-    transmitted_.stamped(stamp->number, stamp->at);
-    some = true;
-  }
-  if (some) stamped_.notify();
-  return some;
+  if (!take_transmit_stamps(socket_.native_handle(), transmitted_)) return false;
+  stamped_.notify();
+  return true;
 }
 
 Task<std::optional<MonotonicTime>> DatagramSocket::left(MessageId id, MonotonicTime deadline) {
@@ -108,7 +104,7 @@ Task<std::optional<MonotonicTime>> DatagramSocket::left(MessageId id, MonotonicT
     const TransmitLog::Entry* entry = transmitted_.find(id);
     if (entry == nullptr) co_return std::nullopt;
     if (entry->left) co_return *entry->left;
-    // Without the kernel's stamp: not later than it left.
+    // Without the kernel's stamp, the time of the call: not later than the message left.
     if (!stamps_) co_return entry->called;
     if (take_stamps()) continue;
     const bool in_time = co_await stamped_.wait(deadline);

@@ -1,7 +1,7 @@
-// A UDP socket that says when datagrams came and left: by the kernel's stamps where it gives them
-// (hardware/net/kernel_stamps.h), else by the times of the calls.
+// A UDP socket that stamps datagrams when they arrive and leave: by the kernel's stamps if there
+// are any (hardware/net/kernel_stamps.h), else by the times of the calls.
 //
-// Neither sending nor receiving waits. One thread; coroutines that use it keep it alive.
+// Neither sending nor receiving waits. One thread; its coroutines must keep it alive.
 //
 //   DatagramSocket socket(context);
 //   socket.bind({address, 47110}, error);
@@ -44,14 +44,14 @@ class DatagramSocket {
   void close();
   bool is_ip6() const;
 
-  // Until there is something to read. False: it is closed.
+  // Waits until there is something to read. False: closed.
   Task<bool> readable();
-  // Nothing if there is none now.
+  // Nothing if no datagram is there.
   std::optional<Received> receive();
 
-  // Ids ascend. What cannot be sent is lost.
+  // Ids ascend. A datagram that cannot be sent is lost.
   void send(MessageId id, const Bytes& datagram, const Endpoint& to);
-  // When it left; nothing if it never did, that is forgotten, or not known by the deadline.
+  // When it left; nothing if it never did, is too old, or has no stamp by the deadline.
   Task<std::optional<MonotonicTime>> left(MessageId id, MonotonicTime deadline);
 
  private:
@@ -62,7 +62,7 @@ class DatagramSocket {
   boost::asio::ip::udp::socket socket_;
   bool closed_ = false;
   std::array<std::byte, kMaxDatagramBytes + 1> buffer_{};
-  bool stamps_ = false;            // the kernel gives them
+  bool stamps_ = false;            // the kernel stamps
   std::uint32_t next_number_ = 0;  // as the kernel counts
   TransmitLog transmitted_;
   Notice stamped_;

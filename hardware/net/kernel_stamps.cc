@@ -15,37 +15,11 @@ namespace {
 constexpr unsigned kWithoutNumbers = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_TX_SOFTWARE |
                                      SOF_TIMESTAMPING_SOFTWARE | SOF_TIMESTAMPING_OPT_TSONLY;
 
-// How far two readings may be apart because the process was interrupted between them.
-constexpr Nanoseconds kReadingError = std::chrono::milliseconds(1);
-
 bool set_flags(int socket, unsigned flags) {
   return setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPING, &flags, sizeof flags) == 0;
 }
 
-Nanoseconds reading(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return std::chrono::seconds(now.tv_sec) + Nanoseconds(now.tv_nsec);
-}
-
-// CLOCK_REALTIME less CLOCK_MONOTONIC, from the closest of a few bracketed readings.
-Nanoseconds realtime_offset() {
-  constexpr Nanoseconds kCloseEnough{500};
-  Nanoseconds best{};
-  Nanoseconds best_gap = Nanoseconds::max();
-  for (int i = 0; i < 4 && best_gap > kCloseEnough; ++i) {
-    const Nanoseconds before = reading(CLOCK_MONOTONIC);
-    const Nanoseconds realtime = reading(CLOCK_REALTIME);
-    const Nanoseconds gap = reading(CLOCK_MONOTONIC) - before;
-    if (gap < best_gap) {
-      best_gap = gap;
-      best = realtime - before - gap / 2;
-    }
-  }
-  return best;
-}
-
-// What the control messages of a read say.
+// What the control messages of a read carry.
 struct ControlMessages {
   std::optional<timespec> stamp;
   std::optional<sock_extended_err> error;
@@ -74,18 +48,26 @@ ControlMessages control_messages(msghdr& header) {
 
 using ControlBuffer = std::array<std::byte, 512>;
 
-// What converting a stamp may be wrong by.
+// The largest error of a converted stamp: the process may be interrupted between two readings.
 constexpr Nanoseconds kStampError = std::chrono::milliseconds(1);
 
 }  // namespace
+
+bool take_transmit_stamps(int socket, TransmitLog& log) {
+  bool some = false;
+  while (const auto stamp = next_transmit_stamp(socket)) {
+    log.stamped(stamp->number, stamp->at);
+    some = true;
+  }
+  return some;
+}
 
 bool request_kernel_stamps(int socket) {
   return set_flags(socket, kWithoutNumbers | SOF_TIMESTAMPING_OPT_ID);
 }
 
 bool request_receive_stamps(int socket) {
-  const unsigned flags = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
-  return setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPING, &flags, sizeof flags) == 0;
+  return set_flags(socket, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE);
 }
 
 void restart_stamp_numbers(int socket) {
@@ -94,11 +76,14 @@ void restart_stamp_numbers(int socket) {
 }
 
 std::optional<MonotonicTime> monotonic_of(const timespec& realtime) {
-  const Nanoseconds offset = realtime_offset();
-  const Nanoseconds wall = std::chrono::seconds(realtime.tv_sec) + Nanoseconds(realtime.tv_nsec);
-  const MonotonicTime at(wall - offset);
+  constexpr int kTries = 4;
+  constexpr Nanoseconds kCloseEnough{500};
+  const PairedReading reading =
+      paired_reading(read_system_clock, monotonic_now, kTries, kCloseEnough);
+  const HostTime wall(std::chrono::seconds(realtime.tv_sec) + Nanoseconds(realtime.tv_nsec));
+  const MonotonicTime at = reading.at - (reading.reads - wall);
   const MonotonicTime now = monotonic_now();
-  if (at > now + kReadingError || at < now - kOldestStamp) return std::nullopt;
+  if (at > now + kStampError || at < now - kOldestStamp) return std::nullopt;
   return std::min(at, now);
 }
 
@@ -155,7 +140,7 @@ void TransmitLog::sent(MessageId id, std::uint32_t number, MonotonicTime called)
 }
 
 void TransmitLog::stamped(std::uint32_t number, MonotonicTime at) {
-  // The newest first: stamps are of what was sent just now, and numbers wrap.
+  // The newest first: stamps belong to what was sent just now, and numbers wrap.
   const auto entry = std::find_if(entries_.rbegin(), entries_.rend(),
                                   [number](const Entry& e) { return e.number == number; });
   if (entry == entries_.rend() || entry->left || at < entry->called - kStampError) return;

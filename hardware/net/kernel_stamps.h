@@ -1,17 +1,15 @@
-// When bytes came from the network and went to it, as the kernel says (SO_TIMESTAMPING), in
-// CLOCK_MONOTONIC.
+// The kernel's stamps of received and sent bytes (SO_TIMESTAMPING), in CLOCK_MONOTONIC.
 //
-// The kernel stamps in CLOCK_REALTIME. A stamp is converted as soon as it is read, by reading that
-// clock between two readings of the monotonic one; what the reading leaves open is under a
-// microsecond on an idle machine. Should somebody step the system clock between stamp and reading,
-// the converted stamp is wrong by the step: one that lies outside what is possible (after the
-// reading, or more than kOldestStamp before it) is not used.
+// The kernel stamps in CLOCK_REALTIME. A stamp is converted as soon as it is read, by a paired
+// reading of both clocks; the error is below a microsecond on an idle machine. If the system clock
+// is stepped between stamp and reading, the converted stamp is wrong by the step. A stamp that is
+// impossible (after the reading, or more than kOldestStamp before it) is discarded.
 //
-// Receive stamps: of the last segment (TCP) or the datagram (UDP) that a read took from. Where the
-// kernel gives none, the time of the read.
+// Receive stamps: of the last segment (TCP) or the datagram (UDP) that a read took from; without
+// one, the time of the read.
 // Transmit stamps: when the driver took the packet with the last byte of a send call. They come by
-// the socket's error queue, named by the offset of that byte in the stream, or by the number of the
-// datagram, both from the moment at which they were requested.
+// the socket's error queue, identified by the offset of that byte in the stream or by the number of
+// the datagram, both counted from the request for stamps.
 //
 // Source: the kernel's Documentation/networking/timestamping.rst.
 #ifndef SIMBENCH_HARDWARE_NET_KERNEL_STAMPS_H_
@@ -34,7 +32,7 @@ inline constexpr Nanoseconds kOldestStamp = std::chrono::seconds(10);
 
 // Asks for stamps of everything from now on. False if the kernel has none.
 bool request_kernel_stamps(int socket);
-// The same of what is received only: nothing has to take stamps from the error queue.
+// The same for received data only; nothing then fills the error queue.
 bool request_receive_stamps(int socket);
 // Starts the numbers of datagrams at 0 again: a send that failed may or may not have taken one.
 void restart_stamp_numbers(int socket);
@@ -55,14 +53,14 @@ struct TransmitStamp {
   MonotonicTime at{};
 };
 
-// The next stamp from the error queue, if there is one. What else lies there is thrown away.
+// The next stamp from the error queue, if there is one. Discards everything else in the queue.
 std::optional<TransmitStamp> next_transmit_stamp(int socket);
 
-// A CLOCK_REALTIME instant of the recent past; nothing if it cannot be of the recent past.
+// Converts a CLOCK_REALTIME instant; nothing if it is not of the recent past.
 std::optional<MonotonicTime> monotonic_of(const timespec& realtime);
 
-// Which of the last messages of a socket left when: joins what was sent with the stamps that the
-// kernel gives later. Pure; bounded to the last kKept messages.
+// When each of the last kKept messages of a socket left: joins sent messages with the stamps that
+// the kernel reports later. Pure.
 class TransmitLog {
  public:
   static constexpr std::size_t kKept = 1024;
@@ -70,9 +68,9 @@ class TransmitLog {
   // Message `id` (they ascend) was handed to the kernel by a call that began at `called`; the
   // kernel names its stamp `number`.
   void sent(MessageId id, std::uint32_t number, MonotonicTime called);
-  // Unknown numbers, second stamps, and stamps from before the call are left out.
+  // Ignores unknown numbers, second stamps, and stamps from before the call.
   void stamped(std::uint32_t number, MonotonicTime at);
-  // No stamp that is still missing will come.
+  // Missing stamps will not come any more.
   void forget_numbers();
 
   struct Entry {
@@ -81,12 +79,15 @@ class TransmitLog {
     MonotonicTime called{};
     std::optional<MonotonicTime> left;
   };
-  // Null if it was not sent, or long ago.
+  // Null if it was not sent, or is too old.
   const Entry* find(MessageId id) const;
 
  private:
   std::deque<Entry> entries_;
 };
+
+// Moves all stamps from the socket's error queue to the log. False if there was none.
+bool take_transmit_stamps(int socket, TransmitLog& log);
 
 }  // namespace simbench::hardware
 

@@ -11,7 +11,7 @@ namespace simbench::hardware {
 namespace {
 
 constexpr std::size_t kMostNewcomers = 64;
-// From one source.
+// The limits of one source.
 constexpr double kConnectionsPerSecond = 100;
 constexpr double kConnectionsAtOnce = 256;
 

@@ -1,5 +1,5 @@
-// Connections that have not proved the key yet: at most 64, for 2 s each. Where one more comes, the
-// oldest of the address that has most of them is refused: who floods refuses its own.
+// Connections that have not proved the key yet: at most 64, for 2 s each. A further one makes the
+// oldest of the address with most of them be refused, so a flood displaces its own connections.
 //
 // One thread.
 //
@@ -24,12 +24,12 @@
 
 namespace simbench::hardware {
 
-// Within this a newcomer has proved the key, or it is refused.
+// A newcomer that has not proved the key after this time is refused.
 inline constexpr Nanoseconds kHandshakeTime = std::chrono::seconds(2);
 
 class Newcomers {
  public:
-  // Null: it was refused.
+  // `stream` is null if the newcomer was refused.
   using Outcome = std::function<void(std::unique_ptr<SecureStream> stream)>;
 
   Newcomers(boost::asio::io_context& context, SecretKey key, PeerName me);

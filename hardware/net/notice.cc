@@ -8,7 +8,7 @@
 namespace simbench::hardware {
 namespace {
 
-// Takes the waiter from the list also when its coroutine is destroyed.
+// Removes the waiter from the list, also when its coroutine is destroyed.
 class Listed {
  public:
   Listed(std::vector<boost::asio::steady_timer*>& waiters, boost::asio::steady_timer& timer)
@@ -25,6 +25,16 @@ class Listed {
 };
 
 }  // namespace
+
+Task<void> ended(boost::asio::steady_timer& timer) {
+  boost::system::error_code cancelled;
+  co_await timer.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, cancelled));
+}
+
+Task<void> pause(boost::asio::any_io_executor executor, Nanoseconds interval) {
+  boost::asio::steady_timer timer(executor, interval);
+  co_await ended(timer);
+}
 
 Task<bool> Notice::wait(MonotonicTime deadline) {
   if (deadline <= monotonic_now()) co_return false;

@@ -1,8 +1,8 @@
-// What coroutines wait for: a notice that something has changed, and an inbox of messages.
+// What coroutines wait for: a pause, a notice that something has changed, an inbox of messages.
 //
-// Notice: any number of coroutines wait, each with its own deadline. A waiter looks at what it
-// waits for, waits, and looks again; notify() wakes all that wait. Inbox: the messages that wait in
-// a channel, bounded in number and in bytes; the oldest goes first.
+// Notice: any number of coroutines wait, each with its own deadline. A waiter checks its condition,
+// waits, and checks again; notify() wakes all. Inbox: the messages that wait in a channel, bounded
+// in number and in bytes; the oldest is dropped first.
 //
 // One thread. Both must outlive their waiters, so they live in the shared state that those hold.
 //
@@ -22,6 +22,11 @@
 #include "hardware/clock/monotonic_time.h"
 
 namespace simbench::hardware {
+
+// Returns when the timer has expired or was cancelled.
+Task<void> ended(boost::asio::steady_timer& timer);
+// Waits for this long.
+Task<void> pause(boost::asio::any_io_executor executor, Nanoseconds interval);
 
 class Notice {
  public:
@@ -45,9 +50,9 @@ class Inbox {
 
   explicit Inbox(boost::asio::any_io_executor executor) : arrived_(std::move(executor)) {}
 
-  // How many messages had to go for it.
+  // Returns how many messages were dropped for it.
   std::size_t push(ReceivedMessage message);
-  // The next one; nothing at the deadline or when it was closed. The caller keeps this alive.
+  // The next message; nothing at the deadline or after close(). The caller keeps this alive.
   Task<std::optional<ReceivedMessage>> next(MonotonicTime deadline);
   void clear();
   void close();

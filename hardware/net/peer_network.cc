@@ -34,10 +34,10 @@ using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
 using boost::system::error_code;
 
-// Datagrams of who has not proved the key, from one source.
+// Datagrams from one source that has not proved the key.
 constexpr double kStrangersPerSecond = 200;
 constexpr double kStrangersAtOnce = 64;
-// What is read before others get their turn.
+// Datagrams read in a row before others get their turn.
 constexpr int kDatagramsAtOnce = 64;
 
 constexpr Nanoseconds kFirstRetry = std::chrono::milliseconds(100);
@@ -48,7 +48,7 @@ constexpr std::size_t kMaxPeerMessage = 64u << 10;
 constexpr std::byte kPort{0};
 constexpr std::byte kMessage{1};
 
-// A stream's messages are named by the stream and by their number in it.
+// The id of a stream's message joins the number of the stream and its own number in it.
 constexpr unsigned kNumberBits = 40;
 constexpr MessageId kNeverSent = ~MessageId{0};
 
@@ -67,12 +67,12 @@ std::string without_port(const std::string& text) {
 
 }  // namespace
 
-// The inside of a PeerNetwork. Held by it and by every operation that is under way; stop() ends
-// those, and from then on the node's clock is not touched.
+// The inside of a PeerNetwork, held by it and by every pending operation. stop() ends these; after
+// it the node's clock is not used.
 //
 // A stream between hosts carries messages of one tag byte and their content: kPort, two bytes, once
-// at the start (where the sender takes datagrams, for who does not know it from the rig file), and
-// kMessage, one of the stream channel's.
+// at the start (the sender's datagram port, which a rig file may not state), and kMessage, a
+// message of the stream channel.
 class PeerNetwork::State : public std::enable_shared_from_this<State> {
  public:
   using Self = std::shared_ptr<State>;
@@ -89,7 +89,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
   bool connected(PeerId peer) const;
   const NetworkStatistics& statistics() const { return statistics_; }
 
-  // What the channels do.
+  // The operations of the channels.
   static Task<MessageId> send_by_stream(Self self, PeerId peer, Bytes message);
   MessageId send_datagram(PeerId peer, const Bytes& message);
   static Task<std::optional<ReceivedMessage>> receive(Self self, PeerId peer, Transport transport,
@@ -101,7 +101,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
  private:
   class Channel;
 
-  // All there is about one other host.
+  // Everything about one other host.
   struct Link {
     Link(State& state, PeerId of);
     Inbox& inbox(Transport transport) {
@@ -113,7 +113,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
     std::uint64_t streams = 0;             // how many there were
     std::optional<DatagramSession> session;
     boost::asio::ip::udp::endpoint datagrams_to;
-    // Where its last authentic datagram came from.
+    // The source of its last authentic datagram.
     std::optional<boost::asio::ip::udp::endpoint> proven_source;
     Inbox stream_inbox;
     Inbox datagram_inbox;
@@ -127,7 +127,7 @@ class PeerNetwork::State : public std::enable_shared_from_this<State> {
   MonotonicTime deadline_of(SteadyTime deadline) const;
   void deliver(Link& link, Transport transport, Bytes message, MonotonicTime received);
 
-  // Streams: who connects, who is let in, what they carry.
+  // Streams: connecting, admitting, routing.
   static Task<void> accept_connections(Self self);
   void admit(std::unique_ptr<SecureStream> stream);
   static Task<void> keep_connected(Self self, PeerId peer);
@@ -230,7 +230,7 @@ void PeerNetwork::State::bind_sockets() {
                     where));
   }
   error_code error;
-  // Another program may have the datagram port of the number that is free for connections.
+  // The free port for connections may be taken by another program for datagrams.
   for (int attempt = 0; attempt < 16; ++attempt) {
     acceptor_ = tcp::acceptor(context_);
     const tcp::endpoint wanted(address, settings_.listen.port);
@@ -299,7 +299,7 @@ bool PeerNetwork::State::connected(PeerId peer) const {
   return peer < links_.size() && links_[peer] && links_[peer]->stream;
 }
 
-// "For ever" has no instant on the oscillator's scale.
+// A deadline of "for ever" has no instant on the oscillator's scale.
 MonotonicTime PeerNetwork::State::deadline_of(SteadyTime deadline) const {
   constexpr Nanoseconds kForEver = std::chrono::hours(24 * 365 * 100);
   if (deadline.time_since_epoch() > kForEver) return MonotonicTime::max();
@@ -330,7 +330,7 @@ Task<void> PeerNetwork::State::accept_connections(Self self) {
         socket, boost::asio::redirect_error(boost::asio::use_awaitable, error));
     if (self->stopped_) co_return;
     if (error) {
-      // Such as no file numbers left: the connections wait in the kernel meanwhile.
+      // Such as too many open files; the connections wait in the kernel meanwhile.
       co_await self->stopping_.wait(monotonic_now() + kFirstRetry);
       continue;
     }
@@ -344,7 +344,7 @@ Task<void> PeerNetwork::State::accept_connections(Self self) {
 void PeerNetwork::State::admit(std::unique_ptr<SecureStream> stream) {
   const std::uint32_t host = stream->peer().host;
   if (host == PeerName::kConductor && on_conductor_) return on_conductor_(std::move(stream));
-  // Hosts of lower number are connected to from here.
+  // This host connects to hosts of lower number itself.
   if (host <= settings_.me || host >= links_.size()) {
     ++statistics_.refused_connections;
     return;
@@ -367,7 +367,7 @@ Task<void> PeerNetwork::State::keep_connected(Self self, PeerId peer) {
   }
 }
 
-// Nothing if there is no connection now, or another than that host at its address.
+// Null if there is no connection now, or if another host answers at the address.
 Task<std::unique_ptr<SecureStream>> PeerNetwork::State::connect_to(Self self, PeerId peer) {
   const PeerAddress at = self->settings_.peers[peer];
   std::unique_ptr<SecureStream> stream;
@@ -385,7 +385,7 @@ Task<std::unique_ptr<SecureStream>> PeerNetwork::State::connect_to(Self self, Pe
   co_return stream;
 }
 
-// Until the stream has ended.
+// Returns when the stream has ended.
 Task<void> PeerNetwork::State::serve(Self self, PeerId peer, std::shared_ptr<SecureStream> stream) {
   Link& link = self->link(peer);
   self->take_over(link, stream);
@@ -418,7 +418,7 @@ void PeerNetwork::State::take_over(Link& link, const std::shared_ptr<SecureStrea
   link.connected.notify();
 }
 
-// False if the peer sent what is not allowed.
+// False if the peer broke the protocol.
 bool PeerNetwork::State::route(Link& link, StreamMessage message) {
   const std::size_t size = message.bytes.size();
   if (size == 3 && message.bytes[0] == kPort) {
@@ -472,8 +472,8 @@ Task<std::optional<HostTime>> PeerNetwork::State::stream_stamp(Self self, PeerId
   co_return self->clock_.system_at(*left);
 }
 
-// The address of the rig file where it is a number, else where the stream comes from; the port of
-// the rig file, or the one that the host itself tells.
+// The rig file's address if it is numeric, else the stream's remote address; the rig file's port,
+// or the one that the host sends.
 udp::endpoint PeerNetwork::State::destination(const Link& link, const SecureStream& stream) const {
   const PeerAddress& configured = settings_.peers[link.peer];
   error_code no_number;

@@ -1,20 +1,20 @@
 // A node's sockets: streams and datagrams to its peers, and streams from conductors.
 //
 // One TCP listener and one UDP socket on the same port. Between two hosts there is one
-// SecureStream, opened by the host of higher number and opened again when it is lost; datagrams of
+// SecureStream, which the host of higher number opens, and reopens when it is lost. Datagrams of
 // the pair are sealed under a key of that stream's session, with a counter that is accepted once (a
 // window of 1024, as in RFC 6479). A host's MessageChannels (stream and datagram) are views of
-// these, and survive a reconnection: what was sent meanwhile is lost, as over any network.
+// these and survive a reconnection; messages sent meanwhile are lost, as over any network.
 //
 // Contract
 //  - Bounded everywhere: 64 unauthenticated connections of 2 s, kChannelQueue received messages a
-//    channel (the oldest goes), 64 KiB a peer message, and a bucket of datagrams per second from
-//    outside a session before they cost more than a read.
+//    channel (the oldest is dropped), 64 KiB a peer message, and a rate limit for datagrams from
+//    outside a session.
 //  - Receive stamps come from the kernel where it stamps; the channel turns them into host and
 //    steady time by the node's clock. MessageChannel::transmit_stamp likewise.
-//  - A second connection that claims a host replaces the first only after it has proved the key.
-//  - Connections of conductors are handed to on_conductor with their handshake done.
-//  - `statistics()` counts what was refused and why.
+//  - A second connection of a host replaces the first only after it has proved the key.
+//  - Connections of conductors go to on_conductor after their handshake.
+//  - `statistics()` counts refusals by reason.
 //  - One thread; the io_context must not run after this has gone.
 //
 //   PeerNetwork network(context, settings, clock);
@@ -77,7 +77,7 @@ class PeerNetwork {
 
   // The same object each time; lives as long as this. kStream keeps message bounds.
   MessageChannel& channel(PeerId peer, Transport transport);
-  // Forgets messages that wait in channels: a session begins with none of the last one's.
+  // Discards messages that wait in channels, so that a session begins without the last one's.
   void clear();
   bool connected(PeerId peer) const;
   const NetworkStatistics& statistics() const;

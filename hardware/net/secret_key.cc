@@ -9,7 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hardware/net/sealing.h"
+#include "hardware/descriptor.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {
@@ -19,20 +20,6 @@ constexpr std::size_t kDigits = 2 * SecretKey::kBytes;
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
   throw KeyError(fmt::format("{}: {}", path, what));
 }
-
-class OpenFile {
- public:
-  explicit OpenFile(int number) : number_(number) {}
-  ~OpenFile() {
-    if (number_ >= 0) close(number_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 void check_owner_and_rights(const std::string& path, int file) {
   struct stat found {};
@@ -52,21 +39,6 @@ void check_owner_and_rights(const std::string& path, int file) {
   }
 }
 
-// At most one byte more than a key file has, so that a longer one is seen.
-std::string content_of(const std::string& path, int file) {
-  std::string text(kDigits + 2, '\0');
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t got = read(file, text.data() + size, text.size() - size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(path, std::strerror(errno));
-    if (got == 0) break;
-    size += static_cast<std::size_t>(got);
-  }
-  text.resize(size);
-  return text;
-}
-
 void write_all(const std::string& path, int file, const std::string& text) {
   std::size_t size = 0;
   while (size < text.size()) {
@@ -82,16 +54,19 @@ void write_all(const std::string& path, int file, const std::string& text) {
 
 SecretKey SecretKey::from_file(const std::string& path) {
   start_sodium();
-  // Not blocking: a pipe is refused, not waited for.
-  const OpenFile file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.number() < 0) {
+  // Without blocking: a pipe is refused at once.
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.good()) {
     refuse(path, errno == ENOENT ? fmt::format("found no such file; make one with: "
                                                "simbench keygen '{}', and copy it to every host",
                                                path)
                                  : std::string(std::strerror(errno)));
   }
   check_owner_and_rights(path, file.number());
-  std::string text = content_of(path, file.number());
+  // One byte more than a key file has, so that a longer file is detected.
+  std::optional<std::string> content = file.read_at(0, kDigits + 2);
+  if (!content) refuse(path, std::strerror(errno));
+  std::string& text = *content;
   SecretKey key;
   std::size_t bytes = 0;
   const bool digits =
@@ -110,8 +85,8 @@ SecretKey SecretKey::from_file(const std::string& path) {
 
 void SecretKey::create_file(const std::string& path) {
   start_sodium();
-  const OpenFile file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-  if (file.number() < 0) {
+  const Descriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file.good()) {
     refuse(path, errno == EEXIST ? "found a file there already, and a key is not overwritten; "
                                    "name another, or remove it first"
                                  : std::strerror(errno));

@@ -1,12 +1,12 @@
 // The key that the nodes of a rig share, and its file.
 //
-// 32 random bytes, in the file as 64 hexadecimal digits and a newline. Who has it may set the rig's
-// clocks and start its captures, so the file must be its owner's alone (no rights for group or
-// others), a regular file, and owned by the user who runs the program or by root.
+// 32 random bytes, in the file as 64 hexadecimal digits and a newline. The key permits to set the
+// rig's clocks and to start its captures, so the file must be a regular file without rights for
+// group or others, owned by the user who runs the program or by root.
 // Without a key a node speaks to its own machine only (rig/rig.h); messages are then sealed under a
-// key that everybody knows, which keeps damage out but nobody else.
+// public key, which detects damage but authenticates nobody.
 //
-// Errors: KeyError, whose message names the file, what was found and the command that mends it.
+// Errors: KeyError; the message names the file, what was found and the command that mends it.
 //
 //   SecretKey key = SecretKey::from_file("rig.key");
 //   SecretKey::create_file("rig.key");        // simbench keygen
@@ -29,7 +29,7 @@ class SecretKey {
  public:
   static constexpr std::size_t kBytes = 32;
 
-  // The key of those who have none.
+  // The public key that stands in for a missing one.
   SecretKey() = default;
   static SecretKey from_file(const std::string& path);
   // Writes a new key with mode 0600. Throws KeyError if the file exists: a key is not overwritten.

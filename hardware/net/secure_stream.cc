@@ -23,7 +23,6 @@
 #include "hardware/net/connect.h"
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/net/notice.h"
-#include "hardware/net/sealing.h"
 #include "hardware/net/wire.h"
 
 namespace simbench::hardware {
@@ -36,7 +35,7 @@ void set_option(int socket, int level, int name, int value) {
   setsockopt(socket, level, name, &value, sizeof value);
 }
 
-// A link that is cut is found within some 5 s, whether something is being sent or not.
+// A cut link is detected within some 5 s, whether something is being sent or not.
 void prepare(int socket) {
   set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   set_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
@@ -63,10 +62,10 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 }  // namespace
 
 // The inside of a SecureStream: one reader coroutine that shakes hands and then reads one message
-// ahead, a queue of what waits to be sent, and notices for those who wait.
+// ahead, a queue of messages to send, and notices for waiting coroutines.
 //
-// It is held by the stream and by every operation that is under way, so that the stream may go at
-// any time: close() ends them, and the last one lets the state go.
+// The stream and every pending operation hold it, so the stream may be destroyed at any time:
+// close() ends the operations, and the last one releases the state.
 class SecureStream::State : public std::enable_shared_from_this<State> {
  public:
   using Self = std::shared_ptr<State>;
@@ -74,7 +73,7 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
 
   State(boost::asio::ip::tcp::socket socket, const SecretKey& key, PeerName me, Side side);
 
-  // Prepares the socket, says hello, starts the reader.
+  // Prepares the socket, sends the hello, starts the reader.
   void start();
   // Returns when the other side has proved that it holds the key; throws StreamError.
   static Task<void> shake_hands(Self self, MonotonicTime deadline);
@@ -110,10 +109,10 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
   bool write_front();
   void watch_for_space();
   void watch_for_stamps();
-  // Those that the kernel has; false if it has none.
+  // False if the kernel has no stamp.
   bool take_stamps();
 
-  // The first reason counts. Ends everything.
+  // Ends everything; the first reason is kept.
   void fail(StreamError::Kind kind, const std::string& what);
   [[noreturn]] void throw_failure() const;
 
@@ -131,7 +130,7 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
   bool confirmed_ = false;
   std::optional<StreamError> failure_;
 
-  std::uint64_t sealed_ = 0;  // messages, so: the next nonce
+  std::uint64_t sealed_ = 0;  // messages: the next nonce
   std::uint64_t opened_ = 0;
   MonotonicTime last_piece_{};  // stamp of what fill() read last
   std::optional<StreamMessage> ready_;
@@ -181,7 +180,7 @@ Task<void> SecureStream::State::shake_hands(Self self, MonotonicTime deadline) {
     self->fail(Kind::kTimeout,
                "connected, but found no answer in time; is a simbench node listening there?");
   }
-  // What it sent before it ended, if it did, is for receive().
+  // Messages that arrived before the end are for receive().
   if (!self->confirmed_) self->throw_failure();
 }
 
@@ -226,7 +225,7 @@ Task<std::optional<MonotonicTime>> SecureStream::State::transmit_stamp(Self self
   for (;;) {
     const TransmitLog::Entry* entry = self->transmitted_.find(id);
     if (entry != nullptr && entry->left) co_return entry->left;
-    // Without the kernel's stamp: not later than it left.
+    // Without the kernel's stamp, the time of the call: not later than the message left.
     if (entry != nullptr && !self->stamps_) co_return entry->called;
     const bool queued =
         !self->outbox_.empty() && self->outbox_.front().id.value_or(0) <= id && id < self->next_id_;
@@ -303,17 +302,13 @@ void SecureStream::State::watch_for_space() {
 }
 
 bool SecureStream::State::take_stamps() {
-  bool some = false;
-  while (const auto stamp = next_transmit_stamp(socket_.native_handle())) {
-    transmitted_.stamped(stamp->number, stamp->at);
-    some = true;
-  }
-  if (some) stamped_.notify();
-  return some;
+  if (!take_transmit_stamps(socket_.native_handle(), transmitted_)) return false;
+  stamped_.notify();
+  return true;
 }
 
-// A socket that is in error, or has urgent data, would end every wait at once: after one that
-// brought nothing the next send waits again.
+// A socket that is in error, or has urgent data, ends every wait at once: after a wait without a
+// stamp only the next send waits again.
 void SecureStream::State::watch_for_stamps() {
   if (!stamps_ || watching_for_stamps_ || failure_) return;
   watching_for_stamps_ = true;
@@ -375,7 +370,7 @@ void SecureStream::State::derive_keys() {
   if (!connected) std::swap(send_key_, receive_key_);
 }
 
-// Before this nothing is accepted but a box of this one size, so an unknown peer costs no memory.
+// Accepts only a box of this one size, so that an unknown peer costs no memory.
 Task<bool> SecureStream::State::read_confirmation(Self self) {
   std::array<std::byte, kFrameHeaderBytes + kConfirmation.size() + kSealBytes> frame{};
   const bool filled = co_await fill(self, frame);
@@ -426,7 +421,7 @@ Task<bool> SecureStream::State::fill(Self self, std::span<std::byte> to) {
     if (self->failure_) co_return false;
     const ReceivedPiece piece = receive_stamped(self->socket_.native_handle(), to, nullptr);
     if (piece.error == EAGAIN || piece.error == EWOULDBLOCK) {
-      // The wait ends for transmit stamps as well, and would at once if they stayed.
+      // Transmit stamps end the wait as well, and would end the next one at once.
       self->take_stamps();
       boost::system::error_code closed;
       co_await self->socket_.async_wait(
@@ -451,7 +446,7 @@ Task<bool> SecureStream::State::fill(Self self, std::span<std::byte> to) {
 
 namespace {
 
-// Ends a stream whose handshake is not finished, also when that is cancelled.
+// Closes a stream whose handshake fails or is cancelled.
 template <class State>
 class Guard {
  public:

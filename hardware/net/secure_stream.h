@@ -1,18 +1,18 @@
 // An authenticated, encrypted stream of messages between two holders of the key, over TCP.
 //
-// Each side opens with a hello of fixed size: magic, protocol number, who it is, 32 fresh random
-// bytes. Both derive from the key and the two hellos one key for each direction, so nothing
-// recorded in an earlier session is accepted in a later one. Every message is then a length and a
-// sealed box with a counter as nonce; one that is out of order, damaged, or longer than the limit
-// ends the stream. The first sealed message of each side confirms that it holds the key.
+// Each side opens with a hello of fixed size: magic, protocol number, its name, 32 fresh random
+// bytes. Both sides derive one key for each direction from the shared key and the two hellos, so
+// recordings of earlier sessions are never accepted. Every message is then a length and a sealed
+// box with a counter as nonce; one that is out of order, damaged, or too long ends the stream. The
+// first sealed message of each side confirms that it holds the key.
 //
 // Contract
-//  - One receive and any number of sends may be pending. Sends leave in order; what waits to be
-//  sent
-//    is bounded (kMaxQueuedBytes): a peer that does not read ends the stream.
+//  - One receive and any number of sends may be pending. Sends leave in order; the queue is bounded
+//    (kMaxQueuedBytes): a peer that does not read ends the stream.
 //  - Stamps: `received` is the monotonic instant at which the kernel had the message's last byte,
-//    where it says so (SO_TIMESTAMPING), else when it was read. Transmit stamps likewise.
-//  - All failures throw StreamError with one line for the user; `kind` says what it was.
+//  by
+//    the kernel's stamp (SO_TIMESTAMPING), else when it was read. Transmit stamps likewise.
+//  - All failures throw StreamError with one line for the user; `kind` is its reason.
 //  - One thread.
 //
 // Source: libsodium's secretstream design notes, RFC 8446 section 7 (derivation from both hellos).
@@ -41,7 +41,7 @@ namespace simbench::hardware {
 // Changes with every change of what goes over the wire; both sides must have the same.
 inline constexpr std::uint16_t kProtocolVersion = 1;
 
-// Who speaks. Hosts have their index in the rig file; the command that conducts a rig has none.
+// The name of a side: a host's index in the rig file, or the conductor.
 struct PeerName {
   static constexpr std::uint32_t kConductor = 0xffffffff;
   std::uint32_t host = kConductor;
@@ -74,7 +74,7 @@ class SecureStream {
   static constexpr std::size_t kMaxMessageBytes = 4u << 20;
   static constexpr std::size_t kMaxQueuedBytes = 16u << 20;
 
-  // Connects and shakes hands; `me` is told to the other side. Throws StreamError.
+  // Connects and shakes hands; `me` goes to the other side. Throws StreamError.
   static Task<std::unique_ptr<SecureStream>> connect(boost::asio::io_context& context,
                                                      std::string address, std::uint16_t port,
                                                      SecretKey key, PeerName me,
@@ -89,15 +89,15 @@ class SecureStream {
 
   PeerName peer() const;
   std::string peer_address() const;  // "10.0.0.3:47110", for messages
-  // Derived from the handshake and the same on both sides: what datagrams of this pair are sealed
-  // under (peer_network.h). `purpose` separates uses.
+  // A key derived from the handshake, the same on both sides, for the datagrams of this pair
+  // (peer_network.h). `purpose` separates uses.
   std::array<unsigned char, SecretKey::kBytes> derived_key(std::uint64_t purpose) const;
 
   // Returns when the message is queued for the socket.
   Task<MessageId> send(Bytes message);
   // The next message. Throws StreamError(kTimeout) at the deadline; the stream stays usable.
   Task<StreamMessage> receive(MonotonicTime deadline);
-  // When message `id` was handed to the network, if the kernel said so by the deadline.
+  // When message `id` was handed to the network, if the kernel reported it by the deadline.
   Task<std::optional<MonotonicTime>> transmit_stamp(MessageId id, MonotonicTime deadline);
   // Ends it; pending calls throw StreamError(kUnreachable).
   void close();

@@ -1,8 +1,8 @@
-// How often something may be done: `per_second` in the long run, `burst` at once. Pure.
+// A rate limit: `per_second` in the long run, `burst` at once. Pure.
 //
-// SourceBuckets has a fixed number of them for all sources there are, so that who floods from one
-// spends its own tokens, and those of the few that share its bucket. Where the port tells nothing
-// (a connection's), it is 0.
+// SourceBuckets has a fixed number of buckets for all sources, so that a flood from one source
+// spends its own tokens and those of the few that share its bucket. Pass port 0 for connections,
+// whose port means nothing.
 #ifndef SIMBENCH_HARDWARE_NET_TOKEN_BUCKET_H_
 #define SIMBENCH_HARDWARE_NET_TOKEN_BUCKET_H_
 

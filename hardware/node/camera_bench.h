@@ -1,19 +1,27 @@
-// The cameras of one host, worked on in a thread of their own.
+// The cameras of one host: a bench that works on them in a thread of their own, and the feed of
+// their frames and events to the node's thread.
 //
-// Opening, setting, starting and stopping a camera may take seconds and block; the node's thread,
-// which serves host synchronisation and its conductor meanwhile, waits for none of it. Calls are
-// worked on one after the other, in the order in which they were made.
+// Opening, setting, starting and stopping a camera may take seconds and block. The node's thread,
+// which serves host synchronisation and its conductor meanwhile, waits for none of it. The bench
+// carries out calls one after the other, in the order in which they were made. A camera that
+// refuses is a problem in the result, and the others go on. Cameras have their numbers in the whole
+// rig.
 //
-// A camera that refuses is a problem in the result, and the others go on. Cameras are numbered as
-// in the whole rig.
+// Cameras call the feed's handlers from their own threads. Frames and events wait in a bounded
+// queue and are handed over, in order, on the thread that runs `context`. A camera is never held
+// up: when the queue is full (kFeedQueue, many seconds of a busy host) frames are dropped and
+// counted. The handlers may run in any thread and outlive the feed; after close() they do nothing.
+// Everything else belongs to the context's thread.
 //
 //   CameraBench bench(driver, {{"018322071234", 11}});
 //   for (const CameraProblem& problem : co_await bench.prepare(settings)) ...
 //   co_await bench.start(feed);
 //   co_await bench.stop();
+//   feed->drain();   // now all frames and events have been handed over
 #ifndef SIMBENCH_HARDWARE_NODE_CAMERA_BENCH_H_
 #define SIMBENCH_HARDWARE_NODE_CAMERA_BENCH_H_
 
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <cstdint>
 #include <functional>
@@ -23,9 +31,37 @@
 
 #include "algorithms/ports/host.h"
 #include "hardware/camera/camera.h"
-#include "hardware/node/camera_feed.h"
 
 namespace simbench::hardware {
+
+inline constexpr std::size_t kFeedQueue = 16384;
+
+struct CameraFeedSink {
+  std::function<void(std::uint32_t camera, const CameraFrame&)> on_frame;
+  std::function<void(std::uint32_t camera, const CameraEvent&)> on_event;
+};
+
+class CameraFeed {
+ public:
+  CameraFeed(boost::asio::io_context& context, CameraFeedSink sink);
+  ~CameraFeed();
+  CameraFeed(const CameraFeed&) = delete;
+  CameraFeed& operator=(const CameraFeed&) = delete;
+
+  // `camera`: the camera's number in the whole rig, which the sink gets.
+  FrameHandler frame_handler(std::uint32_t camera);
+  CameraEventHandler event_handler(std::uint32_t camera);
+
+  // Hands over all waiting frames and events now.
+  void drain();
+  void close();
+  // Frames dropped because the queue was full.
+  std::uint64_t dropped() const;
+
+ private:
+  class Queue;
+  std::shared_ptr<Queue> queue_;
+};
 
 struct CameraPlace {
   std::string serial;
@@ -38,10 +74,10 @@ struct CameraProblem {
 };
 using CameraProblems = std::vector<CameraProblem>;
 
-// A camera of the rig file, and whether it is there.
+// A camera of the rig file, and whether it is present.
 struct CameraState {
-  CameraInfo info;      // the serial only, if it is not
-  std::string problem;  // empty: it is
+  CameraInfo info;      // the serial only, if it is missing
+  std::string problem;  // empty: it is present
 };
 
 class CameraBench {
@@ -52,10 +88,10 @@ class CameraBench {
   CameraBench(const CameraBench&) = delete;
   CameraBench& operator=(const CameraBench&) = delete;
 
-  // Of a camera by its number in the rig.
+  // `number`: in the rig.
   std::string serial_of(std::uint32_t number) const;
 
-  // At once, in the caller's thread; before anything else.
+  // Looks for the cameras at once, in the caller's thread; the first call.
   std::vector<CameraState> look();
   Task<std::vector<CameraState>> look_again();
   // Opens and sets the cameras, after closing those that are open.
@@ -64,9 +100,9 @@ class CameraBench {
   Task<CameraProblems> start(std::shared_ptr<CameraFeed> feed);
   // Idempotent. No handler runs after it.
   Task<CameraProblems> stop();
-  // Stops and lets go of them.
+  // Stops and releases them.
   Task<CameraProblems> close();
-  // Waits until what was called is done and closes the cameras; the last call.
+  // Waits until all calls are done and closes the cameras; the last call.
   void join();
 
  private:

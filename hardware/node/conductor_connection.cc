@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <exception>
 #include <utility>
+
+#include "hardware/net/notice.h"
 
 namespace simbench::hardware {
 namespace {
@@ -76,9 +75,7 @@ Task<void> ConductorConnection::throttle() {
   allowance_at_ = now;
   if (allowance_ >= 0) co_return;
   const Nanoseconds wait = from_ms(-allowance_ / kRequestsPerSecond * 1000);
-  asio::steady_timer timer(context_, for_timer(now + wait));
-  boost::system::error_code ignored;
-  co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  co_await pause(context_.get_executor(), wait);
 }
 
 Task<void> ConductorConnection::answer(Request request) {
@@ -97,7 +94,7 @@ Task<void> ConductorConnection::send(Self self, Answer answer) {
   try {
     co_await self->stream_->send(encode(answer));
   } catch (const StreamError&) {
-    self->stream_->close();  // serve() learns of it and says so
+    self->stream_->close();  // serve() then ends and returns the reason
   }
 }
 

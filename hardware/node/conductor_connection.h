@@ -1,11 +1,12 @@
-// A conductor's connection as its node sees it: requests in, replies and notices out.
+// A conductor's connection on the node's side: requests in, replies and notices out.
 //
 // Contract
-//  - Requests are bounded: kMaxRequestBytes each, kRequestsPerSecond (more are made to wait, and
-//    with them the sender), kWaitingRequests at a time that wait for slow ones before them.
-//  - What is no request ends this connection, and nothing else.
+//  - Requests are bounded: kMaxRequestBytes each, kRequestsPerSecond (further ones wait, and so
+//  does
+//    their sender), kWaitingRequests behind a slow one.
+//  - A message that is no request ends this connection alone.
 //  - Read, synchronise and ping are answered at once, all others one after the other.
-//  - What the handler throws is the reply's error.
+//  - An exception of the handler becomes the reply's error.
 //
 // One thread. Held by a shared_ptr.
 //
@@ -29,7 +30,7 @@ namespace simbench::hardware {
 inline constexpr std::size_t kMaxRequestBytes = 1u << 20;
 inline constexpr double kRequestsPerSecond = 500;
 inline constexpr std::size_t kWaitingRequests = 32;
-// A connection that says nothing for so long is closed.
+// A connection without a message for so long is closed.
 inline constexpr Nanoseconds kIdleConnection = std::chrono::minutes(1);
 
 class ConductorConnection : public std::enable_shared_from_this<ConductorConnection> {

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "hardware/descriptor.h"
 #include "hardware/node/protocol.h"
 #include "recording/event_text.h"
 #include "recording/text_fields.h"
@@ -32,7 +33,7 @@ std::string journal_path(const std::string& folder, const std::string& session) 
   return fmt::format("{}/{}.csv", folder, session);
 }
 
-// Leaves room for one more.
+// Deletes the oldest journals, to leave room for one more.
 void delete_old(const std::string& folder) {
   std::vector<std::pair<fs::file_time_type, fs::path>> journals;
   std::error_code error;
@@ -47,40 +48,17 @@ void delete_old(const std::string& folder) {
   for (const auto& [written, path] : journals) fs::remove(path, error);
 }
 
-class OpenFile {
- public:
-  explicit OpenFile(const std::string& path)
-      : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-std::string read_at(int file, const std::string& path, std::uint64_t offset, std::size_t length) {
-  std::string text(length, '\0');
-  std::size_t have = 0;
-  while (have < length) {
-    const ssize_t got =
-        pread(file, text.data() + have, length - have, static_cast<off_t>(offset + have));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw JournalError(fmt::format("{}: {}", path, std::strerror(errno)));
-    if (got == 0) break;
-    have += static_cast<std::size_t>(got);
-  }
-  text.resize(have);
-  return text;
+std::string read_at(const Descriptor& file, const std::string& path, std::uint64_t offset,
+                    std::size_t length) {
+  std::optional<std::string> text = file.read_at(offset, length);
+  if (!text) throw JournalError(fmt::format("{}: {}", path, std::strerror(errno)));
+  return std::move(*text);
 }
 
 // Where the last whole line ends.
-std::uint64_t whole_size(int file, const std::string& path) {
+std::uint64_t whole_size(const Descriptor& file, const std::string& path) {
   struct stat status = {};
-  if (fstat(file, &status) != 0) {
+  if (fstat(file.number(), &status) != 0) {
     throw JournalError(fmt::format("{}: {}", path, std::strerror(errno)));
   }
   auto end = static_cast<std::uint64_t>(status.st_size);
@@ -170,13 +148,13 @@ void Journal::flush() {
   size_ += batch.size();
 }
 
-// Of the batch that could not be written, `kept` bytes are whole lines on disk.
+// `kept` bytes of the batch that could not be written are whole lines on disk.
 void Journal::fail(int error, std::size_t kept, std::string_view batch) {
   failed_ = true;
   for (batch.remove_prefix(kept); !batch.empty(); batch.remove_prefix(batch.find('\n') + 1)) {
     if (batch.starts_with(kFrameKind)) ++frames_not_kept_;
   }
-  // Should this fail too, read_journal() leaves the half line out.
+  // If this fails too, read_journal() leaves the half line out.
   if (ftruncate(file_, static_cast<off_t>(size_ + kept)) != 0) errno = 0;
   if (trouble_) {
     trouble_(fmt::format("journal {}: {}; from here on frames are counted, not kept", path_,
@@ -194,19 +172,17 @@ std::optional<JournalChunk> read_journal(const std::string& folder, const std::s
                                          std::uint64_t offset) {
   const std::string path = journal_path(folder, session);
   if (!is_session_id(session)) return std::nullopt;
-  const OpenFile file(path);
-  if (file.descriptor() < 0 && errno == ENOENT) return std::nullopt;
-  if (file.descriptor() < 0) {
-    throw JournalError(fmt::format("{}: {}", path, std::strerror(errno)));
-  }
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.good() && errno == ENOENT) return std::nullopt;
+  if (!file.good()) throw JournalError(fmt::format("{}: {}", path, std::strerror(errno)));
   JournalChunk chunk;
-  chunk.size = whole_size(file.descriptor(), path);
+  chunk.size = whole_size(file, path);
   if (offset > chunk.size) {
     throw JournalError(
         fmt::format("offset: found {}, allowed: up to {}, the journal's end", offset, chunk.size));
   }
   const auto length = std::min<std::uint64_t>(chunk.size - offset, kJournalChunkBytes);
-  chunk.text = read_at(file.descriptor(), path, offset, static_cast<std::size_t>(length));
+  chunk.text = read_at(file, path, offset, static_cast<std::size_t>(length));
   chunk.text.resize(chunk.text.rfind('\n') + 1);  // npos + 1 is 0
   return chunk;
 }

@@ -1,18 +1,18 @@
-// The journal of a session: what a node recorded, as a file that outlives the node.
+// The journal of a session: a node's recording, as a file that outlives the node.
 //
 // One file a session, `<session>.csv` in the journal folder: lines of recording/event_text.h, and
-// "note,TEXT" lines for what a user should know (texts escaped as event_text.h does). Lines are
-// gathered and handed to the kernel by one write() a batch, at most kJournalBatch after the first
-// of them, so that a node that is killed loses no more than that, and nothing in the middle.
+// "note,TEXT" lines for the user (texts escaped as in event_text.h). A batch of lines goes to the
+// kernel by one write(), at most kJournalBatch after its first line, so that a killed node loses no
+// more than that, and nothing in the middle.
 //
-// A write that fails (a full disk) ends the file at its last whole line: the trouble is told once,
-// and what comes later is counted, not kept. Nothing else stops for it.
+// A write that fails (a full disk) ends the file at its last whole line. The trouble is reported
+// once, and later frames are counted, not kept. The session goes on.
 //
-// The folder is its owner's alone (0700) and keeps the newest kKeptJournals files; older ones go
-// when a new one is made. Files with other names are not touched.
+// The folder is readable by its owner alone (0700) and keeps the newest kKeptJournals files; a new
+// file displaces the oldest. Files with other names are not touched.
 //
-// One thread, the one that runs `context`. Errors: JournalError from the constructor: the folder or
-// the file cannot be made; one line with the path.
+// One thread, the one that runs `context`. Errors: JournalError from the constructor if the folder
+// or the file cannot be made; one line with the path.
 //
 //   Journal journal(context, folder, "0123456789abcdef", [&](const std::string& text) { ... });
 //   journal.write(FrameEvent{record, std::nullopt});
@@ -43,7 +43,7 @@ class JournalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Makes the folder if it is not there, and finds out whether files can be made in it.
+// Makes the folder if it is missing. Throws JournalError unless files can be made in it.
 void make_journal_folder(const std::string& folder);
 
 class Journal {
@@ -59,12 +59,12 @@ class Journal {
   void write(const RecordingEvent& event);
   // Bytes that are no UTF-8 are replaced.
   void note(const std::string& text);
-  // Hands over what waits, now.
+  // Writes the waiting batch now.
   void flush();
   void close();
 
   std::uint64_t frames() const { return frames_; }
-  // Frames that were not kept because a write had failed.
+  // Frames lost since a write failed.
   std::uint64_t frames_not_kept() const { return frames_not_kept_; }
 
  private:
@@ -74,7 +74,7 @@ class Journal {
   std::string path_;
   Trouble trouble_;
   boost::asio::steady_timer timer_;
-  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for a timer that has gone off
+  std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for an expired timer
   int file_ = -1;
   bool failed_ = false;
   bool armed_ = false;
@@ -84,7 +84,7 @@ class Journal {
   std::uint64_t frames_not_kept_ = 0;
 };
 
-// Part of a journal, whole lines only (also of one whose node was killed in a write).
+// Part of a journal, whole lines only, even if the node was killed in a write.
 struct JournalChunk {
   std::string text;        // from `offset`, at most kJournalChunkBytes (protocol.h)
   std::uint64_t size = 0;  // of the whole lines there are now

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -16,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "hardware/net/notice.h"
 #include "hardware/net/peer_network.h"
 #include "hardware/node/camera_bench.h"
 #include "hardware/node/conductor_connection.h"
@@ -52,8 +51,9 @@ std::vector<CameraPlace> places(const NodeSettings& settings) {
 using nlohmann::json;
 
 constexpr std::size_t kLongestName = 200;
-// How long a begin waits for the end of a session that is ending.
+// How long `begin` and `end` wait for a session that is ending.
 constexpr Nanoseconds kEndWait = std::chrono::seconds(3);
+constexpr Nanoseconds kEndPolls = std::chrono::milliseconds(10);
 
 class RequestError : public std::runtime_error {
  public:
@@ -75,7 +75,7 @@ std::string session_id_of(const json& arguments) {
   return id;
 }
 
-// For a log: one line, and not a long one.
+// A short line for a log.
 std::string name_of(const json& arguments) {
   std::string name = text_of(arguments, "conductor").substr(0, kLongestName);
   std::replace_if(
@@ -111,7 +111,7 @@ json problems_of(const CameraProblems& problems) {
 
 }  // namespace
 
-// What a Node is made of: its sockets and cameras, its conductors' connections, its session.
+// The inside of a Node: its sockets and cameras, its conductors' connections, its session.
 class Node::State : public std::enable_shared_from_this<Node::State> {
  public:
   State(boost::asio::io_context& context, NodeSettings settings, NodeClock& clock,
@@ -126,7 +126,7 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
   using Connection = std::shared_ptr<ConductorConnection>;
   using Self = std::shared_ptr<State>;
 
-  // Life: connections, the watch over a conductor's silence, the end.
+  // Connections, the watch over a silent conductor, the end.
   void require_cameras();
   void accept(std::unique_ptr<SecureStream> stream);
   static Task<void> serve(Self self, Connection connection);
@@ -138,7 +138,7 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
                          const nlohmann::json& details);
   std::string refusals();
 
-  // What is done for each request of a conductor (protocol.h).
+  // The requests of a conductor (protocol.h).
   Task<nlohmann::json> handle(Connection connection, Request request);
   Task<nlohmann::json> hello();
   Task<nlohmann::json> begin(Connection connection, nlohmann::json arguments);
@@ -160,7 +160,7 @@ class Node::State : public std::enable_shared_from_this<Node::State> {
   std::shared_ptr<PeerNetwork> network_;
   std::set<Connection> connections_;
   std::shared_ptr<Session> session_;
-  MonotonicTime heard_{};  // of the session's conductor
+  MonotonicTime last_request_{};  // of the session's conductor
   boost::asio::steady_timer silence_timer_;
   boost::asio::steady_timer refusal_timer_;
   NetworkStatistics reported_;  // what refusals() has reported
@@ -229,16 +229,15 @@ Task<void> Node::State::serve(Self self, Connection connection) {
 
 Task<void> Node::State::watch(Self self, std::shared_ptr<Session> session) {
   while (!session->ending()) {
-    const MonotonicTime deadline = self->heard_ + self->settings_.conductor_silence;
+    const MonotonicTime deadline = self->last_request_ + self->settings_.conductor_silence;
     if (monotonic_now() >= deadline) {
       co_await self->end_session(session,
-                                 fmt::format("nothing heard from its conductor for {:.3g} s",
+                                 fmt::format("no request from its conductor for {:.3g} s",
                                              to_seconds(self->settings_.conductor_silence)));
       co_return;
     }
     self->silence_timer_.expires_at(for_timer(deadline));
-    boost::system::error_code ignored;
-    co_await self->silence_timer_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await ended(self->silence_timer_);
   }
 }
 
@@ -258,8 +257,7 @@ void Node::State::notify_conductors(const std::string& session, const std::strin
 Task<void> Node::State::watch_refusals(Self self) {
   while (!self->stopping_) {
     self->refusal_timer_.expires_after(kRefusalInterval);
-    boost::system::error_code ignored;
-    co_await self->refusal_timer_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await ended(self->refusal_timer_);
     const std::string refused = self->stopping_ ? "" : self->refusals();
     if (!refused.empty()) self->log_("refused in the last 10 s: " + refused);
   }
@@ -276,7 +274,7 @@ std::string Node::State::refusals() {
   add(now.refused_replayed, reported_.refused_replayed, "replayed messages");
   add(now.refused_malformed, reported_.refused_malformed, "malformed messages");
   add(now.refused_rate, reported_.refused_rate, "messages beyond the rate");
-  add(now.dropped_full_queue, reported_.dropped_full_queue, "messages that nobody took");
+  add(now.dropped_full_queue, reported_.dropped_full_queue, "messages beyond a full queue");
   reported_ = now;
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -297,14 +295,14 @@ Task<void> Node::State::end_everything(Self self) {
 Task<json> Node::State::handle(Connection connection, Request request) {
   const Self self = shared_from_this();
   const json& arguments = request.arguments;
-  // Who fetches what was recorded goes on with the node that comes after this one.
+  // A conductor that fetches a journal goes on with the node that replaces this one.
   const bool asks_only = request.verb == "read" || request.verb == "ping";
   if (stopping_ && !asks_only) throw RequestError("the node is ending");
   if (session_ && request.verb != "begin" && arguments.contains("session") &&
       arguments["session"] == session_->id()) {
     connection->join(session_->id());
   }
-  if (session_ && connection->session() == session_->id()) heard_ = monotonic_now();
+  if (session_ && connection->session() == session_->id()) last_request_ = monotonic_now();
   if (request.verb == "ping") co_return json::object();
   if (request.verb == "hello") co_return co_await hello();
   if (request.verb == "begin") co_return co_await begin(connection, arguments);
@@ -334,7 +332,7 @@ Task<json> Node::State::handle(Connection connection, Request request) {
 
 std::shared_ptr<Session> Node::State::session_of(const Connection& connection) const {
   if (!session_ || connection->session() != session_->id()) {
-    throw RequestError("no session over this connection: begin one, or name the one that lives");
+    throw RequestError("no session over this connection: begin one, or name the running one");
   }
   return session_;
 }
@@ -361,15 +359,13 @@ Task<json> Node::State::hello() {
   co_return result;
 }
 
-// Until there is no session. Throws if another conductor's lives.
+// Waits until there is no session. Throws if another conductor has one.
 Task<void> Node::State::make_room(const Connection& connection) {
   const MonotonicTime deadline = monotonic_now() + kEndWait;
   while (session_) {
     const std::shared_ptr<Session> session = session_;
     if (session->ending() && monotonic_now() < deadline) {
-      asio::steady_timer timer(context_, std::chrono::milliseconds(10));
-      boost::system::error_code ignored;
-      co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+      co_await pause(context_.get_executor(), kEndPolls);
     } else if (connection->session() == session->id() && !session->ending()) {
       co_await end_session(session, "its conductor begins another");
     } else {
@@ -385,7 +381,7 @@ Task<json> Node::State::begin(Connection connection, json arguments) {
   const std::string id = plan.id;
   session_ = std::make_shared<Session>(world(id), std::move(plan));
   connection->join(id);
-  heard_ = monotonic_now();
+  last_request_ = monotonic_now();
   asio::co_spawn(context_, watch(shared_from_this(), session_), asio::detached);
   co_return json::object();
 }
@@ -432,18 +428,16 @@ SessionWorld Node::State::world(const std::string& session) {
           .log = log_};
 }
 
-// Also of a session that has ended by itself: that is what was asked for.
+// Ends the session, or finds that it has ended by itself.
 Task<json> Node::State::end(json arguments) {
   const std::string id = session_id_of(arguments);
   const std::shared_ptr<Session> session = session_;
   if (session && session->id() == id && !session->ending()) {
-    co_await end_session(session, "asked for");
+    co_await end_session(session, "on request");
   }
   const MonotonicTime deadline = monotonic_now() + kEndWait;
   while (session_ && session_->id() == id && monotonic_now() < deadline) {
-    asio::steady_timer timer(context_, std::chrono::milliseconds(10));
-    boost::system::error_code ignored;
-    co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    co_await pause(context_.get_executor(), kEndPolls);
   }
   if (!read_journal(settings_.journal_folder, id, 0)) {
     throw RequestError(fmt::format("session {}: there is none of that id here", id));

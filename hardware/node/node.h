@@ -1,16 +1,16 @@
 // The node: the long-running program of each host of a rig (`simbench node`).
 //
-// It owns the host's cameras, clock and sockets, keeps a journal of each session on disk, and does
-// what the rig's conductor asks (protocol.h). It never acts on its own but to end a session whose
-// conductor is gone. It survives whatever a peer, a conductor or a camera does.
+// It owns the host's cameras, clock and sockets, keeps a journal of each session on disk, and
+// carries out the requests of the rig's conductor (protocol.h). By itself it only ends a session
+// whose conductor is silent. It survives any failure of a peer, a conductor or a camera.
 //
 // Contract
-//  - One session at a time; a second conductor is told by whom and since when the node is busy.
-//  - Every frame, adjustment, exchange and outcome is written to the session's journal, in order,
-//    by one write() a batch of at most 20 ms: what was written survives a kill of the process. A
-//    full disk is a note, told at once to the conductor, and frames are then counted, not kept; the
-//    capture goes on on the other hosts.
-//  - What happens is a line each for `log`.
+//  - One session at a time; a second conductor gets the name of the first and since when it
+//  conducts.
+//  - Every frame, adjustment, exchange and outcome goes to the session's journal, in order, by one
+//    write() a batch of at most 20 ms: written data survives a kill of the process. A full disk is
+//    a note to the conductor at once; frames are then counted, not kept, and the other hosts go on.
+//  - `log` gets a line for each event.
 //  - Arrival stamps are taken in the camera's thread; everything else runs on `context`'s thread.
 //
 //   Node node(context, settings, clock, cameras, make_host_sync, log);
@@ -34,8 +34,8 @@
 
 namespace simbench::hardware {
 
-// The host_sync of a scenario's pipeline; throws scenarios::InputError. Which algorithms there are
-// is not known in hardware/.
+// Makes the host_sync of a scenario's pipeline; throws scenarios::InputError. hardware/ does not
+// know the algorithms.
 using HostSyncFactory = std::function<std::unique_ptr<HostSync>(const scenarios::Scenario& scenario,
                                                                 const std::string& pipeline)>;
 
@@ -45,7 +45,7 @@ struct NodeSettings {
   SecretKey key;
   std::string journal_folder;  // made if it is not there
   std::string clock_kind = "software";
-  // How long a session outlives the last word of its conductor.
+  // How long a session outlives the last request of its conductor.
   Nanoseconds conductor_silence = kConductorSilence;
 };
 
@@ -54,8 +54,8 @@ class Node {
   using Log = std::function<void(const std::string& line)>;
 
   // `clock` and `cameras` outlive the node and its context. Throws StreamError if the port is
-  // taken, CameraError if a camera of the rig file is not there, JournalError if journals cannot be
-  // kept, and scenarios::InputError for a rig that is open to everybody.
+  // taken, CameraError if a camera of the rig file is missing, JournalError if journals cannot be
+  // written, scenarios::InputError for a rig without a key that leaves this machine.
   Node(boost::asio::io_context& context, NodeSettings settings, NodeClock& clock,
        CameraDriver& cameras, HostSyncFactory make_host_sync, Log log);
   ~Node();
@@ -64,8 +64,8 @@ class Node {
 
   void start();
   std::uint16_t port() const;
-  // Ends the session, if there is one, and closes everything; the context then runs out of work,
-  // and must be run until it has.
+  // Ends the session, if there is one, and closes everything. Run the context until it has no more
+  // work.
   void stop();
 
  private:

@@ -31,7 +31,7 @@ std::uint64_t take_id(json& message) {
   return id;
 }
 
-// A text of one line; absent or of another type is refused.
+// Throws if the member is missing or no text.
 std::string take_text(json& message, const char* key) {
   const auto found = message.find(key);
   if (found == message.end() || !found->is_string()) {

@@ -1,9 +1,8 @@
-// What the conductor of a rig and its nodes say to each other over a SecureStream.
+// The messages between the conductor of a rig and its nodes, over a SecureStream.
 //
-// The conductor is the command (`simbench --backend hardware`); it asks, a node answers each
-// request in order of arrival, and tells by notices what happens in between. All are JSON objects
-// in UTF-8, one a message. Both sides check the protocol number of the handshake first
-// (secure_stream.h).
+// The conductor is the command (`simbench --backend hardware`). It sends requests; a node replies
+// to them in order of arrival and reports events by notices. All are JSON objects in UTF-8, one a
+// message. Both sides check the protocol number of the handshake first (secure_stream.h).
 //
 //   request  {"id": 7, "do": "begin", ...arguments}
 //   reply    {"id": 7, "result": {...}}   or   {"id": 7, "error": "one line for the user"}
@@ -30,21 +29,22 @@
 // ping                                          {}
 // clang-format on
 //
-// A connection belongs to the session that it began, or that a request of it named: any request may
-// carry "session", and one that is about a session but names none is about the connection's. So a
-// conductor that has lost its connection opens another and goes on by naming its session. A begin
-// over a connection that has a session ends that one first.
+// A connection belongs to the session that it began, or that one of its requests named: any request
+// may carry "session". A request without it is about the connection's session. So a conductor that
+// has lost its connection opens another and names its session. A begin over a connection that has a
+// session ends that one first.
 //
-// Read, synchronise and ping are answered at once; the others one after the other in the order in
-// which they came, and some take seconds (cameras that are opened). Replies are told apart by id.
-// Other notices: "note" {text}. Who does not know a notice ignores it.
+// Read, synchronise and ping are answered at once; the others one after the other in order of
+// arrival, and some take seconds (opening cameras). Replies are matched by id. Other notices:
+// "note" {text}. Unknown notices are ignored.
 //
-// A session's id is 16 hexadecimal digits that the conductor draws. A node whose conductor has said
-// nothing for kConductorSilence ends the session by itself: cameras stop, the journal is closed and
-// kept. Journals are files of event_text.h lines (and "note,text" lines) named after their session;
-// "read" works for any session whose journal is still there, also after a restart of the node.
+// A session's id is 16 hexadecimal digits, drawn by the conductor. A node that gets no request from
+// its conductor for kConductorSilence ends the session by itself: cameras stop, the journal is
+// closed and kept. Journals are files of event_text.h lines (and "note,text" lines) named after
+// their session; "read" works for any session whose journal still exists, also after a restart of
+// the node.
 //
-// Errors: ProtocolError for bytes that are none of these. Any bytes are safe to parse.
+// Errors: ProtocolError for any other bytes. Any bytes are safe to parse.
 #ifndef SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
 #define SIMBENCH_HARDWARE_NODE_PROTOCOL_H_
 
@@ -78,7 +78,7 @@ struct Answer {
   std::uint64_t id = 0;
   std::string error;  // empty: it worked
   std::string notice;
-  nlohmann::json details;  // an object: the result, or what the notice tells
+  nlohmann::json details;  // an object: the result, or the notice's content
 };
 
 Bytes encode(const Request& request);

@@ -26,7 +26,7 @@ class NodeSteadyClock final : public SteadyClock {
   const NodeClock& clock_;
 };
 
-// A sleep_until() under way; out of the list when its coroutine ends in whatever way.
+// A pending sleep_until(); leaves the list when its coroutine ends or is destroyed.
 using AutoUnlink =
     boost::intrusive::list_base_hook<boost::intrusive::link_mode<boost::intrusive::auto_unlink>>;
 struct Sleeper : AutoUnlink {
@@ -34,8 +34,8 @@ struct Sleeper : AutoUnlink {
   boost::asio::steady_timer timer;
 };
 
-// The feed of the host's own frames: what its cameras delivered, the last 1024 of it. One coroutine
-// waits at a time (algorithms/ports/host.h).
+// The feed of the host's own frames, the last 1024. One coroutine waits at a time
+// (algorithms/ports/host.h).
 class KeptFrames final : public FrameFeed {
  public:
   static constexpr std::size_t kKept = 1024;
@@ -72,7 +72,7 @@ void KeptFrames::deliver(const FrameArrival& frame) {
   waiting_.cancel();
 }
 
-// Timers of this thread fire when they are due, not up to 50 us later.
+// Makes timers of this thread expire on time instead of up to 50 us later.
 void ask_for_exact_timers() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
 }  // namespace
@@ -141,7 +141,7 @@ Task<void> RealHost::sleep_until(HostTime at) {
     const MonotonicTime wake = state_->parts.clock.when(at, now);
     if (wake <= now) break;
     sleeper.timer.expires_at(for_timer(wake));
-    // An adjustment ends the wait; a cancelled coroutine is not resumed beyond the next one.
+    // An adjustment ends the wait; cancelling the coroutine ends it at its next wait.
     boost::system::error_code adjusted;
     co_await sleeper.timer.async_wait(
         boost::asio::redirect_error(boost::asio::use_awaitable, adjusted));

@@ -1,10 +1,10 @@
-// A real host: what algorithms/ports/host.h promises, over sockets, the node's clock and timers.
+// A real host: implements algorithms/ports/host.h over sockets, the node's clock and timers.
 //
-// The real side of the seam of docs/design.md section 4: the same coroutines that run in the
-// simulator run on this. Steady time follows the node's oscillator, sleep_until(HostTime) its
-// system clock and is re-armed when that is adjusted. There is no card clock and no pulse input (an
-// algorithm that needs them is refused before it starts); the feed gives the frames of the host's
-// own cameras.
+// The real side of the seam of docs/design.md section 4: it runs the same coroutines as the
+// simulator. Steady time follows the node's oscillator; sleep_until(HostTime) follows its system
+// clock and is re-armed when that is adjusted. There is no card clock and no pulse input (an
+// algorithm that needs them is refused before it starts); the feed has the frames of the host's own
+// cameras.
 //
 // Exchanges, outcomes and clock adjustments go to `sink` as they happen.
 // One thread. Coroutines that use it end before it does.

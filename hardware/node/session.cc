@@ -5,12 +5,13 @@
 
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <ctime>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "hardware/net/notice.h"
+#include "recording/counted.h"
 
 namespace simbench::hardware {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 namespace asio = boost::asio;
 using nlohmann::json;
 
-// A host_sync that is cancelled returns at its next wait; one that never does is left behind.
+// A cancelled host_sync returns at its next wait; one that does not return in time is abandoned.
 constexpr auto kCancelLimit = std::chrono::seconds(2);
 
 std::string time_of_day() {
@@ -73,7 +74,7 @@ void Session::synchronise(const std::string& role, std::vector<PeerId> slaves) {
   if (role != "master" && role != "slave") {
     throw SessionError(fmt::format("role: found '{}', allowed: master, slave", role));
   }
-  if (sync_was_started_) throw SessionError("host_sync was started before in this session");
+  if (sync_was_started_) throw SessionError("host_sync was already started in this session");
   sync_was_started_ = true;
   sync_runs_ = true;
   const bool all = slaves.empty();
@@ -109,7 +110,7 @@ void Session::on_synchronised(const std::exception_ptr& failure) {
 
 Task<CameraProblems> Session::prepare() {
   require_not_ending();
-  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras run: stop them first");
+  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras are running: stop them first");
   const auto self = shared_from_this();
   CameraProblems problems = co_await world_.cameras.prepare(settings_of(plan_.scenario));
   require_not_ending();
@@ -121,7 +122,7 @@ Task<CameraProblems> Session::prepare() {
 Task<CameraProblems> Session::start() {
   require_not_ending();
   if (cameras_ == Cameras::kClosed) throw SessionError("the cameras are not prepared");
-  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras run already");
+  if (cameras_ == Cameras::kStarted) throw SessionError("the cameras are already running");
   const auto self = shared_from_this();
   cameras_ = Cameras::kStarted;
   CameraProblems problems = co_await world_.cameras.start(feed_);
@@ -141,8 +142,8 @@ Task<CameraProblems> Session::stop() {
   cameras_ = Cameras::kPrepared;
   note_problems(problems);
   journal_.flush();
-  world_.log(
-      fmt::format("session {}: cameras stopped, {} frames so far", plan_.id, journal_.frames()));
+  world_.log(fmt::format("session {}: cameras stopped, {} so far", plan_.id,
+                         counted(journal_.frames(), "frame")));
   co_return problems;
 }
 
@@ -154,17 +155,18 @@ Task<void> Session::end(std::string reason) {
   feed_->drain();
   note_problems(problems);
   if (feed_->dropped() > 0) {
-    note(fmt::format("{} frames dropped: the host was too busy", feed_->dropped()));
+    note(counted(feed_->dropped(), "frame") + " dropped: the host was too busy");
   }
   if (journal_.frames_not_kept() > 0) {
-    note(fmt::format("{} frames not kept", journal_.frames_not_kept()));
+    note(counted(journal_.frames_not_kept(), "frame") + " not kept");
   }
   feed_->close();
   journal_.close();
   // The next session's host observes the same clock.
   if (!sync_runs_) host_.reset();
-  world_.log(fmt::format("session {} ended ({}): {} frames, {} not kept", plan_.id, reason,
-                         journal_.frames(), journal_.frames_not_kept() + feed_->dropped()));
+  world_.log(fmt::format("session {} ended ({}): {}, {} not kept", plan_.id, reason,
+                         counted(journal_.frames(), "frame"),
+                         journal_.frames_not_kept() + feed_->dropped()));
 }
 
 Task<void> Session::end_host_sync() {
@@ -172,8 +174,7 @@ Task<void> Session::end_host_sync() {
   sync_ended_.expires_after(kCancelLimit);
   sync_cancel_.emit(asio::cancellation_type::terminal);
   if (!sync_runs_) co_return;
-  boost::system::error_code ignored;
-  co_await sync_ended_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  co_await ended(sync_ended_);
   if (sync_runs_) {
     world_.log(fmt::format("session {}: host_sync of {} does not end", plan_.id, plan_.pipeline));
   }
@@ -212,7 +213,7 @@ void Session::note_problems(const CameraProblems& problems) {
   }
 }
 
-// A journal is of one host; elsewhere the host is named.
+// The journal belongs to one host; the notice and the log name the host.
 void Session::note(const std::string& text) {
   journal_.note(text);
   const std::string line = fmt::format("{}: {}", world_.host_name, text);

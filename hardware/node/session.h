@@ -1,22 +1,21 @@
 // One session of a node: from a conductor's begin to its end.
 //
-// Holds everything that belongs to one session and to no other: the journal, the real host on which
-// host_sync runs, the feed of the cameras. What belongs to the node (clock, sockets, cameras) it is
-// lent.
+// Holds what belongs to one session alone: the journal, the real host on which host_sync runs, the
+// feed of the cameras. The node lends its clock, sockets and cameras.
 //
 //   begun ── synchronise ──► host_sync runs; notice "synchronised" when it returns
 //         ── prepare ──► start ──► stop ──► (prepare ...)     cameras
 //         ── end ──► host_sync cancelled, cameras closed, journal closed
 //
-// host_sync and the cameras do not know of each other: a service is started before the capture and
-// runs until end(). Calls that do not fit the state are SessionErrors and change nothing.
+// host_sync and the cameras are independent: a service starts before the capture and runs until
+// end(). Calls that do not fit the state throw SessionError and change nothing.
 //
 // One thread, the context's. Always held by a shared_ptr: the coroutine of host_sync keeps its
-// session alive until it has ended, so that its host outlives it.
+// session, and so its host, alive until it has ended.
 //
 //   const auto session = std::make_shared<Session>(world, std::move(plan));
 //   session->synchronise("slave");
-//   co_await session->end("its conductor has what it came for");
+//   co_await session->end("its conductor has everything");
 #ifndef SIMBENCH_HARDWARE_NODE_SESSION_H_
 #define SIMBENCH_HARDWARE_NODE_SESSION_H_
 
@@ -35,7 +34,6 @@
 #include "hardware/clock/node_clock.h"
 #include "hardware/net/peer_network.h"
 #include "hardware/node/camera_bench.h"
-#include "hardware/node/camera_feed.h"
 #include "hardware/node/journal.h"
 #include "hardware/node/real_host.h"
 #include "scenarios/scenario.h"
@@ -47,7 +45,7 @@ class SessionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What was agreed with the conductor.
+// The conductor's request.
 struct SessionPlan {
   std::string id;
   std::string conductor;
@@ -56,7 +54,7 @@ struct SessionPlan {
   std::unique_ptr<HostSync> host_sync;
 };
 
-// What the node lends; outlives the session.
+// What the node lends to the session; outlives it.
 struct SessionWorld {
   boost::asio::io_context& context;
   NodeClock& clock;
@@ -82,13 +80,13 @@ class Session : public std::enable_shared_from_this<Session> {
   const std::string& since() const { return since_; }  // "14:03:59", local time
   bool ending() const { return ending_; }
 
-  // `role`: "master" or "slave"; the master's slaves, all other hosts if empty.
+  // `role`: "master" or "slave". `slaves`: the master's; empty: all other hosts.
   void synchronise(const std::string& role, std::vector<PeerId> slaves = {});
   Task<CameraProblems> prepare();
   Task<CameraProblems> start();
   // When it returns, all frames are on disk.
   Task<CameraProblems> stop();
-  // Once; `reason` is for the log.
+  // Ends the session, once; `reason` is for the log.
   Task<void> end(std::string reason);
 
  private:

@@ -39,7 +39,8 @@ CameraInfo realsense_info(const rs2::device& device) {
   });
 }
 
-// Between librealsense's threads and the handlers: outlives the camera where a callback is late.
+// Passes frames from librealsense's threads to the handlers; outlives the camera if a callback is
+// late.
 class RealsenseCamera::Outlet {
  public:
   ~Outlet() { close(); }
@@ -77,7 +78,7 @@ class RealsenseCamera::Outlet {
     }
   }
 
-  // Whether there is a camera, to be told with `event`; none is watched meanwhile.
+  // Reports `event`; while no camera is connected its streams are not watched.
   void set_connected(bool connected, const CameraEvent& event) {
     const std::lock_guard lock(mutex_);
     if (!open_) return;
@@ -144,7 +145,7 @@ void RealsenseCamera::open_sensors() {
   }
 }
 
-// What a camera that is gone answers does not matter.
+// Ignores the errors of an unplugged camera.
 void RealsenseCamera::close_sensors() {
   for (; opened_ > 0; --opened_) {
     const rs2::sensor& sensor = sensors_[opened_ - 1].sensor;

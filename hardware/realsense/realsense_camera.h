@@ -1,19 +1,19 @@
 // A RealSense camera as a Camera (hardware/camera/camera.h), over a device handle.
 //
-// The handle may be any rs2::device, so that an rs2::software_device can stand in. Which options
-// and profiles it is given: realsense_settings.h; what is read of each frame: realsense_frame.h;
-// what is noticed of its streams: hardware/camera/stream_watch.h. Images are not looked at.
+// The handle may be any rs2::device, also an rs2::software_device. Options and profiles are set by
+// realsense_settings.h, stamps read by realsense_frame.h, streams watched by
+// hardware/camera/stream_watch.h. Images are not read.
 //
-// A camera that is unplugged while it is started is started again, with the same settings, when its
+// A camera that is unplugged while it is started is restarted, with the same settings, when its
 // driver hands over its new device.
 //
 // Contract
-//  - `arrived` is read first of all in librealsense's callback.
+//  - librealsense's callback reads `arrived` first.
 //  - Handlers run one at a time, also those of two sensors, and must not call stop().
 //  - unplugged() and plugged_in() may be called by any thread.
 //
-// Errors: CameraError: those of realsense_settings.h, a start without configure(), a second one, a
-// device that another program streams from, one that is unplugged. rs2::error never comes out.
+// Errors: CameraError: those of realsense_settings.h, a start without configure(), a second start,
+// a device that another program streams from or that is unplugged. rs2::error never leaves it.
 //
 //   RealsenseCamera camera(device);
 //   camera.configure(settings);
@@ -32,7 +32,7 @@
 
 namespace simbench::hardware {
 
-// Serial number, name, firmware and USB type, as far as the device tells them.
+// Serial number, name, firmware and USB type, as far as the device has them.
 CameraInfo realsense_info(const rs2::device& device);
 
 class RealsenseCamera : public Camera {

@@ -12,7 +12,7 @@
 namespace simbench::hardware {
 namespace {
 
-// The cameras that were opened and are there.
+// The opened cameras that still exist.
 class OpenCameras {
  public:
   void add(RealsenseCamera& camera) {
@@ -62,8 +62,8 @@ class RealsenseDriver::State {
  public:
   explicit State(const rs2::context& shared) : context(shared) {
     context.set_devices_changed_callback([cameras = open](const rs2::event_information& change) {
-      // This is librealsense2's thread. A device that is gone before it was looked at is no
-      // news: its removal follows.
+      // librealsense2's thread. A device that vanishes while it is read is ignored: its removal is
+      // reported next.
       try {
         cameras->on_change(change);
       } catch (const rs2::error&) {

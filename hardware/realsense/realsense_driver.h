@@ -1,11 +1,11 @@
 // The RealSense cameras that are plugged into this host.
 //
-// Holds librealsense2's context and hands what it says of cameras that are unplugged and plugged in
-// again to those that were opened. Taking it down takes librealsense2 about two seconds.
+// Holds librealsense2's context and notifies opened cameras when they are unplugged and plugged in
+// again. Its destruction takes librealsense2 about two seconds.
 //
-// Cameras may outlive the driver; they are then told nothing of plugging.
-// Errors: CameraError: librealsense2 does not start; no camera of this serial number (with those
-// there are).
+// Cameras may outlive the driver; they are then no longer notified.
+// Errors: CameraError: librealsense2 does not start; no camera of this serial number (the message
+// lists those found).
 //
 //   RealsenseDriver driver;
 //   auto camera = driver.open("018322071234");
@@ -24,7 +24,7 @@ namespace simbench::hardware {
 class RealsenseDriver final : public CameraDriver {
  public:
   RealsenseDriver();
-  // With a context of the caller's, to which software devices can be added.
+  // With the caller's context, to which software devices can be added.
   explicit RealsenseDriver(const rs2::context& context);
   ~RealsenseDriver() override;
 

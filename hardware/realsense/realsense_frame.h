@@ -6,9 +6,9 @@
 //    without SENSOR_TIMESTAMP the frame stamp: later by the way from mid-exposure to readout.
 //  - counter: FRAME_COUNTER, else the number that librealsense gave the frame.
 //  - exposure: ACTUAL_EXPOSURE in the unit of the sensor, else 0.
-//  - backend: BACKEND_TIMESTAMP, which is whole milliseconds of the host's wall clock whatever its
-//    documentation says, put on the monotonic clock through the wall clock's reading at arrival.
-//    0 (the RSUSB backend leaves it) and what is not within two seconds before the arrival is none.
+//  - backend: BACKEND_TIMESTAMP, which is whole milliseconds of the host's wall clock (against its
+//    documentation), converted to the monotonic clock by the wall clock's reading at arrival.
+//    0 (of the RSUSB backend) and values not within two seconds before the arrival are discarded.
 //
 // Errors: rs2::error, for the caller to catch. Source: docs/reference/d455.md section 1.
 #ifndef SIMBENCH_HARDWARE_REALSENSE_REALSENSE_FRAME_H_

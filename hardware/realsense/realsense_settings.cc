@@ -56,7 +56,7 @@ struct Profile {
   std::string text() const {
     return fmt::format("{}x{} at {} Hz", profile.width(), profile.height(), profile.fps());
   }
-  // How different it is from what is wanted: in size and in rate.
+  // The difference from the wanted stream, in size and in rate.
   double distance(const scenarios::Stream& stream) const {
     const double size = static_cast<double>(profile.width()) * profile.height();
     const double wanted = static_cast<double>(stream.width) * static_cast<double>(stream.height);

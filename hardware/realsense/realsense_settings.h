@@ -1,17 +1,16 @@
-// What a capture asks for, as profiles and options of a RealSense device.
+// A capture's settings as profiles and options of a RealSense device.
 //
-//  - Profiles: kind, size and mode rate as the scenario has them; depth as Z16, colour as YUYV
-//  where
-//    the device has that.
+//  - Profiles: kind, size and mode rate of the scenario; depth as Z16, colour as YUYV if the device
+//    has that.
 //  - Inter Cam Sync Mode: default 0, master 1, slave 2, full_slave 3, genlock 4. A trigger faster
 //    than half the mode rate (2 % more is allowed, as scenarios are) is refused in genlock.
 //  - Exposure: microseconds for the depth module, 100 us for a colour sensor of its own, as UVC
 //    counts; auto exposure on or off.
 //  - Global time is switched off: the stamps wanted are the camera's own.
 //
-// Errors: CameraError: what was asked for, what the device has, and where it is known which
-// firmware has more. Source: docs/reference/d455.md sections 2 and 3; units of colour exposure are
-// what users report.
+// Errors: CameraError: what was requested, what the device has and, if known, which firmware has
+// more. Source: docs/reference/d455.md sections 2 and 3; units of colour exposure by users'
+// reports.
 //
 //   auto sensors = choose_sensors(device, serial, settings);
 //   apply_settings(device, sensors, info, settings);

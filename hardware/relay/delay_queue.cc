@@ -34,7 +34,7 @@ void DelayQueue::arm() {
 }
 
 void DelayQueue::run_due() {
-  // Actions may add: nothing is armed meanwhile but by arm() below.
+  // Actions may call add(), which must not arm the timer meanwhile: arm() below does.
   armed_for_ = MonotonicTime::min();
   MonotonicTime now = monotonic_now();
   while (!stopped_ && !heap_.empty() && heap_.front().at <= now + kSpin) {

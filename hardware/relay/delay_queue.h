@@ -1,13 +1,11 @@
-// Things to be done at exact instants, in order of time: the waiting room of a relay.
+// Actions at exact instants, in order of time: the waiting room of a relay.
 //
-// Waits on one timer of the monotonic clock (timerfd, no slack) and, for the last
-// kSpin, by looking at the clock: a timer wakes its thread some tens of microseconds late, which
-// would be added to every latency.
+// Waits on one timer of the monotonic clock (timerfd, no slack) and polls the clock for the last
+// kSpin: a timer wakes its thread some tens of microseconds late, which would add to every latency.
 //
-// Contract: what is due at the same instant is done in the order of adding. Bounded: beyond
-// kMaxWaiting things or kMaxBytes add() refuses, and the caller loses the message or stops reading.
-// Lateness: how long after its instant each was begun, the newest kSamples of them.
-// One thread; the context must not run after this has gone.
+// Contract: actions of the same instant run in the order of adding. Bounded: add() refuses beyond
+// kMaxWaiting actions or kMaxBytes. The lateness is the time from an action's instant to its start,
+// over the newest kSamples actions. One thread; the context must not run after this has gone.
 //
 //   DelayQueue queue(context);
 //   bool taken = queue.add(at, bytes, [](Bytes message) { ... });
@@ -42,10 +40,10 @@ class DelayQueue {
   // False: full, and nothing was taken.
   bool add(MonotonicTime at, Bytes message, Action action);
   std::size_t waiting() const { return heap_.size(); }
-  // Forgets what waits; nothing more happens.
+  // Discards all waiting actions and refuses new ones.
   void stop();
 
-  // The q-quantile of the lateness, if anything was done yet.
+  // The q-quantile of the lateness; nothing before the first action.
   std::optional<Nanoseconds> lateness(double q) const;
 
  private:

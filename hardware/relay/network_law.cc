@@ -38,7 +38,7 @@ class Generator {
   std::uint64_t state_;
 };
 
-// The link's own draw, the same from both ends; forward is from the host of lower number.
+// A draw of the link, the same from both ends; forward is from the host of lower number.
 double half_asymmetry_ms(double sigma_ms, std::uint64_t seed, PeerId from, PeerId to) {
   if (sigma_ms <= 0) return 0;
   const std::uint64_t link =
@@ -113,7 +113,7 @@ Nanoseconds NetworkLaw::latency(Draws& draws) const {
     return from_ms(std::max(0.0, fixed_ms_ + table_ms));
   }
   double latency_ms = fixed_ms_ + draws.exponential(network_.latency_exponential_ms);
-  // Both are drawn whatever comes of them, so that the draws after them stay in place.
+  // Both are always drawn, so that the draws after them stay the same.
   const bool has_spike = draws.chance(network_.spike_probability);
   const double spike_ms = network_.spike_max_ms * draws.uniform();
   if (has_spike) latency_ms += spike_ms;

@@ -1,19 +1,19 @@
-// What a scenario's network does to each message: the law that the relay applies for real.
+// What a scenario's network does to each message: the law that the relay applies to real messages.
 //
 // The same law as the simulated network's (sim/network/network.h): a latency per direction of a
-// link (fixed, exponential and now and then a spike, or drawn from a table; half of the link's
-// asymmetry with its sign), and
+// link (fixed, exponential and rare spikes, or drawn from a table; half of the link's asymmetry
+// with its sign), and
 //
-//  - datagrams: lost, doubled (the copy has a latency of its own), reordered (delayed on their own
-//    by up to reorder_max_ms); those that are not reordered keep their order;
+//  - datagrams: lost, doubled (the copy has a latency of its own), reordered (delayed by up to
+//    reorder_max_ms); the others keep their order;
 //  - streams: in order and complete; a lost message arrives a retransmission timeout later, doubled
-//    each time, and holds up what follows it.
+//    each time, and delays all messages after it.
 //
-// All numbers of a message are keyed by (seed, direction, kind, index of the message), so they do
-// not depend on what else was sent. Not the simulator's own draws: the two are compared by their
+// All draws of a message are keyed by (seed, direction, kind, index of the message), so they do not
+// depend on other messages. They are not the simulator's draws: the two are compared by their
 // distributions.
 //
-// What a relay cannot imitate is refused (check_relay_can): bursts, bandwidth, Nagle's algorithm,
+// check_relay_can() refuses what a relay cannot imitate: bursts, bandwidth, Nagle's algorithm,
 // capture traffic, switches that know PTP, latencies per session.
 //
 //   NetworkLaw law(scenario.network, seed, 0, 3);
@@ -30,10 +30,10 @@
 
 namespace simbench::hardware {
 
-// Throws scenarios::InputError that names the member, what was found and what is allowed.
+// Throws scenarios::InputError, which names the member, what was found and what is allowed.
 void check_relay_can(const scenarios::Scenario& scenario);
 
-// What became of the messages of one direction.
+// Counts of the messages of one direction.
 struct LawCounts {
   std::uint64_t datagrams = 0;
   std::uint64_t lost = 0;
@@ -46,7 +46,7 @@ struct LawCounts {
 // One direction of a link.
 class NetworkLaw {
  public:
-  // After so many, a stream message is let through: the simulated stream would break.
+  // After so many a stream message is delivered; the simulated stream would break.
   static constexpr int kMaxRetransmissions = 15;
 
   NetworkLaw(const scenarios::Network& network, std::uint64_t seed, PeerId from, PeerId to);

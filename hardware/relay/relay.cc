@@ -8,13 +8,13 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/redirect_error.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cerrno>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "hardware/net/kernel_stamps.h"
+#include "hardware/net/notice.h"
 #include "hardware/net/token_bucket.h"
 #include "hardware/relay/delay_queue.h"
 #include "hardware/relay/relayed_stream.h"
@@ -29,7 +29,7 @@ using Error = boost::system::error_code;
 constexpr std::size_t kLargestDatagram = 65536;
 constexpr Nanoseconds kPauseAfterError = std::chrono::milliseconds(10);
 
-// Loopback, or an address of RFC 1918, which nobody routes.
+// Loopback, or a private address of RFC 1918.
 bool is_private(const boost::asio::ip::address& address) {
   if (address.is_loopback()) return true;
   if (!address.is_v4()) return false;
@@ -48,7 +48,7 @@ boost::asio::ip::address address_of(const Rig& rig, const RigHost& host) {
   return address;
 }
 
-// What node `from` takes for node `to`.
+// Where node `from` reaches node `to`: the relay's sockets in its place.
 struct Gate {
   Gate(boost::asio::io_context& context, NetworkLaw its_law)
       : acceptor(context), socket(context), law(std::move(its_law)) {}
@@ -154,8 +154,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
           socket, boost::asio::redirect_error(boost::asio::use_awaitable, error));
       if (!gate.acceptor.is_open()) co_return;
       if (error) {
-        boost::asio::steady_timer pause(self->context_, kPauseAfterError);
-        co_await pause.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
+        co_await pause(self->context_.get_executor(), kPauseAfterError);
         continue;
       }
       if (const auto last = gate.stream.lock()) last->close();
@@ -174,7 +173,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
       if (piece.error == 0) {
         if (!piece.truncated) self->relay(gate, piece, buffer);
       } else if (piece.error != EAGAIN && piece.error != EWOULDBLOCK) {
-        // One that the socket tells once, such as "connection refused" of a datagram sent before.
+        // Such as "connection refused" for an earlier datagram, which the socket reports once.
         continue;
       }
       Error error;

@@ -1,22 +1,22 @@
 // A relay: stands between each pair of nodes on one machine and is the network between them.
 //
-// For tests and for the real-network experiment (hardware/experiment), not for rigs. Where the rig
-// file of node i has host j, the relay listens, with TCP and UDP on one port; what comes there goes
-// on to node j after the delay that the scenario's network has for it (network_law.h). Datagrams go
-// on from the relay's own socket for (j, i), which is where node j would answer to. A stream is
-// relayed message by message (message_splitter.h), each way with its own delays.
+// For tests and the real-network experiment (hardware/experiment), not for rigs. The relay listens
+// where the rig file of node i has host j, with TCP and UDP on one port, and forwards to node j
+// after the delay of the scenario's network (network_law.h). It sends datagrams from its own socket
+// for (j, i), to which node j answers. It forwards streams message by message (relayed_stream.h),
+// with delays of its own for each direction.
 //
 //   node i --> [relay's address for j in i's file]  ... delay ...  --> node j's own address
 //
-// Delays count from the kernel's receive stamp, and what is due is sent by a queue that wakes up
-// early (delay_queue.h), so that the relay's own scheduling does not come on top.
+// Delays count from the kernel's receive stamp, and a queue that wakes up early sends due messages
+// (delay_queue.h), so that the relay's own scheduling adds nothing.
 //
 // Contract
 //  - Addresses must be loopback, or private ones (RFC 1918) for namespaces made by a test: a relay
 //    never listens to the world. It opens connections only to the nodes in its files.
-//  - Bounded: kMaxDatagramsPerSecond in each direction (the rest is counted and dropped), the
-//    queue's limits, one stream a pair (a new one replaces the last).
-//  - Nothing it receives can end it. One thread.
+//  - Bounded: kMaxDatagramsPerSecond in each direction (it drops and counts the rest), the queue's
+//    limits, one stream a pair (a new one replaces the last).
+//  - It survives any received bytes. One thread.
 //
 // Errors: RelayError from the constructor: an address that cannot be bound, is not allowed, or is
 // missing.
@@ -34,8 +34,8 @@
 #include <string>
 #include <vector>
 
-#include "hardware/relay/message_splitter.h"
 #include "hardware/relay/network_law.h"
+#include "hardware/relay/relayed_stream.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"
 
@@ -45,7 +45,7 @@ struct RelaySettings {
   // nodes[i] is the rig file of node i: its own entry is where it listens, the others are the
   // relay's addresses.
   std::vector<Rig> nodes;
-  const scenarios::Scenario* scenario = nullptr;  // only looked at by the constructor
+  const scenarios::Scenario* scenario = nullptr;  // only the constructor reads it
   std::uint64_t seed = 1;
 };
 

@@ -5,7 +5,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/redirect_error.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <cerrno>
@@ -13,7 +12,8 @@
 #include <utility>
 
 #include "hardware/net/kernel_stamps.h"
-#include "hardware/relay/message_splitter.h"
+#include "hardware/net/notice.h"
+#include "hardware/net/wire.h"
 
 namespace simbench::hardware {
 namespace {
@@ -30,7 +30,7 @@ void prepare(tcp::socket& socket) {
   request_receive_stamps(socket.native_handle());
 }
 
-// Adds what was read; throws RelayError if it is no SecureStream.
+// Adds what was read; sets `bad` if it is no SecureStream.
 std::optional<Bytes> add(MessageSplitter& splitter, std::span<const std::byte> chunk, bool& bad) {
   try {
     return splitter.take(chunk);
@@ -41,6 +41,25 @@ std::optional<Bytes> add(MessageSplitter& splitter, std::span<const std::byte> c
 }
 
 }  // namespace
+
+MessageSplitter::MessageSplitter() : wanted_(kHelloBytes) {}
+
+std::optional<Bytes> MessageSplitter::take(std::span<const std::byte> chunk) {
+  buffer_.insert(buffer_.end(), chunk.begin(), chunk.end());
+  if (buffer_.size() < wanted_) return std::nullopt;
+  if (part_ == Part::kLength) {
+    FrameHeader header{};
+    std::copy(buffer_.begin(), buffer_.end(), header.begin());
+    const std::optional<std::size_t> box = box_bytes(header);
+    if (!box) throw RelayError("a stream whose next message has an impossible length");
+    part_ = Part::kBox;
+    wanted_ += *box;
+    return std::nullopt;
+  }
+  part_ = Part::kLength;
+  wanted_ = kFrameHeaderBytes;
+  return std::exchange(buffer_, {});
+}
 
 RelayedStream::RelayedStream(DelayQueue& queue, NetworkLaw& forward, NetworkLaw& backward,
                              tcp::socket accepted)
@@ -107,9 +126,7 @@ Task<void> RelayedStream::pump(std::shared_ptr<RelayedStream> self, Side& from, 
     if (!message) continue;
     const MonotonicTime at = from.law->stream(ended ? monotonic_now() : piece.received);
     while (from.socket.is_open() && !self->send_later(to, at, *message)) {
-      boost::asio::steady_timer pause(from.socket.get_executor(), kFullQueuePause);
-      Error error;
-      co_await pause.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, error));
+      co_await pause(from.socket.get_executor(), kFullQueuePause);
     }
     if (ended) co_return;
   }

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "recording/counted.h"
 #include "scenarios/document.h"
 #include "scenarios/schema.h"
 
@@ -27,14 +28,14 @@ using scenarios::InputError;
 using scenarios::Scenario;
 using scenarios::shown_text;
 
-// Far above a rig of a thousand hosts, and small enough to be read before it is refused.
+// Far above a rig of a thousand hosts, and small enough to be read.
 constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& reason) {
   throw InputError(fmt::format("{}: cannot be read: {}", shown_text(path), reason));
 }
 
-// A rig file as checked JSON: what the schema says, and nothing of what the members mean together.
+// A rig file as JSON that the schema accepts; RigReader checks the rest.
 struct RigDocument {
   json root;
   scenarios::Places places;
@@ -101,8 +102,8 @@ bool consists_of(const std::string& text, std::string_view others) {
   });
 }
 
-// A name that a resolver may know (RFC 1123): labels of letters, digits and hyphens, the last of
-// which is no number, so that a wrong address is none.
+// A host name by RFC 1123: labels of letters, digits and hyphens, the last of which is no number,
+// so that a mistyped address is no name.
 bool is_host_name(const std::string& text) {
   if (!consists_of(text, "-.") || text.find("..") != std::string::npos) return false;
   if (!is_alphanumeric(text.front()) || !is_alphanumeric(text.back())) return false;
@@ -110,7 +111,7 @@ bool is_host_name(const std::string& text) {
   return !std::all_of(last.begin(), last.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// Reads what the schema has checked, and checks what it cannot say.
+// Reads a document that the schema accepts, and checks what a schema cannot.
 class RigReader {
  public:
   RigReader(const RigDocument& document, const std::string& path)
@@ -135,7 +136,7 @@ class RigReader {
     throw InputError(document_.places.describe(pointer) + ": " + problem);
   }
 
-  // Throws if the same has stood elsewhere.
+  // Throws if the value occurred before.
   void check_unique(const std::string& kind, const std::string& value, const std::string& pointer,
                     const std::string& allowed) {
     const auto [earlier, is_new] = seen_.try_emplace({kind, value}, pointer);
@@ -208,7 +209,7 @@ class RigReader {
     return camera;
   }
 
-  // Text without control characters, which no shell, file or table would take well.
+  // Text without control characters, which would spoil shells, files and tables.
   std::string plain_text(const json& in, const std::string& pointer) const {
     auto text = in.get<std::string>();
     const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
@@ -221,7 +222,7 @@ class RigReader {
     return text;
   }
 
-  // A path of the file, which is relative to the file's folder.
+  // A path relative to the rig file's folder.
   std::string path_of(const json& in, const std::string& pointer) const {
     return (folder_ / plain_text(in, pointer)).lexically_normal().string();
   }
@@ -256,10 +257,6 @@ bool is_loopback(const std::string& address) {
 
 [[noreturn]] void fail(const Rig& rig, const std::string& pointer, const std::string& problem) {
   throw InputError(fmt::format("{}: {}: {}", scenarios::shown_text(rig.file), pointer, problem));
-}
-
-std::string counted(std::size_t count, const std::string& thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
 void check_cameras(const Rig& rig, const Scenario& scenario) {

@@ -1,9 +1,9 @@
-// A rig: which hosts there are and how to reach them, which cameras they have, what triggers them.
+// A rig: its hosts and their addresses, their cameras, and its trigger.
 //
 // The loaded form of a rig file (JSON, checked against hardware/rig/schema.json, which is built
-// into the program). The same file is used on every host and by the command that conducts the rig;
-// the order of hosts is their number in recordings, host 0 is the master. Cameras are numbered in
-// the order of the file, host by host.
+// into the program). Every host and the conducting command use the same file. Hosts have the
+// numbers of their order, also in recordings; host 0 is the master. Cameras are numbered in the
+// order of the file, host by host.
 //
 //   {
 //     "schema_version": 1,
@@ -16,15 +16,14 @@
 //     "trigger": {"on_command": "trigger on", "off_command": "trigger off"}
 //   }
 //
-// "recording" makes a camera the vendor-free one that plays a recording in real time: a folder that
-// `simbench record` wrote, or a CSV (recording/rs_csv.h); "recorded_camera" says which of its
-// cameras (default: the first of that name or 0), "trigger_file" when it starts
-// (camera/recorded_camera.h). Paths are relative to the rig file. "trigger": "manual" asks the user
-// at a prompt; it may be left out where no scenario needs one.
+// A camera with a "recording" plays it in real time: a folder that `simbench record` wrote, or a
+// CSV (recording/rs_csv.h). "recorded_camera" names one of its cameras (default: the one of this
+// serial, or the first), "trigger_file" starts it (camera/recorded_camera.h). Paths are relative to
+// the rig file. "trigger": "manual" asks the user at a prompt; without a trigger in the file, only
+// scenarios that need none can run.
 //
 // Errors: scenarios::InputError, "FILE:LINE: /pointer: found ..., allowed ...": no JSON, unknown or
-// missing members, a host name or serial twice, a host without name or address, an address that is
-// no address while there is no key ("127.0.0.1" and "::1" are allowed without).
+// missing members, a repeated host name or serial, an impossible name or address.
 #ifndef SIMBENCH_HARDWARE_RIG_RIG_H_
 #define SIMBENCH_HARDWARE_RIG_RIG_H_
 
@@ -58,7 +57,7 @@ struct RigHost {
 };
 
 struct RigTrigger {
-  bool manual = false;     // a prompt
+  bool manual = false;     // by a prompt
   std::string on_command;  // run by the shell of the machine that conducts the rig
   std::string off_command;
   friend bool operator==(const RigTrigger&, const RigTrigger&) = default;
@@ -76,14 +75,14 @@ struct Rig {
 };
 
 Rig load_rig(const std::string& path);
-// The same from text, as if it were the content of `path`; the fuzz target's way in.
+// The same from text, as if it were the content of `path`.
 Rig load_rig_text(const std::string& text, const std::string& path);
 
-// The number of the host of this name. Throws InputError that lists those there are.
+// The number of the host of this name. Throws InputError, which lists the known names.
 PeerId host_named(const Rig& rig, const std::string& name);
 
-// What must agree before anything is started: as many hosts as the scenario has, and on each as
-// many cameras; a trigger where the scenario's sync mode needs one. Throws InputError.
+// Throws InputError unless the rig has as many hosts as the scenario, on each as many cameras, and
+// a trigger if the scenario's sync mode needs one.
 void check_rig_fits(const Rig& rig, const scenarios::Scenario& scenario);
 // The JSON schema of rig files, hardware/rig/schema.json, which is built into the program.
 std::string_view rig_schema_text();

@@ -20,9 +20,7 @@
 #include "reconstruction/libraries/picture.h"
 #include "reconstruction/libraries/quiet_errors.h"
 #include "reconstruction/libraries/set_reconstruction.h"
-#include "reconstruction/libraries/subject_maker.h"
-#include "reconstruction/paint.h"
-#include "reconstruction/seed_tally.h"
+#include "reconstruction/subject.h"
 #include "scenarios/loader.h"
 #include "sim/engine/random.h"
 
@@ -37,6 +35,30 @@ using scenarios::Scenario;
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+// Makes the subject that a scenario's studio states, following its script at any speed. Reads a
+// mesh file once.
+class SubjectMaker {
+ public:
+  // Throws scenarios::InputError for a mesh file that cannot be used.
+  explicit SubjectMaker(const scenarios::StudioSubject& subject) : subject_(subject) {
+    if (subject.kind == scenarios::SubjectKind::kMesh) {
+      loaded_ = load_subject_mesh(subject.mesh_file);
+    }
+  }
+  std::unique_ptr<Subject> make(double speed_factor) const {
+    return loaded_ ? make_rigid_subject(loaded_->mesh, subject_, speed_factor)
+                   : make_person(subject_, speed_factor);
+  }
+  // Notes about the mesh file for its user.
+  std::vector<std::string> notes() const {
+    return loaded_ ? loaded_->notes : std::vector<std::string>{};
+  }
+
+ private:
+  scenarios::StudioSubject subject_;
+  std::optional<LoadedMesh> loaded_;
+};
 
 class Experiment {
  public:
@@ -112,7 +134,7 @@ class Experiment {
     }
   }
 
-  // Between the sets of a job: one that ended early would count as done.
+  // Throws between the sets of a job: a job that returned early would count as done.
   void stop_if_cancelled() const {
     if (options_.cancel != nullptr && options_.cancel->load()) {
       throw ReconstructionCancelled("cancelled");
@@ -136,7 +158,7 @@ class Experiment {
   void make_rows() {
     std::vector<SeedReprojection> found(choices_.size() * options_.seeds);
     std::vector<std::string> failures(found.size());
-    // All pipelines of a seed, then the next seed: the time left can be told from the time gone.
+    // All pipelines of a seed, then the next seed: so the time left follows from the time elapsed.
     run_all(found.size(), [&](std::size_t job) {
       found[job] = run_seed(job % choices_.size(), options_.first_seed + job / choices_.size(), 1,
                             failures[job]);
@@ -210,7 +232,7 @@ class Experiment {
             .std_cm = std::vector<double>(options_.seeds, kNoError)};
   }
 
-  // For every speed, every desynchronisation.
+  // The points of every speed and desynchronisation.
   std::vector<CurvePoint> curve() {
     std::vector<CurvePoint> points;
     for (const double factor : options_.curve_speed_factors) {
@@ -257,7 +279,7 @@ class Experiment {
     return !options_.search_speed_factors.empty() && worst_published().has_value();
   }
 
-  // Of the factors that are searched those above 1, or those below, outward from 1.
+  // The searched factors above 1, or those below, outward from 1.
   std::vector<double> searched(bool faster) const {
     std::vector<double> factors;
     for (const double factor : options_.search_speed_factors) {
@@ -268,8 +290,8 @@ class Experiment {
     return factors;
   }
 
-  // The speed at which the row with the largest published mean would have it: its own exposures,
-  // of a subject that is ever faster (or slower) until the published error is passed.
+  // Finds the speed at which the row with the largest published mean reaches it: runs the row's own
+  // exposures with a faster and faster (or slower) subject until the published error is passed.
   void search_speed() {
     const std::size_t worst = *worst_published();
     const ReprojectionRow& row = results_.rows[worst];
@@ -316,7 +338,7 @@ class Experiment {
     return point;
   }
 
-  // Where the median mean error first reaches `mean_cm`, linearly between the points.
+  // The speed at which the median mean error first reaches `mean_cm`, linear between the points.
   static std::optional<double> first_passing(const std::vector<CurvePoint>& points,
                                              double mean_cm) {
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -28,7 +28,7 @@ namespace {
 
 using scenarios::InputError;
 
-// What `write` writes to a file of that extension. Open3D writes to files only.
+// The bytes that `write` writes to a file of that extension. Open3D writes only to files.
 std::string written_bytes(const std::string& extension,
                           const std::function<bool(const std::string& path)>& write) {
   std::string folder = (std::filesystem::temp_directory_path() / "simbench_XXXXXX").string();

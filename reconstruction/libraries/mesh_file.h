@@ -19,11 +19,11 @@ struct LoadedMesh {
   std::vector<std::string> notes;
 };
 
-// A PLY, OBJ, OFF or STL file whose z axis is up. Its unit is told by its size: a longest side of
-// more than 500 is taken for millimetres, of more than 20 for centimetres, else metres; the notes
-// say so. Holes are fine (rays that enter through them see the inside), and noted.
-// Throws scenarios::InputError: no such file, no mesh in it, no faces, corners that do not exist or
-// are not finite, no extent.
+// Reads a PLY, OBJ, OFF or STL file whose z axis is up. Its size determines its unit: a longest
+// side of more than 500 means millimetres, of more than 20 centimetres, else metres; a note states
+// it. Holes are allowed and noted (rays that enter through them see the inside). Throws
+// scenarios::InputError: no such file, no mesh in it, no faces, corners that do not exist or are
+// not finite, no extent.
 LoadedMesh load_subject_mesh(const std::string& path);
 
 // Edges that belong to one triangle only: the rims of holes. Corners at the same place are one.

@@ -1,7 +1,7 @@
 // A picture of a coloured mesh, made by casting rays: no display is needed.
 //
-// Always from the same side and distance (kPictureAzimuth, kPictureDistance), the mesh's middle in
-// the middle of the picture, so that pictures can be compared. White background; shaded by the
+// The view is always from the same side and distance (kPictureAzimuth, kPictureDistance), with the
+// mesh's middle in the middle, so that pictures can be compared. White background; shaded by the
 // angle at which the surface is seen.
 //
 //   const Picture picture = picture_of(mesh);

@@ -1,9 +1,9 @@
-// Keeps a library's chatter off standard error: Poisson reconstruction warns there of single
-// degenerate cells, in the middle of a user's progress line.
+// Keeps a library's warnings off standard error: Poisson reconstruction warns of single degenerate
+// cells, in the middle of a progress line.
 //
-// While a QuietErrors lives, what a thread writes to std::cerr inside a QuietErrors::Scope is
-// dropped; all else is passed on, from all threads. One at a time in a process, made and destroyed
-// while no other thread writes.
+// While a QuietErrors lives, it drops what a thread writes to std::cerr inside a QuietErrors::Scope
+// and passes on everything else. One at a time in a process, made and destroyed while no other
+// thread writes.
 //
 //   const QuietErrors quiet;
 //   ... in any thread: { const QuietErrors::Scope scope; library_call(); }

@@ -21,7 +21,7 @@ struct PixelBox {
   int bottom = 0;
 };
 
-// The pixels that can see something between two opposite corners of a box in the world.
+// A box around all pixels that can see one of the boxes in the world.
 PixelBox box_of(const std::vector<Eigen::AlignedBox3d>& bounds, const Pinhole& camera,
                 const Eigen::Isometry3d& camera_from_world) {
   const PixelBox everything{0, camera.width, 0, camera.height};

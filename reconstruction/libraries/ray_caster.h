@@ -1,8 +1,8 @@
 // Casts the rays of cameras at rigid parts, with Embree.
 //
-// The parts' search trees are built once; posing them anew costs next to nothing. Only pixels in
-// the rectangle around the parts' outline are looked at. One object is for one thread; several may
-// be used at the same time.
+// Builds the parts' search trees once; posing the parts costs next to nothing. Only pixels in the
+// rectangle around the parts' outline are cast. One object is for one thread; several may be used
+// at the same time.
 //
 //   RayCaster caster(subject.parts());
 //   caster.pose(subject.poses(seconds));
@@ -15,12 +15,11 @@
 #include <vector>
 
 #include "reconstruction/depth_map.h"
-#include "reconstruction/pinhole.h"
 #include "reconstruction/triangle_mesh.h"
 
 namespace simbench::reconstruction {
 
-// What one ray met.
+// The hit of one ray.
 struct RayHit {
   std::size_t part = 0;
   std::size_t triangle = 0;
@@ -36,7 +35,7 @@ class RayCaster {
   RayCaster(const RayCaster&) = delete;
   RayCaster& operator=(const RayCaster&) = delete;
 
-  // One pose for each part; until the first call all stand at the origin.
+  // One pose for each part; before the first call all parts are at the origin.
   void pose(const std::vector<Eigen::Isometry3d>& poses);
   SeenDepth see(const Pinhole& camera, const Eigen::Isometry3d& world_from_camera) const;
   // The depth alone; `hits`, if not null, becomes as long as the image.

@@ -1,7 +1,7 @@
 // One frame set: from exposure instants to a surface and its reprojection errors.
 //
 // Each camera of the set sees the subject at its own frame's true mid-exposure, from its true pose;
-// fusion, reconstruction and scoring know believed poses and measured depths only.
+// fusion, reconstruction and scoring use only believed poses and measured depths.
 //
 // Memory: a depth map for each camera, the points, Poisson's octree; nothing is kept between sets.
 // One object is for one thread.
@@ -39,11 +39,11 @@ class SetReconstruction {
   SetReconstruction(const scenarios::Scenario& scenario, const Subject& subject,
                     std::uint64_t seed);
 
-  // Adds the errors of the set. Nothing if too little of the subject was seen to make a surface.
+  // Adds the errors of the set. Nothing if the cameras saw too little for a surface.
   std::optional<ScoredSurface> reconstruct(const evaluation::ExposureSet& set,
                                            ErrorStatistics& errors);
 
-  // What camera j measures of a frame exposed then.
+  // The depth map that the camera measures at this exposure.
   DepthMap measure(std::size_t camera, const evaluation::SetExposure& exposure);
 
  private:

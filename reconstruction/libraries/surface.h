@@ -2,10 +2,10 @@
 // Open3D.
 //
 // Each depth map becomes points in the world's frame, averaged on a grid of `spacing_m`; their
-// normals are those of planes through the points within kNormalRadius, turned towards the
-// camera. The points of all cameras together are reconstructed (Kazhdan, Bolitho and Hoppe 2006;
-// screened, of depth kPoissonDepth: 256 cells along the longest side plus a tenth). Nothing is cut
-// off: the surface is closed also where nothing was seen.
+// normals are those of planes through the points within kNormalRadius, turned towards the camera.
+// The points of all cameras are reconstructed together (Kazhdan, Bolitho and Hoppe 2006; screened,
+// of depth kPoissonDepth: 256 cells along the longest side plus a tenth). Nothing is cut off: the
+// surface is closed also where nothing was seen.
 //
 // Deterministic, on one thread. Cost: some seconds for a person.
 //
@@ -32,7 +32,7 @@ struct OrientedPoints {
   std::vector<Eigen::Vector3d> normals;  // of length 1, out of the surface
 };
 
-// From the believed pose of the camera.
+// Adds the points of a depth map, from the camera's believed pose.
 void add_points(const DepthMap& measured, const StudioCamera& camera, double spacing_m,
                 OrientedPoints& points);
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <string_view>
 
-#include "reconstruction/paint.h"
+#include "reconstruction/reprojection.h"
 #include "recording/version.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"

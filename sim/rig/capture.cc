@@ -27,7 +27,8 @@ double begin_ms(const scenarios::Fault& fault) {
 }  // namespace
 
 Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-                 std::vector<SystemClock*> clocks, const CaptureReports& reports)
+                 std::vector<SystemClock*> clocks, const Outages& outages,
+                 const CaptureReports& reports)
     : scenario_(scenario),
       seed_(seed),
       engine_(engine),
@@ -36,7 +37,7 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
       reports_(reports),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       cameras_(scenario, seed),
-      outages_(scenario.faults),
+      outages_(outages),
       camera_faults_(scenario.faults),
       host_errors_(clocks_.size()),
       arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)) {
@@ -60,7 +61,6 @@ void Capture::start(TrueTime at, std::function<void()> on_end) {
   reports_.start(at);
   on_end_ = std::move(on_end);
   trigger_.start(at);
-  outages_.start(at);
   camera_faults_.start(at);
   cameras_.start(at);
   controllers_ = cameras_.make_controllers();

@@ -14,7 +14,7 @@
 // docs/reference/d455.md. Cost: three events per frame and one per pulse; no allocation per event
 // once frames in flight have found their slots.
 //
-//   Capture capture(scenario, seed, engine, clocks, CaptureReports(sink));
+//   Capture capture(scenario, seed, engine, clocks, outages, CaptureReports(sink));
 //   sink.on_start(capture.layout());
 //   capture.start(capture_start, [&] { engine.stop(); });
 //   engine.run();
@@ -44,7 +44,7 @@ class Capture final : public EventHandler {
  public:
   // `clocks` holds the system clock of every host; all references outlive the capture.
   Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-          std::vector<SystemClock*> clocks, const CaptureReports& reports);
+          std::vector<SystemClock*> clocks, const Outages& outages, const CaptureReports& reports);
 
   // The layout of the recording; known from the beginning.
   RigLayout layout() const;
@@ -110,7 +110,7 @@ class Capture final : public EventHandler {
   Cameras cameras_;
   std::vector<UsbController> controllers_;
   std::vector<HostSide> host_sides_;
-  Outages outages_;
+  const Outages& outages_;
   CameraFaults camera_faults_;
   Slots<FrameInFlight> frames_;
   std::vector<Nanoseconds> host_errors_;

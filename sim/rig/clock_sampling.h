@@ -13,7 +13,8 @@
 //
 //   ClockSampling sampling(observer, clocks, engine);
 //   sampling.on_world(start);
-//   Capture capture(scenario, seed, engine, clocks, CaptureReports(sink, nullptr, &sampling));
+//   Capture capture(scenario, seed, engine, clocks, outages,
+//                   CaptureReports(sink, nullptr, &sampling));
 //   engine.run();
 //   sampling.finish();
 #ifndef SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_

@@ -34,7 +34,7 @@ class Run {
                                               : std::make_optional<ClockSampling>(
                                                     *request.observer, hosts_.clocks(), engine_)),
         frame_feeds_(scenario, hosts_),
-        capture_(scenario, request.seed, engine_, hosts_.clocks(),
+        capture_(scenario, request.seed, engine_, hosts_.clocks(), hosts_.outages(),
                  CaptureReports(sink, &frame_feeds_, sampling_ ? &*sampling_ : nullptr)),
         clock_polls_(scenario, request.seed, engine_, hosts_, capture_, sink) {
     if (sampling_) hosts_.network().observe(*sampling_);

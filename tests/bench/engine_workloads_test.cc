@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "bench/engine_workloads/tables.h"
+#include "bench/engine_workloads/models.h"
 #include "bench/engine_workloads/workload.h"
 
 namespace simbench::bench {

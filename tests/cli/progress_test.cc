@@ -17,7 +17,7 @@ using testing::Not;
 // A clock that the test moves, and what the progress wrote.
 struct Bench {
   explicit Bench(ProgressStyle style)
-      : progress(out, style, "runs", [this] { return std::chrono::duration<double>(now); }) {}
+      : progress(out, style, "run", [this] { return std::chrono::duration<double>(now); }) {}
 
   std::string new_text() {
     std::string text = out.str();

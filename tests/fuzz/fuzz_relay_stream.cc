@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "hardware/relay/message_splitter.h"
+#include "hardware/relay/relayed_stream.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

@@ -108,7 +108,7 @@ TEST_F(NodeCommand, SaysWhenItIsReadyAndEndsWhenToldTo) {
     const ProgramResult result = run_until_ready(node(), signal);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, ready_line());
-    EXPECT_THAT(result.err, HasSubstr("host0: 1 cameras, journals in journals"));
+    EXPECT_THAT(result.err, HasSubstr("host0: 1 camera, journals in journals"));
     EXPECT_THAT(result.err, HasSubstr("stopping"));
   }
   const auto rights = std::filesystem::status(folder() / "journals").permissions();

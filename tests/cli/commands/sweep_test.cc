@@ -123,7 +123,7 @@ TEST_F(SweepTest, TheSameCommandAgainRepeatsNothing) {
   const ProgramResult second = run(command("out"));
   EXPECT_EQ(second.status, 0);
   EXPECT_EQ(second.out, first.out);
-  EXPECT_THAT(second.err, HasSubstr("60 of 60 runs are there already"));
+  EXPECT_THAT(second.err, HasSubstr("60 of 60 runs are already finished"));
   EXPECT_THAT(second.err, Not(HasSubstr("left")));
   EXPECT_EQ(all_of("out"), before);
 }
@@ -143,7 +143,7 @@ TEST_F(SweepTest, KilledAgainAndAgainItEndsTheSame) {
   const ProgramResult last = run(command("out"));
   ASSERT_EQ(last.status, 0) << last.err;
   if (finished > 0 && last.err.find("damaged") == std::string::npos) {
-    EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are there already"));
+    EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are already finished"));
   }
   EXPECT_EQ(all_of("out"), all_of("whole"));
   EXPECT_EQ(last.out, content("whole/sweep.txt"));
@@ -176,7 +176,7 @@ TEST_F(SweepTest, AFullDiskLosesNothing) {
   EXPECT_GT(finished, 0U);
   const ProgramResult last = run(command("out"));
   EXPECT_EQ(last.status, 0);
-  EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are there already"));
+  EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are already finished"));
   EXPECT_EQ(all_of("out"), all_of("whole"));
 }
 
@@ -190,7 +190,7 @@ TEST_F(SweepTest, DamagedRecordsAreSaidAndDoneAgain) {
   const ProgramResult result = run(command("out"));
   EXPECT_EQ(result.status, 0);
   EXPECT_THAT(result.err, HasSubstr("2 damaged records in runs.log; their runs are done again"));
-  EXPECT_THAT(result.err, HasSubstr("58 of 60 runs are there already"));
+  EXPECT_THAT(result.err, HasSubstr("58 of 60 runs are already finished"));
   EXPECT_THAT(result.err, HasSubstr("2 runs in"));
   EXPECT_EQ(all_of("out"), all_of("whole"));
 }

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "hardware/clock/paired_reading.h"
 #include "tests/hardware/await.h"
 
 namespace simbench::hardware {

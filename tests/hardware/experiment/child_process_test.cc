@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "hardware/experiment/temporary_folder.h"
+#include "hardware/experiment/experiment_rig.h"
 
 namespace simbench::hardware {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "hardware/experiment/child_process.h"
-#include "hardware/experiment/temporary_folder.h"
+#include "hardware/experiment/experiment_rig.h"
 
 namespace simbench::hardware {
 namespace {

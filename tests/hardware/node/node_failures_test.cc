@@ -73,13 +73,13 @@ class NodeFailures : public NodeHarness {
     EXPECT_FALSE(test.cameras_->runs("serial0"));
     EXPECT_EQ(test.seen_.alive, 0);
     EXPECT_THAT(test.frames_of(test.journal()), SizeIs(1));
-    EXPECT_THAT(test.logged(), HasSubstr("nothing heard from its conductor for 0.4 s"));
+    EXPECT_THAT(test.logged(), HasSubstr("no request from its conductor for 0.4 s"));
     TestConductor next = test.conductor();
     co_await next.connect();
     const Answer begin = co_await next.ask("begin", test.terms("fedcba9876543210"));
     EXPECT_EQ(begin.error, "");
     const Answer late = co_await next.ask("end", in_session(kSession));
-    EXPECT_EQ(late.error, "") << "what was asked for has happened";
+    EXPECT_EQ(late.error, "") << "the session has ended";
   }
 
   static Task<void> come_back(NodeFailures& test) {
@@ -91,7 +91,7 @@ class NodeFailures : public NodeHarness {
     TestConductor again = test.conductor();
     co_await again.connect();
     const Answer lost = co_await again.ask("start");
-    EXPECT_THAT(lost.error, HasSubstr("name the one that lives"));
+    EXPECT_THAT(lost.error, HasSubstr("name the running one"));
     const Answer named = co_await again.ask("ping", in_session(kSession));
     EXPECT_EQ(named.error, "");
     const Answer start = co_await again.ask("start");

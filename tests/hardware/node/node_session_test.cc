@@ -130,7 +130,7 @@ class NodeSession : public NodeHarness {
     co_await test.pause(from_ms(20));
     EXPECT_EQ(test.seen_.alive, 1);
     const Answer again = co_await conductor.ask("synchronise", role("slave"));
-    EXPECT_THAT(again.error, HasSubstr("started before"));
+    EXPECT_THAT(again.error, HasSubstr("already started"));
     co_await expect_ok(conductor, "end", in_session(kSession));
     EXPECT_EQ(test.seen_.alive, 0) << "the service goes on until the end, and no longer";
   }
@@ -182,7 +182,7 @@ TEST_F(NodeSession, ACaptureIsInTheJournal) {
     EXPECT_EQ(frames[i].counter, 1 + i / 3);
   }
   EXPECT_THAT(logged(), HasSubstr("begun by me@here: scenario 3cam_1host_30fps"));
-  EXPECT_THAT(logged(), HasSubstr("ended (asked for): 15 frames, 0 not kept"));
+  EXPECT_THAT(logged(), HasSubstr("ended (on request): 15 frames, 0 not kept"));
 }
 
 TEST_F(NodeSession, CamerasAreSetAsTheScenarioSays) {

@@ -8,7 +8,7 @@
 #include "reconstruction/desync_pattern.h"
 #include "reconstruction/libraries/set_reconstruction.h"
 #include "reconstruction/primitives.h"
-#include "reconstruction/rigid_subject.h"
+#include "reconstruction/subject.h"
 #include "tests/reconstruction/studio_scenario.h"
 
 namespace simbench::reconstruction {

@@ -55,7 +55,9 @@ inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t
     views.push_back(clocks.back().get());
   }
   CapturedFrames frames;
-  Capture capture(scenario, seed, engine, views, CaptureReports(frames));
+  Outages outages(scenario.faults);
+  outages.start(TrueTime{});
+  Capture capture(scenario, seed, engine, views, outages, CaptureReports(frames));
   frames.on_start(capture.layout());
   bool ended = false;
   capture.start(TrueTime{}, [&] { ended = true; });

@@ -1,4 +1,4 @@
-#include "app/experiment_truth.h"
+#include "app/experiment_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "hardware/relay/message_splitter.h"
+#include "hardware/relay/relayed_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -1,19 +1,61 @@
-// Workload w2, rig: triggered cameras whose frames pass five stages until a host has them. What
-// cameras, frames and hosts do, without an engine.
+// The engine workloads without an engine: their tables, and what timers, cameras, frames and hosts
+// do.
 //
-// Event kinds: 0 triggers a camera (subject: camera); 1 to 5 move a frame to that stage (subject:
-// its slot); 5 is the delivery to the host.
-#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_
-#define SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_
+// Definitions and check values: docs/reference/event_engine.md section 1. All times in nanoseconds.
+#ifndef SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_
+#define SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "bench/engine_workloads/tables.h"
-
 namespace simbench::bench {
 
+struct WorkloadTables {
+  std::array<std::int64_t, 4096> hold_ns;                  // E: delays of w1
+  std::array<std::array<std::int64_t, 1024>, 5> stage_ns;  // J0..J4: delays of w2
+};
+
+// Made once, on first use.
+const WorkloadTables& workload_tables();
+
+// First expiry of a timer of w1.
+std::int64_t first_expiry_ns(std::uint64_t timer);
+
+// First trigger of a camera of w2.
+std::int64_t trigger_phase_ns(std::uint64_t camera);
+
+// Workload w1, hold: N timers, each rearmed when it expires.
+class HoldModel {
+ public:
+  // Timers expire `timers` times in all as warm-up, then `events` times.
+  HoldModel(std::uint64_t timers, std::uint64_t events)
+      : delays_ns_(workload_tables().hold_ns), warm_up_(timers), end_(timers + events) {}
+
+  // One expiry. Returns the delay until the next one of the same timer.
+  std::int64_t expire(std::uint32_t timer) {
+    hash_ = hash_ * 0x9E3779B97F4A7C15 + timer;
+    ++count_;
+    return delays_ns_[next_delay_++ % delays_ns_.size()];
+  }
+
+  bool warmed_up() const { return count_ == warm_up_; }
+  bool ended() const { return count_ == end_; }
+  std::uint64_t checksum() const { return hash_; }
+
+ private:
+  const std::array<std::int64_t, 4096>& delays_ns_;
+  std::uint64_t warm_up_;
+  std::uint64_t end_;
+  std::uint64_t count_ = 0;
+  std::uint64_t hash_ = 0;
+  std::uint64_t next_delay_ = 0;
+};
+
+// Workload w2, rig: triggered cameras whose frames pass five stages until a host has them.
+//
+// Event kinds: 0 triggers a camera (subject: camera); 1 to 5 move a frame to that stage (subject:
+// its slot); 5 is the delivery to the host.
 class RigModel {
  public:
   static constexpr std::uint16_t kTrigger = 0;
@@ -91,4 +133,4 @@ class RigModel {
 
 }  // namespace simbench::bench
 
-#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_RIG_MODEL_H_
+#endif  // SIMBENCH_BENCH_ENGINE_WORKLOADS_MODELS_H_

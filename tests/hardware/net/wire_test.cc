@@ -1,5 +1,5 @@
 // What is sealed, numbered and remembered: the parts of the network that need no sockets.
-#include "hardware/net/sealing.h"
+#include "hardware/net/wire.h"
 
 #include <gmock/gmock.h>
 

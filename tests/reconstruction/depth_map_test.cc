@@ -1,4 +1,4 @@
-#include "reconstruction/pinhole.h"
+#include "reconstruction/depth_map.h"
 
 #include <gmock/gmock.h>
 

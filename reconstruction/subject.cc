@@ -1,4 +1,4 @@
-#include "reconstruction/person.h"
+#include "reconstruction/subject.h"
 
 #include <fmt/format.h>
 
@@ -118,6 +118,23 @@ class Person final : public Subject {
   std::vector<Joint> joints_;
 };
 
+class RigidSubject final : public Subject {
+ public:
+  RigidSubject(TriangleMesh mesh, const scenarios::StudioSubject& subject, double speed_factor)
+      : motion_(subject, speed_factor) {
+    parts_.push_back(std::move(mesh));
+  }
+
+  const std::vector<TriangleMesh>& parts() const override { return parts_; }
+  std::vector<Eigen::Isometry3d> poses(double seconds) const override {
+    return {motion_.at(seconds).root};
+  }
+
+ private:
+  Motion motion_;
+  std::vector<TriangleMesh> parts_;
+};
+
 }  // namespace
 
 std::unique_ptr<Subject> make_person(const scenarios::StudioSubject& subject, double speed_factor) {
@@ -126,6 +143,12 @@ std::unique_ptr<Subject> make_person(const scenarios::StudioSubject& subject, do
         fmt::format("a person of {} m, must be more than 0", subject.height_m));
   }
   return std::make_unique<Person>(subject, speed_factor);
+}
+
+std::unique_ptr<Subject> make_rigid_subject(TriangleMesh mesh,
+                                            const scenarios::StudioSubject& subject,
+                                            double speed_factor) {
+  return std::make_unique<RigidSubject>(std::move(mesh), subject, speed_factor);
 }
 
 }  // namespace simbench::reconstruction

@@ -1,4 +1,4 @@
-#include "app/recorded_run.h"
+#include "app/recordings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +11,30 @@
 
 namespace simbench::app {
 namespace {
+
+// Records one capture; leaves one that fails without an end.
+void record(const evaluation::PipelineChoice& choice, std::uint64_t seed, RecordingSource& source,
+            RecordingWriter& writer, CapturesMade& made) {
+  const std::string& pipeline = choice.pipeline.name;
+  const auto warn = [&](const std::string& text) {
+    made.warnings.push_back(fmt::format("pipeline {}, seed {}: {}", pipeline, seed, text));
+  };
+  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  RecordingSink& sink = writer.begin(pipeline, seed);
+  try {
+    const RecordingCost cost =
+        source.record({.seed = seed, .pipeline = pipeline, .host_sync = host_sync.get()}, sink);
+    writer.end(cost);
+    ++made.recorded;
+    for (const std::string& note : cost.notes) warn(note);
+  } catch (const RecordingFailed& failure) {
+    writer.abandon({failure.what()});
+    warn(failure.what());
+  } catch (const Interrupted&) {
+    writer.abandon({"interrupted"});
+    throw;
+  }
+}
 
 constexpr std::uint64_t kMostSeeds = 1'000'000;
 
@@ -29,6 +53,19 @@ scenarios::Scenario scenario_of(const RecordingFolder& recorded, const std::stri
 
 }  // namespace
 
+void record_captures(const std::vector<evaluation::PipelineChoice>& choices,
+                     RecordingSource& source, const CapturePlan& plan, RecordingWriter& writer,
+                     CapturesMade& made, const evaluation::Progress& progress) {
+  const std::uint64_t total = choices.size() * plan.seeds;
+  std::uint64_t done = 0;
+  for (std::uint64_t i = 0; i < plan.seeds; ++i) {
+    for (const evaluation::PipelineChoice& choice : choices) {
+      record(choice, plan.first_seed + i, source, writer, made);
+      progress(++done, total);
+    }
+  }
+}
+
 RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(folder) {
   const std::vector<RecordedCapture>& captures = folder_.captures();
   if (captures.empty()) throw RecordingFolderError(fmt::format("{}: holds no capture", folder));
@@ -45,7 +82,6 @@ RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(fol
   seeds_ = last->seed - first->seed + 1;
 }
 
-// In the order in which they were recorded, or as asked for.
 std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pipelines) const {
   std::vector<std::string> known;
   for (const RecordedCapture& capture : folder_.captures()) {

@@ -1,0 +1,75 @@
+// Recording folders: a scenario recorded into one, and one evaluated again.
+//
+// A capture that fails is left without an end, and the others are made all the same. What went
+// wrong during a capture (RecordingCost::notes) is a warning and is kept with it. A folder
+// evaluated again gives the table that its run printed.
+//
+//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
+//   CapturesMade made;
+//   record_captures(choices, *simulated_world(scenario), {.seeds = 3}, writer, made, progress);
+//
+//   const RecordedRun run("monday");
+//   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);
+#ifndef SIMBENCH_APP_RECORDINGS_H_
+#define SIMBENCH_APP_RECORDINGS_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evaluation/run/evaluate.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "recording/recording.h"
+#include "recording/recording_folder.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::app {
+
+struct CapturePlan {
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 1;
+};
+
+struct CapturesMade {
+  std::uint64_t recorded = 0;
+  std::vector<std::string> warnings{};
+};
+
+// Records every pipeline's capture of every seed. `made` is up to date also when this ends by an
+// exception. Throws Interrupted (app/interrupt.h), what the source throws except RecordingFailed,
+// and RecordingFolderError (a full disk). Progress counts captures.
+void record_captures(const std::vector<evaluation::PipelineChoice>& choices,
+                     RecordingSource& source, const CapturePlan& plan, RecordingWriter& writer,
+                     CapturesMade& made, const evaluation::Progress& progress);
+
+class RecordedRun {
+ public:
+  // Throws RecordingFolderError or scenarios::InputError where there is nothing to evaluate: no
+  // capture, no scenario.
+  explicit RecordedRun(const std::string& folder);
+  RecordedRun(const RecordedRun&) = delete;
+  RecordedRun& operator=(const RecordedRun&) = delete;
+
+  const scenarios::Scenario& scenario() const { return scenario_; }
+  // These pipelines, or all in the order in which they were recorded if none is named. Throws
+  // scenarios::InputError for one that was not recorded.
+  std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;
+  // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C
+  // (app/interrupt.h).
+  evaluation::Results evaluate(const std::vector<std::string>& pipelines, bool keep_pulses,
+                               const evaluation::Progress& progress) const;
+
+ private:
+  std::string path_;
+  RecordingFolder folder_;
+  scenarios::Scenario scenario_;
+  std::uint64_t first_seed_ = 0;
+  std::uint64_t seeds_ = 0;
+};
+
+// What went wrong in captures that were scored all the same.
+std::vector<std::string> capture_notes(const evaluation::Results& results);
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_RECORDINGS_H_
