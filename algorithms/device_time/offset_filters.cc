@@ -253,16 +253,16 @@ namespace {
 constexpr const char* kSource = "docs/reference/device_time.md section 1";
 
 DeviceTimeEntry olson() {
-  return {
-      .info = {.name = "olson_50ppm",
-               .family = "olson",
-               .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
-               .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
-               .parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
-                                               "rate of forgetting; must exceed the skew", kSource)}},
-      .make = [](const Parameters& parameters) {
-        return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
-      }};
+  return {.info = {.name = "olson_50ppm",
+                   .family = "olson",
+                   .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+                   .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
+                   .parameters = {number_parameter(
+                       "alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
+                       "rate of forgetting; must exceed the skew", kSource)}},
+          .make = [](const Parameters& parameters) {
+            return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
+          }};
 }
 
 DeviceTimeEntry kalman() {
