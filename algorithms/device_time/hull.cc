@@ -136,7 +136,7 @@ DeviceTimeEntry switching(const char* name, double period_s, const char* summary
 
 ParameterSpec max_skew_parameter() {
   return number_parameter(kMaxSkew, kDefaultMaxSkewPpm, 1, 100'000,
-                          "steeper lines are no clock's: twice what NTP slews at", "RFC 5905");
+                          "limit of a line's slope: twice the fastest slew of NTP", "RFC 5905");
 }
 
 std::vector<DeviceTimeEntry> device_time_hull() {

@@ -253,16 +253,16 @@ namespace {
 constexpr const char* kSource = "docs/reference/device_time.md section 1";
 
 DeviceTimeEntry olson() {
-  return {
-      .info = {.name = "olson_50ppm",
-               .family = "olson",
-               .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
-               .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
-               .parameters = {number_parameter("alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
-                                               "forgetting; must exceed the skew", kSource)}},
-      .make = [](const Parameters& parameters) {
-        return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
-      }};
+  return {.info = {.name = "olson_50ppm",
+                   .family = "olson",
+                   .summary = "least delayed frame, forgotten at 50 ppm (passive synchronisation)",
+                   .source = "Olson, IROS 2010; docs/reference/device_time.md section 1",
+                   .parameters = {number_parameter(
+                       "alpha_ppm", OlsonSettings{}.alpha_ppm, 0, 100'000,
+                       "rate of forgetting; must exceed the skew", kSource)}},
+          .make = [](const Parameters& parameters) {
+            return make_olson({.alpha_ppm = parameters.number("alpha_ppm")});
+          }};
 }
 
 DeviceTimeEntry kalman() {
@@ -271,7 +271,7 @@ DeviceTimeEntry kalman() {
       number_parameter("initial_offset_sigma_ms", defaults.initial_offset_sigma_ms, 1e-3, 1e6,
                        "uncertainty of the first frame's offset", kSource),
       number_parameter("initial_skew_sigma_ppm", defaults.initial_skew_sigma_ppm, 1e-3, 1e5,
-                       "uncertainty of the skew at first", kSource),
+                       "initial uncertainty of the skew", kSource),
       number_parameter("offset_sigma_ms", defaults.offset_sigma_ms, 1e-4, 1e4,
                        "standard deviation of one arrival", kSource),
       number_parameter("skew_sigma_ppm", defaults.skew_sigma_ppm, 0, 1e4,
@@ -279,7 +279,7 @@ DeviceTimeEntry kalman() {
       number_parameter("gate", defaults.gate, 0.1, 1e6,
                        "frames further off, in standard deviations, are rejected", kSource),
       number_parameter("rejections_to_restart", defaults.rejections_to_restart, 1, 1e6,
-                       "so many in a row and the filter begins anew", "ours"),
+                       "rejections in a row after which the filter restarts", "ours"),
   };
   return {
       .info =

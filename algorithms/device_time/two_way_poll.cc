@@ -72,7 +72,7 @@ DeviceTimeEntry two_way_poll() {
                    .source = "docs/reference/host_sync.md section 1 (MOOS, TICSync)",
                    .parameters = {max_skew_parameter(),
                                   number_parameter(kWindowName, TwoWayPollSettings{}.window_s, 1,
-                                                   3600, "polls of this long are used",
+                                                   3600, "span of the polls that are used",
                                                    "ours: short against wander")},
                    .needs = {Need::kPolls}},
           .make = [](const Parameters& parameters) {

@@ -2,7 +2,7 @@
 // reported.
 //
 //   OutcomeReport outcome(host);
-//   outcome.failed(polls, "no reply from the master; is it running?");  // "slave 3: no reply ..."
+//   outcome.failed(8, "no reply from the master; is it running?");  // "slave 3: no reply from ..."
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_OUTCOME_H_
 

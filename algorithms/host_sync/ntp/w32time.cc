@@ -7,6 +7,7 @@
 
 #include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
+#include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
 namespace simbench {
@@ -52,34 +53,30 @@ Task<void> correct(Host& host, Nanoseconds offset, W32TimeSettings settings) {
 
 // Repeats the request until there is a reply, and corrects the clock by it. The arguments must
 // outlive the call.
-Task<SyncOutcome> poll(Host& host, PeerId server, NtpAssociation& association,
-                       W32TimeSettings settings, W32TimeSpikes& spikes) {
-  SyncOutcome outcome;
-  outcome.slave = host.id();
-  for (int request = 0; request < W32Time::kRequestLimit; ++request) {
-    ++outcome.passes;
+Task<void> poll(Host& host, PeerId server, NtpAssociation& association,
+                const W32TimeSettings& settings, W32TimeSpikes& spikes, OutcomeReport& outcome) {
+  for (std::uint32_t request = 1; request <= W32Time::kRequestLimit; ++request) {
     const std::optional<NtpMeasurement> reply =
         co_await association.exchange(W32Time::kReplyTimeout);
     if (!reply) continue;
     const Nanoseconds offset = clock_offset(reply->t1, reply->t2, reply->t3, reply->t4);
     if (settings.max_phase_correction && magnitude(offset) > *settings.max_phase_correction) {
-      outcome.message = "slave " + std::to_string(host.id()) + ": the clock is off by " +
-                        std::to_string(to_seconds(offset)) +
-                        " s, more than W32Time corrects (MaxPosPhaseCorrection " +
-                        std::to_string(to_seconds(*settings.max_phase_correction)) +
-                        " s); set it by hand";
-      co_return outcome;
+      outcome.failed(request, "the clock is off by " + std::to_string(to_seconds(offset)) +
+                                  " s, more than W32Time corrects (MaxPosPhaseCorrection " +
+                                  std::to_string(to_seconds(*settings.max_phase_correction)) +
+                                  " s); set it by hand");
+      co_return;
     }
     if (spikes.accept(offset, host.steady_clock().now())) {
       co_await correct(host, offset, settings);
     }
-    outcome.synchronised = true;
-    co_return outcome;
+    outcome.synchronised(request);
+    co_return;
   }
-  outcome.message = "slave " + std::to_string(host.id()) + ": no valid reply from time server " +
-                    std::to_string(server) + " to " + std::to_string(W32Time::kRequestLimit) +
-                    " requests; is it running and reachable?";
-  co_return outcome;
+  outcome.failed(W32Time::kRequestLimit, "no valid reply from time server " +
+                                             std::to_string(server) + " to " +
+                                             std::to_string(W32Time::kRequestLimit) +
+                                             " requests; is it running and reachable?");
 }
 
 }  // namespace
@@ -121,11 +118,9 @@ Task<void> W32Time::run_slave(Host& host, PeerId master) {
   co_await host.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
   NtpAssociation association(host, master, NtpStamps::kApplication, kSntpVersion);
   W32TimeSpikes spikes;
-  bool reported = false;
+  OutcomeReport outcome(host);
   while (true) {
-    const SyncOutcome outcome = co_await poll(host, master, association, settings_, spikes);
-    if (!reported) host.report_outcome(outcome);
-    reported = true;
+    co_await poll(host, master, association, settings_, spikes, outcome);
     co_await host.sleep_for(settings_.poll_interval);
   }
 }

@@ -29,6 +29,7 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_NTP_W32TIME_H_
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -90,7 +91,7 @@ W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& 
 class W32Time : public HostSync {
  public:
   static constexpr Nanoseconds kReplyTimeout{1'000'000'000};
-  static constexpr int kRequestLimit = 4;
+  static constexpr std::uint32_t kRequestLimit = 4;
 
   explicit W32Time(W32TimeSettings settings) : settings_(settings) {}
   std::optional<Nanoseconds> warm_up() const override { return settings_.service_time; }

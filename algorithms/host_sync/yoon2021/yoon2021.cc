@@ -335,14 +335,14 @@ const char* const kRepair = "assumption; not part of the printed algorithm";
 
 std::vector<ParameterSpec> yoon2021_parameters() {
   return {
-      number_parameter("stamps", 100, 1, 1e6, "n_d, stamps that t_l is the mean of", kNotPublished),
+      number_parameter("stamps", 100, 1, 1e6, "n_d, the stamps whose mean is t_l", kNotPublished),
       number_parameter("clock_calls", 100, 1, 1e6,
-                       "n_c, calls of get and set that t_t is the mean of", kNotPublished),
+                       "n_c, the calls of get and set whose mean is t_t", kNotPublished),
       number_parameter("threshold_ms", 100, 0, 1e6, "T_th, largest accepted delay", kNotPublished),
       number_parameter("send_interval_ms", 0, 0, 1e5,
                        "pace of the stamps; 0: as fast as they can be sent",
                        "Yoon et al. 2021, Algorithm 1"),
-      number_parameter("pass_limit", 200, 1, 1e6, "passes after which a slave is given up",
+      number_parameter("pass_limit", 200, 1, 1e6, "passes after which the master ends the session",
                        kRepair),
       number_parameter("session_gap_ms", 1000, 0, 1e6, "pause between the sessions of two slaves",
                        "docs/reference/calibration.md section 1 (gap)"),
@@ -352,7 +352,7 @@ std::vector<ParameterSpec> yoon2021_parameters() {
       choice_parameter("latency_estimate", {"literal", "intended"},
                        "t_l as printed (mean spacing of the stamps), or half the mean round trip",
                        "docs/reference/paper.md section 4, defect 1"),
-      choice_parameter("transport", {"stream", "datagram"}, "what the messages travel over",
+      choice_parameter("transport", {"stream", "datagram"}, "transport of the messages",
                        kNotPublished),
       number_parameter("receive_timeout_ms", 5000, 1, 1e7,
                        "silence that ends a pass; must cover the slave's clock_calls", kRepair),

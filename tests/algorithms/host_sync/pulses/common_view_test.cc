@@ -214,7 +214,7 @@ TEST_F(CommonViewTest, GnssWithoutLineOrTimeIsAnOutcome) {
   world_.start(sync.run_slave(slave_, 0));
   world_.run(world_.now() + from_ms(5e3));
   ASSERT_EQ(world_.host(1).outcomes.size(), 1u);
-  EXPECT_NE(world_.host(1).outcomes[0].message.find("tells no time"), std::string::npos);
+  EXPECT_NE(world_.host(1).outcomes[0].message.find("sends no time"), std::string::npos);
 }
 
 TEST(CommonViewCorrectionTest, CountsAsMuchAsItIsCertain) {
