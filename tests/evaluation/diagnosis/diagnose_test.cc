@@ -90,7 +90,7 @@ TEST(Diagnose, AFreeRunningCameraIsNamedWithItsMovement) {
   EXPECT_THAT(found.verdict.reason, HasSubstr("free-running"));
   EXPECT_THAT(kinds(found), ElementsAre("b free_running"));
   EXPECT_NEAR(found.cameras[1].standing.moves_ms_per_minute, 3, 0.05);
-  EXPECT_THAT(found.findings[0].text, HasSubstr("per minute against camera a (+50"));
+  EXPECT_THAT(found.findings[0].text, HasSubstr("per minute relative to camera a (+50"));
   EXPECT_EQ(found.cameras[0].standing.follows, Follows::kTrigger);
   EXPECT_EQ(found.cameras[2].standing.follows, Follows::kTrigger);
 }

@@ -195,7 +195,7 @@ TEST(ExposureSets, NeedTheTruth) {
     sets_of(capture);
     ADD_FAILURE() << "no error";
   } catch (const RecordingFailed& error) {
-    EXPECT_THAT(error.what(), HasSubstr("only a simulation knows"));
+    EXPECT_THAT(error.what(), HasSubstr("only a simulation has them"));
   }
 }
 
