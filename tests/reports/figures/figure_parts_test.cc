@@ -13,7 +13,7 @@
 namespace simbench::reports {
 namespace {
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+using evaluation::kNan;
 
 FigureSeries ramp(std::size_t size) {
   FigureSeries series;
@@ -62,14 +62,14 @@ void check(const FigureSeries& series, std::size_t most) {
   EXPECT_TRUE(std::is_sorted(thin.x.begin(), thin.x.end()));
   std::map<double, double> original;
   for (std::size_t i = 0; i < series.x.size(); ++i) original[series.x[i]] = series.y[i];
-  double least = kNotANumber;
-  double greatest = kNotANumber;
+  double least = kNan;
+  double greatest = kNan;
   for (const double y : series.y) {
     least = std::fmin(least, y);
     greatest = std::fmax(greatest, y);
   }
-  double kept_least = kNotANumber;
-  double kept_greatest = kNotANumber;
+  double kept_least = kNan;
+  double kept_greatest = kNan;
   for (std::size_t i = 0; i < thin.x.size(); ++i) {
     const double y = original.at(thin.x[i]);
     EXPECT_TRUE(thin.y[i] == y || (std::isnan(y) && std::isnan(thin.y[i])));
@@ -96,7 +96,7 @@ TEST(ThinTest, AnySeriesKeepsItsEndsExtremesAndGaps) {
     const auto most = static_cast<std::size_t>(draw(8, 300));
     const int gap_percent = draw(0, 1) == 0 ? 0 : draw(0, 100);
     FigureSeries series = ramp(size);
-    for (double& y : series.y) y = draw(0, 99) < gap_percent ? kNotANumber : draw(-1000, 1000);
+    for (double& y : series.y) y = draw(0, 99) < gap_percent ? kNan : draw(-1000, 1000);
     check(series, most);
     if (HasFailure()) return;
   }

@@ -18,11 +18,10 @@ namespace simbench::reports {
 namespace {
 
 namespace fs = std::filesystem;
+using evaluation::kNan;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 FigureSeries series(const std::string& label, std::vector<double> y, int colour) {
   FigureSeries made;
