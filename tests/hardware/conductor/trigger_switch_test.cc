@@ -70,7 +70,7 @@ TEST(TriggerSwitch, AsksWhereItIsSwitchedByHand) {
   EXPECT_THAT(asked, HasSubstr("trigger on"));
   EXPECT_THAT(turned(manual, false, [](const std::string&) { return false; }),
               HasSubstr("given up"));
-  EXPECT_THAT(turned(manual, true), HasSubstr("nobody to ask"));
+  EXPECT_THAT(turned(manual, true), HasSubstr("there is no prompt"));
 }
 
 }  // namespace
