@@ -13,8 +13,6 @@ namespace {
 
 using ::testing::IsNan;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 Row row_of(const std::string& pipeline, std::vector<double> amd, std::vector<double> host) {
   Row row;
   row.pipeline = pipeline;

@@ -12,8 +12,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 Row row(const std::string& pipeline, std::vector<double> errors, bool offline = false) {
   Row row;
   row.pipeline = pipeline;

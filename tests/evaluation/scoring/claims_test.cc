@@ -17,8 +17,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Optional;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // Two seeds of every pipeline that a claim speaks of, in which all claims hold.
 std::vector<Row> good_rows() {
   const std::map<std::string, double> amd_ms = {

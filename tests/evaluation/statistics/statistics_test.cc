@@ -15,8 +15,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsNan;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // P(X >= k) of a binomial distribution, summed term by term.
 double upper_tail(std::int64_t k, std::int64_t n, double p) {
   double sum = 0;
