@@ -62,7 +62,7 @@ class RigSource final : public RecordingSource {
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override;
 
-  // Of the last session.
+  // The hosts and the name of the last session.
   const std::vector<HostReport>& hosts() const { return hosts_; }
   const std::string& session() const { return session_; }
 

@@ -135,7 +135,7 @@ inline constexpr std::uint32_t kTraceCsvPlaces = 100;
 //   gathering/stamps_range_us    of the set emitted then
 //   gathering/frames             in that set
 //
-// Of two values of a series at one instant the later is shown. Columns are those of the first
+// Two values of a series at one instant: the later is shown. Columns are those of the first
 // kTraceCsvPlaces hosts and cameras; the rest is left out.
 void write_trace_csv(const Trace& trace, std::ostream& out);
 

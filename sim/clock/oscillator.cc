@@ -30,7 +30,7 @@ FlickerNoise::FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_s
     transition.kept = std::exp(-2 * half);
     transition.sigma_ppb = std::sqrt(-variance * std::expm1(-4 * half));
     transition.weight_s = time_constant_s * tanh_half;
-    // Of the integral between two known ends: never negative but for rounding.
+    // The variance of the integral between two known ends is negative by rounding alone.
     phase_variance +=
         variance * std::max(0.0, 4 * time_constant_s * time_constant_s * (half - tanh_half));
     time_constant_s *= kSpacing;

@@ -20,7 +20,7 @@ namespace simbench::sim {
 
 class QuantileTable {
  public:
-  // Of no table: empty() and nothing else may be asked.
+  // No table: only empty() may be called.
   QuantileTable() = default;
   explicit QuantileTable(std::span<const double> table) : table_(table) {}
 

@@ -71,7 +71,7 @@ class ExperimentTruthTest : public testing::Test {
   void capture(std::uint32_t camera, std::int64_t pulse, SteadyTime arrived) {
     captured_.on_frame(frame(camera, pulse, arrived), nullptr);
   }
-  KeptRecording told(double zero_s) const {
+  KeptRecording recorded(double zero_s) const {
     KeptRecording result;
     add_truth({.played = played_, .zero = mono(zero_s), .oscillators = oscillators()}, captured_,
               result);
@@ -92,7 +92,7 @@ class ExperimentTruthTest : public testing::Test {
 
 TEST_F(ExperimentTruthTest, AnExposureIsWhereTheTriggerPutIt) {
   capture(0, 1, steady(6.05));
-  const std::vector<FrameEvent> frames = all<FrameEvent>(told(5));
+  const std::vector<FrameEvent> frames = all<FrameEvent>(recorded(5));
   ASSERT_THAT(frames, SizeIs(1));
   const FrameTruth& truth = frames[0].truth.value();
   EXPECT_EQ(truth.pulse, 1);
@@ -107,7 +107,7 @@ TEST_F(ExperimentTruthTest, AnExposureIsWhereTheTriggerPutIt) {
 TEST_F(ExperimentTruthTest, AnotherHostsClocksAreItsOwn) {
   // At 5.05 s its oscillator has counted 101 us more.
   capture(1, 0, SteadyTime(from_ms(5050.101)));
-  const std::vector<FrameEvent> frames = all<FrameEvent>(told(5));
+  const std::vector<FrameEvent> frames = all<FrameEvent>(recorded(5));
   ASSERT_THAT(frames, SizeIs(1));
   const FrameTruth& truth = frames[0].truth.value();
   EXPECT_EQ(truth.reference, host_time(6.004));
@@ -118,7 +118,7 @@ TEST_F(ExperimentTruthTest, AnotherHostsClocksAreItsOwn) {
 
 TEST_F(ExperimentTruthTest, HostErrorsFollowSkewAndSteps) {
   for (const double zero_s : {5.0, 9.5}) {
-    const std::vector<PulseEvent> pulses = all<PulseEvent>(told(zero_s));
+    const std::vector<PulseEvent> pulses = all<PulseEvent>(recorded(zero_s));
     ASSERT_THAT(pulses, SizeIs(2));
     for (std::size_t i = 0; i < 2; ++i) {
       const double at_s = zero_s + static_cast<double>(i);
@@ -129,14 +129,14 @@ TEST_F(ExperimentTruthTest, HostErrorsFollowSkewAndSteps) {
     }
   }
   // In numbers: 5 ms and 100 us after 5 s; 1 ms and 210 us after 10.5 s.
-  EXPECT_NEAR(to_ms(all<PulseEvent>(told(5))[0].host_errors[1]), 5.1, 2e-6);
-  EXPECT_NEAR(to_ms(all<PulseEvent>(told(9.5))[1].host_errors[1]), 1.21, 2e-6);
+  EXPECT_NEAR(to_ms(all<PulseEvent>(recorded(5))[0].host_errors[1]), 5.1, 2e-6);
+  EXPECT_NEAR(to_ms(all<PulseEvent>(recorded(9.5))[1].host_errors[1]), 1.21, 2e-6);
 }
 
 TEST_F(ExperimentTruthTest, TheLayoutIsThePlayedOneAndAllElseIsHandedOn) {
   captured_.on_outcome(SyncOutcome());
   captured_.on_exchange(1, Exchange());
-  const KeptRecording result = told(5);
+  const KeptRecording result = recorded(5);
   EXPECT_EQ(result.layout().frame_rate_hz, 1);
   EXPECT_EQ(result.layout().pulses, 2);
   EXPECT_THAT(all<SyncOutcome>(result), SizeIs(1));
@@ -148,7 +148,7 @@ TEST_F(ExperimentTruthTest, PulsesAreToldBeforeTheFramesThatFollowThem) {
   capture(0, 0, steady(5.05));
   capture(0, 1, steady(6.05));
   std::string order;
-  const KeptRecording result = told(5);
+  const KeptRecording result = recorded(5);
   for (const RecordingEvent& event : result.events()) {
     if (std::holds_alternative<PulseEvent>(event)) order += 'p';
     if (std::holds_alternative<FrameEvent>(event)) order += 'f';

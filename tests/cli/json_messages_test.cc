@@ -37,15 +37,15 @@ TEST_F(JsonMessages, ARunStartsProgressesAndEnds) {
   const ProgramResult result = run(small_run({"--pipelines", "free_running,oracle"}));
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(json::parse(result.out).contains("schema_version"));
-  const std::vector<json> told = events(result);
-  ASSERT_GE(told.size(), 3);
-  EXPECT_EQ(told.front(), json({{"event", "start"}, {"unit", "runs"}}));
-  EXPECT_EQ(told[1].at("event"), "progress");
-  EXPECT_TRUE(told[1].contains("eta_s"));
-  EXPECT_EQ(told.back().at("event"), "end");
-  EXPECT_EQ(told.back().at("done"), 4);
-  EXPECT_EQ(told.back().at("total"), 4);
-  EXPECT_GE(told.back().at("elapsed_s"), 0);
+  const std::vector<json> seen = events(result);
+  ASSERT_GE(seen.size(), 3);
+  EXPECT_EQ(seen.front(), json({{"event", "start"}, {"unit", "runs"}}));
+  EXPECT_EQ(seen[1].at("event"), "progress");
+  EXPECT_TRUE(seen[1].contains("eta_s"));
+  EXPECT_EQ(seen.back().at("event"), "end");
+  EXPECT_EQ(seen.back().at("done"), 4);
+  EXPECT_EQ(seen.back().at("total"), 4);
+  EXPECT_GE(seen.back().at("elapsed_s"), 0);
 }
 
 TEST_F(JsonMessages, WarningsAndNotesStayReadable) {
@@ -65,9 +65,9 @@ TEST_F(JsonMessages, AnErrorIsAnEventEvenBeforeTheOptionsAreRead) {
     const ProgramResult result = run(wrong);
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(result.out, "");
-    const std::vector<json> told = events(result);
-    ASSERT_EQ(told.size(), 1);
-    EXPECT_EQ(told[0].at("event"), "error");
+    const std::vector<json> seen = events(result);
+    ASSERT_EQ(seen.size(), 1);
+    EXPECT_EQ(seen[0].at("event"), "error");
   }
 }
 
@@ -84,10 +84,10 @@ TEST_F(JsonMessages, AnInterruptedRunSaysHowFarItGot) {
           {.interrupt_after = std::chrono::milliseconds(500)});
   EXPECT_EQ(result.status, 130);
   EXPECT_EQ(result.out, "");
-  const std::vector<json> told = events(result);
-  ASSERT_FALSE(told.empty());
-  EXPECT_EQ(told.back().at("event"), "interrupt");
-  EXPECT_EQ(told.back().at("unit"), "runs");
+  const std::vector<json> seen = events(result);
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(seen.back().at("event"), "interrupt");
+  EXPECT_EQ(seen.back().at("unit"), "runs");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ inline std::map<std::int64_t, std::string> track_names(const Json& trace) {
   return names;
 }
 
-// Of the slices on tracks whose name ends like this.
+// The slices on tracks whose name ends like this.
 inline std::vector<Json> slices_on(const Json& trace, const std::string& ending) {
   const std::map<std::int64_t, std::string> names = track_names(trace);
   std::vector<Json> found;

@@ -36,7 +36,7 @@ class DisciplinedClockTest : public testing::Test {
   static double reads_ms(const Clock& clock, Instant t) {
     return to_ms(clock.read(t).time_since_epoch());
   }
-  // Of host 3, reads `offset_ms` at the zero of its world.
+  // The clock of host 3, which reads `offset_ms` at the zero of its world.
   static Clock make(double skew_ppm = 0, double offset_ms = 0,
                     std::size_t history = Clock::kWholeHistory) {
     return {3, World::skewed(skew_ppm), at_ms(0), host_ms(offset_ms), history};

@@ -80,7 +80,7 @@ TEST(DepthNoise, GrowsWithTheSquareOfTheDistance) {
   }
 }
 
-// Of a normal law, 4.55 % are farther than two sigma and 0.27 % farther than three.
+// 4.55 % of a normal law are farther than two sigma and 0.27 % farther than three.
 TEST(DepthNoise, IsNormal) {
   const scenarios::Studio studio = quiet_studio();
   const double sigma = depth_sigma_m(studio, kFocal, 2);

@@ -71,7 +71,7 @@ class RecordingFolderTest : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return scratch_ / name; }
 
-  // Of the only capture of a folder.
+  // The error of playing the only capture of a folder.
   static std::string play_error(const std::string& folder) {
     KeptRecording kept;
     return error_of([&] { RecordingFolder(folder).play(0, kept); });

@@ -63,7 +63,7 @@ TEST_P(EveryHull, IsBelowTheArrivalsAndNearTheTruth) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     ASSERT_LE(error_ns(all[i], nanoseconds_of(samples[i].arrival)), 1) << i << ", seed " << kSeed;
     if (i < 600) continue;
-    // Of a window of n, some b / n: 1 us of 300, so 40 us are never seen.
+    // A window of n errs by some b / n: 1 us of 300, so 40 us are never seen.
     ASSERT_NEAR(error_ns(all[i], nanoseconds_of(truth[i].arrival)), 0, 40e3)
         << i << ", seed " << kSeed;
   }

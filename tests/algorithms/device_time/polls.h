@@ -30,7 +30,7 @@ inline PollSample poll_at(std::int64_t t0_ns, std::int64_t request_ns, std::int6
           .t1_steady = SteadyTime(Nanoseconds(t1_ns))};
 }
 
-// Of one poll.
+// The delays of one poll.
 struct PollDelay {
   double request_ms = 0;
   double reply_ms = 0;

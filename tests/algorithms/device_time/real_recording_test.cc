@@ -48,7 +48,7 @@ class RealRecording : public ::testing::Test {
     ASSERT_EQ(samples_.size(), 6001U);
   }
 
-  // Of the host's clock against the camera's, by the first and the last stamp.
+  // The skew of the host's clock against the camera's, by the first and the last stamp.
   double skew_ppm(const std::vector<GlobalTime>& stamps) const {
     const double host_ns =
         static_cast<double>(nanoseconds_of(stamps.back()) - nanoseconds_of(stamps.front()));

@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t kGates = 200;
 constexpr std::uint64_t kSeeds = 32;  // of a baseline, and as many others of its result
 
-// Of a gate that is wrong once in twenty, more than 16 of 200 fail in fewer than 3 of 100 trials.
+// More than 16 of 200 gates that are wrong once in twenty fail in fewer than 3 of 100 trials.
 constexpr int kMostFailures = 16;
 
 evaluation::Series slice(const evaluation::Series& series, std::uint64_t first) {

@@ -16,7 +16,7 @@ std::vector<double> uniform(int n) {
   return values;
 }
 
-// Of one uniform draw the 95 % interval is [0.025, 0.975]; of three the median is Beta(2, 2), whose
+// The 95 % interval of one uniform draw is [0.025, 0.975]; the median of three is Beta(2, 2), whose
 // distribution 3 x^2 - 2 x^3 is 0.025 at 0.0943.
 TEST(SeedsNeeded, UniformDraws) {
   const std::vector<double> values = uniform(10'000);

@@ -36,7 +36,7 @@ TEST(TwoSampleKs, WithoutValuesThereIsNoDistance) {
   EXPECT_DOUBLE_EQ(ks_distance({kNan, 1, kNan, 3}, {2, kNan}), 0.5);
 }
 
-// Of the C(n + m, n) orders, two keep the samples apart altogether.
+// Two of the C(n + m, n) orders keep the samples apart altogether.
 TEST(TwoSampleKs, ProbabilityOfNoOverlap) {
   EXPECT_NEAR(ks_probability(1, 1, 1), 1, kTolerance);
   EXPECT_NEAR(ks_probability(3, 3, 1), 2.0 / 20, kTolerance);

@@ -1,4 +1,4 @@
-// What a camera's handlers were told, for a test that waits for some of it.
+// What a camera's handlers received, for a test that waits for some of it.
 #ifndef SIMBENCH_TESTS_HARDWARE_CAMERA_SEEN_FRAMES_H_
 #define SIMBENCH_TESTS_HARDWARE_CAMERA_SEEN_FRAMES_H_
 

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Kind = CameraEvent::Kind;
 
-struct Told {
+struct Notified {
   std::vector<CameraEvent> events;
   CameraEventHandler handler() {
     return [this](const CameraEvent& event) { events.push_back(event); };
@@ -43,75 +43,75 @@ CameraFrame watched_frame(std::uint32_t counter, double ms, std::uint32_t zero_u
 }
 
 TEST(StreamWatch, ASteadyStreamIsNoEvent) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 300; ++i) {
-    watch.on_frame(watched_frame(i, 33.3 * i), told.handler());
-    watch.check(at_ms(33.3 * i + 30), told.handler());
+    watch.on_frame(watched_frame(i, 33.3 * i), notified.handler());
+    watch.check(at_ms(33.3 * i + 30), notified.handler());
   }
-  EXPECT_THAT(told.events, IsEmpty());
+  EXPECT_THAT(notified.events, IsEmpty());
 }
 
 TEST(StreamWatch, NeitherTheCountersNorTheStampsWrapIsAnEvent) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 100; ++i) {
     watch.on_frame(watched_frame(0xffffffffU - 50 + i, 33.3 * i, 0xffffffffU - 1'000'000),
-                   told.handler());
+                   notified.handler());
   }
-  EXPECT_THAT(told.events, IsEmpty());
+  EXPECT_THAT(notified.events, IsEmpty());
   EXPECT_EQ(watch.lost_frames(), 0U);
 }
 
 TEST(StreamWatch, AGapAtTheWrapIsCounted) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(watched_frame(0xfffffffeU, 0), told.handler());
-  watch.on_frame(watched_frame(2, 133), told.handler());  // 0xffffffff, 0 and 1 are missing
+  watch.on_frame(watched_frame(0xfffffffeU, 0), notified.handler());
+  watch.on_frame(watched_frame(2, 133), notified.handler());  // 0xffffffff, 0 and 1 are missing
   EXPECT_EQ(watch.lost_frames(), 3U);
-  ASSERT_EQ(told.kinds(), std::vector{Kind::kNote});
-  EXPECT_THAT(told.events[0].text, HasSubstr("from 4294967294 to 2: 3 frames lost"));
+  ASSERT_EQ(notified.kinds(), std::vector{Kind::kNote});
+  EXPECT_THAT(notified.events[0].text, HasSubstr("from 4294967294 to 2: 3 frames lost"));
 }
 
 TEST(StreamWatch, ManyGapsAreFewNotes) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 100), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 1000; ++i)
-    watch.on_frame(watched_frame(2 * i, 20.0 * i), told.handler());
+    watch.on_frame(watched_frame(2 * i, 20.0 * i), notified.handler());
   EXPECT_EQ(watch.lost_frames(), 999U);
-  ASSERT_EQ(told.events.size(), 2U);  // 20 s: at the first, and 10 s after that
-  EXPECT_THAT(told.events[1].text, HasSubstr("501 frames lost since the start"));
+  ASSERT_EQ(notified.events.size(), 2U);  // 20 s: at the first, and 10 s after that
+  EXPECT_THAT(notified.events[1].text, HasSubstr("501 frames lost since the start"));
 }
 
 TEST(StreamWatch, AStallIsToldOnceAndItsEndToo) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(watched_frame(0, 10), told.handler());
-  watch.check(at_ms(1010), told.handler());
-  EXPECT_THAT(told.events, IsEmpty());  // exactly 1 s
-  watch.check(at_ms(1011), told.handler());
-  watch.check(at_ms(5000), told.handler());
-  EXPECT_EQ(told.kinds(), std::vector{Kind::kStalled});
-  watch.on_frame(watched_frame(1, 6010), told.handler());
-  ASSERT_EQ(told.kinds(), (std::vector{Kind::kStalled, Kind::kNote}));
-  EXPECT_THAT(told.events[1].text, HasSubstr("after 6.0 s"));
-  watch.check(at_ms(7020), told.handler());
-  EXPECT_EQ(told.kinds().back(), Kind::kStalled);
+  watch.on_frame(watched_frame(0, 10), notified.handler());
+  watch.check(at_ms(1010), notified.handler());
+  EXPECT_THAT(notified.events, IsEmpty());  // exactly 1 s
+  watch.check(at_ms(1011), notified.handler());
+  watch.check(at_ms(5000), notified.handler());
+  EXPECT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  watch.on_frame(watched_frame(1, 6010), notified.handler());
+  ASSERT_EQ(notified.kinds(), (std::vector{Kind::kStalled, Kind::kNote}));
+  EXPECT_THAT(notified.events[1].text, HasSubstr("after 6.0 s"));
+  watch.check(at_ms(7020), notified.handler());
+  EXPECT_EQ(notified.kinds().back(), Kind::kStalled);
 }
 
 TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
   const auto stalls_at = [](const CameraSettings& wanted, double ms) {
-    Told told;
+    Notified notified;
     StreamWatch watch(wanted, false);
     watch.start(at_ms(-5));
-    watch.on_frame(watched_frame(0, 0), told.handler());
-    watch.check(at_ms(ms), told.handler());
-    return !told.events.empty();
+    watch.on_frame(watched_frame(0, 0), notified.handler());
+    watch.check(at_ms(ms), notified.handler());
+    return !notified.events.empty();
   };
   EXPECT_FALSE(stalls_at(depth("default", 6), 1660));
   EXPECT_TRUE(stalls_at(depth("default", 6), 1670));
@@ -121,38 +121,38 @@ TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
 }
 
 TEST(StreamWatch, ACameraIsGivenTimeToStart) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.check(at_ms(4000), told.handler());
-  EXPECT_THAT(told.events, IsEmpty());
-  watch.check(at_ms(4001), told.handler());
-  ASSERT_EQ(told.kinds(), std::vector{Kind::kStalled});
-  EXPECT_EQ(told.events[0].text, "depth: no frame for 4.0 s");
+  watch.check(at_ms(4000), notified.handler());
+  EXPECT_THAT(notified.events, IsEmpty());
+  watch.check(at_ms(4001), notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  EXPECT_EQ(notified.events[0].text, "depth: no frame for 4.0 s");
 }
 
 TEST(StreamWatch, ACameraThatWaitsForTriggersIsWatchedFromItsFirstFrame) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("genlock", 90, 45), true);
   watch.start(at_ms(0));
-  watch.check(at_ms(60'000), told.handler());
-  EXPECT_THAT(told.events, IsEmpty());
-  watch.on_frame(watched_frame(0, 60'010), told.handler());
-  watch.check(at_ms(61'020), told.handler());
-  EXPECT_EQ(told.kinds(), std::vector{Kind::kStalled});
+  watch.check(at_ms(60'000), notified.handler());
+  EXPECT_THAT(notified.events, IsEmpty());
+  watch.on_frame(watched_frame(0, 60'010), notified.handler());
+  watch.check(at_ms(61'020), notified.handler());
+  EXPECT_EQ(notified.kinds(), std::vector{Kind::kStalled});
 }
 
 TEST(StreamWatch, ARestartedCameraIsTold) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.on_frame(watched_frame(1000, 0), told.handler());
-  watch.on_frame(watched_frame(0, 33), told.handler());
-  ASSERT_EQ(told.kinds(), std::vector{Kind::kNote});
-  EXPECT_THAT(told.events[0].text, HasSubstr("frame counter jumped between frames 1000 and 0"));
+  watch.on_frame(watched_frame(1000, 0), notified.handler());
+  watch.on_frame(watched_frame(0, 33), notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{Kind::kNote});
+  EXPECT_THAT(notified.events[0].text, HasSubstr("frame counter jumped between frames 1000 and 0"));
   EXPECT_EQ(watch.lost_frames(), 0U);
 
-  Told clock;
+  Notified clock;
   watch.start(at_ms(0));
   watch.on_frame(watched_frame(0, 0), clock.handler());
   watch.on_frame(watched_frame(1, 33, 1'100'000), clock.handler());
@@ -161,43 +161,43 @@ TEST(StreamWatch, ARestartedCameraIsTold) {
 }
 
 TEST(StreamWatch, AStampOfAnotherClockMayJump) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
   CameraFrame first = watched_frame(0, 0);
   CameraFrame second = watched_frame(1, 33, 5'000'000);
   first.domain = second.domain = StampDomain::kSystemTime;
-  watch.on_frame(first, told.handler());
-  watch.on_frame(second, told.handler());
-  EXPECT_THAT(told.events, IsEmpty());
+  watch.on_frame(first, notified.handler());
+  watch.on_frame(second, notified.handler());
+  EXPECT_THAT(notified.events, IsEmpty());
 }
 
 TEST(StreamWatch, DepthAndColourCountForThemselves) {
-  Told told;
+  Notified notified;
   StreamWatch watch(settings("default", {stream("depth", 30), stream("colour", 30)}), false);
   watch.start(at_ms(0));
   for (std::uint32_t i = 0; i < 60; ++i) {
-    watch.on_frame(watched_frame(i, 33.3 * i), told.handler());
+    watch.on_frame(watched_frame(i, 33.3 * i), notified.handler());
     if (i > 5) continue;
     CameraFrame colour = watched_frame(700 + i, 33.3 * i + 5);
     colour.stream = StreamKind::kColour;
-    watch.on_frame(colour, told.handler());
+    watch.on_frame(colour, notified.handler());
   }
-  watch.check(at_ms(2000), told.handler());
-  ASSERT_EQ(told.kinds(), std::vector{Kind::kStalled});
-  EXPECT_THAT(told.events[0].text, HasSubstr("colour: no frame for 1.8 s, the last was 705"));
+  watch.check(at_ms(2000), notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  EXPECT_THAT(notified.events[0].text, HasSubstr("colour: no frame for 1.8 s, the last was 705"));
 }
 
 TEST(StreamWatch, MissingMetadataIsToldOnceWithTheCure) {
-  Told told;
+  Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(at_ms(0));
-  watch.missing_metadata("SENSOR_TIMESTAMP", told.handler());
-  watch.missing_metadata("SENSOR_TIMESTAMP", told.handler());
-  ASSERT_EQ(told.kinds(), std::vector{Kind::kMissingMetadata});
-  EXPECT_THAT(told.events[0].text, HasSubstr("lack SENSOR_TIMESTAMP"));
-  EXPECT_THAT(told.events[0].text, HasSubstr("kernel patches"));
-  EXPECT_THAT(told.events[0].text, HasSubstr("FORCE_RSUSB_BACKEND"));
+  watch.missing_metadata("SENSOR_TIMESTAMP", notified.handler());
+  watch.missing_metadata("SENSOR_TIMESTAMP", notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{Kind::kMissingMetadata});
+  EXPECT_THAT(notified.events[0].text, HasSubstr("lack SENSOR_TIMESTAMP"));
+  EXPECT_THAT(notified.events[0].text, HasSubstr("kernel patches"));
+  EXPECT_THAT(notified.events[0].text, HasSubstr("FORCE_RSUSB_BACKEND"));
 }
 
 }  // namespace

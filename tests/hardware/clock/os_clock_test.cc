@@ -25,7 +25,7 @@ class OsClockTest : public testing::Test {
   std::unique_ptr<NodeClock> make(Nanoseconds max_step = seconds(1), bool dry_run = false) {
     auto clock = make_os_clock(context, kernel,
                                {.host = 4, .max_step = max_step, .dry_run = dry_run, .log = log});
-    clock->observe([this](const ClockAdjustment& adjustment) { told.push_back(adjustment); });
+    clock->observe([this](const ClockAdjustment& adjustment) { notices.push_back(adjustment); });
     return clock;
   }
   void run(Task<void> task) { await(context, std::move(task)); }
@@ -48,7 +48,7 @@ class OsClockTest : public testing::Test {
   boost::asio::io_context context{1};
   FakeKernel kernel;
   std::vector<std::string> lines;
-  std::vector<ClockAdjustment> told;
+  std::vector<ClockAdjustment> notices;
   std::function<void(const std::string&)> log = [this](const std::string& line) {
     lines.push_back(line);
   };
@@ -64,7 +64,7 @@ TEST_F(OsClockTest, ReadsTheSystemClockAndChangesNothingByItself) {
   EXPECT_EQ(clock->present(kernel.monotonic_now_reads()).host, 4u);
   clock->restart();
   EXPECT_THAT(lines, IsEmpty());
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(notices, IsEmpty());
 }
 
 TEST_F(OsClockTest, StepsWithinItsLimit) {
@@ -73,9 +73,9 @@ TEST_F(OsClockTest, StepsWithinItsLimit) {
   run(clock->set(before + from_ms(250)));
   EXPECT_NEAR(to_ms(kernel.system_now_reads() - before), 250, 0.01);
   EXPECT_LE(std::abs(system_error(*clock).count()), 30);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_NEAR(to_ms(told[0].after - told[0].before), 250, 0.01);
-  EXPECT_EQ(told[0].host, 4u);
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_NEAR(to_ms(notices[0].after - notices[0].before), 250, 0.01);
+  EXPECT_EQ(notices[0].host, 4u);
   EXPECT_THAT(lines, ElementsAre(HasSubstr("system clock: stepped by +0.25")));
 }
 
@@ -90,7 +90,7 @@ TEST_F(OsClockTest, RefusesAStepBeyondItsLimit) {
   EXPECT_THAT(error_of(clock->set(HostTime::max())), HasSubstr("found a step of +"));
   EXPECT_THAT(error_of(clock->set(HostTime::min())), HasSubstr("found a step of -"));
   EXPECT_EQ(kernel.ahead, ahead);
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(notices, IsEmpty());
 }
 
 TEST_F(OsClockTest, ThePastIsReadUnderThePast) {
@@ -107,9 +107,9 @@ TEST_F(OsClockTest, ARateIsTheKernelsFrequencyRelativeToWhatWasFound) {
   const auto clock = make();
   run(clock->adjust_frequency(20'000));
   EXPECT_NEAR(kernel_ppm(), 120.002, 1e-4);  // 20 ppm of 1.0001
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_NEAR(told[0].rate_ppb, 20'000, 0.02);
-  EXPECT_EQ(told[0].before, told[0].after);
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_NEAR(notices[0].rate_ppb, 20'000, 0.02);
+  EXPECT_EQ(notices[0].before, notices[0].after);
 }
 
 TEST_F(OsClockTest, TheSteadyClockIsTheOscillatorWhateverTheKernelsFrequency) {
@@ -135,7 +135,7 @@ TEST_F(OsClockTest, WhatIsToldReproducesTheClockFromItsSteadyClock) {
   run(clock->set(kernel.system_now_reads() - from_ms(3)));
   kernel.advance(seconds(50));
   const MonotonicTime now = kernel.monotonic_now_reads();
-  const ClockAdjustment last = told.back();
+  const ClockAdjustment last = notices.back();
   const double elapsed_ns = static_cast<double>((clock->steady_at(now) - last.at).count());
   const HostTime expected =
       last.after + Nanoseconds(std::llround(elapsed_ns * (1 + last.rate_ppb * 1e-9)));
@@ -167,12 +167,12 @@ TEST_F(OsClockTest, ASlewIsAFrequencyThatEndsByItself) {
   run(clock->slew(Nanoseconds(-10'000), 400'000));  // 25 ms
   EXPECT_NEAR(kernel_ppm(), 1 - 400, 1e-3);
   kernel.advance(from_ms(25));
-  run_until(context, [this] { return told.size() == 3; });
+  run_until(context, [this] { return notices.size() == 3; });
   EXPECT_NEAR(kernel_ppm(), 1, 1e-3);
   // The offset, and 1 ppm of 25 ms.
   EXPECT_NEAR(offset_from_raw() - before, -10'000 + 25, 5);
-  EXPECT_NEAR(told[1].rate_ppb, -399'000, 0.02);
-  EXPECT_NEAR(told[2].rate_ppb, 1000, 0.02);
+  EXPECT_NEAR(notices[1].rate_ppb, -399'000, 0.02);
+  EXPECT_NEAR(notices[2].rate_ppb, 1000, 0.02);
 }
 
 TEST_F(OsClockTest, ASlewTakesWhatTheKernelHasLeft) {
@@ -237,7 +237,7 @@ TEST_F(OsClockTest, AnErrorOfTheKernelIsToldAndChangesNothing) {
             "system clock: cannot be set: Invalid argument");
   EXPECT_EQ(error_of(clock->adjust_frequency(5)),
             "system clock: its rate cannot be set: Invalid argument");
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(notices, IsEmpty());
 }
 
 TEST_F(OsClockTest, WarnsOfAnotherKeeper) {
@@ -261,8 +261,8 @@ TEST_F(OsClockTest, NoticesWhatAnotherProgramDid) {
   run(clock->adjust_frequency(20));
   EXPECT_THAT(lines, ElementsAre(HasSubstr("another program has changed its rate"),
                                  HasSubstr("another program has stepped it by +0.005000 s")));
-  ASSERT_EQ(told.size(), 3u);
-  EXPECT_NEAR(to_ms(told[0].after - told[0].before), 5, 1e-3);
+  ASSERT_EQ(notices.size(), 3u);
+  EXPECT_NEAR(to_ms(notices[0].after - notices[0].before), 5, 1e-3);
   EXPECT_LE(std::abs(system_error(*clock).count()), 60);
 }
 
@@ -291,12 +291,12 @@ TEST_F(OsClockTest, ADryRunSetsNothingAndSaysWhatItWould) {
               ElementsAre(HasSubstr("dry run: would step the system clock by +0.2"),
                           "dry run: would run the system clock at +1.500 ppm",
                           "dry run: would slew the system clock by -0.002000 s at 501.500 ppm"));
-  EXPECT_EQ(told.size(), 4u);
+  EXPECT_EQ(notices.size(), 4u);
   EXPECT_GE(clock->system_at(monotonic_now()), before + from_ms(240));
   EXPECT_THAT(error_of(clock->set(HostTime{})), HasSubstr("found a step of -"));
   EXPECT_THAT(error_of(clock->adjust_frequency(600'000)),
               HasSubstr("found a rate of +600.000 ppm"));
-  EXPECT_EQ(told.size(), 4u);
+  EXPECT_EQ(notices.size(), 4u);
 }
 
 TEST(KernelClockCallsTest, ReadWhatTheSystemReads) {

@@ -62,15 +62,15 @@ TEST_F(SoftwareClockTest, SetsAndReadsThePresent) {
 
 TEST_F(SoftwareClockTest, TellsTheEndOfASlewWhenItComes) {
   SoftwareClock clock(context, settings());
-  std::vector<ClockAdjustment> told;
-  clock.observe([&](const ClockAdjustment& adjustment) { told.push_back(adjustment); });
+  std::vector<ClockAdjustment> adjustments;
+  clock.observe([&](const ClockAdjustment& adjustment) { adjustments.push_back(adjustment); });
   await(context, clock.slew(from_ms(1), 100'000'000));  // 10 ms
-  ASSERT_EQ(told.size(), 1u);
-  run_until(context, [&] { return told.size() == 2; });
-  EXPECT_DOUBLE_EQ(told[0].rate_ppb, 100'000'000);
-  EXPECT_DOUBLE_EQ(told[1].rate_ppb, 0);
-  EXPECT_NEAR(to_ms(told[1].at - told[0].at), 10, 2e-6);
-  EXPECT_NEAR(to_ms(told[1].after - told[0].after), 11, 2e-6);
+  ASSERT_EQ(adjustments.size(), 1u);
+  run_until(context, [&] { return adjustments.size() == 2; });
+  EXPECT_DOUBLE_EQ(adjustments[0].rate_ppb, 100'000'000);
+  EXPECT_DOUBLE_EQ(adjustments[1].rate_ppb, 0);
+  EXPECT_NEAR(to_ms(adjustments[1].at - adjustments[0].at), 10, 2e-6);
+  EXPECT_NEAR(to_ms(adjustments[1].after - adjustments[0].after), 11, 2e-6);
 }
 
 TEST_F(SoftwareClockTest, LeavesTheContextWithoutWorkWhenNobodyObserves) {
@@ -90,8 +90,8 @@ TEST_F(SoftwareClockTest, RestartsAsItBegan) {
   SoftwareClock::Settings made_up = settings();
   made_up.offset = from_ms(40);
   SoftwareClock clock(context, made_up);
-  std::vector<ClockAdjustment> told;
-  clock.observe([&](const ClockAdjustment& adjustment) { told.push_back(adjustment); });
+  std::vector<ClockAdjustment> adjustments;
+  clock.observe([&](const ClockAdjustment& adjustment) { adjustments.push_back(adjustment); });
   await(context, clock.set(HostTime(from_ms(1))));
   await(context, clock.adjust_frequency(1e6));
   await(context, clock.slew(from_ms(10), 1000));
@@ -99,8 +99,8 @@ TEST_F(SoftwareClockTest, RestartsAsItBegan) {
   const MonotonicTime now = monotonic_now();
   EXPECT_NEAR(to_ms(clock.system_at(now) - hour_ahead_at(now)), 40, 5);
   EXPECT_EQ(clock.present(now).rate_ppb, 0);
-  ASSERT_EQ(told.size(), 4u);
-  EXPECT_EQ(told[3].rate_ppb, 0);
+  ASSERT_EQ(adjustments.size(), 4u);
+  EXPECT_EQ(adjustments[3].rate_ppb, 0);
 }
 
 TEST_F(SoftwareClockTest, RefusesWhatIsNoRate) {

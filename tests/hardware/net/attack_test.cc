@@ -23,7 +23,7 @@ using boost::asio::ip::udp;
 using testing::HasSubstr;
 using Kind = StreamError::Kind;
 
-// How an accept ends for who sends these bytes and then, if told so, closes.
+// How an accept ends for who sends these bytes and then, if asked to, closes.
 StreamError accept_of(std::span<const std::byte> bytes, bool closes = false,
                       Nanoseconds patience = kPatience) {
   boost::asio::io_context context;

@@ -197,16 +197,17 @@ TEST_F(JournalTest, AFullDiskEndsItAtAWholeLineAndIsToldOnce) {
     const std::size_t room = line(1).size() * 10 + 7;
     const rlimit limit = {room, room};
     setrlimit(RLIMIT_FSIZE, &limit);
-    std::vector<std::string> told;
+    std::vector<std::string> messages;
     Journal journal(context_, folder(), kSession,
-                    [&](const std::string& text) { told.push_back(text); });
+                    [&](const std::string& text) { messages.push_back(text); });
     for (std::uint32_t i = 1; i <= 8; ++i) journal.write(frame(i));
     journal.flush();
     for (std::uint32_t i = 9; i <= 9 + 4; ++i) journal.write(frame(1));
     journal.flush();
     for (std::uint32_t i = 0; i < 100; ++i) journal.write(frame(1));
     journal.flush();
-    const bool good = told.size() == 1 && told[0].find("File too large") != std::string::npos &&
+    const bool good = messages.size() == 1 &&
+                      messages[0].find("File too large") != std::string::npos &&
                       journal.frames() == 113 && journal.frames_not_kept() == 103;
     _exit(good ? 0 : 1);
   }

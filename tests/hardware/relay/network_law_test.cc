@@ -134,7 +134,7 @@ TEST(NetworkLaw, AStreamIsInOrderAndALossCostsTheTimeout) {
     late += std::round(doublings);
   }
   EXPECT_EQ(law.counts().retransmissions, static_cast<std::uint64_t>(late));
-  // Of a geometric count: mean p / (1 - p), variance p / (1 - p)^2.
+  // A geometric count has the mean p / (1 - p), variance p / (1 - p)^2.
   EXPECT_NEAR(late, kMessages * 0.1 / 0.9, 6 * std::sqrt(kMessages * 0.1) / 0.9);
 }
 

@@ -24,7 +24,7 @@ scenarios::Scenario small_studio() {
   return scenario;
 }
 
-// Of ideal cameras.
+// Its cameras are ideal.
 scenarios::Scenario ideal_studio() {
   scenarios::Scenario scenario = small_studio();
   scenarios::Studio& studio = *scenario.studio;
@@ -56,7 +56,7 @@ Outcome reconstruct(const scenarios::Scenario& scenario, const Subject& subject,
   return {surface ? surface->mesh : TriangleMesh{}, errors.summary()};
 }
 
-// Of the vertices, the share within `within_m` of a surface.
+// The share of the vertices within `within_m` of a surface.
 double share_within(const TriangleMesh& mesh, double within_m,
                     const std::function<double(const Eigen::Vector3d&)>& distance) {
   const auto near =

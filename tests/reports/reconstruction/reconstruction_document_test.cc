@@ -24,7 +24,7 @@ Json json() { return Json::parse(reconstruction_json(sample_reconstruction())); 
 TEST(ReconstructionTable, HasTheRowsOfTable4) {
   const std::string text = table();
   EXPECT_THAT(text, HasSubstr("a_studio: 3 seeds (1-3), 10 frame sets each\n"));
-  // Of 6, 8, 13 the 5 % and 95 % quantiles are 6.2 and 12.5.
+  // The 5 % and 95 % quantiles of 6, 8, 13 are 6.2 and 12.5.
   EXPECT_THAT(text, ContainsRegex("ntp_last_set +8.00 \\[6.20, 12.50\\] +9.70, inside +"
                                   "4.00 \\[3.10, 6.25\\] +12.14, outside\n"));
   EXPECT_THAT(text, ContainsRegex("yoon2021_both +2.40 \\[2.04, 2.58\\] +2.39, inside +"

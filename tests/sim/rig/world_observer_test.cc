@@ -14,20 +14,20 @@
 #include "scenarios/loader.h"
 #include "tests/nonempty.h"
 #include "tests/sim/rig/ideal_scenario.h"
+#include "tests/sim/rig/kept_world.h"
 #include "tests/sim/rig/test_world.h"
-#include "tests/sim/rig/told_world.h"
 #include "tests/sim/rig/written_recording.h"
 
 namespace simbench::sim {
 namespace {
 
-ToldWorld tell(const scenarios::Scenario& scenario, HostSync* host_sync = nullptr,
-               Nanoseconds interval = Nanoseconds(0)) {
-  ToldWorld told(interval);
+KeptWorld observe(const scenarios::Scenario& scenario, HostSync* host_sync = nullptr,
+                  Nanoseconds interval = Nanoseconds(0)) {
+  KeptWorld observed(interval);
   KeptLists kept;
   make_simulation(scenario)->record(
-      {.seed = 1, .pipeline = "test", .host_sync = host_sync, .observer = &told}, kept);
-  return told;
+      {.seed = 1, .pipeline = "test", .host_sync = host_sync, .observer = &observed}, kept);
+  return observed;
 }
 
 struct Choice {
@@ -60,28 +60,28 @@ TEST(WorldObserver, ARecordingIsTheSameWithAndWithout) {
     };
     WrittenRecording without;
     WrittenRecording with;
-    ToldWorld told(from_ms(7.3));
+    KeptWorld observed(from_ms(7.3));
     const RecordingCost cost_without = record(nullptr, without);
-    const RecordingCost cost_with = record(&told, with);
+    const RecordingCost cost_with = record(&observed, with);
     EXPECT_TRUE(without.text == with.text);
     EXPECT_GT(with.text.size(), 10'000U);
-    EXPECT_FALSE(told.frames.empty());
-    EXPECT_FALSE(told.clocks.empty());
+    EXPECT_FALSE(observed.frames.empty());
+    EXPECT_FALSE(observed.clocks.empty());
     EXPECT_EQ(cost_with.events, cost_without.events);
     EXPECT_EQ(cost_with.trace_hash, cost_without.trace_hash);
   }
 }
 
 TEST(WorldObserver, AFrameIsToldWithItsWholeWay) {
-  const ToldWorld told = tell(ideal_scenario());
-  EXPECT_EQ(told.world_starts, std::vector<TrueTime>{TrueTime{}});
-  EXPECT_EQ(told.capture_starts, std::vector<TrueTime>{TrueTime(from_ms(100))});
-  ASSERT_FALSE(told.frames.empty());
+  const KeptWorld observed = observe(ideal_scenario());
+  EXPECT_EQ(observed.world_starts, std::vector<TrueTime>{TrueTime{}});
+  EXPECT_EQ(observed.capture_starts, std::vector<TrueTime>{TrueTime(from_ms(100))});
+  ASSERT_FALSE(observed.frames.empty());
   std::map<std::int64_t, TrueTime> pulses;
-  for (const ObservedPulse& pulse : told.pulses) pulses[pulse.pulse] = pulse.at;
-  EXPECT_EQ(pulses.size(), told.pulses.size());
+  for (const ObservedPulse& pulse : observed.pulses) pulses[pulse.pulse] = pulse.at;
+  EXPECT_EQ(pulses.size(), observed.pulses.size());
   EXPECT_EQ(pulses.begin()->first, 0) << "the warm-up has pulses too";
-  for (const ObservedFrame& frame : told.frames) {
+  for (const ObservedFrame& frame : observed.frames) {
     EXPECT_EQ(frame.fate, FrameFate::kDelivered);
     EXPECT_EQ(frame.host, frame.camera);
     EXPECT_EQ(frame.exposure_start, pulses.at(frame.pulse));
@@ -96,16 +96,16 @@ TEST(WorldObserver, AFrameIsToldWithItsWholeWay) {
 TEST(WorldObserver, FramesLostInCamerasAreTold) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.cameras.drop_probability = 0.5;
-  const ToldWorld told = tell(scenario);
+  const KeptWorld observed = observe(scenario);
   std::map<std::uint32_t, std::vector<std::uint32_t>> counters;
   std::map<FrameFate, std::size_t> fates;
-  for (const ObservedFrame& frame : told.frames) {
+  for (const ObservedFrame& frame : observed.frames) {
     ++fates[frame.fate];
     counters[frame.camera].push_back(frame.counter);
     EXPECT_EQ(frame.exposure_end, frame.exposure_start + from_ms(4));
   }
-  EXPECT_GT(fates[FrameFate::kLostInCamera], told.frames.size() / 3);
-  EXPECT_GT(fates[FrameFate::kDelivered], told.frames.size() / 3);
+  EXPECT_GT(fates[FrameFate::kLostInCamera], observed.frames.size() / 3);
+  EXPECT_GT(fates[FrameFate::kDelivered], observed.frames.size() / 3);
   for (auto& [camera, all] : nonempty(counters)) {
     std::sort(all.begin(), all.end());
     for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], i) << "of camera " << camera;
@@ -116,13 +116,13 @@ TEST(WorldObserver, FramesThatAFullBusRefusesAreTold) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.usb.bandwidth_mb_per_s = 24;  // 29 ms for a frame every 22 ms
   scenario.usb.buffered_frames = 1;
-  const ToldWorld told = tell(scenario);
+  const KeptWorld observed = observe(scenario);
   std::size_t refused = 0;
-  for (const ObservedFrame& frame : told.frames) {
+  for (const ObservedFrame& frame : observed.frames) {
     EXPECT_EQ(frame.offered, frame.exposure_end + from_ms(8));
     if (frame.fate == FrameFate::kLostOnUsb) ++refused;
   }
-  EXPECT_NEAR(static_cast<double>(refused), static_cast<double>(told.frames.size()) / 2, 3);
+  EXPECT_NEAR(static_cast<double>(refused), static_cast<double>(observed.frames.size()) / 2, 3);
 }
 
 // Every host but the master sends it two messages of five bytes.
@@ -139,10 +139,10 @@ Service two_messages(Transport transport) {
 TEST(WorldObserver, MessagesAreToldWithBothEnds) {
   for (const Transport transport : {Transport::kDatagram, Transport::kStream}) {
     Service service = two_messages(transport);
-    const ToldWorld told = tell(ideal_scenario(), &service);
-    ASSERT_EQ(told.messages.size(), 2U);
+    const KeptWorld observed = observe(ideal_scenario(), &service);
+    ASSERT_EQ(observed.messages.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
-      const ObservedMessage& message = told.messages[i];
+      const ObservedMessage& message = observed.messages[i];
       EXPECT_EQ(message.from, 1U);
       EXPECT_EQ(message.to, 0U);
       EXPECT_EQ(message.stream, transport == Transport::kStream);
@@ -159,13 +159,13 @@ TEST(WorldObserver, LostMessagesAreToldAndRetransmissionsAreNot) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.network.loss_probability = 1;
   Service datagrams = two_messages(Transport::kDatagram);
-  const ToldWorld lost = tell(scenario, &datagrams);
+  const KeptWorld lost = observe(scenario, &datagrams);
   ASSERT_EQ(lost.messages.size(), 2U);
   for (const ObservedMessage& message : lost.messages) EXPECT_TRUE(message.lost);
 
   scenario.network.loss_probability = 0.5;
   Service stream = two_messages(Transport::kStream);
-  const ToldWorld late = tell(scenario, &stream);
+  const KeptWorld late = observe(scenario, &stream);
   ASSERT_EQ(late.messages.size(), 2U);
   for (const ObservedMessage& message : late.messages) {
     EXPECT_FALSE(message.lost);
@@ -185,11 +185,11 @@ TEST(WorldObserver, AMessageToAStoppedHostIsLost) {
     co_await host.sleep_for(from_ms(500));
     co_await channel.send(Bytes(5));
   });
-  const ToldWorld told = tell(scenario, &service);
-  ASSERT_EQ(told.messages.size(), 2U);
-  EXPECT_TRUE(told.messages[0].lost);
-  EXPECT_FALSE(told.messages[1].lost);
-  for (const ObservedFrame& frame : nonempty(told.frames)) {
+  const KeptWorld observed = observe(scenario, &service);
+  ASSERT_EQ(observed.messages.size(), 2U);
+  EXPECT_TRUE(observed.messages[0].lost);
+  EXPECT_FALSE(observed.messages[1].lost);
+  for (const ObservedFrame& frame : nonempty(observed.frames)) {
     EXPECT_TRUE(frame.host == 1 || frame.delivered >= TrueTime(from_ms(600)));
   }
 }
@@ -200,37 +200,37 @@ TEST(WorldObserver, ClocksAreSampledAtTheIntervalFromTheStartToTheEnd) {
     co_await host.sleep_for(from_ms(42));
     co_await host.clock().set(HostTime(from_ms(1042)));
   });
-  const ToldWorld told = tell(ideal_scenario(), &service, from_ms(10));
+  const KeptWorld observed = observe(ideal_scenario(), &service, from_ms(10));
   // Pulses 45 to 134 of 45 Hz are scored; the last frame is delivered 14 ms after its pulse, and
   // two pulses later the capture is over.
-  ASSERT_FALSE(told.clocks.empty());
-  const Nanoseconds length = told.clocks.back().at - TrueTime{};
+  ASSERT_FALSE(observed.clocks.empty());
+  const Nanoseconds length = observed.clocks.back().at - TrueTime{};
   EXPECT_NEAR(to_ms(length), 100 + 136 * 1000.0 / 45, 11);
-  EXPECT_EQ(told.clocks.size(), static_cast<std::size_t>(length / from_ms(10)) + 1);
-  for (std::size_t i = 0; i < told.clocks.size(); ++i) {
-    const ToldWorld::Clocks& clocks = told.clocks[i];
+  EXPECT_EQ(observed.clocks.size(), static_cast<std::size_t>(length / from_ms(10)) + 1);
+  for (std::size_t i = 0; i < observed.clocks.size(); ++i) {
+    const KeptWorld::Clocks& clocks = observed.clocks[i];
     EXPECT_EQ(clocks.at, TrueTime(i * from_ms(10)));
     ASSERT_EQ(clocks.errors.size(), 2U);
     EXPECT_EQ(clocks.errors[0].count(), 0);
     EXPECT_EQ(clocks.errors[1], from_ms(i <= 4 ? 0 : 1000)) << "at " << i * 10 << " ms";
   }
-  EXPECT_TRUE(tell(ideal_scenario(), &service).clocks.empty()) << "not asked for";
+  EXPECT_TRUE(observe(ideal_scenario(), &service).clocks.empty()) << "not asked for";
 }
 
 TEST(WorldObserver, AWarmUpOfHoursIsSampledAThousandTimes) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.hosts.clock.initial_offset_sigma_ms = 300;
   Service service([](Host&) -> Task<void> { co_return; }, std::chrono::hours(20));
-  const ToldWorld told = tell(scenario, &service, from_ms(10));
-  EXPECT_EQ(told.world_starts, std::vector<TrueTime>{TrueTime(-std::chrono::hours(20))});
-  const auto before_zero = std::count_if(told.clocks.begin(), told.clocks.end(),
+  const KeptWorld observed = observe(scenario, &service, from_ms(10));
+  EXPECT_EQ(observed.world_starts, std::vector<TrueTime>{TrueTime(-std::chrono::hours(20))});
+  const auto before_zero = std::count_if(observed.clocks.begin(), observed.clocks.end(),
                                          [](const auto& c) { return c.at < TrueTime{}; });
   EXPECT_EQ(before_zero, 1000);
-  EXPECT_EQ(told.clocks.front().at, told.world_starts.front());
-  const ToldWorld::Clocks& zero = told.clocks[1000];
+  EXPECT_EQ(observed.clocks.front().at, observed.world_starts.front());
+  const KeptWorld::Clocks& zero = observed.clocks[1000];
   EXPECT_EQ(zero.at, TrueTime{});
   EXPECT_NE(zero.errors[1].count(), 0);
-  for (const ToldWorld::Clocks& clocks : told.clocks) EXPECT_EQ(clocks.errors, zero.errors);
+  for (const KeptWorld::Clocks& clocks : observed.clocks) EXPECT_EQ(clocks.errors, zero.errors);
 }
 
 }  // namespace

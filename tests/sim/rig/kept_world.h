@@ -1,6 +1,6 @@
-// An observer that keeps what it is told.
-#ifndef SIMBENCH_TESTS_SIM_RIG_TOLD_WORLD_H_
-#define SIMBENCH_TESTS_SIM_RIG_TOLD_WORLD_H_
+// An observer that keeps what it is notified of.
+#ifndef SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_
+#define SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_
 
 #include <vector>
 
@@ -8,13 +8,13 @@
 
 namespace simbench::sim {
 
-class ToldWorld final : public WorldObserver {
+class KeptWorld final : public WorldObserver {
  public:
   struct Clocks {
     TrueTime at;
     std::vector<Nanoseconds> errors;
   };
-  explicit ToldWorld(Nanoseconds interval) : interval_(interval) {}
+  explicit KeptWorld(Nanoseconds interval) : interval_(interval) {}
 
   Nanoseconds clock_interval() const override { return interval_; }
   void on_world(TrueTime start) override { world_starts.push_back(start); }
@@ -39,4 +39,4 @@ class ToldWorld final : public WorldObserver {
 
 }  // namespace simbench::sim
 
-#endif  // SIMBENCH_TESTS_SIM_RIG_TOLD_WORLD_H_
+#endif  // SIMBENCH_TESTS_SIM_RIG_KEPT_WORLD_H_
