@@ -327,7 +327,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = &PooledValues::margin_ms,
      .tables = {.truth = 7, .response = 6, .response_panel = 4},
      .heading = "margin\nms",
-     .legend = "margin: limit of the range less its 99.9 % quantile.",
+     .legend = "margin: limit less 99.9 % quantile of the range.",
      .legend_continues = true,
      .json_in = kInGathering,
      .csv = CsvColumns::kValue,

@@ -169,7 +169,7 @@ TEST_F(SweepTest, AFullDiskLosesNothing) {
     const ProgramResult full = run(command("out"), options);
     EXPECT_EQ(full.status, 2) << full.err;
     EXPECT_THAT(full.err, HasSubstr("cannot be written"));
-    EXPECT_THAT(full.err, HasSubstr("every run finished by now is kept"));
+    EXPECT_THAT(full.err, HasSubstr("all finished runs are kept"));
     EXPECT_THAT(names_in("out"), ElementsAre("lock", "manifest.json", "runs.log"));
   }
   const std::size_t finished = lines_of("out/runs.log");
@@ -201,8 +201,8 @@ TEST_F(SweepTest, AnotherSweepIsNotTouched) {
   const ProgramResult seeds = run(command("out", {"--first-seed", "2"}));
   EXPECT_EQ(seeds.status, 2);
   EXPECT_THAT(seeds.err, HasSubstr("holds another sweep: /seeds/first is 1 there and 2 here; name "
-                                   "another folder, give that sweep's command again, or start "
-                                   "anew here with --restart"));
+                                   "another folder, repeat that sweep's command, or replace it "
+                                   "with --restart"));
   const ProgramResult scenario = run(command("out", {"--set", "/timeline/frames=100"}));
   EXPECT_EQ(scenario.status, 2);
   EXPECT_THAT(scenario.err, HasSubstr("/scenario/timeline/frames is 480 there and 100 here"));

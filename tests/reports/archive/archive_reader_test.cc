@@ -152,7 +152,7 @@ TEST_F(ArchiveReader, RefusesTheManifestOfAnotherScenario) {
 
 TEST_F(ArchiveReader, RefusesDamagedLinesOfFrames) {
   edit("frames.csv", "225,1.5", "225;1.5");
-  EXPECT_THAT(problem(), HasSubstr("frames.csv:2: 5 cells"));
+  EXPECT_THAT(problem(), HasSubstr("frames.csv:2: allowed: exactly 5 cells"));
 }
 
 TEST_F(ArchiveReader, RefusesSeedsAndPipelinesThatResultsDoNotHave) {

@@ -41,7 +41,7 @@ TEST(CompareScenarios, AlgorithmsAreUnderTestAndToldByName) {
 
 TEST(CompareScenarios, RefusesWhatIsNoScenario) {
   EXPECT_THAT([] { compare_scenarios("{", "{}"); },
-              ThrowsMessage<scenarios::InputError>(HasSubstr("no JSON object")));
+              ThrowsMessage<scenarios::InputError>(HasSubstr("not a JSON object")));
 }
 
 TEST(DigestOfJson, DependsOnContentOnly) {

@@ -98,7 +98,7 @@ TEST(ExactGate, AValueThatVanishedFails) {
   const GateReport report = exact(now);
   EXPECT_FALSE(report.passed());
   EXPECT_EQ(amd_of_good(report).lost_seeds, 1U);
-  EXPECT_THAT(check_text(report, amd_of_good(report)), HasSubstr("1 of 32 seeds have no value"));
+  EXPECT_THAT(check_text(report, amd_of_good(report)), HasSubstr("1 of 32 seeds lost their value"));
   // One that appeared does not.
   Archive before = sample_archive("before");
   before.results.rows[1].amd_ms.values[7] = kNaN;

@@ -64,7 +64,7 @@ TEST(HtmlReport, HasTheNumbersOfTheTable) {
         "<td>2.438</td><td class=\"text\">inside</td><td>50 % [1-99]</td>",
         "<td class=\"text\">not attainable</td>", "<td>29.000</td>", "<td>75.0 %</td>",
         "none is worst", "(needs 18cam_6host_15fps)", "a host was not synchronised",
-        "1.23 M events", "2 seeds (1 to 2)", "0.1.0 (abc)", "A rig.", "a note"}) {
+        "1.23 M events", "2 seeds (1-2)", "0.1.0 (abc)", "A rig.", "a note"}) {
     EXPECT_TRUE(has(page, part)) << part;
   }
 }

@@ -56,7 +56,7 @@ TEST(ReconstructionTable, DrawsItsConclusions) {
 TEST(ReconstructionTable, IsHonest) {
   const std::string text = table();
   EXPECT_THAT(text, HasSubstr("The subject is a simulated person of 1.75 m, motion "
-                              "\"walk_and_turn\" at 1.2 m/s and 1 rad/s; the paper says"));
+                              "\"walk_and_turn\" at 1.2 m/s and 1 rad/s; the paper states"));
   EXPECT_THAT(text, HasSubstr("calibration errors of 10 mm and 0.29 degrees per axis"));
   // 1.2 m/s * 5 ms = 6 mm.
   EXPECT_THAT(text, HasSubstr("In the 5.0 ms of yoon2021_both the subject moves 0.60 cm: that row "

@@ -47,7 +47,7 @@ How to read it
   AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
   absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
   host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
-  precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit of the range less its 99.9 % quantile.
+  precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit less 99.9 % quantile of the range.
   published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 Pipelines = host_sync + device_time + gathering
@@ -108,7 +108,7 @@ yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 - AMD: mean range of the global stamps of a pulse over all cameras; RMDV: mean RMS deviation of these from their median.
 - absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
 - host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
-- precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit of the range less its 99.9 % quantile.
+- precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit less 99.9 % quantile of the range.
 - published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 ### Pipelines = host_sync + device_time + gathering

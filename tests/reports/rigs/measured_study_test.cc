@@ -25,19 +25,18 @@ MeasuredStudy sample_study() {
           .machine = "2 cores, Linux 6.1",
           .scenario = "relay",
           .commit = "abc",
-          .rows = {{.pipeline = "both",
-                    .seeds = {{.seed = 1,
-                               .host_error_ms = 0.1,
-                               .amd_ms = 0.30000000000000004,
-                               .rmdv_ms = 0.15,
-                               .absolute_error_ms = kNaN},
-                              {.seed = 4,
-                               .host_error_ms = 0.2,
-                               .amd_ms = 0.5,
-                               .rmdv_ms = 0.25,
-                               .absolute_error_ms = 8}},
-                    .notes = {"repetition 2: host3 was lost"}},
-                   {.pipeline = "none", .seeds = {}}}};
+          .rows = {
+              {.pipeline = "both",
+               .seeds =
+                   {{{.amd_ms = 0.30000000000000004,
+                      .rmdv_ms = 0.15,
+                      .absolute_error_ms = kNaN,
+                      .host_error_ms = 0.1},
+                     1},
+                    {{.amd_ms = 0.5, .rmdv_ms = 0.25, .absolute_error_ms = 8, .host_error_ms = 0.2},
+                     4}},
+               .notes = {"repetition 2: host3 was lost"}},
+              {.pipeline = "none", .seeds = {}}}};
 }
 
 class MeasuredStudyTest : public testing::Test {

@@ -69,7 +69,7 @@ TEST_F(OutputFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   fs::create_directory(path("folder"));
   EXPECT_THAT(problem(path("folder")), HasSubstr("is a folder; name a file"));
   EXPECT_THAT(problem(path("missing/a.html")), HasSubstr("missing; make it first"));
-  EXPECT_THAT(problem("/dev/null"), HasSubstr("is no file that can be replaced"));
+  EXPECT_THAT(problem("/dev/null"), HasSubstr("is not a file that can be replaced"));
   EXPECT_THAT(problem("/proc/a.html"), HasSubstr("cannot be written"));
 }
 
