@@ -94,7 +94,7 @@ TEST_F(RecordCommand, TheFolderIsAsDocumented) {
   const ProgramResult result = record_small();
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, HasSubstr("note: 1 of 1 captures recorded in rec"));
+  EXPECT_THAT(result.err, HasSubstr("note: 1 of 1 capture recorded in rec"));
   EXPECT_THAT(names_in("rec"), ElementsAre("manifest.json", "oracle"));
   EXPECT_THAT(names_in("rec/oracle/1"), ElementsAre("events.csv", "frames.csv"));
   EXPECT_THAT(content("rec/oracle/1/frames.csv"), StartsWith("order,camera,stream,domain,"));
@@ -138,7 +138,7 @@ TEST_F(RecordCommand, CtrlCKeepsWhatWasRecorded) {
            "--pipelines", "genlock", "-o", "rec"},
           {.interrupt_after = std::chrono::milliseconds(500)});
   EXPECT_EQ(result.status, 130);
-  EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 1 captures; rec holds what was "));
+  EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 1 capture; rec holds what was "));
   const Json capture = Json::parse(content("rec/manifest.json"))["captures"][0];
   EXPECT_EQ(capture["complete"], false);
   EXPECT_EQ(capture["notes"][0], "interrupted");

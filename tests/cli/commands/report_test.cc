@@ -75,7 +75,7 @@ TEST_F(Report, SeedsAndPipelinesInDetailAreChosenAndSaid) {
   const ProgramResult result =
       report({"monday", "--seeds-in-detail", "1", "--pipelines", "yoon2021_both"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_TRUE(has("are shown of the first 1 (--seeds-in-detail). In detail: 1 of 2 pipelines"));
+  EXPECT_TRUE(has("are shown for the first 1 (--seeds-in-detail). In detail: 1 of 2 pipelines"));
   EXPECT_FALSE(has("\"pipeline\":\"oracle\",\"seed\":\"1\""));
   EXPECT_TRUE(has("\"pipeline\":\"yoon2021_both\",\"seed\":\"1\""));
   EXPECT_FALSE(has("\"pipeline\":\"yoon2021_both\",\"seed\":\"2\""));
