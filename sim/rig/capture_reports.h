@@ -7,7 +7,7 @@
 //  - An observer of the world has every frame that was exposed, lost ones too.
 //
 //   CaptureReports reports(sink, &feeds, request.observer);
-//   Capture capture(scenario, seed, engine, clocks, reports);
+//   Capture capture(scenario, seed, engine, clocks, outages, reports);
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 
