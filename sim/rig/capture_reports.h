@@ -6,7 +6,7 @@
 //  - an observer of the world, also if it was lost.
 //
 //   CaptureReports reports(sink, &feeds, request.observer);
-//   Capture capture(scenario, seed, engine, clocks, reports);
+//   Capture capture(scenario, seed, engine, clocks, outages, reports);
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 

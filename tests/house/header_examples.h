@@ -160,7 +160,6 @@ extern std::unique_ptr<SecureStream> stream;
 extern NodeClock& clock;
 extern PeerNetwork& network;
 extern const std::shared_ptr<CameraFeed> feed;
-extern const CameraFeedSink feed_sink;
 extern Journal journal;
 extern Notice& notice;
 extern const std::vector<int> messages;
