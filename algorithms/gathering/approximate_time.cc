@@ -228,7 +228,8 @@ class ApproximateTimeGatherer final : public Gatherer {
   std::vector<std::uint32_t> aside_;  // by source: frames that stepped aside
   std::vector<std::uint32_t> steps_;  // the sources of these, in order
   std::optional<Candidate> candidate_;
-  // The end of the last virtual search's first range, if that search decided nothing and would not now.
+  // The end of the last virtual search's first range, if that search decided nothing and would not
+  // now.
   std::optional<std::int64_t> undecided_until_;
   std::vector<char> has_dropped_;       // by source: an overflow since it last was harmless
   std::vector<std::uint32_t> dropped_;  // the sources of which that is true

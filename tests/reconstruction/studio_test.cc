@@ -145,7 +145,8 @@ TEST(Studio, FewerCamerasThanPlaces) {
   }
 }
 
-// The errors of every camera and seed, in the camera's frame: three shifts in m, three angles in rad.
+// The errors of every camera and seed, in the camera's frame: three shifts in m, three angles in
+// rad.
 using Errors = std::vector<std::vector<double>>;
 Errors calibration_errors(const scenarios::Scenario& scenario, std::uint64_t seeds) {
   Errors errors(6);

@@ -72,7 +72,8 @@ TEST(Fit, GivesBackWhatWasSimulated) {
     EXPECT_NEAR(fit.drop_share(), 0.05, 5 * std::sqrt(0.05 * 0.95 / 4500)) << "seed " << seed;
     for (const double p : {0.1, 0.5, 0.9, 0.99}) {
       const double expected = -0.3 * std::log1p(-p);
-      // The error of an order statistic: sqrt(p (1 - p) / n) / density, n reduced by the correlation.
+      // The error of an order statistic: sqrt(p (1 - p) / n) / density, n reduced by the
+      // correlation.
       const double error = std::sqrt(p * (1 - p) / (4275 * 0.6 / 1.4)) * 0.3 / (1 - p);
       EXPECT_NEAR(quantile(fit.excess_ms, p), expected, 5 * error + 0.001)
           << "quantile " << p << ", seed " << seed;

@@ -38,9 +38,9 @@ double allan_variance(const std::vector<double>& phases_ns, std::size_t m) {
   return sum / (2 * tau_s * tau_s * static_cast<double>(phases_ns.size() - 2 * m));
 }
 
-// The estimate from one sample path at tau = m steps of N has at least N / m degrees of freedom (the
-// worst of the three kinds of noise, a random walk), so the root of the mean over the paths has a
-// relative standard deviation of at most sqrt(m / (2 N paths)).
+// The estimate from one sample path at tau = m steps of N has at least N / m degrees of freedom
+// (the worst of the three kinds of noise, a random walk), so the root of the mean over the paths
+// has a relative standard deviation of at most sqrt(m / (2 N paths)).
 double relative_sigma(std::size_t m) {
   return std::sqrt(static_cast<double>(m) / (2.0 * kPoints * kOscillators));
 }
