@@ -60,10 +60,6 @@ std::string short_text(double value) {
   return fmt::format("{:.3g}", value);
 }
 
-std::string counted(std::uint64_t count, const char* thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
 std::string counted_seeds(std::uint64_t first, std::uint64_t count) {
   const std::string seeds = counted(count, "seed");
   return count == 1 ? fmt::format("{} ({})", seeds, first)

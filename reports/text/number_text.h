@@ -6,6 +6,7 @@
 #include <string>
 
 #include "evaluation/scoring/results.h"
+#include "recording/counted.h"
 
 namespace simbench::reports {
 
@@ -27,9 +28,6 @@ std::string count_text(std::int64_t count);
 
 // A large number in short: "950", "12.3 k", "4.56 M", "1.20 G".
 std::string short_text(double value);
-
-// A count with its noun: "1 seed", "32 seeds".
-std::string counted(std::uint64_t count, const char* thing);
 
 // The seeds of a result: "1 seed (7)", "32 seeds (1-32)".
 std::string counted_seeds(std::uint64_t first, std::uint64_t count);
