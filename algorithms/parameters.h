@@ -68,6 +68,9 @@ Parameters check_parameters(const std::vector<ParameterSpec>& specs, const Param
 //       number_parameter("window_s", 10, 0.1, 1e6, "span of the hull", "TICSync"),
 //       choice_parameter("stamps", {"transmit", "naive"}, "what t1 and t3 are", "NTP")};
 
+// The source of a value that nobody documents.
+inline constexpr const char* kAssumption = "assumption";
+
 // A number from `low` to `high`, both included.
 ParameterSpec number_parameter(std::string name, double fallback, double low, double high,
                                std::string meaning, std::string source);

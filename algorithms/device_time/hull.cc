@@ -112,7 +112,7 @@ std::unique_ptr<DeviceTimeEstimator> make_offline_hull(double max_skew_ppm) {
 
 namespace {
 
-constexpr const char* kMaxSkew = "max_skew_ppm";
+constexpr const char* kMaxSkewName = "max_skew_ppm";
 constexpr const char* kHullSource = "docs/reference/device_time.md section 1";
 constexpr const char* kTicSync =
     "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
@@ -128,14 +128,14 @@ AlgorithmInfo info(const char* name, const char* summary, const char* source) {
 DeviceTimeEntry switching(const char* name, double period_s, const char* summary) {
   return {.info = info(name, summary, kTicSync), .make = [period_s](const Parameters& parameters) {
             return make_switching_hull(
-                {.period_s = period_s, .max_skew_ppm = parameters.number(kMaxSkew)});
+                {.period_s = period_s, .max_skew_ppm = parameters.number(kMaxSkewName)});
           }};
 }
 
 }  // namespace
 
 ParameterSpec max_skew_parameter() {
-  return number_parameter(kMaxSkew, kDefaultMaxSkewPpm, 1, 100'000,
+  return number_parameter(kMaxSkewName, kDefaultMaxSkewPpm, 1, 100'000,
                           "limit of a line's slope: twice the fastest slew of NTP", "RFC 5905");
 }
 
@@ -144,14 +144,15 @@ std::vector<DeviceTimeEntry> device_time_hull() {
       {.info = info("hull_300", "lower hull of the last 300 frames", kHullSource),
        .make =
            [](const Parameters& parameters) {
-             return make_window_hull({.frames = 300, .max_skew_ppm = parameters.number(kMaxSkew)});
+             return make_window_hull(
+                 {.frames = 300, .max_skew_ppm = parameters.number(kMaxSkewName)});
            }},
       switching("hull_switch_10s", 10, "two growing lower hulls, 10 s apart: 10 to 20 s of frames"),
       switching("hull_switch_60s", 60, "two growing lower hulls, 60 s apart: 1 to 2 min of frames"),
       {.info = info("hull_offline", "lower hull of the whole recording", kHullSource),
        .make =
            [](const Parameters& parameters) {
-             return make_offline_hull(parameters.number(kMaxSkew));
+             return make_offline_hull(parameters.number(kMaxSkewName));
            }},
   };
 }

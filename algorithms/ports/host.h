@@ -76,6 +76,10 @@ struct ReceivedMessage {
   std::optional<HardwareTime> received_hardware{};
 };
 
+// A server waits for ever, in steps of this; a stamp that is not there after this long never comes.
+inline constexpr Nanoseconds kIdle = std::chrono::hours(1);
+inline constexpr Nanoseconds kStampTimeout = std::chrono::milliseconds(10);
+
 // A two-way channel to one peer. At most one receive may be pending on a channel.
 class MessageChannel {
  public:

@@ -59,6 +59,10 @@ struct DeviceStamp {
   friend bool operator==(DeviceStamp, DeviceStamp) = default;
 };
 
+inline constexpr std::int64_t kSecondNs = 1'000'000'000;
+// After so long the register of a camera's clock begins anew.
+inline constexpr std::int64_t kDeviceRegisterNs = (std::int64_t{1} << 32) * 1000;
+
 // The nearest whole nanosecond, halves away from zero as std::llround has them, and the next below
 // or equal, as std::floor has it: without a call of either. |ns| < 2^63.
 constexpr Nanoseconds from_ns(double ns) {

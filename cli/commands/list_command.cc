@@ -130,14 +130,14 @@ std::string pipelines_text(const std::string& scenario) {
   return plain(table);
 }
 
-constexpr std::size_t kIndent = 2;
+constexpr std::size_t kListIndent = 2;
 constexpr std::size_t kDeeper = 4;
 
 std::string stream_text(const scenarios::StreamProfile& stream) {
   std::string text = reports::wrapped(
       fmt::format("{}: {}, {} shutter, {} bytes a pixel [{}]", to_text(stream.kind), stream.format,
                   to_text(stream.shutter), stream.bytes_per_pixel, stream.source),
-      kIndent);
+      kListIndent);
   for (const scenarios::ImageSize& size : stream.sizes) {
     text += fmt::format("{:{}}{}x{} at {} Hz\n", "", kDeeper, size.width, size.height,
                         fmt::join(size.rates_hz, ", "));
@@ -157,7 +157,7 @@ std::string sync_text(const scenarios::CameraProfile& camera) {
   }
   return reports::wrapped(fmt::format("sync modes: {}. {} [{}]", fmt::join(modes, ", "),
                                       camera.sync_wiring, camera.sync_source),
-                          kIndent);
+                          kListIndent);
 }
 
 std::string stamp_text(const scenarios::StampProfile& stamp) {
@@ -165,17 +165,17 @@ std::string stamp_text(const scenarios::StampProfile& stamp) {
       stamp.wraps_after_s ? fmt::format(", wraps after {} s", *stamp.wraps_after_s) : "";
   return reports::wrapped(fmt::format("stamp {}: {} clock, {}{}: {} [{}]", stamp.stamp, stamp.clock,
                                       stamp.unit, wrap, stamp.meaning, stamp.source),
-                          kIndent);
+                          kListIndent);
 }
 
 std::string latency_text(const scenarios::CameraProfile& camera) {
   if (camera.typical_latency_ms.empty()) {
-    return reports::wrapped(fmt::format("latency: {}", camera.latency_source), kIndent);
+    return reports::wrapped(fmt::format("latency: {}", camera.latency_source), kListIndent);
   }
   return reports::wrapped(
       fmt::format("latency: {} ms [{}]", fmt::join(camera.typical_latency_ms, " to "),
                   camera.latency_source),
-      kIndent);
+      kListIndent);
 }
 
 // The profiles of all camera models, with their sources.

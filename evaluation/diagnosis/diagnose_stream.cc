@@ -244,7 +244,6 @@ void note_host_period(StreamFacts& facts) {
   facts.host_period_sd_ppm = sd_ppm;
 }
 
-constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
 constexpr double kMovesShare = 0.25;    // of a period; more is no jitter
 constexpr double kMovesDeviations = 4;  // of the offsets
 
@@ -252,8 +251,8 @@ constexpr double kMovesDeviations = 4;  // of the offsets
 std::int64_t register_difference(const StampedFrame& a, const StampedFrame& b) {
   const std::int64_t difference = (a.sensor - b.sensor).count();
   const double wraps =
-      std::round(static_cast<double>(difference) / static_cast<double>(kRegisterNs));
-  return difference - static_cast<std::int64_t>(wraps) * kRegisterNs;
+      std::round(static_cast<double>(difference) / static_cast<double>(kDeviceRegisterNs));
+  return difference - static_cast<std::int64_t>(wraps) * kDeviceRegisterNs;
 }
 
 }  // namespace

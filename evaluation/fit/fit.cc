@@ -134,7 +134,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNan;
 }
 
-constexpr std::int64_t kFewestPairs = 30;
+constexpr std::int64_t kFewestFramePairs = 30;
 
 // The mean of the streams' correlations, weighted by their pairs.
 std::optional<FittedValue> correlation_of(const std::vector<StreamFit>& streams) {
@@ -145,7 +145,7 @@ std::optional<FittedValue> correlation_of(const std::vector<StreamFit>& streams)
     sum += stream.rank_correlation * static_cast<double>(stream.pairs);
     pairs += stream.pairs;
   }
-  if (pairs < kFewestPairs) return std::nullopt;
+  if (pairs < kFewestFramePairs) return std::nullopt;
   const double spearman = sum / static_cast<double>(pairs);
   const double per_rank = std::numbers::pi / 3 * std::cos(std::numbers::pi / 6 * spearman);
   return FittedValue{2 * std::sin(std::numbers::pi / 6 * spearman),

@@ -12,7 +12,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
 constexpr double kLongInterval = 1.5;
 
 using Stamp = Nanoseconds StampedFrame::*;
@@ -96,10 +95,10 @@ Nanoseconds median_period(std::span<const StampedFrame> frames) {
 std::vector<StampedFrame> unwrapped(std::span<const StampedFrame> frames) {
   std::vector<StampedFrame> result(frames.begin(), frames.end());
   const bool in_register = std::all_of(result.begin(), result.end(), [](const StampedFrame& f) {
-    return f.sensor.count() < kRegisterNs;
+    return f.sensor.count() < kDeviceRegisterNs;
   });
   if (!in_register) return result;
-  CounterUnwrapper<kRegisterNs> unwrapper;
+  CounterUnwrapper<kDeviceRegisterNs> unwrapper;
   for (StampedFrame& frame : result) {
     frame.sensor = Nanoseconds(unwrapper.unwrap(frame.sensor.count()));
   }

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "evaluation/scoring/pipeline_scorer.h"
+#include "evaluation/scoring/unverified_scores.h"
 #include "recording/forwarding_sink.h"
 
 namespace simbench::evaluation {
 namespace {
 
 constexpr Nanoseconds kClockInterval = std::chrono::milliseconds(20);
-constexpr std::uint64_t kLongestGap = 10'000;  // frames; a longer one is a counter that began anew
 constexpr std::int64_t kMostClockSamplesOfAService = 2000;  // before the capture
 
 double true_ms(TrueTime time) { return to_ms(time.time_since_epoch()); }

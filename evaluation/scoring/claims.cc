@@ -23,7 +23,7 @@ constexpr const char* kNetwork = "yoon2021_network";
 constexpr const char* kBoth = "yoon2021_both";
 
 // Whether a claim holds in one seed; nothing if a quantity is missing.
-using Verdict = std::optional<bool>;
+using Holds = std::optional<bool>;
 
 // The scores of one seed, in the order of Statement::pipelines.
 using Scores = std::vector<const SeedScore*>;
@@ -36,17 +36,17 @@ struct Statement {
   Pipelines pipelines;
   double rate_hz;   // of the scenario; 0: any
   const char* rig;  // what the rig must have for the quantities to exist; "": nothing
-  Verdict (*holds)(const Scores&);
+  Holds (*holds)(const Scores&);
 };
 
 // The verdict, or nothing if one of its quantities does not exist.
-Verdict verdict(bool holds, std::initializer_list<double> quantities) {
+Holds verdict(bool holds, std::initializer_list<double> quantities) {
   const bool exist =
       std::none_of(quantities.begin(), quantities.end(), [](double q) { return std::isnan(q); });
-  return exist ? Verdict(holds) : std::nullopt;
+  return exist ? Holds(holds) : std::nullopt;
 }
 
-Verdict none_is_worst(const Scores& seed) {
+Holds none_is_worst(const Scores& seed) {
   const double none = seed[0]->amd_ms;
   const double time = seed[1]->amd_ms;
   const double network = seed[2]->amd_ms;
@@ -54,43 +54,43 @@ Verdict none_is_worst(const Scores& seed) {
   return verdict(none > 5 * std::max({time, network, both}), {none, time, network, both});
 }
 
-Verdict both_network_time(const Scores& seed) {
+Holds both_network_time(const Scores& seed) {
   const double both = seed[0]->amd_ms;
   const double network = seed[1]->amd_ms;
   const double time = seed[2]->amd_ms;
   return verdict(both < network && network < time, {both, network, time});
 }
 
-Verdict hosts_apart(const Scores& seed) {
+Holds hosts_apart(const Scores& seed) {
   const double in_host = seed[0]->spread_in_host_ms;
   const double between = seed[0]->spread_between_hosts_ms;
   return verdict(in_host < 0.2 * between, {in_host, between});
 }
 
-Verdict no_trend(const Scores& seed) {
+Holds no_trend(const Scores& seed) {
   const double trend = seed[0]->trend_ms;
   const double amd = seed[0]->amd_ms;
   return verdict(std::abs(trend) < 0.1 * amd, {trend, amd});
 }
 
-Verdict online_is_offline(const Scores& seed) {
+Holds online_is_offline(const Scores& seed) {
   const double online = seed[0]->amd_ms;
   const double offline = seed[0]->offline_amd_ms;
   return verdict(std::abs(online - offline) < 0.1 * online, {online, offline});
 }
 
-Verdict below_half_period(const Scores& seed) {
+Holds below_half_period(const Scores& seed) {
   const double both = seed[0]->share_below_half_period;
   const double network = seed[1]->share_below_half_period;
   return verdict(both >= 0.99 && network >= 0.99, {both, network});
 }
 
-Verdict gathers_nothing(const Scores& seed) {
+Holds gathers_nothing(const Scores& seed) {
   if (seed[0]->sets.complete_pulses == 0) return std::nullopt;
   return seed[0]->sets.emitted == 0;
 }
 
-Verdict both_is_best(const Scores& seed) {
+Holds both_is_best(const Scores& seed) {
   const double both = seed[0]->amd_ms;
   const double network = seed[1]->amd_ms;
   const double time = seed[2]->amd_ms;
@@ -172,7 +172,7 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
       scores.push_back(&row->seeds.at(index));
       SIMBENCH_ASSERT(scores.back()->seed == scores.front()->seed, "rows are paired by seed");
     }
-    const Verdict found = statement.holds(scores);
+    const Holds found = statement.holds(scores);
     if (!found) continue;
     ++decided;
     if (*found) ++holds;

@@ -8,8 +8,6 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr std::uint32_t kLongestGap = 10'000;  // frames; a longer one is a counter that began anew
-
 Nanoseconds duration_of(std::int64_t frames, double rate_hz) {
   return Nanoseconds(std::llround(static_cast<double>(frames) * 1e9 / rate_hz));
 }

@@ -35,6 +35,8 @@ namespace simbench::evaluation {
 
 // The tag of an evaluated frame whose pulse is unknown. (-1: not evaluated.)
 inline constexpr std::int64_t kUnknownPulse = -2;
+// A longer gap of a counter, in frames, is a counter that began anew.
+inline constexpr std::uint32_t kLongestGap = 10'000;
 
 class UnverifiedScores final : public FrameSetSink {
  public:

@@ -57,13 +57,14 @@ double value_at(const std::vector<double>& quantiles, double probability) {
   return quantiles[low] + fraction * (quantiles[high] - quantiles[low]);
 }
 
-enum Kind : std::uint64_t { kDatagramDraws = 1, kStreamDraws = 2 };
+enum DrawKind : std::uint64_t { kDatagramDraws = 1, kStreamDraws = 2 };
 
 }  // namespace
 
 class NetworkLaw::Draws {
  public:
-  Draws(std::uint64_t key, Kind kind, std::uint64_t index) : generator_(key_of(key, kind, index)) {}
+  Draws(std::uint64_t key, DrawKind kind, std::uint64_t index)
+      : generator_(key_of(key, kind, index)) {}
 
   double uniform() { return boost::random::uniform_01<double>()(generator_); }
   bool chance(double probability) { return uniform() < probability; }

@@ -98,7 +98,7 @@ const char* name_of(Mark mark) {
   return "";
 }
 
-Json series_json(const FigureSeries& series, bool log_y, HtmlColumns& columns) {
+Json figure_series_json(const FigureSeries& series, bool log_y, HtmlColumns& columns) {
   return {{"label", series.label},
           {"mark", name_of(series.mark)},
           {"colour", series.colour},
@@ -112,7 +112,7 @@ Json panel_json(const FigurePanel& panel, HtmlColumns& columns) {
       {"log_y", panel.log_y},    {"x_is_pulse", panel.x_is_pulse}, {"categories", panel.categories},
       {"series", Json::array()}, {"lines", Json::array()},         {"spans", Json::array()}};
   for (const FigureSeries& series : panel.series) {
-    json["series"].push_back(series_json(series, panel.log_y, columns));
+    json["series"].push_back(figure_series_json(series, panel.log_y, columns));
   }
   for (const FigureLine& line : panel.lines) {
     json["lines"].push_back({{"label", line.label}, {"vertical", line.vertical}, {"at", line.at}});

@@ -170,13 +170,9 @@ std::string title_line(const ReconstructionResults& results) {
                      counted(results.frames, "frame set"));
 }
 
-Field<ReprojectionRow> pipeline_field() {
-  return {{"pipeline", Align::kLeft}, [](const ReprojectionRow& row) { return row.pipeline; }};
-}
-
 Table table_4(const ReconstructionResults& results) {
   const std::vector<Field<ReprojectionRow>> fields = {
-      pipeline_field(),
+      pipeline_field<ReprojectionRow>(),
       {{"mean error\ncm"}, [](const auto& row) { return cm_text(row.mean_cm()); }},
       {{"published\nmean cm"},
        [](const auto& row) {
@@ -189,7 +185,7 @@ Table table_4(const ReconstructionResults& results) {
   return table_of(fields, results.rows);
 }
 
-Table sets_table(const ReconstructionResults& results) {
+Table reconstructed_sets_table(const ReconstructionResults& results) {
   const auto total = [](const char* header, std::int64_t SeedReprojection::*member) {
     return Field<ReprojectionRow>{{header}, [member](const ReprojectionRow& row) {
                                     std::int64_t sum = 0;
@@ -198,7 +194,7 @@ Table sets_table(const ReconstructionResults& results) {
                                   }};
   };
   const std::vector<Field<ReprojectionRow>> fields = {
-      pipeline_field(),
+      pipeline_field<ReprojectionRow>(),
       {{"median\ncm"}, [](const auto& row) { return cm_text(row.median_cm().median); }},
       {{"95 %\ncm"}, [](const auto& row) { return cm_text(row.p95_cm().median); }},
       {{"desynchronisation\nms"}, [](const auto& row) { return ms_text(row.desync_ms()); }},
@@ -459,7 +455,7 @@ Document reconstruction_document(const ReconstructionResults& results) {
   if (!results.scenario.summary.empty()) document.head.push_back(results.scenario.summary);
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "Reprojection error", .table = table_4(results)});
-  blocks.push_back({.heading = "The frame sets", .table = sets_table(results)});
+  blocks.push_back({.heading = "The frame sets", .table = reconstructed_sets_table(results)});
   if (Block found = conclusions(results); !found.prose.empty()) blocks.push_back(std::move(found));
   if (!results.curve.empty()) {
     blocks.push_back({.heading = "Median mean error in cm, all hosts off by a known amount",

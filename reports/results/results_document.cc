@@ -26,10 +26,6 @@ bool any_published(const Results& results) {
                      [](const Row& row) { return row.published.has_value(); });
 }
 
-Field<Row> pipeline_field() {
-  return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
-}
-
 std::string value_text(const Metric& metric, const Row& row) {
   if (metric.is_count()) return metric.is_known(row) ? count_text(metric.count(row)) : "-";
   return metric.is_share() ? share_text(metric.value(row)) : number_text(metric.value(row));
@@ -68,7 +64,7 @@ RowFields published_rmdv_fields() {
 // The paper's two metrics beside the published values.
 Table paper_table(const Results& results) {
   const bool published = any_published(results);
-  RowFields fields = {pipeline_field()};
+  RowFields fields = {pipeline_field<Row>()};
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
@@ -86,7 +82,7 @@ Table paper_table(const Results& results) {
 
 // Metrics that a real rig cannot measure.
 Table truth_table(const Results& results) {
-  RowFields fields = {pipeline_field()};
+  RowFields fields = {pipeline_field<Row>()};
   for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
     append(fields, metric_fields(*metric));
   }
@@ -206,7 +202,7 @@ std::vector<Field<Row>> metric_fields(const Metric& metric) {
 }
 
 Table sets_table(const std::vector<const Row*>& rows) {
-  RowFields fields = {pipeline_field(),
+  RowFields fields = {pipeline_field<Row>(),
                       {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
   for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
     append(fields, metric_fields(*metric));

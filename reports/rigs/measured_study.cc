@@ -17,13 +17,18 @@ using evaluation::Results;
 using evaluation::Row;
 
 constexpr int kSchemaVersion = 1;
-constexpr const char* kAdvice = "`simbench validate-model` explains how to measure and keep one";
+constexpr const char* kStudyAdvice =
+    "`simbench validate-model` explains how to measure and keep one";
 
 MeasuredPipeline measured_pipeline(const Row& row) {
   MeasuredPipeline pipeline{.pipeline = row.pipeline, .seeds = {}, .notes = row.notes};
   for (const evaluation::SeedScore& score : row.seeds) {
     if (!score.recorded) continue;
-    pipeline.seeds.push_back({score, score.seed});
+    MeasuredSeed& seed = pipeline.seeds.emplace_back();
+    seed.seed = score.seed;
+    for (const char* id : evaluation::kGapMetrics) {
+      evaluation::metric(id).of_seed(seed) = evaluation::metric(id).of_seed(score);
+    }
   }
   return pipeline;
 }
@@ -112,7 +117,7 @@ void write_measured_study(const std::string& path, const MeasuredStudy& study) {
 }
 
 MeasuredStudy read_measured_study(const std::string& path, const std::string& scenario) {
-  const JsonFile file = read_json_file(path, kAdvice);
+  const JsonFile file = read_json_file(path, kStudyAdvice);
   const JsonNode root(file, file.value);
   root.check_schema_version(kSchemaVersion);
   MeasuredStudy study{.date = root["date"].text(),

@@ -45,8 +45,6 @@ bool write_all(int file, std::string_view text) {
   return true;
 }
 
-using nlohmann::json;
-
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kLog = "runs.log";
 constexpr const char* kLock = "lock";
@@ -74,17 +72,18 @@ std::optional<std::string> content_of(const fs::path& path) {
   return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
-std::string shown(const json& flat, const std::string& pointer) {
+std::string shown(const nlohmann::json& flat, const std::string& pointer) {
   constexpr std::size_t kLongest = 60;
   if (!flat.contains(pointer)) return "absent";
-  const std::string text = flat[pointer].dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text =
+      flat[pointer].dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
 // The first difference of two manifests, and the number of further ones.
-std::string difference(const json& there, const json& here) {
-  const json flat_there = there.flatten();
-  const json flat_here = here.flatten();
+std::string difference(const nlohmann::json& there, const nlohmann::json& here) {
+  const nlohmann::json flat_there = there.flatten();
+  const nlohmann::json flat_here = here.flatten();
   std::vector<std::string> pointers;
   for (const auto& [pointer, value] : flat_here.items()) {
     if (!flat_there.contains(pointer) || flat_there[pointer] != value) pointers.push_back(pointer);
@@ -268,19 +267,19 @@ void SweepFolder::check_manifest(const std::string& manifest) const {
   const std::optional<std::string> there = content_of(path(kManifest));
   if (!there) fail(folder_, fmt::format("{} cannot be read", kManifest));
   if (*there == manifest) return;
-  const json found = json::parse(*there, nullptr, false);
+  const nlohmann::json found = nlohmann::json::parse(*there, nullptr, false);
   if (!found.is_object()) {
     fail(folder_, fmt::format("its {} is damaged; {}", kManifest, kWayOut));
   }
   check_is_sweep(*there);
-  fail(folder_, fmt::format("holds another sweep: {}; {}", difference(found, json::parse(manifest)),
-                            kWayOut));
+  fail(folder_, fmt::format("holds another sweep: {}; {}",
+                            difference(found, nlohmann::json::parse(manifest)), kWayOut));
 }
 
 // Refuses a result that is not a sweep. A damaged manifest may have been a sweep's.
 void SweepFolder::check_is_sweep(const std::string& manifest) const {
-  const json found = json::parse(manifest, nullptr, false);
-  if (found.is_object() && found.value("kind", json()) != "sweep") {
+  const nlohmann::json found = nlohmann::json::parse(manifest, nullptr, false);
+  if (found.is_object() && found.value("kind", nlohmann::json()) != "sweep") {
     fail(folder_, "holds a result that is not a sweep; name another folder");
   }
 }

@@ -56,6 +56,12 @@ struct Field {
   std::function<std::string(const Subject&)> cell;
 };
 
+// The column of a row's pipeline, a key of most tables.
+template <class Row>
+Field<Row> pipeline_field() {
+  return {{"pipeline", Align::kLeft}, [](const Row& row) { return row.pipeline; }};
+}
+
 template <class Subject, class Subjects>
 Table table_of(const std::vector<Field<Subject>>& fields, const Subjects& subjects,
                std::size_t keys = 1) {

@@ -50,7 +50,7 @@ std::string name_of(const Column& column) {
   return "gathering/frames";
 }
 
-class Table {
+class TraceTable {
  public:
   void add(TrueTime at, const Column& column, double value) {
     if (column.place >= kTraceCsvPlaces) return;
@@ -91,7 +91,7 @@ class Table {
   std::vector<Cell> cells_;
 };
 
-void add_hosts(const Trace& trace, Table& table) {
+void add_hosts(const Trace& trace, TraceTable& table) {
   for (const TraceClock& clock : trace.clocks) {
     if (clock.host == 0) continue;
     table.add(clock.at, {1, clock.host, false, Series::kClock}, to_us(clock.error));
@@ -102,7 +102,7 @@ void add_hosts(const Trace& trace, Table& table) {
   }
 }
 
-void add_frames(const Trace& trace, Table& table) {
+void add_frames(const Trace& trace, TraceTable& table) {
   for (const TraceFrame& frame : trace.frames) {
     const ObservedFrame& way = frame.way;
     if (way.fate != FrameFate::kDelivered) continue;
@@ -119,7 +119,7 @@ void add_frames(const Trace& trace, Table& table) {
 }  // namespace
 
 void write_trace_csv(const Trace& trace, std::ostream& out) {
-  Table table;
+  TraceTable table;
   for (const ObservedPulse& pulse : trace.pulses) {
     table.add(pulse.at, {0, 0, false, Series::kPulse}, static_cast<double>(pulse.pulse));
   }

@@ -9,7 +9,7 @@ namespace simbench::sim {
 namespace {
 
 // Beyond this a deadline is none: no run lasts so long, and instants further away may not exist.
-constexpr std::chrono::hours kNever(24 * 365 * 10);
+constexpr std::chrono::hours kFarAhead(24 * 365 * 10);
 // Noise is sampled as far as anyone asks: nobody asks further than this for a mere deadline.
 constexpr std::chrono::seconds kFarOff(10);
 
@@ -103,7 +103,7 @@ void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcom
 
 std::optional<TrueTime> SimHost::next_look(SteadyTime deadline) const {
   const SteadyTime now = steady_port_.now();
-  if (deadline > now + kNever) return std::nullopt;
+  if (deadline > now + kFarAhead) return std::nullopt;
   const Nanoseconds left = deadline - now;
   if (left > kFarOff) return true_now() + left / 2;
   return system_clock_.when(deadline);

@@ -43,7 +43,7 @@ constexpr evaluation::Metric kTrend = {
     .judged = evaluation::kJudgedMs};
 
 // Two pipelines over 32 seeds: the trend is 1, 2, ... ms, of the second twice as much.
-evaluation::Row row(const std::string& name, double factor) {
+evaluation::Row added_row(const std::string& name, double factor) {
   std::vector<evaluation::SeedScore> seeds(32);
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     seeds[i].seed = i + 1;
@@ -55,9 +55,9 @@ evaluation::Row row(const std::string& name, double factor) {
   return evaluation::make_row(pipeline, std::move(seeds), {});
 }
 
-Archive archive() {
+Archive added_archive() {
   Archive archive = sample_archive("results");
-  archive.results.rows = {row("first", 1), row("second", 2)};
+  archive.results.rows = {added_row("first", 1), added_row("second", 2)};
   return archive;
 }
 
@@ -67,13 +67,13 @@ class AddedMetric : public testing::Test {
 };
 
 TEST_F(AddedMetric, ItsRowHasMedianAndBand) {
-  const evaluation::Row made = row("first", 1);
+  const evaluation::Row made = added_row("first", 1);
   EXPECT_EQ(made.trend_ms.median, 16.5);
   EXPECT_EQ(made.trend_ms.values.size(), 32U);
 }
 
 TEST_F(AddedMetric, IsInJsonAndReadFromTheArchive) {
-  const std::string text = json(archive().results);
+  const std::string text = json(added_archive().results);
   EXPECT_EQ(nlohmann::json::parse(text)["rows"][1]["trend_ms"]["median"], 33);
   const std::string path =
       (std::filesystem::path(testing::TempDir()) / "added_metric.json").string();
@@ -82,13 +82,13 @@ TEST_F(AddedMetric, IsInJsonAndReadFromTheArchive) {
 }
 
 TEST_F(AddedMetric, IsInCsv) {
-  const std::string text = csv(archive().results);
+  const std::string text = csv(added_archive().results);
   EXPECT_THAT(text.substr(0, text.find('\n')), HasSubstr(",trend_ms,trend_ms_p05,trend_ms_p95,"));
   EXPECT_THAT(text, HasSubstr(",16.5,2.55,30.45,"));
 }
 
 TEST_F(AddedMetric, IsInTheTablesOfTerminalMarkdownAndPage) {
-  const Document document = results_document(archive().results, "");
+  const Document document = results_document(added_archive().results, "");
   EXPECT_THAT(plain(document), AllOf(HasSubstr("trend of"), HasSubstr("33.000"),
                                      HasSubstr("trend: how much AMD grows")));
   EXPECT_THAT(markdown(document), AllOf(HasSubstr("trend of AMD ms"), HasSubstr("33.000")));
@@ -112,7 +112,7 @@ TEST_F(AddedMetric, IsInTheSweep) {
 }
 
 TEST_F(AddedMetric, IsCompared) {
-  const Comparison comparison = compare_pipelines(archive(), "first", "second", {});
+  const Comparison comparison = compare_pipelines(added_archive(), "first", "second", {});
   const auto found = nlohmann::json::parse(comparison_json(comparison));
   EXPECT_EQ(found["pipelines"][0]["trend_ms"]["verdict"], "worse");
   EXPECT_NEAR(found["pipelines"][0]["trend_ms"]["ratio"]["value"].get<double>(), 2, 1e-12);
@@ -120,9 +120,9 @@ TEST_F(AddedMetric, IsCompared) {
 }
 
 TEST_F(AddedMetric, IsGated) {
-  const Baseline baseline = make_baseline(archive());
+  const Baseline baseline = make_baseline(added_archive());
   EXPECT_THAT(baseline_json(baseline), HasSubstr("\"trend_ms\": [1.0,2.0,3.0,"));
-  Archive later = archive();
+  Archive later = added_archive();
   scale(later.results.rows[0].trend_ms, 1.5);
   const GateReport report = gate(later, baseline, GateMode::kExact);
   EXPECT_FALSE(report.passed());
@@ -131,8 +131,8 @@ TEST_F(AddedMetric, IsGated) {
 }
 
 TEST(NoAddedMetric, IsNowhere) {
-  EXPECT_THAT(csv(archive().results), Not(HasSubstr("trend_ms")));
-  EXPECT_THAT(json(archive().results), Not(HasSubstr("trend_ms")));
+  EXPECT_THAT(csv(added_archive().results), Not(HasSubstr("trend_ms")));
+  EXPECT_THAT(json(added_archive().results), Not(HasSubstr("trend_ms")));
 }
 
 }  // namespace

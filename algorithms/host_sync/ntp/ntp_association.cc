@@ -7,7 +7,6 @@
 namespace simbench {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kSeconds1900To1970 = 2'208'988'800;
 
 struct SplitTime {
@@ -99,8 +98,7 @@ Nanoseconds clock_offset(HostTime t1, HostTime t2, HostTime t3, HostTime t4) {
 
 namespace {
 
-constexpr Nanoseconds kIdle = std::chrono::hours(1);  // a server waits for ever, in such steps
-constexpr std::uint8_t kVersion = 4;
+constexpr std::uint8_t kNtpVersion = 4;
 constexpr std::uint8_t kStratumLocal = 1;
 constexpr std::uint32_t kReferenceLocal = 0x4C4F434C;  // "LOCL"
 constexpr std::int8_t kPrecision = -23;                // 100 ns
@@ -108,7 +106,7 @@ constexpr double kShortFormatUnit = 1.0 / 65536;
 
 NtpPacket server_packet(std::uint8_t mode, HostTime reference) {
   NtpPacket packet;
-  packet.version = kVersion;
+  packet.version = kNtpVersion;
   packet.mode = mode;
   packet.stratum = kStratumLocal;
   packet.precision = kPrecision;

@@ -13,8 +13,8 @@
 namespace simbench {
 namespace {
 
-constexpr double kPollSpread = 1.0 / 16;
-constexpr double kSlewAhead = 1.25;  // poll intervals
+constexpr double kNtpPollSpread = 1.0 / 16;
+constexpr double kNtpSlewAhead = 1.25;  // poll intervals
 // s; a longer round trip is of no use. This also keeps nonsense stamps out of the arithmetic.
 constexpr double kMaxDelay = 16;
 
@@ -95,7 +95,7 @@ Task<void> NtpClient::run_unicast() {
   while (!panicked_) {
     const SteadyTime begin = now();
     co_await poll();
-    const double spread = 1 + host_.random_uniform() * kPollSpread;
+    const double spread = 1 + host_.random_uniform() * kNtpPollSpread;
     const Nanoseconds interval = from_seconds(discipline_.poll_interval_s() * spread);
     const Nanoseconds passed = now() - begin;
     co_await host_.sleep_for(std::max(interval - passed, kBurstSpacing));
@@ -223,7 +223,7 @@ Task<void> NtpClient::correct_phase() {
   // No more than is certainly due before the next poll: the cost of a slew's end grows with its
   // distance.
   const double rate = discipline_.phase_rate(at_s);
-  const double due_s = std::abs(rate) * kSlewAhead * discipline_.poll_interval_s();
+  const double due_s = std::abs(rate) * kNtpSlewAhead * discipline_.poll_interval_s();
   const double residual_s = discipline_.residual_s(at_s);
   const Nanoseconds part =
       from_seconds(std::copysign(std::min(due_s, std::abs(residual_s)), residual_s));

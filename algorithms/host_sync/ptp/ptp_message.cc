@@ -7,11 +7,10 @@ namespace {
 
 constexpr std::size_t kShortBytes = 44;
 constexpr std::size_t kLongBytes = 54;
-constexpr std::uint8_t kVersion = 2;
+constexpr std::uint8_t kPtpVersion = 2;
 constexpr std::uint16_t kTwoStep = 0x0200;
 constexpr std::uint8_t kNoInterval = 0x7f;
 constexpr std::uint16_t kPort = 1;
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 // Times this far from zero can still be subtracted in 64 bits.
 constexpr std::int64_t kMostSeconds = 4'000'000'000;
 
@@ -56,7 +55,7 @@ Bytes encode(const PtpMessage& message) {
   Bytes bytes(length_of(message.type));
   auto* at = reinterpret_cast<unsigned char*>(bytes.data());
   at[0] = static_cast<unsigned char>(message.type);
-  at[1] = kVersion;
+  at[1] = kPtpVersion;
   boost::endian::store_big_u16(at + 2, static_cast<std::uint16_t>(bytes.size()));
   const bool is_two_step =
       message.type == PtpType::kSync || message.type == PtpType::kPeerDelayResponse;
@@ -82,7 +81,7 @@ std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes) {
   if (bytes.size() < kShortBytes) return std::nullopt;
   const auto* at = reinterpret_cast<const unsigned char*>(bytes.data());
   const std::uint8_t type = at[0] & 0x0f;
-  if (!is_known(type) || (at[1] & 0x0f) != kVersion) return std::nullopt;
+  if (!is_known(type) || (at[1] & 0x0f) != kPtpVersion) return std::nullopt;
   PtpMessage message;
   message.type = static_cast<PtpType>(type);
   if (bytes.size() != length_of(message.type)) return std::nullopt;

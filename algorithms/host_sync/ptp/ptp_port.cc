@@ -10,7 +10,6 @@ namespace {
 constexpr int kStepCalls = 3;
 // An error below this needs no further call.
 constexpr Nanoseconds kStepTolerance{1'000};
-constexpr Nanoseconds kStampTimeout{10'000'000};
 
 // The system clock's lead over the steady clock.
 Task<Nanoseconds> system_lead(Host& host) {

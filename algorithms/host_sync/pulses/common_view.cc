@@ -13,7 +13,6 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kIdle{3'600'000'000'000};
 constexpr Nanoseconds kAnswerTimeout{500'000'000};
 constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
 
@@ -121,8 +120,6 @@ Task<void> CommonView::run_slave(Host& host, PeerId master) {
 }
 
 namespace {
-
-const char* const kAssumption = "assumption";
 
 HostSyncEntry common_view(std::string name, std::string summary, std::string source,
                           PulseSource pulses, Need need) {

@@ -10,9 +10,7 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kIdle{3'600'000'000'000};
 // A host that stamps departures reports a stamp soon, or not at all.
-constexpr Nanoseconds kStampTimeout{10'000'000};
 // A request this much older than the last one is not late: its sender has started again.
 constexpr std::uint32_t kLateRequests = 64;
 
@@ -137,8 +135,6 @@ Task<void> TwoWay::run_slave(Host& host, PeerId master) {
 }
 
 namespace {
-
-const char* const kAssumption = "assumption";
 
 // Part of an interval by which it is varied.
 constexpr double kVariation = 0.1;

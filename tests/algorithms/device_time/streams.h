@@ -13,7 +13,6 @@ namespace simbench {
 // run for an hour.
 inline constexpr std::int64_t kHostZeroNs = 1'700'000'000'123'456'789;
 inline constexpr std::int64_t kDeviceZeroUs = 3'600'000'000;
-inline constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 inline DeviceSample sample_at(std::int64_t sensor_us, std::int64_t arrival_ns) {
   return {.sensor = DeviceTime(Microseconds(sensor_us)),

@@ -16,7 +16,7 @@ using testing::Not;
 using testing::ThrowsMessage;
 
 // Cameras on these hosts, frames every `period_ms`, each third 0.1 ms late.
-FitInput rig(const std::vector<std::uint32_t>& hosts, double period_ms = 1e3 / 30) {
+FitInput rig_of(const std::vector<std::uint32_t>& hosts, double period_ms = 1e3 / 30) {
   FitInput input;
   for (const std::uint32_t host : hosts) {
     while (input.hosts.size() <= host) input.hosts.push_back("h");
@@ -38,7 +38,7 @@ FitModel model_of(const FitInput& input, const FitBase& base,
 }
 
 TEST(FitModel, StatesItsBaseAndWhatWasFitted) {
-  const FitInput input = rig({0, 0});
+  const FitInput input = rig_of({0, 0});
   const FitModel model = model_of(input, default_base(input), "my rig.json");
   EXPECT_EQ(model.scenario.name, "my_rig");
   EXPECT_THAT(model.text, HasSubstr("\"base\": \"3cam_1host_30fps\""));
@@ -55,7 +55,7 @@ TEST(FitModel, StatesItsBaseAndWhatWasFitted) {
 TEST(FitModel, WhatTheTablesContainIsSwitchedOff) {
   FitBase base{.scenario = scenarios::load_scenario("18cam_6host_45fps_lan"),
                .stated = "18cam_6host_45fps_lan"};
-  const FitModel model = model_of(rig({0, 0}), base);
+  const FitModel model = model_of(rig_of({0, 0}), base);
   EXPECT_EQ(model.scenario.usb.host_jitter_transfers, 0);
   EXPECT_EQ(model.scenario.hosts.load_burst.rate_hz, 0);
   EXPECT_EQ(model.scenario.cameras.sensor_stamp_jitter_sigma_us, 0);
@@ -65,18 +65,18 @@ TEST(FitModel, WhatTheTablesContainIsSwitchedOff) {
 }
 
 TEST(FitModel, UnevenRigsNameAHostForEachCamera) {
-  const FitInput input = rig({0, 0, 0, 1});
+  const FitInput input = rig_of({0, 0, 0, 1});
   const FitModel model = model_of(input, default_base(input));
   EXPECT_THAT(model.text, HasSubstr("\"base\": \"6cam_2host_30fps\""));
   EXPECT_EQ(model.scenario.cameras.host_of_camera, (std::vector<std::int64_t>{0, 0, 0, 1}));
   EXPECT_EQ(model.scenario.hosts.count, 2);
-  const FitInput even = rig({0, 0, 1, 1});
+  const FitInput even = rig_of({0, 0, 1, 1});
   EXPECT_TRUE(model_of(even, default_base(even)).scenario.cameras.host_of_camera.empty());
 }
 
 TEST(FitModel, AWholeScenarioNeedsNoBase) {
   const FitBase base{.scenario = scenarios::load_scenario("3cam_1host_30fps")};
-  const FitModel model = model_of(rig({0}), base);
+  const FitModel model = model_of(rig_of({0}), base);
   EXPECT_THAT(model.text, Not(HasSubstr("\"base\"")));
   EXPECT_EQ(model.scenario.trigger.rate_hz, base.scenario.trigger.rate_hz);
   EXPECT_EQ(model.scenario.pipelines.size(), base.scenario.pipelines.size());
@@ -89,31 +89,31 @@ TEST(FitModel, ABaseThatIsAFileIsStatedFromTheModelsFolder) {
   std::ofstream(file) << R"({"base": "3cam_1host_30fps", "name": "mine", "summary": "s",
                             "cameras": {"exposure_ms": 3}})";
   const FitBase base{.scenario = scenarios::load_scenario(file), .stated = file};
-  const FitModel model = model_of(rig({0}), base, (folder / "out" / "model.json").string());
+  const FitModel model = model_of(rig_of({0}), base, (folder / "out" / "model.json").string());
   EXPECT_THAT(model.text, HasSubstr("\"base\": \"../mine.json\""));
   EXPECT_EQ(model.scenario.cameras.exposure_ms, 3);
   std::filesystem::remove_all(folder);
 }
 
 TEST(FitModel, ADefaultBaseTakesTheRateOfTheCameras) {
-  const FitBase slow = default_base(rig({0}, 1e3 / 7.4));
+  const FitBase slow = default_base(rig_of({0}, 1e3 / 7.4));
   EXPECT_NEAR(*slow.rate_hz, 7.4, 1e-6);
   EXPECT_EQ(*slow.mode_rate_hz, 15);
-  EXPECT_EQ(*default_base(rig({0}, 1e3 / 45)).mode_rate_hz, 90);
-  const FitInput input = rig({0}, 1e3 / 30.21);
+  EXPECT_EQ(*default_base(rig_of({0}, 1e3 / 45)).mode_rate_hz, 90);
+  const FitInput input = rig_of({0}, 1e3 / 30.21);
   EXPECT_NEAR(model_of(input, default_base(input)).scenario.trigger.rate_hz, 30.21, 1e-4);
-  EXPECT_THAT([] { default_base(rig({0}, 10)); },
+  EXPECT_THAT([] { default_base(rig_of({0}, 10)); },
               ThrowsMessage<FitError>(HasSubstr("the cameras run at 100.000 Hz, allowed at most "
                                                 "45.918 Hz without --base")));
 }
 
 TEST(FitModel, RoundTripsMakeATableAndTakeTheHostsCosts) {
-  RigFit fit = fit_rig(rig({0, 1}));
+  RigFit fit = fit_rig(rig_of({0, 1}));
   for (int i = 0; i < 100; ++i) fit.network.round_trips_ms.push_back(0.4 + 0.001 * i);
   fit.network.latency_quantiles_ms = one_way_table(fit.network.round_trips_ms);
   fit.network.hosts = {
       {.host = 1, .initial_offset_ms = FittedValue{-30, 0.2}, .skew_ppm = FittedValue{14, 0.1}}};
-  const FitInput input = rig({0, 1});
+  const FitInput input = rig_of({0, 1});
   const FitModel model = fit_model(fit, input, default_base(input), "model.json");
   EXPECT_EQ(model.scenario.network.latency_quantiles_ms.size(), 101U);
   EXPECT_NEAR(model.scenario.network.latency_quantiles_ms.front(), 0.2, 1e-6);

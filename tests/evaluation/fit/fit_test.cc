@@ -43,7 +43,7 @@ scenarios::Scenario known_world() {
   return world;
 }
 
-FitInput recorded(const scenarios::Scenario& world, std::uint64_t seed) {
+FitInput recorded_world(const scenarios::Scenario& world, std::uint64_t seed) {
   FitInputSink sink({.warm_up_ms = world.timeline.warm_up_ms});
   sim::make_simulation(world)->record({.seed = seed, .pipeline = world.pipelines.front().name},
                                       sink);
@@ -57,7 +57,7 @@ FitBase base_of(const char* name) {
 TEST(Fit, GivesBackWhatWasSimulated) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const scenarios::Scenario world = known_world();
-    const RigFit fit = fit_rig(recorded(world, seed));
+    const RigFit fit = fit_rig(recorded_world(world, seed));
     ASSERT_THAT(fit.skew_ppm, SizeIs(3)) << "seed " << seed;
     for (std::size_t i = 0; i < 3; ++i) {
       // A register of whole microseconds, over 50 s.
@@ -83,7 +83,7 @@ TEST(Fit, GivesBackWhatWasSimulated) {
 
 TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
   for (const std::uint64_t seed : {21U, 22U, 23U}) {
-    const FitInput input = recorded(known_world(), seed);
+    const FitInput input = recorded_world(known_world(), seed);
     const FitStudy study =
         study_fit(input, base_of("3cam_1host_30fps"), "model.json", sim::make_simulation);
     EXPECT_LT(study.whole.ks, study.whole.ks_limit) << "seed " << seed;
@@ -102,7 +102,7 @@ TEST(Fit, TheSimulatedModelAgreesWithItsRecording) {
 
 // The check must notice a model that is wrong.
 TEST(Fit, TheCheckSeesAnotherDistribution) {
-  const RigFit fit = fit_rig(recorded(known_world(), 31));
+  const RigFit fit = fit_rig(recorded_world(known_world(), 31));
   scenarios::Scenario other = known_world();
   other.usb.delivery_quantiles_ms = exponential_table(0.4);
   const FitCheck check = check_fit(fit, other, sim::make_simulation);
@@ -113,7 +113,7 @@ TEST(Fit, TheCheckSeesAnotherDistribution) {
 
 TEST(Fit, AFitOfAFitIsTheSame) {
   const FitBase base = base_of("3cam_1host_30fps");
-  const FitInput input = recorded(known_world(), 41);
+  const FitInput input = recorded_world(known_world(), 41);
   const RigFit first = fit_rig(input);
   RigFit last = first;
   for (int generation = 0; generation < 3; ++generation) {
@@ -135,16 +135,16 @@ TEST(Fit, AFitOfAFitIsTheSame) {
 
 TEST(Fit, SettingsOfTheSystemClockAreNoDelay) {
   scenarios::Scenario world = known_world();
-  const RigFit plain = fit_rig(recorded(world, 3));
+  const RigFit plain = fit_rig(recorded_world(world, 3));
   world.faults = {scenarios::ClockStep{.host = 0, .at_ms = 20'000, .step_ms = 500}};
-  const RigFit stepped = fit_rig(recorded(world, 3));
+  const RigFit stepped = fit_rig(recorded_world(world, 3));
   EXPECT_EQ(plain.excess_ms, stepped.excess_ms);
 }
 
 TEST(FitInput, WarmUpIsLeftOut) {
   scenarios::Scenario world = known_world();
   world.cameras.drop_probability = 0;
-  const FitInput input = recorded(world, 1);
+  const FitInput input = recorded_world(world, 1);
   ASSERT_THAT(input.streams, SizeIs(3));
   for (const FitStream& stream : input.streams) {
     EXPECT_NEAR(static_cast<double>(stream.frames.size()), 1500, 2);

@@ -13,7 +13,7 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kPeriodMs = 33.0;
+constexpr double kReplayPeriodMs = 33.0;
 
 // A camera whose clock runs `drift_ppm` slow against the host's; frames arrive `latency(i)` ms
 // late.
@@ -22,7 +22,7 @@ CameraStream camera(const std::string& name, int frames, double drift_ppm, const
                     double first_sensor_ms = 5000) {
   CameraStream stream{.camera = name, .host = name, .stream = "Depth 0", .frames = {}};
   for (int i = 0; i < frames; ++i) {
-    const double host_ms = i * kPeriodMs;
+    const double host_ms = i * kReplayPeriodMs;
     stream.frames.push_back({.counter = static_cast<std::uint64_t>(i + 1),
                              .sensor = from_ms(first_sensor_ms + host_ms / (1 + drift_ppm * 1e-6)),
                              .arrival = from_ms(100 + host_ms + latency(i))});
@@ -62,8 +62,8 @@ TEST(Replay, ACleanRecordingHasItsDriftAndNothingElse) {
   EXPECT_NEAR(found.drift_ppm, 215, 0.001);
   EXPECT_NEAR(found.envelope_drift_ppm, 215, 0.001);
   EXPECT_NEAR(found.excess.max_ms, 0, 2e-6);
-  EXPECT_NEAR(found.sensor_period.mean_ms, kPeriodMs / 1.000215, 1e-5);
-  EXPECT_NEAR(found.arrival_period.mean_ms, kPeriodMs, 1e-9);
+  EXPECT_NEAR(found.sensor_period.mean_ms, kReplayPeriodMs / 1.000215, 1e-5);
+  EXPECT_NEAR(found.arrival_period.mean_ms, kReplayPeriodMs, 1e-9);
   EXPECT_NEAR(row(replay.cameras[0], "regression_offline").drift_ppm, 215, 0.01);
   EXPECT_NEAR(row(replay.cameras[0], "regression_30").drift_ppm, 215, 0.1);
   EXPECT_NEAR(row(replay.cameras[0], "raw_arrival").drift_ppm, 215, 0.01);
@@ -168,7 +168,7 @@ TEST(Replay, WithoutACommonStartItSaysSo) {
   ASSERT_EQ(replay.warnings.size(), 1U);
   EXPECT_NE(replay.warnings[0].find("common start"), std::string::npos);
   // Order counts from the first frames and pairs neighbours; stamps do not.
-  EXPECT_NEAR(row(replay.rigs[0], "raw_arrival").amd_ms, kPeriodMs, 1e-6);
+  EXPECT_NEAR(row(replay.rigs[0], "raw_arrival").amd_ms, kReplayPeriodMs, 1e-6);
   EXPECT_NEAR(gathering(row(replay.rigs[0], "raw_arrival"), "yoon2021").amd_ms, 0, 1e-6);
 }
 

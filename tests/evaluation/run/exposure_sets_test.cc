@@ -210,7 +210,7 @@ ExposureSets simulated_sets(const scenarios::Scenario& scenario, const std::stri
   return exposure_sets(scenario, choose_pipelines(scenario, {pipeline}).front(), seed, *source, 10);
 }
 
-constexpr double kPeriodMs = 1e3 / 30;
+constexpr double kPulsePeriodMs = 1e3 / 30;
 
 TEST(ExposureSetsSimulated, SynchronisedHostsGroupWhatThePulseExposed) {
   const scenarios::Scenario scenario = studio();
@@ -219,7 +219,7 @@ TEST(ExposureSetsSimulated, SynchronisedHostsGroupWhatThePulseExposed) {
     ASSERT_EQ(sets.sets.size(), 10U) << pipeline;
     EXPECT_EQ(missing_in(sets), 0) << pipeline;
     // Hosts expose by up to 0.14 periods longer: half of that at mid-exposure.
-    EXPECT_LT(mean_spread_ms(sets), 0.07 * kPeriodMs) << pipeline;
+    EXPECT_LT(mean_spread_ms(sets), 0.07 * kPulsePeriodMs) << pipeline;
     EXPECT_NEAR(mean_spread_ms(sets), sets.score.exposure_spread_ms, 1e-3) << pipeline;
     EXPECT_EQ(sets.gathered_sets, 90) << pipeline;
   }
@@ -235,9 +235,9 @@ TEST(ExposureSetsSimulated, UnsynchronisedHostsAreAsFarApartAsTheirClocks) {
     const auto [least, most] =
         std::minmax_element(sets.score.host_errors_ms.begin(), sets.score.host_errors_ms.end());
     const double disagreement_ms = *most - *least;
-    EXPECT_GT(disagreement_ms, 4 * kPeriodMs) << "seed " << seed;
+    EXPECT_GT(disagreement_ms, 4 * kPulsePeriodMs) << "seed " << seed;
     // Each end of the range is off by half a period at most, and by the exposures' differences.
-    EXPECT_NEAR(mean_spread_ms(sets), disagreement_ms, 1.2 * kPeriodMs) << "seed " << seed;
+    EXPECT_NEAR(mean_spread_ms(sets), disagreement_ms, 1.2 * kPulsePeriodMs) << "seed " << seed;
     without_sets += sets.gathered_sets == 0 ? 1 : 0;
   }
   EXPECT_GT(without_sets, 0) << "Algorithm 3 gives none in most seeds";
@@ -263,8 +263,8 @@ TEST(ExposureSetsSimulated, FreeRunningCamerasAddTheirPhase) {
   ASSERT_EQ(sets.sets.size(), 10U);
   EXPECT_EQ(missing_in(sets), 0);
   for (const ExposureSet& set : sets.sets) {
-    EXPECT_GT(set.spread_ms(), 0.4 * kPeriodMs) << "18 phases at random";
-    EXPECT_LT(set.spread_ms(), 1.01 * kPeriodMs);
+    EXPECT_GT(set.spread_ms(), 0.4 * kPulsePeriodMs) << "18 phases at random";
+    EXPECT_LT(set.spread_ms(), 1.01 * kPulsePeriodMs);
   }
 }
 

@@ -12,22 +12,22 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Kind = CameraEvent::Kind;
+using EventKind = CameraEvent::Kind;
 
 struct Notified {
   std::vector<CameraEvent> events;
   CameraEventHandler handler() {
     return [this](const CameraEvent& event) { events.push_back(event); };
   }
-  std::vector<Kind> kinds() const {
-    std::vector<Kind> result;
+  std::vector<EventKind> kinds() const {
+    std::vector<EventKind> result;
     result.reserve(events.size());
     for (const CameraEvent& event : events) result.push_back(event.kind);
     return result;
   }
 };
 
-MonotonicTime at_ms(double ms) { return MonotonicTime(from_ms(1e6 + ms)); }
+MonotonicTime watched_at_ms(double ms) { return MonotonicTime(from_ms(1e6 + ms)); }
 
 CameraSettings depth(const std::string& mode, double mode_rate_hz, double trigger_rate_hz = 0) {
   return settings(mode, {stream("depth", mode_rate_hz)}, trigger_rate_hz);
@@ -39,16 +39,16 @@ CameraFrame watched_frame(std::uint32_t counter, double ms, std::uint32_t zero_u
           .sensor = {us},
           .frame = {us},
           .backend = std::nullopt,
-          .arrived = at_ms(ms)};
+          .arrived = watched_at_ms(ms)};
 }
 
 TEST(StreamWatch, ASteadyStreamIsNoEvent) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   for (std::uint32_t i = 0; i < 300; ++i) {
     watch.on_frame(watched_frame(i, 33.3 * i), notified.handler());
-    watch.check(at_ms(33.3 * i + 30), notified.handler());
+    watch.check(watched_at_ms(33.3 * i + 30), notified.handler());
   }
   EXPECT_THAT(notified.events, IsEmpty());
 }
@@ -56,7 +56,7 @@ TEST(StreamWatch, ASteadyStreamIsNoEvent) {
 TEST(StreamWatch, NeitherTheCountersNorTheStampsWrapIsAnEvent) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   for (std::uint32_t i = 0; i < 100; ++i) {
     watch.on_frame(watched_frame(0xffffffffU - 50 + i, 33.3 * i, 0xffffffffU - 1'000'000),
                    notified.handler());
@@ -68,18 +68,18 @@ TEST(StreamWatch, NeitherTheCountersNorTheStampsWrapIsAnEvent) {
 TEST(StreamWatch, AGapAtTheWrapIsCounted) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   watch.on_frame(watched_frame(0xfffffffeU, 0), notified.handler());
   watch.on_frame(watched_frame(2, 133), notified.handler());  // 0xffffffff, 0 and 1 are missing
   EXPECT_EQ(watch.lost_frames(), 3U);
-  ASSERT_EQ(notified.kinds(), std::vector{Kind::kNote});
+  ASSERT_EQ(notified.kinds(), std::vector{EventKind::kNote});
   EXPECT_THAT(notified.events[0].text, HasSubstr("from 4294967294 to 2: 3 frames lost"));
 }
 
 TEST(StreamWatch, ManyGapsAreFewNotes) {
   Notified notified;
   StreamWatch watch(depth("default", 100), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   for (std::uint32_t i = 0; i < 1000; ++i)
     watch.on_frame(watched_frame(2 * i, 20.0 * i), notified.handler());
   EXPECT_EQ(watch.lost_frames(), 999U);
@@ -90,27 +90,27 @@ TEST(StreamWatch, ManyGapsAreFewNotes) {
 TEST(StreamWatch, AStallIsToldOnceAndItsEndToo) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   watch.on_frame(watched_frame(0, 10), notified.handler());
-  watch.check(at_ms(1010), notified.handler());
+  watch.check(watched_at_ms(1010), notified.handler());
   EXPECT_THAT(notified.events, IsEmpty());  // exactly 1 s
-  watch.check(at_ms(1011), notified.handler());
-  watch.check(at_ms(5000), notified.handler());
-  EXPECT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  watch.check(watched_at_ms(1011), notified.handler());
+  watch.check(watched_at_ms(5000), notified.handler());
+  EXPECT_EQ(notified.kinds(), std::vector{EventKind::kStalled});
   watch.on_frame(watched_frame(1, 6010), notified.handler());
-  ASSERT_EQ(notified.kinds(), (std::vector{Kind::kStalled, Kind::kNote}));
+  ASSERT_EQ(notified.kinds(), (std::vector{EventKind::kStalled, EventKind::kNote}));
   EXPECT_THAT(notified.events[1].text, HasSubstr("after 6.0 s"));
-  watch.check(at_ms(7020), notified.handler());
-  EXPECT_EQ(notified.kinds().back(), Kind::kStalled);
+  watch.check(watched_at_ms(7020), notified.handler());
+  EXPECT_EQ(notified.kinds().back(), EventKind::kStalled);
 }
 
 TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
   const auto stalls_at = [](const CameraSettings& wanted, double ms) {
     Notified notified;
     StreamWatch watch(wanted, false);
-    watch.start(at_ms(-5));
+    watch.start(watched_at_ms(-5));
     watch.on_frame(watched_frame(0, 0), notified.handler());
-    watch.check(at_ms(ms), notified.handler());
+    watch.check(watched_at_ms(ms), notified.handler());
     return !notified.events.empty();
   };
   EXPECT_FALSE(stalls_at(depth("default", 6), 1660));
@@ -123,47 +123,47 @@ TEST(StreamWatch, ThePatienceIsTenPeriodsOfWhatIsSlower) {
 TEST(StreamWatch, ACameraIsGivenTimeToStart) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
-  watch.check(at_ms(4000), notified.handler());
+  watch.start(watched_at_ms(0));
+  watch.check(watched_at_ms(4000), notified.handler());
   EXPECT_THAT(notified.events, IsEmpty());
-  watch.check(at_ms(4001), notified.handler());
-  ASSERT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  watch.check(watched_at_ms(4001), notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{EventKind::kStalled});
   EXPECT_EQ(notified.events[0].text, "depth: no frame for 4.0 s");
 }
 
 TEST(StreamWatch, ACameraThatWaitsForTriggersIsWatchedFromItsFirstFrame) {
   Notified notified;
   StreamWatch watch(depth("genlock", 90, 45), true);
-  watch.start(at_ms(0));
-  watch.check(at_ms(60'000), notified.handler());
+  watch.start(watched_at_ms(0));
+  watch.check(watched_at_ms(60'000), notified.handler());
   EXPECT_THAT(notified.events, IsEmpty());
   watch.on_frame(watched_frame(0, 60'010), notified.handler());
-  watch.check(at_ms(61'020), notified.handler());
-  EXPECT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  watch.check(watched_at_ms(61'020), notified.handler());
+  EXPECT_EQ(notified.kinds(), std::vector{EventKind::kStalled});
 }
 
 TEST(StreamWatch, ARestartedCameraIsTold) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   watch.on_frame(watched_frame(1000, 0), notified.handler());
   watch.on_frame(watched_frame(0, 33), notified.handler());
-  ASSERT_EQ(notified.kinds(), std::vector{Kind::kNote});
+  ASSERT_EQ(notified.kinds(), std::vector{EventKind::kNote});
   EXPECT_THAT(notified.events[0].text, HasSubstr("frame counter jumped between frames 1000 and 0"));
   EXPECT_EQ(watch.lost_frames(), 0U);
 
   Notified clock;
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   watch.on_frame(watched_frame(0, 0), clock.handler());
   watch.on_frame(watched_frame(1, 33, 1'100'000), clock.handler());
-  ASSERT_EQ(clock.kinds(), std::vector{Kind::kNote});
+  ASSERT_EQ(clock.kinds(), std::vector{EventKind::kNote});
   EXPECT_THAT(clock.events[0].text, HasSubstr("clock jumped between frames 0 and 1"));
 }
 
 TEST(StreamWatch, AStampOfAnotherClockMayJump) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   CameraFrame first = watched_frame(0, 0);
   CameraFrame second = watched_frame(1, 33, 5'000'000);
   first.domain = second.domain = StampDomain::kSystemTime;
@@ -175,7 +175,7 @@ TEST(StreamWatch, AStampOfAnotherClockMayJump) {
 TEST(StreamWatch, DepthAndColourCountForThemselves) {
   Notified notified;
   StreamWatch watch(settings("default", {stream("depth", 30), stream("colour", 30)}), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   for (std::uint32_t i = 0; i < 60; ++i) {
     watch.on_frame(watched_frame(i, 33.3 * i), notified.handler());
     if (i > 5) continue;
@@ -183,18 +183,18 @@ TEST(StreamWatch, DepthAndColourCountForThemselves) {
     colour.stream = StreamKind::kColour;
     watch.on_frame(colour, notified.handler());
   }
-  watch.check(at_ms(2000), notified.handler());
-  ASSERT_EQ(notified.kinds(), std::vector{Kind::kStalled});
+  watch.check(watched_at_ms(2000), notified.handler());
+  ASSERT_EQ(notified.kinds(), std::vector{EventKind::kStalled});
   EXPECT_THAT(notified.events[0].text, HasSubstr("colour: no frame for 1.8 s, the last was 705"));
 }
 
 TEST(StreamWatch, MissingMetadataIsToldOnceWithTheCure) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
-  watch.start(at_ms(0));
+  watch.start(watched_at_ms(0));
   watch.missing_metadata("SENSOR_TIMESTAMP", notified.handler());
   watch.missing_metadata("SENSOR_TIMESTAMP", notified.handler());
-  ASSERT_EQ(notified.kinds(), std::vector{Kind::kMissingMetadata});
+  ASSERT_EQ(notified.kinds(), std::vector{EventKind::kMissingMetadata});
   EXPECT_THAT(notified.events[0].text, HasSubstr("lack SENSOR_TIMESTAMP"));
   EXPECT_THAT(notified.events[0].text, HasSubstr("kernel patches"));
   EXPECT_THAT(notified.events[0].text, HasSubstr("FORCE_RSUSB_BACKEND"));

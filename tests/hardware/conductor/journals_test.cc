@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-FrameEvent frame(std::uint32_t camera, std::uint32_t counter, double arrival_ms) {
+FrameEvent journal_frame(std::uint32_t camera, std::uint32_t counter, double arrival_ms) {
   FrameRecord record;
   record.camera = camera;
   record.counter = counter;
@@ -23,7 +23,7 @@ FrameEvent frame(std::uint32_t camera, std::uint32_t counter, double arrival_ms)
   return {record, std::nullopt};
 }
 
-std::string text_of(const std::vector<RecordingEvent>& events) {
+std::string events_text(const std::vector<RecordingEvent>& events) {
   std::string text;
   for (const RecordingEvent& event : events) text += to_line(event) + "\n";
   return text;
@@ -31,7 +31,7 @@ std::string text_of(const std::vector<RecordingEvent>& events) {
 
 HostJournal journal_of(const std::vector<RecordingEvent>& events) {
   HostJournal journal;
-  journal.append(text_of(events));
+  journal.append(events_text(events));
   return journal;
 }
 
@@ -42,9 +42,9 @@ std::vector<std::string> told(const std::vector<HostJournal>& journals) {
   play_in_order(journals, kept);
   std::vector<std::string> names;
   for (const RecordingEvent& event : kept.events()) {
-    if (const auto* frame = std::get_if<FrameEvent>(&event)) {
-      names.push_back(std::to_string(frame->record.camera) + "/" +
-                      std::to_string(frame->record.counter));
+    if (const auto* journal_frame = std::get_if<FrameEvent>(&event)) {
+      names.push_back(std::to_string(journal_frame->record.camera) + "/" +
+                      std::to_string(journal_frame->record.counter));
     } else if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) {
       names.push_back("clock " + std::to_string(adjustment->host));
     }
@@ -53,7 +53,8 @@ std::vector<std::string> told(const std::vector<HostJournal>& journals) {
 }
 
 TEST(Journals, TextMayEndAnywhere) {
-  const std::string text = text_of({frame(0, 1, 10), frame(0, 2, 20), ClockAdjustment{}});
+  const std::string text =
+      events_text({journal_frame(0, 1, 10), journal_frame(0, 2, 20), ClockAdjustment{}});
   for (std::size_t cut = 0; cut <= text.size(); ++cut) {
     HostJournal journal;
     journal.append(text.substr(0, cut));
@@ -65,7 +66,7 @@ TEST(Journals, TextMayEndAnywhere) {
 }
 
 TEST(Journals, ABrokenLastLineIsNotTaken) {
-  const std::string text = text_of({frame(0, 1, 10), frame(0, 2, 20)});
+  const std::string text = events_text({journal_frame(0, 1, 10), journal_frame(0, 2, 20)});
   HostJournal journal;
   journal.append(text.substr(0, text.size() - 5));
   EXPECT_EQ(journal.frames(), 1U);
@@ -73,7 +74,7 @@ TEST(Journals, ABrokenLastLineIsNotTaken) {
 
 TEST(Journals, DamagedLinesAreCountedAndTheOthersKept) {
   HostJournal journal;
-  journal.append("frame,nonsense\n" + text_of({frame(0, 1, 10)}) + "\n\xff\xfe\n");
+  journal.append("frame,nonsense\n" + events_text({journal_frame(0, 1, 10)}) + "\n\xff\xfe\n");
   EXPECT_EQ(journal.events().size(), 1U);
   EXPECT_EQ(journal.damaged(), 3U);
 }
@@ -86,33 +87,35 @@ TEST(Journals, NotesAreNoEvents) {
 }
 
 TEST(Journals, FramesOfAllHostsComeInOrderOfArrival) {
-  EXPECT_THAT(told({journal_of({frame(0, 1, 10), frame(0, 2, 30)}),
-                    journal_of({frame(1, 1, 5), frame(1, 2, 20), frame(1, 3, 40)})}),
+  EXPECT_THAT(told({journal_of({journal_frame(0, 1, 10), journal_frame(0, 2, 30)}),
+                    journal_of({journal_frame(1, 1, 5), journal_frame(1, 2, 20),
+                                journal_frame(1, 3, 40)})}),
               ElementsAre("1/1", "0/1", "1/2", "0/2", "1/3"));
 }
 
 TEST(Journals, AHostKeepsItsOwnOrderEvenIfItsClockStepsBack) {
-  EXPECT_THAT(
-      told({journal_of({frame(0, 1, 100), frame(0, 2, 10)}), journal_of({frame(1, 1, 50)})}),
-      ElementsAre("1/1", "0/1", "0/2"));
+  EXPECT_THAT(told({journal_of({journal_frame(0, 1, 100), journal_frame(0, 2, 10)}),
+                    journal_of({journal_frame(1, 1, 50)})}),
+              ElementsAre("1/1", "0/1", "0/2"));
 }
 
 TEST(Journals, WhatIsNoFrameComesBeforeTheNextFrameOfItsHost) {
   ClockAdjustment adjustment;
   adjustment.host = 1;
-  EXPECT_THAT(told({journal_of({frame(0, 1, 1)}),
-                    journal_of({adjustment, frame(1, 1, 2), adjustment, frame(1, 2, 3)})}),
-              ElementsAre("clock 1", "0/1", "1/1", "clock 1", "1/2"));
+  EXPECT_THAT(
+      told({journal_of({journal_frame(0, 1, 1)}),
+            journal_of({adjustment, journal_frame(1, 1, 2), adjustment, journal_frame(1, 2, 3)})}),
+      ElementsAre("clock 1", "0/1", "1/1", "clock 1", "1/2"));
 }
 
 TEST(Journals, CoveredPeriodsCountFromTheFirstFrameThroughGapsAndTheWrap) {
   EXPECT_EQ(journal_of({}).covered(0, StreamKind::kDepth), 0);
-  EXPECT_EQ(journal_of({frame(0, 7, 1)}).covered(0, StreamKind::kDepth), 1);
-  const HostJournal gap = journal_of({frame(0, 7, 1), frame(0, 9, 2)});
+  EXPECT_EQ(journal_of({journal_frame(0, 7, 1)}).covered(0, StreamKind::kDepth), 1);
+  const HostJournal gap = journal_of({journal_frame(0, 7, 1), journal_frame(0, 9, 2)});
   EXPECT_EQ(gap.covered(0, StreamKind::kDepth), 3);
   EXPECT_EQ(gap.covered(0, StreamKind::kColour), 0);
   EXPECT_EQ(gap.covered(1, StreamKind::kDepth), 0);
-  const HostJournal wrapped = journal_of({frame(0, 0xfffffffe, 1), frame(0, 1, 2)});
+  const HostJournal wrapped = journal_of({journal_frame(0, 0xfffffffe, 1), journal_frame(0, 1, 2)});
   EXPECT_EQ(wrapped.covered(0, StreamKind::kDepth), 4);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-MonotonicTime soon() { return monotonic_now() + std::chrono::seconds(20); }
+MonotonicTime child_limit() { return monotonic_now() + std::chrono::seconds(20); }
 
 class ChildProcessTest : public testing::Test {
  protected:
@@ -34,15 +34,15 @@ bool is_alive(pid_t process) { return kill(process, 0) == 0; }
 
 TEST_F(ChildProcessTest, ItsOutputIsReadByLine) {
   ChildProcess child(shell("echo one; printf 'two\\nthree'"));
-  EXPECT_EQ(child.read_line(soon()), "one");
-  EXPECT_EQ(child.read_line(soon()), "two");
-  EXPECT_THROW(child.read_line(soon()), ChildError) << "no whole line is left";
+  EXPECT_EQ(child.read_line(child_limit()), "one");
+  EXPECT_EQ(child.read_line(child_limit()), "two");
+  EXPECT_THROW(child.read_line(child_limit()), ChildError) << "no whole line is left";
 }
 
 TEST_F(ChildProcessTest, WhatItSaidLastIsInTheMessage) {
   ChildProcess child(shell("echo no such rig >&2; exit 3"));
   try {
-    child.read_line(soon());
+    child.read_line(child_limit());
     FAIL() << "a line was read";
   } catch (const ChildError& error) {
     EXPECT_STREQ(error.what(), "simbench -c: ended before it was ready: no such rig");
@@ -61,7 +61,7 @@ TEST_F(ChildProcessTest, WaitingHasALimit) {
 
 TEST_F(ChildProcessTest, EndsWithItsObject) {
   auto child = std::make_unique<ChildProcess>(shell("echo ready; exec sleep 60"));
-  child->read_line(soon());
+  child->read_line(child_limit());
   const pid_t process = child->id();
   EXPECT_TRUE(is_alive(process));
   child.reset();
@@ -72,7 +72,7 @@ TEST_F(ChildProcessTest, EndsWithItsObject) {
 
 TEST_F(ChildProcessTest, IsKilledIfItDoesNotListen) {
   ChildProcess child(shell("trap '' TERM; echo ready; while :; do sleep 1; done"));
-  child.read_line(soon());
+  child.read_line(child_limit());
   const pid_t process = child.id();
   child.end(from_ms(50));
   EXPECT_FALSE(is_alive(process));
@@ -80,7 +80,7 @@ TEST_F(ChildProcessTest, IsKilledIfItDoesNotListen) {
 
 TEST_F(ChildProcessTest, ItsLastWordsAreKept) {
   ChildProcess child(shell("trap 'echo bye; exit' TERM; echo ready; while :; do sleep 0.01; done"));
-  child.read_line(soon());
+  child.read_line(child_limit());
   EXPECT_EQ(child.end(std::chrono::seconds(20)), "bye\n");
 }
 
@@ -116,7 +116,7 @@ TEST_F(ChildProcessTest, AProgramThatIsNotThereIsSaid) {
                       .arguments = {"node"},
                       .log = folder_.file("log"),
                       .sandbox_member = std::nullopt});
-  EXPECT_THROW(child.read_line(soon()), ChildError);
+  EXPECT_THROW(child.read_line(child_limit()), ChildError);
 }
 
 }  // namespace

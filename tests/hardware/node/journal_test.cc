@@ -27,7 +27,7 @@ using testing::StartsWith;
 
 constexpr const char* kSession = "0123456789abcdef";
 
-FrameEvent frame(std::uint32_t counter) {
+FrameEvent written_frame(std::uint32_t counter) {
   FrameRecord record;
   record.camera = 4;
   record.counter = counter;
@@ -35,7 +35,7 @@ FrameEvent frame(std::uint32_t counter) {
   return {record, std::nullopt};
 }
 
-std::string line(std::uint32_t counter) { return to_line(frame(counter)) + "\n"; }
+std::string line(std::uint32_t counter) { return to_line(written_frame(counter)) + "\n"; }
 
 class JournalTest : public testing::Test {
  protected:
@@ -58,7 +58,7 @@ class JournalTest : public testing::Test {
 
 TEST_F(JournalTest, HasTheLinesOfEventsAndNotesInOrder) {
   Journal journal(context_, folder(), kSession, {});
-  journal.write(frame(1));
+  journal.write(written_frame(1));
   journal.note("camera 1, front: unplugged\nand back");
   journal.write(SyncOutcome{.slave = 2, .synchronised = true, .passes = 3, .message = ""});
   journal.close();
@@ -69,8 +69,8 @@ TEST_F(JournalTest, HasTheLinesOfEventsAndNotesInOrder) {
 
 TEST_F(JournalTest, ABatchIsOnDiskAfterItsTime) {
   Journal journal(context_, folder(), kSession, {});
-  journal.write(frame(1));
-  journal.write(frame(2));
+  journal.write(written_frame(1));
+  journal.write(written_frame(2));
   EXPECT_THAT(content(), IsEmpty());
   context_.run();  // ends when the batch is written: nothing else waits
   EXPECT_EQ(content(), line(1) + line(2));
@@ -78,14 +78,14 @@ TEST_F(JournalTest, ABatchIsOnDiskAfterItsTime) {
 
 TEST_F(JournalTest, ALongBatchDoesNotWait) {
   Journal journal(context_, folder(), kSession, {});
-  for (std::uint32_t i = 0; i < 2000; ++i) journal.write(frame(i));
+  for (std::uint32_t i = 0; i < 2000; ++i) journal.write(written_frame(i));
   EXPECT_GT(content().size(), 32u << 10);
 }
 
 TEST_F(JournalTest, AnEarlyEndLeavesNothingThatTouchesIt) {
   {
     Journal journal(context_, folder(), kSession, {});
-    journal.write(frame(1));
+    journal.write(written_frame(1));
     std::this_thread::sleep_for(kJournalBatch * 2);  // its timer is due
   }
   context_.run();
@@ -140,8 +140,8 @@ TEST_F(JournalTest, TheNewestAreKept) {
 
 TEST_F(JournalTest, IsReadFromAnyLineOn) {
   Journal journal(context_, folder(), kSession, {});
-  journal.write(frame(1));
-  journal.write(frame(2));
+  journal.write(written_frame(1));
+  journal.write(written_frame(2));
   journal.flush();
   const auto all = read_journal(folder(), kSession, 0);
   ASSERT_TRUE(all);
@@ -157,7 +157,7 @@ TEST_F(JournalTest, IsReadFromAnyLineOn) {
 
 TEST_F(JournalTest, ChunksJoinToTheWhole) {
   Journal journal(context_, folder(), kSession, {});
-  for (std::uint32_t i = 0; i < 20'000; ++i) journal.write(frame(i));
+  for (std::uint32_t i = 0; i < 20'000; ++i) journal.write(written_frame(i));
   journal.close();
   std::string text;
   std::size_t chunks = 0;
@@ -200,11 +200,11 @@ TEST_F(JournalTest, AFullDiskEndsItAtAWholeLineAndIsToldOnce) {
     std::vector<std::string> messages;
     Journal journal(context_, folder(), kSession,
                     [&](const std::string& text) { messages.push_back(text); });
-    for (std::uint32_t i = 1; i <= 8; ++i) journal.write(frame(i));
+    for (std::uint32_t i = 1; i <= 8; ++i) journal.write(written_frame(i));
     journal.flush();
-    for (std::uint32_t i = 9; i <= 9 + 4; ++i) journal.write(frame(1));
+    for (std::uint32_t i = 9; i <= 9 + 4; ++i) journal.write(written_frame(1));
     journal.flush();
-    for (std::uint32_t i = 0; i < 100; ++i) journal.write(frame(1));
+    for (std::uint32_t i = 0; i < 100; ++i) journal.write(written_frame(1));
     journal.flush();
     const bool good = messages.size() == 1 &&
                       messages[0].find("File too large") != std::string::npos &&

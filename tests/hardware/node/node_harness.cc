@@ -21,7 +21,7 @@ namespace {
 namespace asio = boost::asio;
 using nlohmann::json;
 
-constexpr Nanoseconds kPatience = std::chrono::seconds(5);
+constexpr Nanoseconds kNodePatience = std::chrono::seconds(5);
 
 class CountedSync final : public HostSync {
  public:
@@ -128,7 +128,7 @@ CameraSettings MadeUpCameras::settings() {
 Task<void> TestConductor::connect() {
   const PeerName me;
   stream_ = co_await SecureStream::connect(context_, "127.0.0.1", port_, key_, me,
-                                           monotonic_now() + kPatience);
+                                           monotonic_now() + kNodePatience);
 }
 
 Task<Answer> TestConductor::ask(std::string verb, json arguments) {
@@ -140,7 +140,7 @@ Task<Answer> TestConductor::ask(std::string verb, json arguments) {
   Bytes bytes = encode(request);
   co_await stream_->send(std::move(bytes));
   for (;;) {
-    const StreamMessage message = co_await stream_->receive(monotonic_now() + kPatience);
+    const StreamMessage message = co_await stream_->receive(monotonic_now() + kNodePatience);
     Answer answer = parse_answer(message.bytes);
     if (answer.notice.empty() && answer.id == id) co_return answer;
     notices_.push_back(std::move(answer));
@@ -150,7 +150,7 @@ Task<Answer> TestConductor::ask(std::string verb, json arguments) {
 Task<json> TestConductor::notice(std::string kind) {
   for (std::size_t next = 0;; ++next) {
     if (next == notices_.size()) {
-      const StreamMessage message = co_await stream_->receive(monotonic_now() + kPatience);
+      const StreamMessage message = co_await stream_->receive(monotonic_now() + kNodePatience);
       notices_.push_back(parse_answer(message.bytes));
     }
     if (notices_[next].notice != kind) continue;
@@ -164,7 +164,7 @@ Task<void> TestConductor::send_bytes(Bytes bytes) { co_await stream_->send(std::
 
 Task<bool> TestConductor::is_closed() {
   try {
-    co_await stream_->receive(monotonic_now() + kPatience);
+    co_await stream_->receive(monotonic_now() + kNodePatience);
   } catch (const StreamError& error) {
     co_return error.kind() == StreamError::Kind::kUnreachable;
   }

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 constexpr int kMessages = 20'000;
 
-MonotonicTime at_ms(double ms) { return MonotonicTime(from_ms(ms)); }
+MonotonicTime law_at_ms(double ms) { return MonotonicTime(from_ms(ms)); }
 
 scenarios::Network quiet() {
   scenarios::Network network;
@@ -34,8 +34,8 @@ void expect_share(std::uint64_t count, double probability) {
 
 TEST(NetworkLaw, AFixedLatencyIsExact) {
   NetworkLaw law(quiet(), 1, 0, 1);
-  EXPECT_EQ(law.datagram(at_ms(10)), NetworkLaw::Arrivals{at_ms(12)});
-  EXPECT_EQ(law.stream(at_ms(11)), at_ms(13));
+  EXPECT_EQ(law.datagram(law_at_ms(10)), NetworkLaw::Arrivals{law_at_ms(12)});
+  EXPECT_EQ(law.stream(law_at_ms(11)), law_at_ms(13));
 }
 
 TEST(NetworkLaw, ExponentialLatenciesFollowTheirLaw) {
@@ -45,9 +45,9 @@ TEST(NetworkLaw, ExponentialLatenciesFollowTheirLaw) {
   std::vector<double> extra_ms;
   for (int i = 0; i < kMessages; ++i) {
     const double sent_ms = 1000.0 * i;  // far apart: order does not hold any back
-    const NetworkLaw::Arrivals arrivals = law.datagram(at_ms(sent_ms));
+    const NetworkLaw::Arrivals arrivals = law.datagram(law_at_ms(sent_ms));
     ASSERT_EQ(arrivals.size(), 1u);
-    extra_ms.push_back(to_ms(arrivals[0] - at_ms(sent_ms)) - 2);
+    extra_ms.push_back(to_ms(arrivals[0] - law_at_ms(sent_ms)) - 2);
   }
   std::sort(extra_ms.begin(), extra_ms.end());
   EXPECT_GE(extra_ms.front(), 0);
@@ -67,7 +67,7 @@ TEST(NetworkLaw, ATableReplacesTheFormula) {
   NetworkLaw law(network, 3, 0, 1);
   std::uint64_t at_least = 0;
   for (int i = 0; i < kMessages; ++i) {
-    const double latency_ms = to_ms(law.stream(at_ms(1000.0 * i)) - at_ms(1000.0 * i));
+    const double latency_ms = to_ms(law.stream(law_at_ms(1000.0 * i)) - law_at_ms(1000.0 * i));
     EXPECT_GE(latency_ms, 1);
     EXPECT_LE(latency_ms, 4);
     if (latency_ms == 1) ++at_least;
@@ -84,7 +84,7 @@ TEST(NetworkLaw, LosesDoublesAndReordersItsShares) {
   NetworkLaw law(network, 11, 2, 0);
   std::uint64_t none = 0;
   for (int i = 0; i < kMessages; ++i) {
-    if (law.datagram(at_ms(i)).empty()) ++none;
+    if (law.datagram(law_at_ms(i)).empty()) ++none;
   }
   EXPECT_EQ(law.counts().datagrams, static_cast<std::uint64_t>(kMessages));
   EXPECT_EQ(law.counts().lost, none);
@@ -99,7 +99,7 @@ TEST(NetworkLaw, ADatagramIsOvertakenOnlyIfItIsReordered) {
   NetworkLaw law(network, 5, 0, 1);
   MonotonicTime last = MonotonicTime::min();
   for (int i = 0; i < 1000; ++i) {
-    const MonotonicTime arrival = law.datagram(at_ms(0.1 * i)).front();
+    const MonotonicTime arrival = law.datagram(law_at_ms(0.1 * i)).front();
     EXPECT_GE(arrival, last);
     last = arrival;
   }
@@ -109,7 +109,7 @@ TEST(NetworkLaw, ADatagramIsOvertakenOnlyIfItIsReordered) {
   int overtaken = 0;
   last = MonotonicTime::min();
   for (int i = 0; i < 1000; ++i) {
-    const MonotonicTime arrival = reordering.datagram(at_ms(0.1 * i)).front();
+    const MonotonicTime arrival = reordering.datagram(law_at_ms(0.1 * i)).front();
     if (arrival < last) ++overtaken;
     last = arrival;
   }
@@ -123,7 +123,7 @@ TEST(NetworkLaw, AStreamIsInOrderAndALossCostsTheTimeout) {
   MonotonicTime last = MonotonicTime::min();
   double late = 0;
   for (int i = 0; i < kMessages; ++i) {
-    const MonotonicTime sent = at_ms(1e5 * i);  // later than any retransmission
+    const MonotonicTime sent = law_at_ms(1e5 * i);  // later than any retransmission
     const MonotonicTime arrival = law.stream(sent);
     EXPECT_GT(arrival, last);
     last = arrival;
@@ -144,7 +144,7 @@ TEST(NetworkLaw, ALossHoldsUpWhatFollows) {
   NetworkLaw law(network, 2, 0, 1);
   MonotonicTime last = MonotonicTime::min();
   for (int i = 0; i < 100; ++i) {
-    const MonotonicTime arrival = law.stream(at_ms(i));
+    const MonotonicTime arrival = law.stream(law_at_ms(i));
     EXPECT_GE(arrival, last);
     last = arrival;
   }
@@ -154,7 +154,7 @@ TEST(NetworkLaw, BothDirectionsShareTheAsymmetry) {
   scenarios::Network network = quiet();
   network.asymmetry_sigma_ms = 1;
   const auto latency_ms = [&](PeerId from, PeerId to) {
-    return to_ms(NetworkLaw(network, 9, from, to).stream(at_ms(0)) - at_ms(0));
+    return to_ms(NetworkLaw(network, 9, from, to).stream(law_at_ms(0)) - law_at_ms(0));
   };
   EXPECT_NEAR(latency_ms(0, 3) + latency_ms(3, 0), 4, 2e-6);
   EXPECT_NE(latency_ms(0, 3), latency_ms(3, 0));
@@ -165,9 +165,9 @@ TEST(NetworkLaw, DrawsDependOnSeedDirectionAndIndexAlone) {
   network.latency_exponential_ms = 1;
   const auto second_stream = [&](std::uint64_t seed, PeerId from, PeerId to, int datagrams) {
     NetworkLaw law(network, seed, from, to);
-    law.stream(at_ms(0));
-    for (int i = 0; i < datagrams; ++i) law.datagram(at_ms(i));
-    return law.stream(at_ms(1e6));
+    law.stream(law_at_ms(0));
+    for (int i = 0; i < datagrams; ++i) law.datagram(law_at_ms(i));
+    return law.stream(law_at_ms(1e6));
   };
   EXPECT_EQ(second_stream(1, 0, 1, 0), second_stream(1, 0, 1, 50));
   EXPECT_NE(second_stream(1, 0, 1, 0), second_stream(2, 0, 1, 0));

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-FigureSeries series(const std::string& label, std::vector<double> y, int colour) {
+FigureSeries line_series(const std::string& label, std::vector<double> y, int colour) {
   FigureSeries made;
   made.label = label;
   made.mark = Mark::kLine;
@@ -33,13 +33,13 @@ FigureSeries series(const std::string& label, std::vector<double> y, int colour)
   return made;
 }
 
-Figure sample() {
+Figure sample_figure() {
   FigurePanel panel;
   panel.title = "It's a title, \"quoted\" \\n";
   panel.x_label = "pulse";
   panel.y_label = "ms";
-  panel.series = {series("host 0, camera 0", {1, kNan, 2.5}, 0),
-                  series("host 0, camera 1", {2, 3, 4}, 0), series("mine", {5, 6, 7}, 1)};
+  panel.series = {line_series("host 0, camera 0", {1, kNan, 2.5}, 0),
+                  line_series("host 0, camera 1", {2, 3, 4}, 0), line_series("mine", {5, 6, 7}, 1)};
   panel.lines = {{.label = "mine, published", .at = 5.5}, {"start", true, 1}};
   panel.spans = {{"warm-up", 0, 1}};
   Figure figure;
@@ -67,7 +67,7 @@ class GnuplotTest : public testing::Test {
 };
 
 TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
-  draw(sample(), PlotFormat::kSvg, file("x.svg"));
+  draw(sample_figure(), PlotFormat::kSvg, file("x.svg"));
   const std::string svg = content("x.svg");
   EXPECT_THAT(svg, StartsWith("<?xml"));
   EXPECT_THAT(svg, HasSubstr("</svg>"));
@@ -78,7 +78,7 @@ TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
 }
 
 TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
-  const std::string script = gnuplot_script(sample(), PlotFormat::kSvg, "x.svg");
+  const std::string script = gnuplot_script(sample_figure(), PlotFormat::kSvg, "x.svg");
   EXPECT_THAT(script, HasSubstr("title 'host 0'"));
   EXPECT_THAT(script, Not(HasSubstr("'host 0, camera 1'")));
 }
@@ -92,13 +92,13 @@ TEST_F(GnuplotTest, DrawsPhotographsAsPdf) {
 }
 
 TEST_F(GnuplotTest, AFigureOfConstantsAndNothingElseIsDrawn) {
-  Figure figure = sample();
+  Figure figure = sample_figure();
   for (FigurePanel& panel : figure.panels) {
     panel.log_y = true;
     panel.lines.clear();
     for (FigureSeries& each : panel.series) each.y.assign(each.y.size(), 0);
   }
-  figure.panels[1].series[0] = series("nothing", {kNan}, 0);
+  figure.panels[1].series[0] = line_series("nothing", {kNan}, 0);
   draw(figure, PlotFormat::kSvg, file("x.svg"));
   EXPECT_THAT(content("x.svg"), HasSubstr("</svg>"));
 }
@@ -108,7 +108,7 @@ TEST_F(GnuplotTest, WithoutGnuplotNothingIsWrittenAndTheMessageSaysWhatToInstall
   setenv("PATH", folder_.path().c_str(), 1);
   std::string message;
   try {
-    draw(sample(), PlotFormat::kSvg, file("x.svg"));
+    draw(sample_figure(), PlotFormat::kSvg, file("x.svg"));
   } catch (const OutputError& error) {
     message = error.what();
   }
@@ -124,7 +124,7 @@ TEST_F(GnuplotTest, WhatGnuplotRefusesLeavesNothingBehind) {
   setenv("PATH", (folder_.path().string() + ":" + path).c_str(), 1);
   std::string message;
   try {
-    draw(sample(), PlotFormat::kSvg, file("x.svg"));
+    draw(sample_figure(), PlotFormat::kSvg, file("x.svg"));
   } catch (const OutputError& error) {
     message = error.what();
   }
@@ -134,11 +134,11 @@ TEST_F(GnuplotTest, WhatGnuplotRefusesLeavesNothingBehind) {
 }
 
 TEST_F(GnuplotTest, AMissingFolderIsRefused) {
-  EXPECT_THROW(draw(sample(), PlotFormat::kSvg, file("none/x.svg")), OutputError);
+  EXPECT_THROW(draw(sample_figure(), PlotFormat::kSvg, file("none/x.svg")), OutputError);
 }
 
 TEST(FigureCsvTest, HasALineForEveryPoint) {
-  Figure figure = sample();
+  Figure figure = sample_figure();
   figure.panels.pop_back();
   figure.panels[0].title = "A, B";
   EXPECT_EQ(figure_csv(figure),
@@ -163,7 +163,7 @@ TEST(FigureCsvTest, BarsHaveTheirCategoriesAndPhotographsTheirReadings) {
   FigurePanel panel;
   panel.title = "Parts";
   panel.categories = {"trigger", "host clock"};
-  panel.series = {series("mean", {0.25, 3}, 0)};
+  panel.series = {line_series("mean", {0.25, 3}, 0)};
   figure.panels = {panel};
   figure.photographs = photographs().photographs;
   EXPECT_EQ(figure_csv(figure),

@@ -30,7 +30,7 @@ evaluation::Row row(const std::string& pipeline, const std::vector<double>& amd_
   return made;
 }
 
-Archive archive(std::vector<evaluation::Row> rows) {
+Archive archive_of(std::vector<evaluation::Row> rows) {
   Archive made;
   made.path = "results";
   made.results.first_seed = 1;
@@ -40,7 +40,7 @@ Archive archive(std::vector<evaluation::Row> rows) {
 }
 
 TEST(ResultFiguresTest, FrameErrorsAreTheTermsOfOneSeed) {
-  const Archive results = archive({row("mine", {2, 4}), row("yours", {3, 5})});
+  const Archive results = archive_of({row("mine", {2, 4}), row("yours", {3, 5})});
   const std::vector<Figure> figures = frame_errors(results);
   ASSERT_THAT(figures, SizeIs(2));
   EXPECT_EQ(figures[1].seed, 2U);
@@ -52,8 +52,8 @@ TEST(ResultFiguresTest, FrameErrorsAreTheTermsOfOneSeed) {
 }
 
 TEST(ResultFiguresTest, ThePapersRowsAreTakenWhereTheyAre) {
-  const Archive results = archive({row("mine", {2}), row("yoon2021_both", {3}),
-                                   row("ntp_last_set", {500}), row("yoon2021_time", {4})});
+  const Archive results = archive_of({row("mine", {2}), row("yoon2021_both", {3}),
+                                      row("ntp_last_set", {500}), row("yoon2021_time", {4})});
   const Figure figure = frame_errors(results, 1);
   ASSERT_THAT(figure.panels[0].series, SizeIs(3));
   EXPECT_EQ(figure.panels[0].series[0].label, "ntp_last_set");
@@ -62,11 +62,11 @@ TEST(ResultFiguresTest, ThePapersRowsAreTakenWhereTheyAre) {
 }
 
 TEST(ResultFiguresTest, AnUnknownSeedHasNoFrameErrors) {
-  EXPECT_FALSE(frame_errors(archive({row("mine", {2})}), 9).absent.empty());
+  EXPECT_FALSE(frame_errors(archive_of({row("mine", {2})}), 9).absent.empty());
 }
 
 TEST(ResultFiguresTest, ADistributionIsTheSortedValuesWithThePublishedOne) {
-  Archive results = archive({row("mine", {3, 1, 2})});
+  Archive results = archive_of({row("mine", {3, 1, 2})});
   results.results.rows[0].published.emplace().amd_ms = 2.5;
   const std::vector<Figure> figures = distributions(results);
   ASSERT_THAT(figures, SizeIs(2));
@@ -82,7 +82,7 @@ TEST(ResultFiguresTest, ADistributionIsTheSortedValuesWithThePublishedOne) {
 }
 
 TEST(ResultFiguresTest, HostOrderIsTheMedianByHost) {
-  const std::vector<Figure> figures = host_order(archive({row("mine", {3, 1, 2})}));
+  const std::vector<Figure> figures = host_order(archive_of({row("mine", {3, 1, 2})}));
   const FigureSeries& medians = figures.at(0).panels.at(0).series.at(0);
   EXPECT_THAT(medians.x, ElementsAre(1, 2));
   EXPECT_THAT(medians.y, ElementsAre(2, 4));
@@ -94,7 +94,7 @@ TEST(ResultFiguresTest, HostOrderIsTheMedianByHost) {
 TEST(ResultFiguresTest, OfManyPipelinesTheFirstAreDrawnTogether) {
   std::vector<evaluation::Row> rows;
   for (int i = 0; i < 40; ++i) rows.push_back(row("pipeline " + std::to_string(i), {1.0 + i}));
-  const std::vector<Figure> figures = distributions(archive(std::move(rows)));
+  const std::vector<Figure> figures = distributions(archive_of(std::move(rows)));
   EXPECT_THAT(figures, SizeIs(41));
   EXPECT_THAT(figures[0].panels[0].series, SizeIs(12));
   EXPECT_THAT(figures[0].caption, HasSubstr("first 12 of 40"));

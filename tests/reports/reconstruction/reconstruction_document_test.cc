@@ -13,13 +13,13 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
 std::string table() { return plain(reconstruction_document(sample_reconstruction())); }
-Json json() { return Json::parse(reconstruction_json(sample_reconstruction())); }
+Json reconstruction_as_json() { return Json::parse(reconstruction_json(sample_reconstruction())); }
 
 TEST(ReconstructionTable, HasTheRowsOfTable4) {
   const std::string text = table();
@@ -92,7 +92,7 @@ TEST(ReconstructionTable, FitsAPageOf100Columns) {
 }
 
 TEST(ReconstructionJson, HasRowsWithSeries) {
-  const Json root = json();
+  const Json root = reconstruction_as_json();
   EXPECT_EQ(root["schema_version"], 1);
   EXPECT_EQ(root["scenario"], "a_studio");
   EXPECT_EQ(root["frames"], 10);
@@ -114,7 +114,7 @@ TEST(ReconstructionJson, HasRowsWithSeries) {
 }
 
 TEST(ReconstructionJson, WhatDoesNotExistIsNull) {
-  const Json root = json();
+  const Json root = reconstruction_as_json();
   EXPECT_EQ(root["rows"][2]["mean_cm"]["values"][1], nullptr);
   EXPECT_EQ(root["limits"][0]["limit_ms"], nullptr);
   EXPECT_EQ(root["speed_needed"]["speed_m_per_s"], nullptr);
@@ -128,7 +128,7 @@ TEST(ReconstructionJson, WhatDoesNotExistIsNull) {
 }
 
 TEST(ReconstructionJson, HasCurveLimitsAndPerformance) {
-  const Json root = json();
+  const Json root = reconstruction_as_json();
   ASSERT_EQ(root["curve"].size(), 6U);
   EXPECT_EQ(root["curve"][5]["desync_ms"], 100);
   EXPECT_EQ(root["curve"][5]["mean_cm"]["median"], 2.9);

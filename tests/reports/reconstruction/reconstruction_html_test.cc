@@ -10,7 +10,7 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 std::vector<ReconstructionPicture> pictures() {
   return {{.pipeline = "yoon2021_both",
@@ -30,7 +30,7 @@ std::string page_of(const reconstruction::ReconstructionResults& results) {
 }
 
 // Not HasSubstr: a failure would print the page, which is long.
-bool has(const std::string& page, const std::string& part) {
+bool page_has(const std::string& page, const std::string& part) {
   return page.find(part) != std::string::npos;
 }
 
@@ -43,7 +43,7 @@ TEST(ReconstructionHtml, HasTheNumbersOfTheTable) {
         "<td>30.0</td><td>0.0100</td>", "oracle: seed 2: too little", "the mesh has 3 holes",
         "measures calibration and depth noise", "what desynchronisation costs a reconstruction",
         "simbench reconstruct --scenario &#39;it&#39;\\&#39;&#39;s&#39;"}) {
-    EXPECT_TRUE(has(page, part)) << part;
+    EXPECT_TRUE(page_has(page, part)) << part;
   }
 }
 
@@ -54,9 +54,10 @@ TEST(ReconstructionHtml, ShowsThePicturesInTheOrderOfTheTable) {
   ASSERT_NE(ntp, std::string::npos);
   ASSERT_NE(both, std::string::npos);
   EXPECT_LT(ntp, both);
-  EXPECT_TRUE(has(page, "yoon2021_both: 5.0 ms of desynchronisation, error 2.40 cm ± 1.80 cm"));
-  EXPECT_TRUE(has(page, "10 cm and more"));
-  EXPECT_TRUE(has(page, "linear-gradient(to right, rgb("));
+  EXPECT_TRUE(
+      page_has(page, "yoon2021_both: 5.0 ms of desynchronisation, error 2.40 cm ± 1.80 cm"));
+  EXPECT_TRUE(page_has(page, "10 cm and more"));
+  EXPECT_TRUE(page_has(page, "linear-gradient(to right, rgb("));
 }
 
 TEST(ReconstructionHtml, HoldsTheFigureAsData) {
@@ -71,12 +72,12 @@ TEST(ReconstructionHtml, HoldsTheFigureAsData) {
 
 TEST(ReconstructionHtml, AsksNothingOfAnyServer) {
   const std::string page = page_of(sample_reconstruction());
-  EXPECT_TRUE(has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
+  EXPECT_TRUE(page_has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
   for (std::size_t at = page.find("src="); at != std::string::npos;
        at = page.find("src=", at + 1)) {
     EXPECT_EQ(page.compare(at, 9, "src=\"data"), 0) << page.substr(at, 40);
   }
-  EXPECT_FALSE(has(page, "url("));
+  EXPECT_FALSE(page_has(page, "url("));
 }
 
 TEST(ReconstructionHtml, MarkupInNamesIsText) {
@@ -90,8 +91,8 @@ TEST(ReconstructionHtml, MarkupInNamesIsText) {
       {.results = results,
        .pictures = {{.pipeline = evil, .png = "x", .desync_ms = 1, .errors = {}}},
        .command = {"simbench", evil}});
-  EXPECT_FALSE(has(page, "<img src=x"));
-  EXPECT_FALSE(has(page, "</script><img"));
+  EXPECT_FALSE(page_has(page, "<img src=x"));
+  EXPECT_FALSE(page_has(page, "</script><img"));
 }
 
 TEST(ReconstructionHtml, WithoutPicturesOrCurveTheirPartsAreLeftOut) {
@@ -100,9 +101,9 @@ TEST(ReconstructionHtml, WithoutPicturesOrCurveTheirPartsAreLeftOut) {
   results.speed_needed.reset();
   const std::string page = reconstruction_html(
       {.results = results, .pictures = {}, .command = {"simbench", "reconstruct"}});
-  EXPECT_FALSE(has(page, "What the reconstruction looks like"));
-  EXPECT_FALSE(has(page, "How good must my"));
-  EXPECT_TRUE(has(page, "the curve was not requested"));
+  EXPECT_FALSE(page_has(page, "What the reconstruction looks like"));
+  EXPECT_FALSE(page_has(page, "How good must my"));
+  EXPECT_TRUE(page_has(page, "the curve was not requested"));
 }
 
 }  // namespace

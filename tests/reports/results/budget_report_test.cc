@@ -26,7 +26,7 @@ evaluation::ErrorParts parts() {
   return error;
 }
 
-BudgetReport sample() {
+BudgetReport sample_report() {
   evaluation::Budget budget;
   budget.pipeline = "mine";
   budget.amd_ms = parts();
@@ -36,22 +36,22 @@ BudgetReport sample() {
 }
 
 TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
-  const std::string text = plain(budget_document(sample()));
+  const std::string text = plain(budget_document(sample_report()));
   EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed from 1"));
   EXPECT_THAT(text, HasSubstr("USB delivery"));
   EXPECT_THAT(text, HasSubstr("28.4 %"));  // of the gathering: 6 / 21.125
   EXPECT_THAT(text, HasSubstr("over the sets that gathering emits"));
-  EXPECT_THAT(markdown(budget_document(sample())), HasSubstr("## Error budget of mine"));
+  EXPECT_THAT(markdown(budget_document(sample_report())), HasSubstr("## Error budget of mine"));
 }
 
 TEST(BudgetReport, SaysWhenGatheringHasNoPart) {
-  BudgetReport report = sample();
+  BudgetReport report = sample_report();
   report.budgets[0].amd_of_sets = false;
   EXPECT_THAT(plain(budget_document(report)), HasSubstr("gathering has no part"));
 }
 
 TEST(BudgetReport, JsonHasEveryStageAndNullForWhatDoesNotExist) {
-  BudgetReport report = sample();
+  BudgetReport report = sample_report();
   report.budgets[0].physical_ms.total = part(std::numeric_limits<double>::quiet_NaN());
   const auto root = nlohmann::json::parse(budget_json(report));
   const auto& budget = root["budgets"][0];

@@ -10,7 +10,7 @@
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 TEST(ResultsJson, SaysWhatItIs) {
   const Json root = Json::parse(json(sample_results()));

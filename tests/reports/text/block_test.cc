@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Table sample() {
+Table sample_table() {
   Table table({{"name", Align::kLeft}, {"AMD\nmedian ms"}, {"note", Align::kLeft}});
   table.add({"a", "1.5", "x|y"});
   table.add({"longer", "12345.25", ""});
@@ -21,13 +21,13 @@ Table sample() {
 Document sample_document() {
   return {.title = "a title",
           .head = {"What it is about."},
-          .blocks = {{.heading = "Numbers", .table = sample(), .prose = {"A sentence."}},
+          .blocks = {{.heading = "Numbers", .table = sample_table(), .prose = {"A sentence."}},
                      {.heading = "What went wrong", .items = {"this", "that"}, .is_warning = true},
                      {.prose = {"The end."}}}};
 }
 
 TEST(Table, PlainAlignsNumbersRightAndHeadersAtTheBottom) {
-  EXPECT_EQ(plain(sample()),
+  EXPECT_EQ(plain(sample_table()),
             "              AMD\n"
             "name    median ms  note\n"
             "------  ---------  ----\n"
@@ -36,7 +36,7 @@ TEST(Table, PlainAlignsNumbersRightAndHeadersAtTheBottom) {
 }
 
 TEST(Table, MarkdownJoinsHeadersAndEscapesBars) {
-  EXPECT_EQ(markdown(sample()),
+  EXPECT_EQ(markdown(sample_table()),
             "| name | AMD median ms | note |\n"
             "|---|---:|---|\n"
             "| a | 1.5 | x\\|y |\n"
@@ -78,21 +78,21 @@ TEST(TableDeathTest, ARowHasACellForEveryColumn) {
 
 TEST(Document, PlainHasAnEmptyLineBetweenBlocks) {
   EXPECT_EQ(plain(sample_document()), "a title\nWhat it is about.\n\nNumbers\n\n" +
-                                          plain(sample()) +
+                                          plain(sample_table()) +
                                           "\nA sentence.\n\nWhat went wrong\n  this\n  that\n"
                                           "\nThe end.\n");
 }
 
 TEST(Document, MarkdownHasHeadingsAndLists) {
   EXPECT_EQ(markdown(sample_document()),
-            "## a title\n\nWhat it is about.\n\n### Numbers\n\n" + markdown(sample()) +
+            "## a title\n\nWhat it is about.\n\n### Numbers\n\n" + markdown(sample_table()) +
                 "\nA sentence.\n\n### What went wrong\n\n- this\n- that\n\nThe end.\n");
 }
 
 TEST(Document, WithoutATitleABlockBeginsIt) {
-  const Document document{.blocks = {{.heading = "Numbers", .table = sample()}}};
-  EXPECT_EQ(plain(document), "Numbers\n\n" + plain(sample()));
-  EXPECT_EQ(markdown(document), "## Numbers\n\n" + markdown(sample()));
+  const Document document{.blocks = {{.heading = "Numbers", .table = sample_table()}}};
+  EXPECT_EQ(plain(document), "Numbers\n\n" + plain(sample_table()));
+  EXPECT_EQ(markdown(document), "## Numbers\n\n" + markdown(sample_table()));
 }
 
 TEST(Document, PlainFitsThePage) {

@@ -10,19 +10,19 @@
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint64_t kSeed = 5;
+constexpr std::uint64_t kExposureSeed = 5;
 
 AutoExposure stepping(std::size_t camera = 0) {
   return {{.step_interval_exponential_ms = 200, .min_ms = 2, .max_ms = 6},
           from_ms(8),
-          kSeed,
+          kExposureSeed,
           camera,
           at_ms(1000)};
 }
 
 TEST(AutoExposure, WithoutStepsIsConstant) {
   AutoExposure exposure({.step_interval_exponential_ms = 0, .min_ms = 1, .max_ms = 2}, from_ms(8),
-                        kSeed, 0, at_ms(0));
+                        kExposureSeed, 0, at_ms(0));
   for (const double ms : {-1.0, 0.0, 1e9}) EXPECT_EQ(exposure.at(at_ms(ms)), from_ms(8)) << ms;
 }
 
@@ -45,8 +45,8 @@ TEST(AutoExposure, BeginsWithTheConfiguredExposureAndGoesToValuesOfItsRange) {
   }
   // 5 steps a second, Poisson: 10,000 +- 100; of those closer than the 1 ms of the scan, about
   // 1 ms / 200 ms, two are seen as one.
-  EXPECT_NEAR(steps, 10'000 * (1 - 0.0025), 5 * 100) << "seed " << kSeed;
-  EXPECT_NEAR(sum_ms / steps, 4, 5 * 4 / std::sqrt(12.0 * 10'000)) << "seed " << kSeed;
+  EXPECT_NEAR(steps, 10'000 * (1 - 0.0025), 5 * 100) << "seed " << kExposureSeed;
+  EXPECT_NEAR(sum_ms / steps, 4, 5 * 4 / std::sqrt(12.0 * 10'000)) << "seed " << kExposureSeed;
 }
 
 TEST(AutoExposure, ValuesDoNotDependOnTheOrderOfQueries) {

@@ -13,7 +13,7 @@
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint64_t kSeed = 4242;
+constexpr std::uint64_t kNetworkSeed = 4242;
 
 // Latency 1 ms each way and nothing else.
 scenarios::Network plain_network() {
@@ -64,7 +64,7 @@ class Probe : public Endpoint {
 // A network of some hosts in which things are sent at given times.
 class World {
  public:
-  explicit World(const scenarios::Network& parameters, std::uint64_t seed = kSeed)
+  explicit World(const scenarios::Network& parameters, std::uint64_t seed = kNetworkSeed)
       : parameters_(parameters),
         load_(seed, "load", scenarios::Hosts{}, parameters_),
         network_(engine_, parameters_, seed, 8, load_, outages_) {}
@@ -187,13 +187,13 @@ TEST(NetworkTest, ALostSegmentHoldsUpWhatFollowsIt) {
   double held_until_ms = 0;
   for (int i = 0; i < 250; ++i) {
     const Seen& message = b.arrived[static_cast<std::size_t>(i)];
-    ASSERT_EQ(message.number, i) << "seed " << kSeed;
+    ASSERT_EQ(message.number, i) << "seed " << kNetworkSeed;
     // Its own delay is 0, 200, 200 + 400 ... ms, or it arrives with one before it.
     const double own_ms = message.at_ms - i * 10 - 1;
     if (message.at_ms > held_until_ms) {
       held_until_ms = message.at_ms;
       const double timeouts = std::log2(own_ms / 200 + 1);
-      ASSERT_NEAR(timeouts, std::round(timeouts), 1e-6) << own_ms << " ms, seed " << kSeed;
+      ASSERT_NEAR(timeouts, std::round(timeouts), 1e-6) << own_ms << " ms, seed " << kNetworkSeed;
       if (timeouts > 0.5) ++delayed_by_one_timeout;
     } else {
       ASSERT_EQ(message.at_ms, held_until_ms);
@@ -226,7 +226,7 @@ TEST(NetworkTest, DatagramsAreLostDuplicatedAndReorderedAtTheirRates) {
   };
   const auto expect_rate = [&](double seen, double p, const char* what) {
     EXPECT_NEAR(seen / kMessages, p, 5 * std::sqrt(p * (1 - p) / kMessages))
-        << what << ", seed " << kSeed;
+        << what << ", seed " << kNetworkSeed;
   };
   expect_rate(count(0), 0.1, "lost");
   expect_rate(count(2), 0.9 * 0.05, "duplicated");
@@ -283,7 +283,7 @@ TEST(NetworkTest, LatencyHasTheMeanOfItsParts) {
   // Variance: 0.05^2, and of the spike p max^2 / 3 - (p max / 2)^2.
   const double sigma_ms = std::sqrt(0.0025 + 0.1 * 4 / 3 - 0.01);
   EXPECT_NEAR(sum_ms / kMessages, 0.1 + 0.05 + 0.1, 5 * sigma_ms / std::sqrt(kMessages))
-      << "seed " << kSeed;
+      << "seed " << kNetworkSeed;
 }
 
 // A sender that sends more on one link, or on the other transport of the same link, moves nobody
@@ -320,9 +320,9 @@ TEST(NetworkTest, DrawsAreKeyedByLinkDirectionAndMessage) {
 TEST(NetworkTest, MessagesWaitForAReceiverThatOpensLate) {
   Engine engine;
   const scenarios::Network parameters = plain_network();
-  const RunLoad load(kSeed, "load", scenarios::Hosts{}, parameters);
+  const RunLoad load(kNetworkSeed, "load", scenarios::Hosts{}, parameters);
   const Outages outages(std::vector<scenarios::Fault>{});
-  Network network(engine, parameters, kSeed, 2, load, outages);
+  Network network(engine, parameters, kNetworkSeed, 2, load, outages);
   Probe a(network, engine, 0, 1, Transport::kStream);
   a.send(1);
   engine.run();
@@ -338,12 +338,12 @@ TEST(NetworkTest, SessionLoadIsCommonToBothEndsAndToNothingElse) {
   hosts.send_cost_session_exponential_ms = 3;
   hosts.clock.set_cost_session_log_sigma = 0.2;
   hosts.load_log_sigma = 0.6;
-  const RunLoad load(kSeed, "both@world", hosts, network);
+  const RunLoad load(kNetworkSeed, "both@world", hosts, network);
   EXPECT_NE(load.session(0, 1).send_cost_ms, load.session(1, 0).send_cost_ms);
   EXPECT_EQ(load.session(0, 1).latency_ms, load.session(1, 0).latency_ms);
   EXPECT_NE(load.session(0, 1).send_cost_ms, load.session(0, 2).send_cost_ms);
   EXPECT_NE(load.set_cost_factor(0), load.set_cost_factor(1));
-  EXPECT_NE(load.factor(), RunLoad(kSeed, "time@world", hosts, network).factor());
+  EXPECT_NE(load.factor(), RunLoad(kNetworkSeed, "time@world", hosts, network).factor());
 }
 
 TEST(NetworkTest, SessionOccupancyIsExponentialTimesTheRunsFactor) {

@@ -14,7 +14,7 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kLatency{150'000};
+constexpr Nanoseconds kPtpLatency{150'000};
 
 TEST(PtpOffsetTest, EndToEndAndPeerDelayFindTheOffset) {
   // Slave 5000 ahead, delay 300 each way.
@@ -43,7 +43,7 @@ TEST(PtpOffsetTest, ALateRequestDoesNotCountInTheMedian) {
 class PtpTest : public testing::TestWithParam<bool> {
  protected:
   PtpTest() {
-    world_.connect(kLatency);
+    world_.connect(kPtpLatency);
     for (const PeerId slave : world_.slaves()) {
       world_.host(slave).offset = from_ms(-400.0 * slave);
       world_.host(slave).uniform = 0.4;
@@ -68,12 +68,12 @@ TEST_P(PtpTest, StepsTheSlavesToTheMaster) {
         << world_.host(slave).outcomes[0].message;
     ASSERT_FALSE(world_.host(slave).exchanges.empty());
     const Exchange& exchange = world_.host(slave).exchanges.front();
-    EXPECT_EQ((*exchange.t2 - *exchange.t1) + (*exchange.t4 - *exchange.t3), 2 * kLatency);
+    EXPECT_EQ((*exchange.t2 - *exchange.t1) + (*exchange.t4 - *exchange.t3), 2 * kPtpLatency);
   }
 }
 
 TEST_P(PtpTest, AsymmetryIsInTheResultWithItsHalf) {
-  world_.set_latency(1, 0, kLatency + from_ms(0.1));
+  world_.set_latency(1, 0, kPtpLatency + from_ms(0.1));
   Ptp sync(settings_);
   world_.run(sync, from_ms(60e3));
   EXPECT_NEAR(lead_us(1), 50, 0.01);
@@ -85,11 +85,11 @@ TEST_P(PtpTest, CorrectionsOfTransparentClocksAreTakenOut) {
   const auto deliver_corrected = [&world](PeerId from, PeerId to, Nanoseconds residence) {
     return [&world, from, to, residence](std::size_t, const Bytes& bytes) {
       const auto message = decode_ptp_message(bytes);
-      if (!message || static_cast<int>(message->type) > 3) return std::vector{kLatency};
+      if (!message || static_cast<int>(message->type) > 3) return std::vector{kPtpLatency};
       PtpMessage corrected = *message;
       corrected.correction += residence.count() * 65'536;
       const Bytes changed = encode(corrected);
-      world.call_at(world.now() + kLatency + residence,
+      world.call_at(world.now() + kPtpLatency + residence,
                     [&world, from, to, changed] { world.host(to).deliver(from, changed); });
       return std::vector<Nanoseconds>{};
     };
@@ -108,11 +108,11 @@ TEST_P(PtpTest, LossDuplicatesReorderingAndGarbageCostMeasurementsOnly) {
       case 0:
         return std::vector<Nanoseconds>{};
       case 1:
-        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(0.3)};
+        return std::vector<Nanoseconds>{kPtpLatency, kPtpLatency + from_ms(0.3)};
       case 2:
-        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(2500)};
+        return std::vector<Nanoseconds>{kPtpLatency, kPtpLatency + from_ms(2500)};
       default:
-        return std::vector<Nanoseconds>{kLatency};
+        return std::vector<Nanoseconds>{kPtpLatency};
     }
   };
   world_.script_link(0, 1, unreliable);

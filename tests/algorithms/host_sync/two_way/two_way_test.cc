@@ -12,7 +12,7 @@
 namespace simbench {
 namespace {
 
-constexpr Nanoseconds kLatency{150'000};
+constexpr Nanoseconds kTwoWayLatency{150'000};
 
 // The scripted clock slews at once, which no real one does: always step.
 TwoWaySettings settings_of_test() {
@@ -26,7 +26,7 @@ TwoWay hull_sync(TwoWaySettings settings) {
 }
 
 void connect(ScriptWorld& world) {
-  world.connect(kLatency);
+  world.connect(kTwoWayLatency);
   for (const PeerId slave : world.slaves()) {
     world.host(slave).offset = from_ms(300.0 * slave);
     world.host(slave).uniform = 0.5;
@@ -59,8 +59,8 @@ TEST(TwoWayTest, TheFourStampsOfAnExchangeAreReported) {
   ASSERT_FALSE(world.host(1).exchanges.empty());
   const Exchange& exchange = world.host(1).exchanges.front();
   EXPECT_EQ(exchange.peer, 0u);
-  EXPECT_EQ(*exchange.t4 - *exchange.t1, 2 * kLatency);
-  EXPECT_EQ(*exchange.t2 - *exchange.t1, kLatency + from_ms(700));
+  EXPECT_EQ(*exchange.t4 - *exchange.t1, 2 * kTwoWayLatency);
+  EXPECT_EQ(*exchange.t2 - *exchange.t1, kTwoWayLatency + from_ms(700));
   EXPECT_EQ(*exchange.t3, *exchange.t2);
 }
 
@@ -81,7 +81,7 @@ TEST(TwoWayTest, SenderOccupancyIsInTheNaivePathOnly) {
 TEST(TwoWayTest, AsymmetryIsInTheResultWithItsHalf) {
   ScriptWorld world(2);
   connect(world);
-  world.set_latency(1, 0, kLatency + from_ms(0.04));
+  world.set_latency(1, 0, kTwoWayLatency + from_ms(0.04));
   TwoWay sync = hull_sync(settings_of_test());
   world.run(sync, from_ms(20e3));
   EXPECT_LE(std::abs((world.host(1).lead_over(world.host(0)) - from_ms(0.02)).count()), 2);
@@ -94,11 +94,11 @@ TEST(TwoWayTest, LossDuplicatesAndLateMessagesCostExchangesOnly) {
       case 0:
         return std::vector<Nanoseconds>{};
       case 1:
-        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(0.1)};
+        return std::vector<Nanoseconds>{kTwoWayLatency, kTwoWayLatency + from_ms(0.1)};
       case 2:
-        return std::vector<Nanoseconds>{kLatency, kLatency + from_ms(900)};
+        return std::vector<Nanoseconds>{kTwoWayLatency, kTwoWayLatency + from_ms(900)};
       default:
-        return std::vector<Nanoseconds>{kLatency};
+        return std::vector<Nanoseconds>{kTwoWayLatency};
     }
   };
   ScriptWorld world(2);
@@ -115,7 +115,7 @@ TEST(TwoWayTest, TheDepartureOfALostReplysPredecessorComesWithTheNextOne) {
   ScriptWorld world(2);
   connect(world);
   world.script_link(0, 1, [](std::size_t index, const Bytes&) {
-    return index % 2 == 1 ? std::vector<Nanoseconds>{} : std::vector{kLatency};
+    return index % 2 == 1 ? std::vector<Nanoseconds>{} : std::vector{kTwoWayLatency};
   });
   TwoWay sync = hull_sync(settings_of_test());
   world.run(sync, from_ms(20e3));
