@@ -63,9 +63,8 @@ std::vector<std::string> wanted_ids(const FigureOptions& options) {
 // The pipeline's AMD at this seed; nothing if the results have none.
 std::optional<double> amd_of(const evaluation::Results& results, const std::string& pipeline,
                              std::uint64_t seed) {
-  const auto row = std::find_if(results.rows.begin(), results.rows.end(),
-                                [&](const Row& r) { return r.pipeline == pipeline; });
-  if (row == results.rows.end() || seed < results.first_seed) return std::nullopt;
+  const Row* const row = evaluation::find_row(results.rows, pipeline);
+  if (row == nullptr || seed < results.first_seed) return std::nullopt;
   const std::uint64_t index = seed - results.first_seed;
   if (index >= row->amd_ms.values.size()) return std::nullopt;
   return row->amd_ms.values[index];

@@ -42,7 +42,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-scenarios::Scenario scenario_of(const RecordingFolder& recorded, const std::string& folder) {
+scenarios::Scenario recorded_scenario(const RecordingFolder& recorded, const std::string& folder) {
   const std::string& text = recorded.description().scenario_json;
   if (text.empty()) {
     throw RecordingFolderError(
@@ -69,7 +69,7 @@ void record_captures(const std::vector<evaluation::PipelineChoice>& choices,
 RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(folder) {
   const std::vector<RecordedCapture>& captures = folder_.captures();
   if (captures.empty()) throw RecordingFolderError(fmt::format("{}: holds no capture", folder));
-  scenario_ = scenario_of(folder_, folder);
+  scenario_ = recorded_scenario(folder_, folder);
   const auto [first, last] = std::minmax_element(
       captures.begin(), captures.end(),
       [](const RecordedCapture& a, const RecordedCapture& b) { return a.seed < b.seed; });

@@ -19,7 +19,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 // A script with the name of the default command in place of DEFAULT.
-std::string with_default_command(const char* script) {
+std::string named_default_command(const char* script) {
   return replaced(script, "DEFAULT", kDefaultCommand);
 }
 
@@ -170,7 +170,7 @@ std::string bash_completion(const CommandTable& table) {
                      function("_simbench_options", "$1", options, ""),
                      function("_simbench_value", "\"$1 $2\"", values, "-"),
                      function("_simbench_argument", "\"$1 $2\"", arguments, "-"),
-                     with_default_command(kBashBody).substr(1));
+                     named_default_command(kBashBody).substr(1));
 }
 
 namespace {
@@ -270,7 +270,7 @@ std::string zsh_completion(const CommandTable& table) {
   }
   text += ")\n" + specs("program_options", table.program);
   for (const CommandEntry& command : table.commands) text += specs(command.name, command);
-  return text + with_default_command(kZshTail);
+  return text + named_default_command(kZshTail);
 }
 
 namespace {
@@ -343,7 +343,7 @@ std::string argument_line(const std::string& condition, const OptionEntry& argum
 }  // namespace
 
 std::string fish_completion(const CommandTable& table) {
-  std::string text = with_default_command(kFishHead);
+  std::string text = named_default_command(kFishHead);
   for (const OptionEntry& option : table.program.options) {
     text += option_line("__simbench_starts", option);
   }

@@ -117,7 +117,7 @@ constexpr const char* kHullSource = "docs/reference/device_time.md section 1";
 constexpr const char* kTicSync =
     "Harrison, Newman: TICSync, 2011; docs/reference/device_time.md section 1";
 
-AlgorithmInfo info(const char* name, const char* summary, const char* source) {
+AlgorithmInfo hull_info(const char* name, const char* summary, const char* source) {
   return {.name = name,
           .family = "hull",
           .summary = summary,
@@ -126,7 +126,8 @@ AlgorithmInfo info(const char* name, const char* summary, const char* source) {
 }
 
 DeviceTimeEntry switching(const char* name, double period_s, const char* summary) {
-  return {.info = info(name, summary, kTicSync), .make = [period_s](const Parameters& parameters) {
+  return {.info = hull_info(name, summary, kTicSync),
+          .make = [period_s](const Parameters& parameters) {
             return make_switching_hull(
                 {.period_s = period_s, .max_skew_ppm = parameters.number(kMaxSkewName)});
           }};
@@ -141,7 +142,7 @@ ParameterSpec max_skew_parameter() {
 
 std::vector<DeviceTimeEntry> device_time_hull() {
   return {
-      {.info = info("hull_300", "lower hull of the last 300 frames", kHullSource),
+      {.info = hull_info("hull_300", "lower hull of the last 300 frames", kHullSource),
        .make =
            [](const Parameters& parameters) {
              return make_window_hull(
@@ -149,7 +150,7 @@ std::vector<DeviceTimeEntry> device_time_hull() {
            }},
       switching("hull_switch_10s", 10, "two growing lower hulls, 10 s apart: 10 to 20 s of frames"),
       switching("hull_switch_60s", 60, "two growing lower hulls, 60 s apart: 1 to 2 min of frames"),
-      {.info = info("hull_offline", "lower hull of the whole recording", kHullSource),
+      {.info = hull_info("hull_offline", "lower hull of the whole recording", kHullSource),
        .make =
            [](const Parameters& parameters) {
              return make_offline_hull(parameters.number(kMaxSkewName));

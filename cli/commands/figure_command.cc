@@ -164,7 +164,7 @@ const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& mad
                                made.notes.empty() ? "there is no run" : made.notes.front()));
 }
 
-int run(const FigureCommand& command) {
+int draw_figure(const FigureCommand& command) {
   if (command.list) {
     print_result(catalogue_text());
     return kOk;
@@ -232,7 +232,7 @@ void add_figure_command(CommandLine& line) {
                "The file; its ending chooses .svg, .pdf or .csv. Replaces an earlier file");
   command.json_messages();
   command.footer(kFigureExamples);
-  command.runs([options] { return run(*options); }, [options] { check(*options); });
+  command.runs([options] { return draw_figure(*options); }, [options] { check(*options); });
 }
 
 }  // namespace simbench::cli

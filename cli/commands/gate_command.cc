@@ -44,7 +44,7 @@ int save_baseline(const GateOptions& options) {
   return kOk;
 }
 
-std::string formatted(const reports::GateReport& report, const std::string& format) {
+std::string report_text(const reports::GateReport& report, const std::string& format) {
   if (format == "json") return reports::gate_json(report);
   if (format == "junit") return reports::gate_junit(report);
   return reports::gate_text(report);
@@ -70,7 +70,7 @@ int gate(const GateOptions& options) {
   if (!options.junit.empty()) {
     reports::write_file(options.junit, reports::gate_junit(report));
   }
-  print_result(formatted(report, options.format));
+  print_result(report_text(report, options.format));
   return report.passed() ? kOk : kGateFailed;
 }
 

@@ -45,7 +45,7 @@ struct ReplayOptions {
   std::vector<std::string> command;
 };
 
-std::string formatted(const evaluation::Replay& replay, const ReplayOptions& options) {
+std::string replay_text(const evaluation::Replay& replay, const ReplayOptions& options) {
   if (options.format == "json") return reports::replay_json(replay, options.files);
   if (options.format == "csv") return reports::replay_csv(replay);
   return reports::replay_table(replay);
@@ -82,7 +82,7 @@ int run_files(const ReplayOptions& options) {
     output->publish();
     print_note("results written to " + options.output);
   }
-  print_result(formatted(replay, options));
+  print_result(replay_text(replay, options));
   return kOk;
 }
 

@@ -65,7 +65,7 @@ void check_pipelines(const app::ReportDetail& detail,
   }
 }
 
-int run(const ReportOptions& options) {
+int make_report(const ReportOptions& options) {
   check_named_once(options.archives);
   std::vector<reports::Archive> archives;
   for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
@@ -115,7 +115,7 @@ void add_report_command(CommandLine& line) {
                "Show only these pipelines in detail; the tables have all");
   command.json_messages();
   command.footer(kReportExamples);
-  command.runs([options] { return run(*options); });
+  command.runs([options] { return make_report(*options); });
 }
 
 }  // namespace simbench::cli

@@ -158,7 +158,7 @@ std::vector<std::string> pipelines_of(const reports::MeasuredStudy& study,
   return names;
 }
 
-std::string formatted(const reports::ModelGapReport& report, const std::string& format) {
+std::string model_gap_text(const reports::ModelGapReport& report, const std::string& format) {
   if (format == "json") return reports::model_gap_json(report);
   const reports::Document document = reports::model_gap_document(report);
   return format == "markdown" ? markdown(document) : plain(document);
@@ -184,7 +184,7 @@ int validate_model(const ValidateModelOptions& options) {
         {.seeds = options.seeds, .pipelines = pipelines_of(*study, options)}, progress);
   });
   if (!simulated) return kInterrupted;
-  print_result(formatted(reports::model_gap_report(*study, *simulated), options.format));
+  print_result(model_gap_text(reports::model_gap_report(*study, *simulated), options.format));
   return kOk;
 }
 

@@ -127,10 +127,8 @@ std::span<const StageEvidence> model_evidence() { return kStages; }
 std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simulated) {
   std::vector<ModelGapRow> rows;
   for (const Row& found : measured.rows) {
-    const auto predicted =
-        std::find_if(simulated.rows.begin(), simulated.rows.end(),
-                     [&](const Row& row) { return row.pipeline == found.pipeline; });
-    if (predicted == simulated.rows.end()) continue;
+    const Row* const predicted = find_row(simulated.rows, found.pipeline);
+    if (predicted == nullptr) continue;
     for (const char* id : kGapMetrics) {
       ModelGapRow row = compare(found.pipeline, metric(id), found, *predicted);
       if (row.measured.count + row.simulated.count > 0) rows.push_back(std::move(row));

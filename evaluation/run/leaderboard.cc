@@ -14,13 +14,6 @@ std::string board_of(const Row& row) {
   return dot == std::string::npos ? "" : row.pipeline.substr(0, dot);
 }
 
-const Row* find_row(const Results& results, const std::string& pipeline) {
-  for (const Row& row : results.rows) {
-    if (row.pipeline == pipeline) return &row;
-  }
-  return nullptr;
-}
-
 PairedRatios ratios(const Row& row, const Row* other) {
   if (other == nullptr) {
     const Series none = make_series({});
@@ -77,7 +70,7 @@ Series paired_ratio(const Series& numerator, const Series& denominator) {
 }
 
 std::vector<Board> leaderboard(const Results& results) {
-  const Row* paper = find_row(results, std::string(kPaperPipeline));
+  const Row* paper = find_row(results.rows, std::string(kPaperPipeline));
   std::vector<Board> boards;
   for (const Row& row : results.rows) {
     const std::string name = board_of(row);
@@ -87,7 +80,7 @@ std::vector<Board> leaderboard(const Results& results) {
       boards.push_back({.name = name, .online = {}, .offline = {}});
       board = boards.end() - 1;
     }
-    const Row* oracle = find_row(results, name.empty() ? "oracle" : name + ".oracle");
+    const Row* oracle = find_row(results.rows, name.empty() ? "oracle" : name + ".oracle");
     (row.offline ? board->offline : board->online)
         .push_back({.row = &row, .to_oracle = ratios(row, oracle), .to_paper = ratios(row, paper)});
   }

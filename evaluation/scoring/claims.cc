@@ -129,12 +129,6 @@ constexpr Statement kStatements[] = {
     {"C10", "adding both delays helps: AMD both < network and both < time", kBothNetworkTime, 0, "",
      both_is_best}};
 
-const Row* find_row(const std::vector<Row>& rows, const std::string& pipeline) {
-  const auto found = std::find_if(rows.begin(), rows.end(),
-                                  [&](const Row& row) { return row.pipeline == pipeline; });
-  return found == rows.end() ? nullptr : &*found;
-}
-
 // What the statement needs and the scenario or its rows lack; empty if nothing.
 std::string missing(const Statement& statement, const std::vector<Row>& rows,
                     double trigger_rate_hz) {

@@ -8,7 +8,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/scoring/asymmetry_floor.h"
@@ -90,6 +92,14 @@ struct Performance {
   double events_per_second = 0;  // of wall time, all workers together
   double simulated_seconds_per_second = 0;
 };
+
+// The row of a pipeline; null if there is none.
+inline const Row* find_row(std::span<const Row> rows, std::string_view pipeline) {
+  for (const Row& row : rows) {
+    if (row.pipeline == pipeline) return &row;
+  }
+  return nullptr;
+}
 
 struct Results {
   std::string scenario;

@@ -22,8 +22,8 @@ struct PixelBox {
 };
 
 // A box around all pixels that can see one of the boxes in the world.
-PixelBox box_of(const std::vector<Eigen::AlignedBox3d>& bounds, const Pinhole& camera,
-                const Eigen::Isometry3d& camera_from_world) {
+PixelBox pixel_box(const std::vector<Eigen::AlignedBox3d>& bounds, const Pinhole& camera,
+                   const Eigen::Isometry3d& camera_from_world) {
   const PixelBox everything{0, camera.width, 0, camera.height};
   Eigen::AlignedBox2d pixels;
   for (const Eigen::AlignedBox3d& box : bounds) {
@@ -106,7 +106,7 @@ struct RayCaster::Scene {
 template <typename Met>
 void RayCaster::Scene::cast(const Pinhole& camera, const Eigen::Isometry3d& world_from_camera,
                             Met met) const {
-  const PixelBox box = box_of(bounds, camera, world_from_camera.inverse());
+  const PixelBox box = pixel_box(bounds, camera, world_from_camera.inverse());
   const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
   const Eigen::Matrix3d turn = world_from_camera.linear();
   RTCIntersectContext context{};

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "recording/version.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/csv.h"
@@ -22,15 +20,8 @@ std::vector<std::string> names_of(const Archive& archive) {
   return names;
 }
 
-const Row* find_row(const Archive& archive, const std::string& name) {
-  const std::vector<Row>& rows = archive.results.rows;
-  const auto found =
-      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.pipeline == name; });
-  return found == rows.end() ? nullptr : &*found;
-}
-
 const Row& row_of(const Archive& archive, const std::string& name, const char* option) {
-  if (const Row* row = find_row(archive, name)) return *row;
+  if (const Row* row = evaluation::find_row(archive.results.rows, name)) return *row;
   throw InputError(fmt::format("{}: found '{}', which {} does not have; it has {}", option, name,
                                archive.path, fmt::join(names_of(archive), ", ")));
 }
@@ -130,7 +121,7 @@ void note_other_pipelines(const Archive& archive, const Archive& other,
                           std::vector<std::string>& notes) {
   std::vector<std::string> missing;
   for (const std::string& name : names_of(archive)) {
-    if (find_row(other, name) == nullptr) missing.push_back(name);
+    if (evaluation::find_row(other.results.rows, name) == nullptr) missing.push_back(name);
   }
   if (missing.empty()) return;
   notes.push_back(
@@ -158,7 +149,7 @@ Comparison compare_archives(const Archive& a, const Archive& b, const Comparison
   note_versions(a, b, notes);
   if (options.pipelines.empty()) {
     for (const Row& row : a.results.rows) {
-      const Row* other = find_row(b, row.pipeline);
+      const Row* other = evaluation::find_row(b.results.rows, row.pipeline);
       if (other == nullptr) continue;
       comparison.pipelines.push_back(compared(row, *other, pairing, options));
     }

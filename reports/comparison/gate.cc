@@ -149,19 +149,13 @@ void end_statistically(const OpenCheck& open, const evaluation::HolmDecision& de
   }
 }
 
-const Row* find_row(const evaluation::Results& results, const std::string& name) {
-  const auto found = std::find_if(results.rows.begin(), results.rows.end(),
-                                  [&](const Row& row) { return row.pipeline == name; });
-  return found == results.rows.end() ? nullptr : &*found;
-}
-
 void make_checks(const Archive& result, const Baseline& baseline, const SeedPairing& pairing,
                  GateReport& report) {
   const auto judged = evaluation::judged_metrics();
   std::vector<OpenCheck> open;
   std::vector<double> p;
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
-    const Row* row = find_row(result.results, pipeline.name);
+    const Row* row = evaluation::find_row(result.results.rows, pipeline.name);
     if (row == nullptr) {
       report.vanished_pipelines.push_back(pipeline.name);
       continue;

@@ -107,10 +107,8 @@ std::string title_of(const ReportInput& input) {
 }
 
 std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
-  const std::vector<Row>& rows = archive.results.rows;
-  const auto row = std::find_if(rows.begin(), rows.end(),
-                                [&](const Row& each) { return each.pipeline == pipeline; });
-  if (row == rows.end() || std::isnan(((*row).*series).median)) return "-";
+  const Row* const row = evaluation::find_row(archive.results.rows, pipeline);
+  if (row == nullptr || std::isnan(((*row).*series).median)) return "-";
   return fmt::format("{} {}{}", number_text(((*row).*series).median), band_text((*row).*series),
                      ground_truth_label(*row) == "unverified" ? " (unverified)" : "");
 }

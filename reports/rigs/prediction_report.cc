@@ -93,10 +93,8 @@ Json prediction_json(const Prediction& row) {
 std::vector<Prediction> predictions(const Results& measured, const Results& simulated) {
   std::vector<Prediction> all;
   for (const Row& found : measured.rows) {
-    const auto predicted =
-        std::find_if(simulated.rows.begin(), simulated.rows.end(),
-                     [&](const Row& row) { return row.pipeline == found.pipeline; });
-    if (predicted == simulated.rows.end()) continue;
+    const Row* const predicted = evaluation::find_row(simulated.rows, found.pipeline);
+    if (predicted == nullptr) continue;
     for (const char* const id : metrics_of(found)) {
       const evaluation::Metric& metric = evaluation::metric(id);
       Prediction row{.pipeline = found.pipeline,

@@ -35,7 +35,7 @@ std::string name_of(const Replay& replay, const CameraReplay& camera) {
   return camera.camera + "/" + camera.stream;
 }
 
-std::string cameras_text(const Replay& replay) {
+std::string clocks_text(const Replay& replay) {
   Table table({{"camera", Align::kLeft},
                {"host", Align::kLeft},
                {"frames"},
@@ -140,7 +140,7 @@ Json residual_json(const evaluation::ResidualStatistics& residual) {
           {"max", residual.max_ms}};
 }
 
-Json camera_json(const evaluation::CameraReplay& camera) {
+Json replayed_camera_json(const evaluation::CameraReplay& camera) {
   const evaluation::CameraStatistics& found = camera.statistics;
   return {{"camera", camera.camera},
           {"host", camera.host},
@@ -162,7 +162,8 @@ Json camera_json(const evaluation::CameraReplay& camera) {
             {"max", found.excess.max_ms}}}};
 }
 
-Json row_json(const evaluation::CameraReplay& camera, const evaluation::DeviceTimeReplay& row) {
+Json replayed_row_json(const evaluation::CameraReplay& camera,
+                       const evaluation::DeviceTimeReplay& row) {
   return {{"camera", camera.camera},
           {"stream", camera.stream},
           {"device_time", row.device_time},
@@ -204,7 +205,7 @@ Json rig_json(const evaluation::Replay& replay, const evaluation::RigReplay& rig
 }  // namespace
 
 std::string replay_table(const Replay& replay) {
-  std::string text = "The cameras and their clocks\n\n" + cameras_text(replay) +
+  std::string text = "The cameras and their clocks\n\n" + clocks_text(replay) +
                      "\nGlobal stamps, by estimator\n\n" + rows_text(replay);
   for (const RigReplay& rig : replay.rigs) text += rig_text(rig);
   return fitted(text + kReplayLegend);
@@ -261,9 +262,9 @@ std::string replay_json(const evaluation::Replay& replay, const std::vector<std:
                {"rigs", Json::array()},
                {"warnings", replay.warnings}};
   for (const evaluation::CameraReplay& camera : replay.cameras) {
-    root["cameras"].push_back(camera_json(camera));
+    root["cameras"].push_back(replayed_camera_json(camera));
     for (const evaluation::DeviceTimeReplay& row : camera.rows) {
-      root["rows"].push_back(row_json(camera, row));
+      root["rows"].push_back(replayed_row_json(camera, row));
     }
   }
   for (const evaluation::RigReplay& rig : replay.rigs) {
