@@ -14,7 +14,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-ValueKind kind_of(CLI::Option& option, const OptionEntry& entry) {
+ValueKind value_kind(CLI::Option& option, const OptionEntry& entry) {
   if (option.get_items_expected_max() == 0) return ValueKind::kNone;
   if (!entry.words.empty()) return ValueKind::kWord;
   if (takes_number(option)) return ValueKind::kNumber;
@@ -35,7 +35,7 @@ OptionEntry entry_of(CLI::Option& option) {
   entry.text = one_line(option.get_description());
   entry.group = option.get_group();
   entry.words = allowed_words(option);
-  entry.value = kind_of(option, entry);
+  entry.value = value_kind(option, entry);
   entry.required = option.get_required();
   entry.repeatable = takes_value && option.get_items_expected_max() > 1;
   return entry;

@@ -116,7 +116,7 @@ std::string suggestion(const std::string& found, const std::vector<std::string>&
   return similar.empty() ? "" : fmt::format(" did you mean {}?", fmt::join(similar, " or "));
 }
 
-std::vector<std::string> names_of(const std::vector<OptionEntry>& options) {
+std::vector<std::string> option_names(const std::vector<OptionEntry>& options) {
   std::vector<std::string> names;
   names.reserve(options.size());
   for (const OptionEntry& option : options) names.push_back(option.names.back());
@@ -143,11 +143,11 @@ std::string unexpected(const CommandEntry& command, const std::string& found) {
         "found '{}', but `{}` takes {}", found, called(command),
         command.arguments.empty()
             ? "options only"
-            : fmt::format("no more than {}", fmt::join(names_of(command.arguments), " ")));
+            : fmt::format("no more than {}", fmt::join(option_names(command.arguments), " ")));
   }
   // "--seed=3" is the option "--seed".
   const std::string name = found.substr(0, found.find('='));
-  const std::vector<std::string> known = names_of(command.options);
+  const std::vector<std::string> known = option_names(command.options);
   const std::string similar = suggestion(name, known);
   return fmt::format("found '{}', which `{}` does not know;{} allowed: {}", name, called(command),
                      similar, fmt::join(known, ", "));

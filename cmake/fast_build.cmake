@@ -1,9 +1,9 @@
-# Short builds. Most of what a file costs to compile is its headers, so the files of a room are
-# compiled together, behind headers that are compiled once.
+# Short builds. Most of what a file costs to compile is its headers, so several files of a folder
+# are compiled together (CMake's UNITY_BUILD), behind headers that are compiled once.
 #
 # SIMBENCH_FAST_BUILD: off in the preset `clang`, which compiles every file by itself, so that a
 # file that includes too little does not compile there.
-option(SIMBENCH_FAST_BUILD "Compile the files of a room together, with precompiled headers" ON)
+option(SIMBENCH_FAST_BUILD "Compile several files together, with precompiled headers" ON)
 
 # What every folder uses. The project's own headers are not among them: an edit of one is not to
 # compile everything. A header that makes code in each file that includes it (CLI11 does) costs more
@@ -13,19 +13,17 @@ set(SIMBENCH_PRECOMPILED
   <functional> <map> <memory> <optional> <set> <span> <stdexcept> <string> <string_view> <utility>
   <variant> <vector> <boost/asio/awaitable.hpp> <fmt/format.h> <fmt/ranges.h>)
 
-# As many files of a room are one translation unit: an edit of one is compiled in seconds, and two
-# cores share a folder. The presets of the sanitizers have larger ones: nobody waits for an edit
-# there, and clang-tidy reads what all files of a unit include once.
-set(SIMBENCH_UNIT_FILES 8 CACHE STRING "Files of a room that are compiled together, at most")
+# As many files are one translation unit: an edit of one is compiled in seconds, and two cores share
+# a folder. The presets of the sanitizers have larger ones: nobody waits for an edit there, and
+# clang-tidy reads once what all files of a unit include.
+set(SIMBENCH_UNIT_FILES 8 CACHE STRING "Files that are compiled together, at most")
 
-# simbench_fast_build(TARGET [SOURCES file...] [UNIT_FILES n] [PRECOMPILE header...]
-#                     [OPTIONS option...])
+# simbench_fast_build(TARGET [UNIT_FILES n] [PRECOMPILE header...] [OPTIONS option...])
 #
-# SOURCES are compiled room by room, UNIT_FILES (SIMBENCH_UNIT_FILES) at a time. OPTIONS are the
-# target's own compile options: targets that agree in these and in PRECOMPILE share one precompiled
-# file.
+# UNIT_FILES: in place of SIMBENCH_UNIT_FILES. OPTIONS are the target's own compile options: targets
+# that agree in these and in PRECOMPILE share one precompiled file.
 function(simbench_fast_build target)
-  cmake_parse_arguments(arg "" "UNIT_FILES" "SOURCES;PRECOMPILE;OPTIONS" ${ARGN})
+  cmake_parse_arguments(arg "" "UNIT_FILES" "PRECOMPILE;OPTIONS" ${ARGN})
   if(NOT arg_UNIT_FILES)
     set(arg_UNIT_FILES ${SIMBENCH_UNIT_FILES})
   endif()
@@ -37,19 +35,8 @@ function(simbench_fast_build target)
   target_precompile_headers(${target} REUSE_FROM ${shared})
   # fmt's definitions are the same where its precompiled headers are used.
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)
-  if(NOT arg_SOURCES)
-    return()
-  endif()
-
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  foreach(source ${arg_SOURCES})
-    cmake_path(GET source PARENT_PATH room)
-    file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${room})
-    string(MAKE_C_IDENTIFIER ${room} room)
-    math(EXPR ${room}_files "0${${room}_files} + 1")
-    math(EXPR unit "(${${room}_files} - 1) / ${arg_UNIT_FILES}")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${room}_${unit})
-  endforeach()
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${arg_UNIT_FILES})
   # g++ takes the unnamed namespace of an included file for that of a header.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)

@@ -28,8 +28,7 @@ function(simbench_folder_library name)
   if(SIMBENCH_BUILD_FUZZ AND arg_PARSES)
     list(APPEND options -fsanitize=fuzzer-no-link)
   endif()
-  simbench_fast_build(simbench_${name}
-    SOURCES ${sources} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
+  simbench_fast_build(simbench_${name} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
   install(TARGETS simbench_${name} EXPORT simbench)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
           FILES_MATCHING PATTERN "*.h")

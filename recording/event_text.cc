@@ -39,23 +39,9 @@ Enum read_name(FieldReader& fields, const char* name,
   fields.fail(name, allowed);
 }
 
-template <class Base, class Duration>
-void append_field(std::string& line, std::chrono::time_point<Base, Duration> time) {
-  simbench::append_field(line, time.time_since_epoch().count());
-}
-using simbench::append_field;
-
 template <class Time>
 Time read_time(FieldReader& fields, const char* name) {
   return Time(typename Time::duration(fields.whole<std::int64_t>(name)));
-}
-
-void append_field(std::string& line, const std::optional<HostTime>& time) {
-  if (time) {
-    append_field(line, *time);
-  } else {
-    line += ',';
-  }
 }
 
 template <class... Values>

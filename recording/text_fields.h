@@ -48,6 +48,19 @@ void append_field(std::string& line, Number value) {
   line += ',';
   append_number(line, value);
 }
+template <class Base, class Duration>
+void append_field(std::string& line, std::chrono::time_point<Base, Duration> time) {
+  append_field(line, time.time_since_epoch().count());
+}
+// An empty field where there is none.
+template <class Value>
+void append_field(std::string& line, const std::optional<Value>& value) {
+  if (value) {
+    append_field(line, *value);
+  } else {
+    line += ',';
+  }
+}
 
 // The number that is the whole of `text`.
 template <std::integral Number>

@@ -1,13 +1,14 @@
-# Names that are local to a file of a room and that another file of the room defines too. The files
-# of a room compile together (cmake/fast_build.cmake): equal names clash there, or, as overloads,
-# are chosen among without a word. Reads .cc files; a line for each finding. Aliases may repeat.
+# Names that are local to a file and that another file of its folder defines too. The files of a
+# folder compile together (cmake/fast_build.cmake): equal names clash there, or, as overloads, are
+# chosen among without a word. Reads .cc and .h files; a line for each finding. Aliases may repeat.
 
-function room(file) { sub(/\/[^\/]*$/, "", file); return file }
+# sim, or tests/sim.
+function folder(file) { return match(file, /^(tests\/)?[^\/]*/) ? substr(file, 1, RLENGTH) : file }
 
 function note(name, key) {
-  key = room(FILENAME) SUBSEP name
+  key = folder(FILENAME) SUBSEP name
   if (key in first && first[key] != FILENAME && (is_local || local[key]) && !((key, FILENAME) in seen)) {
-    printf "%s:%d: %s is defined in %s too: names that are local to a file are distinct in its room\n",
+    printf "%s:%d: %s is defined in %s too: names that are local to a file are distinct in its folder\n",
            FILENAME, FNR, name, first[key]
   }
   seen[key, FILENAME] = 1
@@ -16,6 +17,7 @@ function note(name, key) {
 }
 
 FNR == 1 { is_local = 0 }
+{ sub(/^\[\[[a-z]+\]\] /, "") }
 /^namespace \{$/ { is_local = 1; next }
 /^}  \/\/ namespace$/ { is_local = 0; next }
 /^(class|struct|enum class|enum) [A-Za-z_0-9]+ (final )?[:{]/ {
@@ -34,6 +36,7 @@ FNR == 1 { is_local = 0 }
 # A function: a type, a name without a class, its parameters.
 /^[A-Za-z].*[ *&>][a-z_0-9]+\(/ && !/^(using|namespace|template|typedef|return|TEST|MATCHER|INSTANTIATE)/ {
   name = $0
+  while (gsub(/<[^<>]*>/, "", name)) continue
   sub(/\(.*/, "", name)
   if (name ~ /::[a-z_0-9~]+$/ || name ~ /=/) next
   sub(/.*[^a-z_0-9A-Z]/, "", name)

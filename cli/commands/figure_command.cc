@@ -89,7 +89,7 @@ const FigureEntry& entry_named(const std::string& name) {
 
 enum class FileKind : std::uint8_t { kSvg, kPdf, kCsv };
 
-FileKind kind_of(const std::string& output) {
+FileKind file_kind(const std::string& output) {
   const std::string extension = std::filesystem::path(output).extension().string();
   if (extension == ".svg") return FileKind::kSvg;
   if (extension == ".pdf") return FileKind::kPdf;
@@ -170,7 +170,7 @@ int draw_figure(const FigureCommand& command) {
     return kOk;
   }
   const FigureEntry& entry = entry_named(command.name);
-  const FileKind kind = kind_of(command.output);
+  const FileKind kind = file_kind(command.output);
   const reports::OutputFile file(command.output);
   const std::optional<app::ArchiveFigures> made =
       command.archive.empty() ? make_of_scenario(command, entry) : make_of_archive(command, entry);

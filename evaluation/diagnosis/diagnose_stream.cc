@@ -80,7 +80,7 @@ void note_counter(std::uint64_t before, std::uint64_t now, double periods, Strea
 
 // The period by the camera's clock; nothing if the stamps do not advance. The median over longer
 // spans, since with alternating intervals the median interval is one of the two kinds.
-std::optional<double> period_of(std::span<const StampedFrame> frames) {
+std::optional<double> stream_period(std::span<const StampedFrame> frames) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (interval_ms(frames, i) > 0) intervals.push_back(interval_ms(frames, i));
@@ -265,7 +265,7 @@ StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
   note_arrivals(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
   const std::span<const StampedFrame> frames = without_warm_up(all);
-  const std::optional<double> period_ms = period_of(frames);
+  const std::optional<double> period_ms = stream_period(frames);
   if (!period_ms) return facts;
   facts.period_ms = *period_ms;
   note_intervals(frames, facts);

@@ -7,7 +7,7 @@
 namespace simbench::evaluation {
 namespace {
 
-FitSide side_of(const RigFit& fit) {
+FitSide fit_side(const RigFit& fit) {
   FitSide side;
   side.frames = fit.frames;
   for (std::size_t i = 0; i < kFitQuantiles.size(); ++i) {
@@ -49,8 +49,8 @@ FitCheck check_fit(const RigFit& recorded, const scenarios::Scenario& model,
       std::clamp((recorded.frames + recorded.missing) / streams, kFewest, kMost);
   const RigFit simulated = simulate_fit(model, pulses, make_world);
   FitCheck check;
-  check.recorded = side_of(recorded);
-  check.simulated = side_of(simulated);
+  check.recorded = fit_side(recorded);
+  check.simulated = fit_side(simulated);
   check.ks = ks_distance(recorded.excess_ms, simulated.excess_ms);
   check.ks_limit = ks_critical_distance(effective_size(recorded), effective_size(simulated));
   return check;

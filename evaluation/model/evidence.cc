@@ -73,7 +73,7 @@ constexpr StageEvidence kStages[] = {
      "bound of eq. (4), so nothing is fitted to them"},
 };
 
-GapSide side_of(const Series& series) {
+GapSide gap_side(const Series& series) {
   GapSide side;
   side.series = make_series(series.values);
   side.count = static_cast<std::size_t>(std::count_if(
@@ -84,15 +84,15 @@ GapSide side_of(const Series& series) {
   return side;
 }
 
-ModelGapRow compare(const std::string& pipeline, const Metric& metric, const Row& measured_row,
+ModelGapRow gap_row(const std::string& pipeline, const Metric& metric, const Row& measured_row,
                     const Row& simulated_row) {
   const Series& measured = metric.series(measured_row);
   const Series& simulated = metric.series(simulated_row);
   ModelGapRow row;
   row.pipeline = pipeline;
   row.metric = metric.id;
-  row.measured = side_of(measured);
-  row.simulated = side_of(simulated);
+  row.measured = gap_side(measured);
+  row.simulated = gap_side(simulated);
   row.ks = ks_distance(measured.values, simulated.values);
   row.ks_critical = ks_critical_distance(row.measured.count, row.simulated.count);
   const double found = row.measured.series.median;
@@ -130,7 +130,7 @@ std::vector<ModelGapRow> model_gap(const Results& measured, const Results& simul
     const Row* const predicted = find_row(simulated.rows, found.pipeline);
     if (predicted == nullptr) continue;
     for (const char* id : kGapMetrics) {
-      ModelGapRow row = compare(found.pipeline, metric(id), found, *predicted);
+      ModelGapRow row = gap_row(found.pipeline, metric(id), found, *predicted);
       if (row.measured.count + row.simulated.count > 0) rows.push_back(std::move(row));
     }
   }

@@ -49,7 +49,7 @@ class SetScore {
   std::vector<std::int64_t> workspace_;
 };
 
-std::optional<Nanoseconds> period_of(const Members& members) {
+std::optional<Nanoseconds> rig_period(const Members& members) {
   std::vector<double> periods;
   for (const CameraReplay* camera : members) {
     const Nanoseconds period = median_period(camera->frames);
@@ -184,7 +184,7 @@ std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
                                     const std::vector<std::size_t>& members) {
   Members sources;
   for (const std::size_t index : members) sources.push_back(&cameras[index]);
-  const std::optional<Nanoseconds> known_period = period_of(sources);
+  const std::optional<Nanoseconds> known_period = rig_period(sources);
   if (!known_period) return std::nullopt;
   const Nanoseconds period = *known_period;
   const Nanoseconds range = first_arrival_range(sources);

@@ -93,7 +93,7 @@ std::string_view cells_of(std::string_view text) { return text.substr(0, text.fi
 
 namespace {
 
-Series series_of(std::span<const SweepScore> seeds, std::size_t column) {
+Series score_series(std::span<const SweepScore> seeds, std::size_t column) {
   std::vector<double> values;
   values.reserve(seeds.size());
   for (const SweepScore& seed : seeds) values.push_back(seed.values[column]);
@@ -139,7 +139,7 @@ std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<Sweep
     const SweepRun run = plan.run(first);
     const double pure = sum_of(seeds, "pure_sets");
     ResponseRow row{.point = run.point, .pipeline = run.pipeline};
-    for (std::size_t i = 0; i < columns; ++i) row.series.push_back(series_of(seeds, i));
+    for (std::size_t i = 0; i < columns; ++i) row.series.push_back(score_series(seeds, i));
     row.pooled = {.precision = pure / sum_of(seeds, "emitted_sets"),
                   .recall = pure / sum_of(seeds, "complete_pulses"),
                   .margin_ms = row.of("margin_ms").median};

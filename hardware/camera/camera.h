@@ -37,6 +37,8 @@ namespace simbench::hardware {
 class CameraError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  CameraError(const std::string& serial, const std::string& problem)
+      : std::runtime_error("camera " + serial + ": " + problem) {}
 };
 
 struct CameraInfo {

@@ -279,13 +279,14 @@ class RecordedCamera final : public Camera {
   const CameraInfo& info() const override { return info_; }
 
   void configure(const CameraSettings& settings) override {
-    if (started_) fail("configured while it is started");
+    if (started_) throw CameraError(info_.serial, "configured while it is started");
     std::array<bool, 2> wanted = {};
     for (const scenarios::Stream& stream : settings.streams) {
       const auto& frames = play_.camera->frames;
       if (std::none_of(frames.begin(), frames.end(),
                        [&](const PlayedFrame& frame) { return frame.stream == stream.kind; })) {
-        fail(fmt::format("{} has no {} stream", info_.model, to_text(stream.kind)));
+        throw CameraError(info_.serial,
+                          fmt::format("{} has no {} stream", info_.model, to_text(stream.kind)));
       }
       wanted[static_cast<std::size_t>(stream.kind)] = true;
     }
@@ -294,7 +295,7 @@ class RecordedCamera final : public Camera {
   }
 
   void start(FrameHandler on_frame, CameraEventHandler on_event) override {
-    if (started_) fail("started twice");
+    if (started_) throw CameraError(info_.serial, "started twice");
     play_.on_frame = std::move(on_frame);
     play_.on_event = std::move(on_event);
     player_->add(play_);
@@ -307,10 +308,6 @@ class RecordedCamera final : public Camera {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw CameraError(fmt::format("camera {}: {}", info_.serial, problem));
-  }
-
   CameraInfo info_;
   std::shared_ptr<RecordedPlayer> player_;
   bool started_ = false;

@@ -19,10 +19,6 @@ namespace {
 // Cameras of a recording by number; unwanted ones are null.
 using Played = std::vector<std::shared_ptr<PlayedCamera>>;
 
-[[noreturn]] void fail(const RigCamera& camera, const std::string& problem) {
-  throw CameraError(fmt::format("camera {}: {}", camera.serial, problem));
-}
-
 // The recording's camera to play: `recorded_camera` by name, else by number; by default the camera
 // of the serial, else the first.
 std::size_t chosen_camera(const RigCamera& camera, const std::string& recording,
@@ -36,8 +32,9 @@ std::size_t chosen_camera(const RigCamera& camera, const std::string& recording,
   if (error == std::errc() && stop == name.data() + name.size() && number < names.size()) {
     return number;
   }
-  fail(camera, fmt::format("{}: found recorded_camera '{}', allowed {} or a number below {}",
-                           recording, name, fmt::join(names, ", "), names.size()));
+  throw CameraError(camera.serial,
+                    fmt::format("{}: found recorded_camera '{}', allowed {} or a number below {}",
+                                recording, name, fmt::join(names, ", "), names.size()));
 }
 
 struct Choice {
@@ -75,8 +72,9 @@ std::vector<std::shared_ptr<const PlayedCamera>> finished(Choice choice, std::in
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     result.push_back(choice.cameras[choice.of_wanted[i]]);
     if (result.back()->frames.empty()) {
-      fail(wanted[i], fmt::format("{}: no frame of camera {} is in the recording", recording,
-                                  result.back()->name));
+      throw CameraError(wanted[i].serial,
+                        fmt::format("{}: no frame of camera {} is in the recording", recording,
+                                    result.back()->name));
     }
   }
   return result;
@@ -158,9 +156,11 @@ std::size_t chosen_capture(const RecordingFolder& folder, const CaptureName& nam
       return i;
     }
   }
-  if (known.empty()) fail(camera, fmt::format("{}: no capture is in the recording", name.folder));
-  fail(camera, fmt::format("{}: found capture '{}', allowed {}", name.folder, name.capture,
-                           fmt::join(known, ", ")));
+  if (known.empty())
+    throw CameraError(camera.serial,
+                      fmt::format("{}: no capture is in the recording", name.folder));
+  throw CameraError(camera.serial, fmt::format("{}: found capture '{}', allowed {}", name.folder,
+                                               name.capture, fmt::join(known, ", ")));
 }
 
 std::vector<std::shared_ptr<const PlayedCamera>> load_folder(const CaptureName& name,
@@ -171,21 +171,22 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_folder(const CaptureName& 
   for (std::size_t i = names.size(); i < folder.captures()[capture].layout.cameras.size(); ++i) {
     names.push_back(fmt::format("camera{}", i));
   }
-  if (names.empty()) fail(wanted.front(), name.folder + ": no camera is in the recording");
+  if (names.empty())
+    throw CameraError(wanted.front().serial, name.folder + ": no camera is in the recording");
   Choice choice = choose(name.folder, wanted, names);
   FrameKeeper keeper(choice.cameras);
   folder.play(capture, keeper);
   if (keeper.mixed()) {
-    fail(wanted.front(),
-         name.folder + ": found frames with and without truth, allowed one of them");
+    throw CameraError(wanted.front().serial,
+                      name.folder + ": found frames with and without truth, allowed one of them");
   }
   return finished(std::move(choice), keeper.zero_ns(), name.folder, wanted);
 }
 
 // The kind as which a CSV's stream is played. Infrared images are exposed with the depth images, so
 // they stand for depth if a camera has none.
-std::optional<StreamKind> kind_of(const CameraStream& stream,
-                                  const std::vector<CameraStream>& streams) {
+std::optional<StreamKind> stream_kind(const CameraStream& stream,
+                                      const std::vector<CameraStream>& streams) {
   if (stream.stream.starts_with("Colo")) return StreamKind::kColour;
   for (const CameraStream& other : streams) {
     if (other.camera != stream.camera || other.stream.starts_with("Colo")) continue;
@@ -230,7 +231,7 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_csv(const std::string& pat
     }
     const auto number = std::find(names.begin(), names.end(), stream.camera) - names.begin();
     const auto& camera = choice.cameras[static_cast<std::size_t>(number)];
-    const std::optional<StreamKind> kind = kind_of(stream, streams);
+    const std::optional<StreamKind> kind = stream_kind(stream, streams);
     if (!camera || !kind) continue;
     for (const StampedFrame& frame : stream.frames) camera->frames.push_back(played(frame, *kind));
   }
@@ -245,17 +246,18 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_played_cameras(
   std::error_code none;
   const auto status = std::filesystem::status(name.folder, none);
   if (!std::filesystem::exists(status)) {
-    fail(wanted.front(), fmt::format("{}: no such recording, allowed a folder that `simbench "
-                                     "record` wrote or a CSV file",
-                                     name.folder));
+    throw CameraError(wanted.front().serial,
+                      fmt::format("{}: no such recording, allowed a folder that `simbench "
+                                  "record` wrote or a CSV file",
+                                  name.folder));
   }
   try {
     return std::filesystem::is_directory(status) ? load_folder(name, wanted)
                                                  : load_csv(name.folder, wanted);
   } catch (const RecordingFolderError& error) {
-    fail(wanted.front(), error.what());
+    throw CameraError(wanted.front().serial, error.what());
   } catch (const CsvError& error) {
-    fail(wanted.front(), error.what());
+    throw CameraError(wanted.front().serial, error.what());
   }
 }
 

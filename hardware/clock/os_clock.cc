@@ -118,7 +118,7 @@ namespace {
 // Two measured distances between the clocks that differ by less are the same.
 constexpr Nanoseconds kSame = std::chrono::microseconds(20);
 
-[[noreturn]] void fail(const char* what, int error) {
+[[noreturn]] void fail_to_adjust(const char* what, int error) {
   if (error != EPERM) {
     throw ClockError(fmt::format("system clock: {}: {}", what, std::strerror(error)));
   }
@@ -218,7 +218,8 @@ Task<HostTime> OsClock::now() { co_return calls_.system(); }
 Task<void> OsClock::set(HostTime value) {
   look_for_others();
   const Nanoseconds step = limits_.check_step(system_at(calls_.monotonic()), value);
-  if (const int error = calls_.set_system(value); error != 0) fail("cannot be set", error);
+  if (const int error = calls_.set_system(value); error != 0)
+    fail_to_adjust("cannot be set", error);
   options_.log(fmt::format("system clock: stepped by {:+.6f} s", to_seconds(step)));
   run(frequency_ppb_, 0, 0, measured_ahead());
   co_return;
@@ -330,7 +331,8 @@ void OsClock::set_kernel_frequency(long frequency) {
   timex request{};
   request.modes = ADJ_FREQUENCY;
   request.freq = frequency;
-  if (const int error = calls_.adjust(request); error != 0) fail("its rate cannot be set", error);
+  if (const int error = calls_.adjust(request); error != 0)
+    fail_to_adjust("its rate cannot be set", error);
   kernel_frequency_ = frequency;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-NodeError::Kind kind_of(const StreamError& error) {
+NodeError::Kind node_error_kind(const StreamError& error) {
   switch (error.kind()) {
     case StreamError::Kind::kWrongKey:
     case StreamError::Kind::kWrongVersion:
@@ -67,7 +67,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
       co_await ended(pending->news);
     }
     pending_.erase(request.id);
-    if (failure) throw error(kind_of(*failure), failure->what());
+    if (failure) throw error(node_error_kind(*failure), failure->what());
     if (pending->broken) throw error(NodeError::Kind::kLost, "the connection was lost");
     if (!pending->reply) {
       throw error(NodeError::Kind::kLost,
@@ -114,7 +114,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     }
     opening_ = false;
     opened_.cancel();
-    if (failure) throw error(kind_of(*failure), failure->what());
+    if (failure) throw error(node_error_kind(*failure), failure->what());
     stream_ = std::move(opened);
     ++connections_;
     asio::co_spawn(context_, read(shared_from_this(), stream_), asio::detached);

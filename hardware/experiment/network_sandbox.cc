@@ -28,16 +28,16 @@ constexpr const char* kMemberInterface = "eth0";
 constexpr std::uint32_t kNetwork = 10u << 24 | 77u << 16;
 constexpr std::uint32_t kMask = 0xfffffffc;  // four addresses a pair
 
-std::uint32_t address_of(unsigned member, unsigned side) { return kNetwork | member << 8 | side; }
+std::uint32_t side_address(unsigned member, unsigned side) { return kNetwork | member << 8 | side; }
 
-std::string text_of(std::uint32_t address) {
+std::string dotted(std::uint32_t address) {
   return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 255, address >> 8 & 255,
                      address & 255);
 }
 
 std::string interface_of(unsigned member) { return fmt::format("hub{}", member); }
 
-[[noreturn]] void fail(const std::string& doing) {
+[[noreturn]] void fail_call(const std::string& doing) {
   throw SandboxError(fmt::format("{}: {}", doing, std::strerror(errno)));
 }
 
@@ -177,17 +177,17 @@ std::optional<std::string> NetworkSandbox::enter() {
     write_file("/proc/self/setgroups", "deny");
     if (!write_file("/proc/self/uid_map", fmt::format("0 {} 1", user)) ||
         !write_file("/proc/self/gid_map", fmt::format("0 {} 1", group))) {
-      fail("writing the user namespace's map");
+      fail_call("writing the user namespace's map");
     }
   }
-  if (!set_up("lo", 0)) fail("setting up lo in a new network namespace");
+  if (!set_up("lo", 0)) fail_call("setting up lo in a new network namespace");
   return std::nullopt;
 }
 
-std::string NetworkSandbox::hub_address(unsigned member) { return text_of(address_of(member, 1)); }
+std::string NetworkSandbox::hub_address(unsigned member) { return dotted(side_address(member, 1)); }
 
 std::string NetworkSandbox::member_address(unsigned member) {
-  return text_of(address_of(member, 2));
+  return dotted(side_address(member, 2));
 }
 
 bool NetworkSandbox::leave_hub() { return unshare(CLONE_NEWNET) == 0; }
@@ -196,12 +196,12 @@ void NetworkSandbox::connect(unsigned member, pid_t process) {
   const std::string interface = interface_of(member);
   remove_pair(interface);
   errno = add_pair(interface, process);
-  if (errno != 0) fail("making a veth pair");
-  if (!set_up(interface.c_str(), address_of(member, 1))) fail("setting up " + interface);
+  if (errno != 0) fail_call("making a veth pair");
+  if (!set_up(interface.c_str(), side_address(member, 1))) fail_call("setting up " + interface);
 }
 
 bool NetworkSandbox::set_up_member(unsigned member) {
-  return set_up("lo", 0) && set_up(kMemberInterface, address_of(member, 2));
+  return set_up("lo", 0) && set_up(kMemberInterface, side_address(member, 2));
 }
 
 }  // namespace simbench::hardware

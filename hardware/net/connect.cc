@@ -47,7 +47,7 @@ struct Ending {
   }
 };
 
-Task<error_code> finished(Shared attempt, MonotonicTime deadline) {
+Task<error_code> finished_attempt(Shared attempt, MonotonicTime deadline) {
   const Ending ending{attempt};
   while (!attempt->result) {
     const bool in_time = co_await attempt->done.wait(deadline);
@@ -56,14 +56,15 @@ Task<error_code> finished(Shared attempt, MonotonicTime deadline) {
   co_return *attempt->result;
 }
 
-std::string text_of(const error_code& error) {
+std::string error_text(const error_code& error) {
   return error == boost::asio::error::timed_out ? "found no answer in time" : error.message();
 }
 
 [[noreturn]] void unreachable(const std::string& address, std::uint16_t port,
                               const error_code& error) {
-  throw StreamError(Kind::kUnreachable, fmt::format("{}: no connection: {}",
-                                                    address_text(address, port), text_of(error)));
+  throw StreamError(
+      Kind::kUnreachable,
+      fmt::format("{}: no connection: {}", address_text(address, port), error_text(error)));
 }
 
 Task<std::vector<tcp::endpoint>> resolve(Shared attempt, std::string address, std::uint16_t port,
@@ -77,7 +78,7 @@ Task<std::vector<tcp::endpoint>> resolve(Shared attempt, std::string address, st
         for (const auto& entry : results) attempt->endpoints.push_back(entry.endpoint());
         attempt->finish(error);
       });
-  const error_code error = co_await finished(attempt, deadline);
+  const error_code error = co_await finished_attempt(attempt, deadline);
   if (error) unreachable(address, port, error);
   co_return attempt->endpoints;
 }
@@ -98,7 +99,7 @@ Task<tcp::socket> connect_socket(boost::asio::any_io_executor executor, std::str
     const auto attempt = std::make_shared<Attempt>(executor);
     attempt->socket.async_connect(endpoint,
                                   [attempt](const error_code& result) { attempt->finish(result); });
-    error = co_await finished(attempt, deadline);
+    error = co_await finished_attempt(attempt, deadline);
     if (!error) co_return std::move(attempt->socket);
   }
   unreachable(address, port, error);

@@ -31,18 +31,18 @@ namespace {
 using Kind = StreamError::Kind;
 using boost::asio::ip::tcp;
 
-void set_option(int socket, int level, int name, int value) {
+void set_socket_option(int socket, int level, int name, int value) {
   setsockopt(socket, level, name, &value, sizeof value);
 }
 
 // A cut link is detected within some 5 s, whether something is being sent or not.
-void prepare(int socket) {
-  set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  set_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, 2);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, 1);
-  set_option(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
-  set_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);
+void prepare_socket(int socket) {
+  set_socket_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+  set_socket_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set_socket_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, 2);
+  set_socket_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, 1);
+  set_socket_option(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set_socket_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);
 }
 
 std::string remote_of(const tcp::socket& socket) {
@@ -55,7 +55,7 @@ bool no_data_now(int error) { return error == EAGAIN || error == EWOULDBLOCK; }
 
 constexpr std::string_view kConfirmation = "simbench: key";
 
-std::span<const std::byte> bytes_of(std::string_view text) {
+std::span<const std::byte> text_bytes(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
@@ -165,7 +165,7 @@ void SecureStream::State::start() {
   boost::system::error_code refused;
   socket_.native_non_blocking(true, refused);
   if (refused) return fail(Kind::kUnreachable, refused.message());
-  prepare(socket_.native_handle());
+  prepare_socket(socket_.native_handle());
   // Before the first byte, so that offsets in the stream count from here.
   stamps_ = request_kernel_stamps(socket_.native_handle());
   queue(Bytes(my_hello_.begin(), my_hello_.end()), std::nullopt);
@@ -324,7 +324,7 @@ Task<void> SecureStream::State::read_all(Self self) {
   bool more = co_await read_hello_of_peer(self);
   if (!more) co_return;
   self->derive_keys();
-  self->queue(sealed_frame(self->send_key_, self->sealed_++, bytes_of(kConfirmation)),
+  self->queue(sealed_frame(self->send_key_, self->sealed_++, text_bytes(kConfirmation)),
               std::nullopt);
   more = co_await read_confirmation(self);
   while (more) {
@@ -378,7 +378,7 @@ Task<bool> SecureStream::State::read_confirmation(Self self) {
   const std::span<const std::byte> all(frame);
   const auto opened = open_sealed(self->receive_key_, self->opened_++, all.first(kFrameHeaderBytes),
                                   all.subspan(kFrameHeaderBytes));
-  if (!opened || !std::ranges::equal(*opened, bytes_of(kConfirmation))) {
+  if (!opened || !std::ranges::equal(*opened, text_bytes(kConfirmation))) {
     self->fail(Kind::kWrongKey,
                "found another key than this side's; use the same key file on all hosts");
     co_return false;

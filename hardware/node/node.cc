@@ -60,7 +60,7 @@ class RequestError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-std::string text_of(const json& arguments, const char* name) {
+std::string text_argument(const json& arguments, const char* name) {
   const auto found = arguments.find(name);
   if (found == arguments.end() || !found->is_string()) {
     throw RequestError(fmt::format("'{}': found {}, allowed: a text", name,
@@ -70,21 +70,21 @@ std::string text_of(const json& arguments, const char* name) {
 }
 
 std::string session_id_of(const json& arguments) {
-  std::string id = text_of(arguments, "session");
+  std::string id = text_argument(arguments, "session");
   if (!is_session_id(id)) throw RequestError("'session': allowed: 16 hexadecimal digits");
   return id;
 }
 
 // A short line for a log.
 std::string name_of(const json& arguments) {
-  std::string name = text_of(arguments, "conductor").substr(0, kLongestName);
+  std::string name = text_argument(arguments, "conductor").substr(0, kLongestName);
   std::replace_if(
       name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
   return name;
 }
 
 std::string optional_text(const json& arguments, const char* name) {
-  return arguments.contains(name) ? text_of(arguments, name).substr(0, kLongestName) : "";
+  return arguments.contains(name) ? text_argument(arguments, name).substr(0, kLongestName) : "";
 }
 
 std::vector<PeerId> slaves_of(const json& arguments, std::size_t hosts) {
@@ -311,7 +311,7 @@ Task<json> Node::State::handle(Connection connection, Request request) {
   const std::shared_ptr<Session> session = session_of(connection);
   CameraProblems problems;
   if (request.verb == "synchronise") {
-    session->synchronise(text_of(arguments, "role"),
+    session->synchronise(text_argument(arguments, "role"),
                          slaves_of(arguments, settings_.rig.hosts.size()));
     co_return json::object();
   }
@@ -390,8 +390,8 @@ SessionPlan Node::State::plan_of(const json& arguments) const {
   SessionPlan plan;
   plan.id = session_id_of(arguments);
   plan.conductor = name_of(arguments);
-  plan.pipeline = text_of(arguments, "pipeline");
-  const std::string text = text_of(arguments, "scenario");
+  plan.pipeline = text_argument(arguments, "pipeline");
+  const std::string text = text_argument(arguments, "scenario");
   const json parsed = json::parse(text, nullptr, false);
   if (parsed.is_object() && parsed.contains("base")) {
     throw RequestError("'scenario': found one with a base, allowed: a resolved scenario");

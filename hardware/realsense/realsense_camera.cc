@@ -17,10 +17,6 @@ namespace {
 
 constexpr auto kBetweenChecks = std::chrono::milliseconds(250);
 
-[[noreturn]] void fail(const CameraInfo& info, const std::string& problem) {
-  throw CameraError(fmt::format("camera {}: {}", info.serial, problem));
-}
-
 std::string info_of(const rs2::device& device, rs2_camera_info what) {
   return device.supports(what) ? device.get_info(what) : "";
 }
@@ -118,8 +114,8 @@ rs2::device RealsenseCamera::device() const {
 
 void RealsenseCamera::configure(const CameraSettings& settings) {
   const std::lock_guard lock(mutex_);
-  if (started_) fail(info_, "configured while it is started");
-  if (!present_) fail(info_, "unplugged");
+  if (started_) throw CameraError(info_.serial, "configured while it is started");
+  if (!present_) throw CameraError(info_.serial, "unplugged");
   std::vector<ChosenSensor> sensors = choose_sensors(device_, info_.serial, settings);
   apply_settings(device_, sensors, info_, settings);
   sensors_ = std::move(sensors);
@@ -162,9 +158,9 @@ void RealsenseCamera::close_sensors() {
 
 void RealsenseCamera::start(FrameHandler on_frame, CameraEventHandler on_event) {
   const std::lock_guard lock(mutex_);
-  if (!settings_) fail(info_, "started before it was configured");
-  if (started_) fail(info_, "started twice");
-  if (!present_) fail(info_, "unplugged");
+  if (!settings_) throw CameraError(info_.serial, "started before it was configured");
+  if (started_) throw CameraError(info_.serial, "started twice");
+  if (!present_) throw CameraError(info_.serial, "unplugged");
   outlet_->open(*settings_, std::move(on_frame), std::move(on_event));
   try {
     open_sensors();

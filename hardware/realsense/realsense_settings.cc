@@ -39,10 +39,6 @@ SyncOption option_of(SyncMode mode) {
   return {};
 }
 
-[[noreturn]] void fail(const std::string& serial, const std::string& problem) {
-  throw CameraError(fmt::format("camera {}: {}", serial, problem));
-}
-
 struct Profile {
   std::size_t sensor = 0;
   rs2::video_stream_profile profile;
@@ -90,8 +86,8 @@ std::vector<Profile> profiles_of(const std::vector<rs2::sensor>& sensors, rs2_st
   const std::string allowed = nearest.empty()
                                   ? fmt::format("it has no {} stream", to_text(stream.kind))
                                   : fmt::format("the nearest it has: {}", fmt::join(nearest, ", "));
-  fail(serial, fmt::format("no {} profile {}x{} at {} Hz, {}", to_text(stream.kind), stream.width,
-                           stream.height, stream.mode_rate_hz, allowed));
+  throw CameraError(serial, fmt::format("no {} profile {}x{} at {} Hz, {}", to_text(stream.kind),
+                                        stream.width, stream.height, stream.mode_rate_hz, allowed));
 }
 
 Profile choose_profile(const std::string& serial, const std::vector<rs2::sensor>& sensors,
@@ -123,13 +119,15 @@ void apply_sync_mode(const rs2::device& device, const CameraInfo& info,
     if (!sensor.supports(RS2_OPTION_INTER_CAM_SYNC_MODE)) continue;
     const rs2::option_range range = sensor.get_option_range(RS2_OPTION_INTER_CAM_SYNC_MODE);
     if (static_cast<float>(option.value) > range.max) {
-      fail(info.serial,
-           fmt::format("sync mode {} is {} of Inter Cam Sync Mode, {} allows 0 to {}: it needs "
-                       "firmware {} or newer (rs-fw-update) and a global shutter",
-                       mode, option.value, firmware, range.max, option.firmware));
+      throw CameraError(
+          info.serial,
+          fmt::format("sync mode {} is {} of Inter Cam Sync Mode, {} allows 0 to {}: it needs "
+                      "firmware {} or newer (rs-fw-update) and a global shutter",
+                      mode, option.value, firmware, range.max, option.firmware));
     }
     if (sensor.is_option_read_only(RS2_OPTION_INTER_CAM_SYNC_MODE)) {
-      fail(info.serial, fmt::format("sync mode {} cannot be set now: is the camera streaming in "
+      throw CameraError(info.serial,
+                        fmt::format("sync mode {} cannot be set now: is the camera streaming in "
                                     "another program?",
                                     mode));
     }
@@ -137,7 +135,8 @@ void apply_sync_mode(const rs2::device& device, const CameraInfo& info,
     return;
   }
   if (option.value == 0) return;
-  fail(info.serial, fmt::format("sync mode {}: {} has no option Inter Cam Sync Mode; it needs "
+  throw CameraError(info.serial,
+                    fmt::format("sync mode {}: {} has no option Inter Cam Sync Mode; it needs "
                                 "firmware {} or newer, and a D405 has none",
                                 mode, firmware, option.firmware));
 }
@@ -148,19 +147,21 @@ void apply_exposure(const ChosenSensor& sensor, const std::string& serial,
   if (device.supports(RS2_OPTION_ENABLE_AUTO_EXPOSURE)) {
     set_option(sensor, RS2_OPTION_ENABLE_AUTO_EXPOSURE, settings.auto_exposure ? 1.F : 0.F);
   } else if (settings.auto_exposure) {
-    fail(serial, "auto exposure is wanted, and this camera cannot switch it on");
+    throw CameraError(serial, "auto exposure is wanted, and this camera cannot switch it on");
   }
   if (settings.auto_exposure) return;
   if (!device.supports(RS2_OPTION_EXPOSURE)) {
-    fail(serial, fmt::format("an exposure of {} ms is wanted, and this camera cannot set it",
-                             settings.exposure_ms));
+    throw CameraError(serial,
+                      fmt::format("an exposure of {} ms is wanted, and this camera cannot set it",
+                                  settings.exposure_ms));
   }
   const rs2::option_range range = device.get_option_range(RS2_OPTION_EXPOSURE);
   const double unit_ms = sensor.exposure_unit_us * 1e-3;
   const double value = std::round(settings.exposure_ms / unit_ms);
   if (value < range.min || value > range.max) {
-    fail(serial, fmt::format("found exposure {} ms, allowed {} to {}", settings.exposure_ms,
-                             range.min * unit_ms, range.max * unit_ms));
+    throw CameraError(serial,
+                      fmt::format("found exposure {} ms, allowed {} to {}", settings.exposure_ms,
+                                  range.min * unit_ms, range.max * unit_ms));
   }
   device.set_option(RS2_OPTION_EXPOSURE, static_cast<float>(value));
 }
@@ -170,10 +171,11 @@ void check_trigger(const std::string& serial, const CameraSettings& settings) {
   for (const scenarios::Stream& stream : settings.streams) {
     const double most_hz = stream.mode_rate_hz / 2;
     if (settings.trigger_rate_hz <= most_hz * kGenlockTolerance) continue;
-    fail(serial,
-         fmt::format("found triggers at {} Hz, allowed in genlock: at most {} Hz, half of "
-                     "the {} mode's {} Hz",
-                     settings.trigger_rate_hz, most_hz, to_text(stream.kind), stream.mode_rate_hz));
+    throw CameraError(
+        serial,
+        fmt::format("found triggers at {} Hz, allowed in genlock: at most {} Hz, half of "
+                    "the {} mode's {} Hz",
+                    settings.trigger_rate_hz, most_hz, to_text(stream.kind), stream.mode_rate_hz));
   }
 }
 
@@ -181,7 +183,7 @@ void check_trigger(const std::string& serial, const CameraSettings& settings) {
 
 std::vector<ChosenSensor> choose_sensors(const rs2::device& device, const std::string& serial,
                                          const CameraSettings& settings) {
-  if (settings.streams.empty()) fail(serial, "no stream is wanted");
+  if (settings.streams.empty()) throw CameraError(serial, "no stream is wanted");
   check_trigger(serial, settings);
   return guarded(serial, "reading its profiles", [&] {
     const std::vector<rs2::sensor> sensors = device.query_sensors();

@@ -37,7 +37,7 @@ bool is_private(const boost::asio::ip::address& address) {
   return bits >> 24 == 10 || bits >> 20 == 0xac1 || bits >> 16 == 0xc0a8;
 }
 
-boost::asio::ip::address address_of(const Rig& rig, const RigHost& host) {
+boost::asio::ip::address host_address(const Rig& rig, const RigHost& host) {
   Error error;
   auto address = boost::asio::ip::make_address(host.address, error);
   if (error || !is_private(address)) {
@@ -64,7 +64,7 @@ struct Gate {
 
 void bind(Gate& gate, const Rig& rig, const RigHost& host) {
   try {
-    const tcp::endpoint endpoint(address_of(rig, host), host.port);
+    const tcp::endpoint endpoint(host_address(rig, host), host.port);
     gate.acceptor.open(endpoint.protocol());
     gate.acceptor.set_option(tcp::acceptor::reuse_address(true));
     gate.acceptor.bind(endpoint);
@@ -93,7 +93,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
         throw RelayError(fmt::format("{}: found {} hosts, allowed: {}, one for each of the files",
                                      rig.file, rig.hosts.size(), count));
       }
-      nodes_.emplace_back(address_of(rig, rig.hosts[node]), rig.hosts[node].port);
+      nodes_.emplace_back(host_address(rig, rig.hosts[node]), rig.hosts[node].port);
     }
     for (PeerId from = 0; from < count; ++from) {
       for (PeerId to = 0; to < count; ++to) {

@@ -50,7 +50,7 @@ Json margins_json(const Baseline& baseline) {
 }
 
 // "{", a member a line, "}"; `indent` blanks before each.
-std::string lines_of(const Json& object, std::size_t indent) {
+std::string object_lines(const Json& object, std::size_t indent) {
   std::vector<std::string> members;
   for (const auto& [key, value] : object.items()) {
     members.push_back(fmt::format("{:{}}{}: {}", "", indent, Json(key).dump(), value.dump()));
@@ -122,12 +122,12 @@ std::string baseline_json(const Baseline& baseline) {
                      {"pipelines_digest", digest_of_json(pipelines.dump())}};
   std::vector<std::string> rows;
   for (const Json& pipeline : pipelines) {
-    rows.push_back(fmt::format("    {{\n{}\n    }}", lines_of(pipeline, 6)));
+    rows.push_back(fmt::format("    {{\n{}\n    }}", object_lines(pipeline, 6)));
   }
   return fmt::format(
       "{{\n{},\n  \"margins\": {{\n{}\n  }},\n  \"resolved_scenario\": {{\n{}\n  }},\n"
       "  \"pipelines\": [\n{}\n  ]\n}}\n",
-      lines_of(head, 2), lines_of(margins_json(baseline), 4), lines_of(scenario, 4),
+      object_lines(head, 2), object_lines(margins_json(baseline), 4), object_lines(scenario, 4),
       fmt::join(rows, ",\n"));
 }
 

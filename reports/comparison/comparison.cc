@@ -205,7 +205,7 @@ Json estimate_json(const evaluation::Estimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
 }
 
-Json metric_json(const evaluation::PairedComparison& c) {
+Json paired_json(const evaluation::PairedComparison& c) {
   return {{"pairs", c.pairs},
           {"left_out", c.left_out},
           {"a", {{"mean", c.mean_a}, {"median", c.median_a}}},
@@ -239,7 +239,7 @@ std::string comparison_json(const Comparison& comparison) {
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     Json row = {{"a", pipeline.pipeline_a}, {"b", pipeline.pipeline_b}};
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      row[judged[i]->id] = metric_json(pipeline.metrics[i]);
+      row[judged[i]->id] = paired_json(pipeline.metrics[i]);
     }
     root["pipelines"].push_back(std::move(row));
   }

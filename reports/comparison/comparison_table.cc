@@ -175,7 +175,7 @@ Block words(const Comparison& comparison) {
   return block;
 }
 
-std::string legend(const Comparison& comparison) {
+std::string comparison_legend(const Comparison& comparison) {
   return fmt::format(
       "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
       "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
@@ -196,7 +196,8 @@ Document comparison_document(const Comparison& comparison) {
   if (!comparison.notes.empty()) {
     document.blocks.push_back({.heading = "What differs besides", .items = comparison.notes});
   }
-  document.blocks.push_back({.heading = "How to read it", .items = {legend(comparison)}});
+  document.blocks.push_back(
+      {.heading = "How to read it", .items = {comparison_legend(comparison)}});
   return document;
 }
 

@@ -120,7 +120,7 @@ std::string changes(const GateReport& report) {
   return is_empty ? "" : "\nWhat changed\n\n" + plain(table);
 }
 
-std::string lines(const char* title, const std::vector<std::string>& texts) {
+std::string list_lines(const char* title, const std::vector<std::string>& texts) {
   if (texts.empty()) return "";
   std::string all = fmt::format("\n{}\n", title);
   for (const std::string& text : texts) all += fmt::format("  {}\n", text);
@@ -158,7 +158,7 @@ std::string gate_text(const GateReport& report) {
   for (const std::string& note : report.notes) notes += wrapped(note, 2);
   return gate_head(report) + failures(report) + changes(report) +
          (notes.empty() ? notes : "\nNotes\n" + notes) +
-         (report.passed() ? "" : lines("To reproduce", report.reproduce));
+         (report.passed() ? "" : list_lines("To reproduce", report.reproduce));
 }
 
 namespace {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-std::string line(std::string_view panel, std::string_view series, const std::string& x, double y) {
+std::string figure_line(std::string_view panel, std::string_view series, const std::string& x,
+                        double y) {
   return fmt::format("{},{},{},{}\n", csv_cell(panel), csv_cell(series), x, csv_cell(y));
 }
 
@@ -24,16 +25,16 @@ std::string panel_lines(const FigurePanel& panel) {
           panel.categories.empty()
               ? csv_cell(series.x[i])
               : csv_cell(panel.categories.at(static_cast<std::size_t>(std::llround(series.x[i]))));
-      text += line(panel.title, series.label, x, series.y[i]);
+      text += figure_line(panel.title, series.label, x, series.y[i]);
     }
   }
   for (const FigureLine& drawn : panel.lines) {
-    text += line(panel.title, drawn.label, drawn.vertical ? csv_cell(drawn.at) : "",
-                 drawn.vertical ? kNothing : drawn.at);
+    text += figure_line(panel.title, drawn.label, drawn.vertical ? csv_cell(drawn.at) : "",
+                        drawn.vertical ? kNothing : drawn.at);
   }
   for (const FigureSpan& span : panel.spans) {
     for (const double end : {span.from, span.to}) {
-      text += line(panel.title, span.label, csv_cell(end), kNothing);
+      text += figure_line(panel.title, span.label, csv_cell(end), kNothing);
     }
   }
   return text;
@@ -47,7 +48,7 @@ std::string figure_csv(const Figure& figure) {
   for (const PhotographRow& row : figure.photographs) {
     for (const Photograph& photograph : row.photographs) {
       for (const PhotographedReading& reading : photograph.readings) {
-        text += line(row.label, photograph.label, csv_cell(reading.text), reading.share);
+        text += figure_line(row.label, photograph.label, csv_cell(reading.text), reading.share);
       }
     }
   }

@@ -154,7 +154,7 @@ std::string colour_of(const FigureSeries& series) {
   return kColours.at(number_of(series) % kColours.size());
 }
 
-std::string style(const FigureSeries& series) {
+std::string series_style(const FigureSeries& series) {
   const std::string colour = colour_of(series);
   const std::size_t turn = number_of(series) / kColours.size();
   const std::size_t dash = turn % 5 + 1;
@@ -307,7 +307,8 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
     const auto entry = legend.extract(series.colour);  // titles its first series alone
     const std::string title =
         entry.empty() || !has_legend(panel) ? "notitle" : "title " + in_quotes(entry.mapped());
-    plots.push_back(fmt::format("$data{} using 1:2 {} {}", datablocks, style(series), title));
+    plots.push_back(
+        fmt::format("$data{} using 1:2 {} {}", datablocks, series_style(series), title));
     ++datablocks;
   }
   if (plots.empty()) plots.emplace_back("NaN notitle");

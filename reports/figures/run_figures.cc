@@ -268,7 +268,7 @@ FigurePanel frame_panel(const RunDetail& run, std::string title, std::string y_l
 bool has_points(const FigureSeries& series) { return !series.x.empty(); }
 
 // Differences to the first series at the same x.
-FigurePanel differences(const RunDetail& run, const FigurePanel& stamps) {
+FigurePanel difference_panel(const RunDetail& run, const FigurePanel& stamps) {
   FigurePanel made = frame_panel(run, "Arrivals less those of the first camera", "difference (ms)");
   const FigureSeries& first = stamps.series.front();
   for (const FigureSeries& of_camera : stamps.series) {
@@ -407,7 +407,7 @@ Figure stamps(const RunDetail& run) {
     arrival.series.push_back(raw_series(run, camera, &FrameDetail::arrival_ms, colour));
   }
   if (!has_stamps(sensor)) return absent(std::move(figure), kNoFrames);
-  FigurePanel difference = differences(run, arrival);
+  FigurePanel difference = difference_panel(run, arrival);
   figure.panels = {std::move(sensor), std::move(arrival), std::move(difference)};
   figure.caption = fmt::format(
       "The first {} frames after the warm-up. Every camera's clock has its own origin; the "

@@ -84,7 +84,7 @@ Json encoded(const std::vector<double>& values, bool relative) {
   return as_doubles(values);
 }
 
-const char* name_of(Mark mark) {
+const char* mark_name(Mark mark) {
   switch (mark) {
     case Mark::kPoints:
       return "points";
@@ -100,7 +100,7 @@ const char* name_of(Mark mark) {
 
 Json figure_series_json(const FigureSeries& series, bool log_y, HtmlColumns& columns) {
   return {{"label", series.label},
-          {"mark", name_of(series.mark)},
+          {"mark", mark_name(series.mark)},
           {"colour", series.colour},
           {"x", columns.add(series.x, false)},
           {"y", columns.add(series.y, log_y)}};

@@ -127,7 +127,7 @@ std::vector<std::string> pipelines_of(const std::vector<ReportedArchive>& archiv
 }
 
 // Empty for a single archive.
-std::vector<Block> side_by_side(const std::vector<ReportedArchive>& archives) {
+std::vector<Block> archive_blocks(const std::vector<ReportedArchive>& archives) {
   if (archives.size() < 2) return {};
   std::vector<Field<std::string>> fields = {
       {{"pipeline", Align::kLeft}, [](const std::string& pipeline) { return pipeline; }}};
@@ -159,7 +159,7 @@ std::string html_report(const ReportInput& input) {
   }
   return html_page({.title = title_of(input),
                     .subtitle = "how well are these cameras synchronised, and what limits it",
-                    .main = html(side_by_side(input.archives)) + parts,
+                    .main = html(archive_blocks(input.archives)) + parts,
                     .data = data});
 }
 

@@ -260,7 +260,7 @@ Block row_notes(const ReconstructionResults& results) {
   return block;
 }
 
-Block legend(const ReconstructionResults& results) {
+Block reconstruction_legend(const ReconstructionResults& results) {
   Block block{.heading = "How to read it", .items = {kErrorLegend, kDesyncLegend}};
   if (published_ratio(results.rows)) block.items.emplace_back(kPublishedLegend);
   if (!results.curve.empty()) block.items.emplace_back(kLimitLegend);
@@ -464,7 +464,7 @@ Document reconstruction_document(const ReconstructionResults& results) {
                       .table = limits_table(sync_limits(results.curve))});
   }
   if (Block notes = row_notes(results); !notes.items.empty()) blocks.push_back(std::move(notes));
-  blocks.push_back(legend(results));
+  blocks.push_back(reconstruction_legend(results));
   blocks.push_back({.heading = "What was simulated", .items = honest_notes(results)});
   blocks.push_back(stages_block(results.rows));
   blocks.push_back({.prose = {fmt::format("Cost: {:.1f} s; {:.1f} s for a frame set on one thread.",

@@ -88,7 +88,7 @@ std::string reproduce_html(const ReconstructionPage& page) {
                      text);
 }
 
-std::string provenance_line(const ReconstructionResults& results) {
+std::string reconstruction_line(const ReconstructionResults& results) {
   return fmt::format("{} from {} on, {} each, simbench {} ({})", counted(results.seeds, "seed"),
                      results.first_seed, counted(results.frames, "frame set"), version(), commit());
 }
@@ -124,7 +124,7 @@ std::string reconstruction_html(const ReconstructionPage& page) {
       "<article class=\"archive\" data-archive=\"0\" data-name=\"{0}\">\n<h2>{0}</h2>\n{1}{2}{3}{4}"
       "{5}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{6}</article>\n",
       html_escaped(name), html_paragraph("summary", results.scenario.summary),
-      html_paragraph("provenance", provenance_line(results)), html(blocks.front()),
+      html_paragraph("provenance", reconstruction_line(results)), html(blocks.front()),
       pictures_html(page), html(std::vector<Block>(blocks.begin() + 1, blocks.end())),
       reproduce_html(page));
   return html_page({.title = fmt::format("simbench reconstruct {}", name),

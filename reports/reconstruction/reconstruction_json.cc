@@ -26,7 +26,7 @@ std::int64_t json_total(const ReprojectionRow& row, std::int64_t SeedReprojectio
   return sum;
 }
 
-Json published_json(const ReprojectionRow& row) {
+Json published_error_json(const ReprojectionRow& row) {
   if (!row.published) return nullptr;
   return {{"mean_cm", row.published->mean_cm},
           {"std_cm", row.published->std_cm},
@@ -34,7 +34,7 @@ Json published_json(const ReprojectionRow& row) {
           {"std_inside", evaluation::inside(row.published->std_cm, row.std_cm())}};
 }
 
-Json row_json(const ReprojectionRow& row) {
+Json reprojection_row_json(const ReprojectionRow& row) {
   return {{"pipeline", row.pipeline},
           {"host_sync", row.host_sync},
           {"device_time", row.device_time},
@@ -48,7 +48,7 @@ Json row_json(const ReprojectionRow& row) {
           {"failed_sets", json_total(row, &SeedReprojection::failed_sets)},
           {"missing_frames", json_total(row, &SeedReprojection::missing_frames)},
           {"no_gathered_set_share", no_gathered_set_share(row)},
-          {"published", published_json(row)},
+          {"published", published_error_json(row)},
           {"notes", row.notes}};
 }
 
@@ -127,7 +127,7 @@ std::string csv_header() {
          "published_std_cm\n";
 }
 
-std::string csv_line(const ReprojectionRow& row) {
+std::string reconstruction_csv_line(const ReprojectionRow& row) {
   std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                     csv_cell(row.device_time), csv_cell(row.gathering)};
   for (const NamedSeries& each : kSeries) {
@@ -149,7 +149,7 @@ std::string csv_line(const ReprojectionRow& row) {
 
 std::string reconstruction_json(const ReconstructionResults& results) {
   Json rows = Json::array();
-  for (const ReprojectionRow& row : results.rows) rows.push_back(row_json(row));
+  for (const ReprojectionRow& row : results.rows) rows.push_back(reprojection_row_json(row));
   const Json root = {
       {"schema_version", 1},
       {"scenario", results.scenario.name},
@@ -171,7 +171,7 @@ std::string reconstruction_json(const ReconstructionResults& results) {
 
 std::string reconstruction_csv(const ReconstructionResults& results) {
   std::string text = csv_header();
-  for (const ReprojectionRow& row : results.rows) text += csv_line(row);
+  for (const ReprojectionRow& row : results.rows) text += reconstruction_csv_line(row);
   return text;
 }
 

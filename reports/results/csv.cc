@@ -17,7 +17,7 @@ using evaluation::Metric;
 using evaluation::Row;
 using evaluation::SeedScore;
 
-std::string line(const std::vector<std::string>& cells) {
+std::string csv_line(const std::vector<std::string>& cells) {
   return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
@@ -88,7 +88,7 @@ std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results);
   std::vector<std::string> names = header();
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
-  std::string out = line(names);
+  std::string out = csv_line(names);
   for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                       csv_cell(row.device_time), csv_cell(row.gathering)};
@@ -102,7 +102,7 @@ std::string csv(const evaluation::Results& results) {
                    {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",
                     csv_cell(fmt::format("{}", fmt::join(row.notes, "; ")))});
     }
-    out += line(cells);
+    out += csv_line(cells);
   }
   return out;
 }

@@ -26,7 +26,7 @@ bool any_published(const Results& results) {
                      [](const Row& row) { return row.published.has_value(); });
 }
 
-std::string value_text(const Metric& metric, const Row& row) {
+std::string cell_text(const Metric& metric, const Row& row) {
   if (metric.is_count()) return metric.is_known(row) ? count_text(metric.count(row)) : "-";
   return metric.is_share() ? share_text(metric.value(row)) : number_text(metric.value(row));
 }
@@ -193,7 +193,7 @@ Block failures_block(const Results& results) {
 std::vector<Field<Row>> metric_fields(const Metric& metric) {
   // Copied, since the address of a metric may not last.
   RowFields fields = {{{metric.heading, Align::kRight, metric.legend},
-                       [metric](const Row& row) { return value_text(metric, row); }}};
+                       [metric](const Row& row) { return cell_text(metric, row); }}};
   if (metric.band_heading != nullptr) {
     fields.push_back({{metric.band_heading, Align::kRight, metric.legend},
                       [metric](const Row& row) { return band_text(metric.series(row)); }});

@@ -34,8 +34,8 @@ std::string lines_text(const std::string& heading, const std::vector<std::string
   return text;
 }
 
-std::string check_text(const std::string& heading, const FitCheck& check,
-                       const std::vector<std::string>& cameras) {
+std::string fit_check_text(const std::string& heading, const FitCheck& check,
+                           const std::vector<std::string>& cameras) {
   Table table({{"", Align::kLeft}, {"recorded"}, {"simulated"}});
   const FitSide& recorded = check.recorded;
   const FitSide& simulated = check.simulated;
@@ -65,7 +65,7 @@ How to read it
   Hold-out: fitted to the first half of each stream, compared with the second half.
 )";
 
-Json estimate_json(const std::optional<FittedValue>& estimate) {
+Json fitted_json(const std::optional<FittedValue>& estimate) {
   if (!estimate) return nullptr;
   return {{"value", estimate->value}, {"error", estimate->error}};
 }
@@ -76,7 +76,8 @@ Json share_json(const FitSide& side) {
           {"high", side.drop_interval.high}};
 }
 
-Json check_json(const char* name, const FitCheck& check, const std::vector<std::string>& cameras) {
+Json fit_check_json(const char* name, const FitCheck& check,
+                    const std::vector<std::string>& cameras) {
   const FitSide& recorded = check.recorded;
   const FitSide& simulated = check.simulated;
   Json quantiles = Json::array();
@@ -88,8 +89,8 @@ Json check_json(const char* name, const FitCheck& check, const std::vector<std::
   Json skews = Json::array();
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     skews.push_back({{"camera", cameras[i]},
-                     {"recorded", estimate_json(recorded.skew_ppm[i])},
-                     {"simulated", estimate_json(simulated.skew_ppm[i])}});
+                     {"recorded", fitted_json(recorded.skew_ppm[i])},
+                     {"simulated", fitted_json(simulated.skew_ppm[i])}});
   }
   return {
       {"check", name},
@@ -98,8 +99,8 @@ Json check_json(const char* name, const FitCheck& check, const std::vector<std::
       {"excess_ms", quantiles},
       {"skew_ppm", skews},
       {"correlation",
-       {{"recorded", estimate_json(recorded.correlation)},
-        {"simulated", estimate_json(simulated.correlation)}}},
+       {{"recorded", fitted_json(recorded.correlation)},
+        {"simulated", fitted_json(simulated.correlation)}}},
       {"drop_share", {{"recorded", share_json(recorded)}, {"simulated", share_json(simulated)}}},
       {"frames", {{"recorded", recorded.frames}, {"simulated", simulated.frames}}}};
 }
@@ -112,10 +113,10 @@ std::string fit_table(const FitReport& report) {
   if (!report.capture.empty()) text += fmt::format("capture: {}\n", report.capture);
   text += lines_text("Fitted", report.study.model.evidence);
   text += lines_text("Not identified", report.study.model.not_identified);
-  text += check_text("Recording and simulated model", report.study.whole, report.cameras);
+  text += fit_check_text("Recording and simulated model", report.study.whole, report.cameras);
   if (report.study.hold_out) {
-    text += check_text("Hold-out: second half, and the simulated model of the first half",
-                       *report.study.hold_out, report.cameras);
+    text += fit_check_text("Hold-out: second half, and the simulated model of the first half",
+                           *report.study.hold_out, report.cameras);
   } else {
     text += fmt::format("\nNo hold-out: it needs {} frames of each stream.\n",
                         2 * evaluation::kFewestFrames);
@@ -124,9 +125,9 @@ std::string fit_table(const FitReport& report) {
 }
 
 std::string fit_json(const FitReport& report) {
-  Json checks = {check_json("whole", report.study.whole, report.cameras)};
+  Json checks = {fit_check_json("whole", report.study.whole, report.cameras)};
   if (report.study.hold_out) {
-    checks.push_back(check_json("hold_out", *report.study.hold_out, report.cameras));
+    checks.push_back(fit_check_json("hold_out", *report.study.hold_out, report.cameras));
   }
   const Json root = {{"schema_version", 1},
                      {"version", version()},

@@ -46,7 +46,7 @@ MeasuredSeed read_seed(const JsonNode& node, std::set<std::uint64_t>& known) {
   return seed;
 }
 
-MeasuredPipeline read_pipeline(const JsonNode& node, std::set<std::string>& known) {
+MeasuredPipeline read_measured_pipeline(const JsonNode& node, std::set<std::string>& known) {
   MeasuredPipeline pipeline;
   pipeline.pipeline = node["pipeline"].text();
   if (!known.insert(pipeline.pipeline).second) {
@@ -130,7 +130,7 @@ MeasuredStudy read_measured_study(const std::string& path, const std::string& sc
   }
   std::set<std::string> pipelines;
   for (const JsonNode& row : root["rows"].elements()) {
-    study.rows.push_back(read_pipeline(row, pipelines));
+    study.rows.push_back(read_measured_pipeline(row, pipelines));
   }
   return study;
 }

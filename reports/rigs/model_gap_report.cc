@@ -44,7 +44,7 @@ std::string gap_text(double gap) {
   return std::isfinite(gap) ? fmt::format("{:+.1f} %", 100 * gap) : "-";
 }
 
-std::string verdict_text(const ModelGapRow& row) {
+std::string gap_verdict(const ModelGapRow& row) {
   if (!row.within_20_percent) return "-";
   return *row.within_20_percent ? "yes" : "no";
 }
@@ -75,7 +75,7 @@ Table gap_table(const std::vector<ModelGapRow>& rows) {
                number_text(row.measured.series.median), quantiles_text(row.measured, 1, 3),
                quantiles_text(row.measured, 0, 4), number_text(row.simulated.series.median),
                quantiles_text(row.simulated, 1, 3), quantiles_text(row.simulated, 0, 4),
-               gap_text(row.median_gap), verdict_text(row),
+               gap_text(row.median_gap), gap_verdict(row),
                number_text(row.ks) + (row.significant() ? " *" : ""), critical_text(row)});
   }
   return block;
@@ -132,7 +132,7 @@ Json side_json(const GapSide& side) {
           {"values", side.series.values}};
 }
 
-Json row_json(const ModelGapRow& row) {
+Json gap_row_json(const ModelGapRow& row) {
   const auto& within = row.within_20_percent;
   return {{"pipeline", row.pipeline},
           {"metric", row.metric},
@@ -198,7 +198,7 @@ std::string model_gap_json(const ModelGapReport& report) {
       {"rows", Json::array()},
       {"notes", notes_of(measured)},
       {"evidence", evidence_json()}};
-  for (const ModelGapRow& row : report.rows) root["rows"].push_back(row_json(row));
+  for (const ModelGapRow& row : report.rows) root["rows"].push_back(gap_row_json(row));
   return file_text(root);
 }
 

@@ -30,7 +30,7 @@ bool has_other_streams(const Replay& replay, const CameraReplay& camera) {
   });
 }
 
-std::string name_of(const Replay& replay, const CameraReplay& camera) {
+std::string camera_name(const Replay& replay, const CameraReplay& camera) {
   if (!has_other_streams(replay, camera)) return camera.camera;
   return camera.camera + "/" + camera.stream;
 }
@@ -53,7 +53,7 @@ std::string clocks_text(const Replay& replay) {
                {"\nmax"}});
   for (const CameraReplay& camera : replay.cameras) {
     const CameraStatistics& s = camera.statistics;
-    table.add({name_of(replay, camera), camera.host, count_text(s.frames),
+    table.add({camera_name(replay, camera), camera.host, count_text(s.frames),
                count_text(s.missing_frames), number_text(s.span_s),
                number_text(s.sensor_period.mean_ms), fmt::format("{:.4f}", s.sensor_period.sd_ms),
                number_text(s.arrival_period.mean_ms), number_text(s.arrival_period.sd_ms),
@@ -76,7 +76,7 @@ std::string rows_text(const Replay& replay) {
               2);
   for (const CameraReplay& camera : replay.cameras) {
     for (const DeviceTimeReplay& row : camera.rows) {
-      table.add({name_of(replay, camera), row.device_time, number_text(row.jitter_ms),
+      table.add({camera_name(replay, camera), row.device_time, number_text(row.jitter_ms),
                  number_text(row.residual.sd_ms), number_text(row.residual.p95_ms),
                  number_text(row.residual.p99_ms), number_text(row.residual.max_ms),
                  number_text(row.drift_ppm)});
@@ -236,7 +236,7 @@ void write_replay_frames(const Replay& replay, std::ostream& out) {
   out << '\n';
   fmt::memory_buffer text;
   for (const CameraReplay& camera : replay.cameras) {
-    const std::string name = csv_cell(name_of(replay, camera));
+    const std::string name = csv_cell(camera_name(replay, camera));
     for (std::size_t i = 0; i < camera.frames.size(); ++i) {
       text.clear();
       fmt::format_to(std::back_inserter(text), "{},{}", name, camera.frames[i].counter);

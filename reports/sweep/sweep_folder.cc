@@ -45,21 +45,16 @@ bool write_all(int file, std::string_view text) {
   return true;
 }
 
-constexpr const char* kManifest = "manifest.json";
 constexpr const char* kLog = "runs.log";
 constexpr const char* kLock = "lock";
-constexpr std::array<const char*, 7> kOwnFiles = {kManifest,   kLog,        kLock,      "sweep.csv",
-                                                  "hosts.csv", "sweep.txt", "sweep.svg"};
+constexpr std::array<const char*, 7> kSweepFiles = {
+    kManifest, kLog, kLock, "sweep.csv", "hosts.csv", "sweep.txt", "sweep.svg"};
 constexpr const char* kWayOut =
     "name another folder, repeat that sweep's command, or replace it with --restart";
 
-[[noreturn]] void fail(const fs::path& folder, const std::string& problem) {
-  throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
-}
-
 std::vector<std::string> own_names() {
   std::vector<std::string> names;
-  for (const char* name : kOwnFiles) {
+  for (const char* name : kSweepFiles) {
     names.emplace_back(name);
     names.push_back(fmt::format("{}.tmp", name));
   }
@@ -216,17 +211,17 @@ SweepFolder::SweepFolder(const fs::path& folder, const std::string& manifest, st
     : folder_(folder) {
   std::error_code error;
   if (fs::exists(folder_, error)) {
-    if (!fs::is_directory(folder_, error)) fail(folder_, "is a file; name a folder");
+    if (!fs::is_directory(folder_, error)) fail_output(folder_, "is a file; name a folder");
     check_contents();
   } else if (!fs::create_directories(folder_, error) && error) {
-    fail(folder_, fmt::format("cannot be made: {}", error.message()));
+    fail_output(folder_, fmt::format("cannot be made: {}", error.message()));
   }
   lock();
-  for (const char* name : kOwnFiles) fs::remove(path(fmt::format("{}.tmp", name)), error);
+  for (const char* name : kSweepFiles) fs::remove(path(fmt::format("{}.tmp", name)), error);
   if (restart) remove_all();
   if (!fs::exists(path(kManifest), error)) {
     if (fs::exists(path(kLog), error)) {
-      fail(folder_, fmt::format("holds runs of a sweep but no manifest.json; {}", kWayOut));
+      fail_output(folder_, fmt::format("holds runs of a sweep but no manifest.json; {}", kWayOut));
     }
     write(kManifest, manifest);
   } else {
@@ -246,51 +241,52 @@ void SweepFolder::check_contents() const {
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (std::find(own.begin(), own.end(), name) == own.end()) {
-      fail(folder_,
-           fmt::format("holds other files ({}); name a new folder or that of a sweep", name));
+      fail_output(
+          folder_,
+          fmt::format("holds other files ({}); name a new folder or that of a sweep", name));
     }
   }
-  if (error) fail(folder_, error.message());
+  if (error) fail_output(folder_, error.message());
 }
 
 void SweepFolder::lock() {
   lock_ = ::open(path(kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_ < 0) fail(folder_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (lock_ < 0) fail_output(folder_, fmt::format("cannot be written: {}", std::strerror(errno)));
   if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   if (errno == EWOULDBLOCK) {
-    fail(folder_, "another simbench runs this sweep; wait for it or name another folder");
+    fail_output(folder_, "another simbench runs this sweep; wait for it or name another folder");
   }
   // A file system without locks, as on some clusters: continue without.
 }
 
 void SweepFolder::check_manifest(const std::string& manifest) const {
   const std::optional<std::string> there = content_of(path(kManifest));
-  if (!there) fail(folder_, fmt::format("{} cannot be read", kManifest));
+  if (!there) fail_output(folder_, fmt::format("{} cannot be read", kManifest));
   if (*there == manifest) return;
   const nlohmann::json found = nlohmann::json::parse(*there, nullptr, false);
   if (!found.is_object()) {
-    fail(folder_, fmt::format("its {} is damaged; {}", kManifest, kWayOut));
+    fail_output(folder_, fmt::format("its {} is damaged; {}", kManifest, kWayOut));
   }
   check_is_sweep(*there);
-  fail(folder_, fmt::format("holds another sweep: {}; {}",
-                            difference(found, nlohmann::json::parse(manifest)), kWayOut));
+  fail_output(folder_, fmt::format("holds another sweep: {}; {}",
+                                   difference(found, nlohmann::json::parse(manifest)), kWayOut));
 }
 
 // Refuses a result that is not a sweep. A damaged manifest may have been a sweep's.
 void SweepFolder::check_is_sweep(const std::string& manifest) const {
   const nlohmann::json found = nlohmann::json::parse(manifest, nullptr, false);
   if (found.is_object() && found.value("kind", nlohmann::json()) != "sweep") {
-    fail(folder_, "holds a result that is not a sweep; name another folder");
+    fail_output(folder_, "holds a result that is not a sweep; name another folder");
   }
 }
 
 void SweepFolder::remove_all() const {
   const std::optional<std::string> there = content_of(path(kManifest));
   if (there) check_is_sweep(*there);
-  for (const std::string_view name : kOwnFiles) {
+  for (const std::string_view name : kSweepFiles) {
     std::error_code error;
     if (name != kLock) fs::remove(folder_ / name, error);
-    if (error) fail(folder_, fmt::format("{} cannot be removed: {}", name, error.message()));
+    if (error) fail_output(folder_, fmt::format("{} cannot be removed: {}", name, error.message()));
   }
 }
 

@@ -36,21 +36,16 @@ fs::path full_path(const std::string& named) {
   return path;
 }
 
-constexpr const char* kManifest = "manifest.json";
 constexpr std::array<const char*, 4> kOwnFiles = {kManifest, "results.json", "frames.csv",
                                                   "hosts.csv"};
-
-[[noreturn]] void fail(const fs::path& folder, const std::string& problem) {
-  throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
-}
 
 // The folder's full path, without a slash at its end, for the name of a sibling.
 fs::path normal_path(const fs::path& folder) {
   std::error_code error;
   fs::path path = fs::weakly_canonical(fs::absolute(folder), error);
-  if (error) fail(folder, error.message());
+  if (error) fail_output(folder, error.message());
   if (!path.has_filename()) path = path.parent_path();
-  if (!path.has_relative_path()) fail(folder, "is the root folder; name a folder in it");
+  if (!path.has_relative_path()) fail_output(folder, "is the root folder; name a folder in it");
   return path;
 }
 
@@ -65,25 +60,31 @@ void check_replaceable(const fs::path& folder, const std::vector<std::string>& m
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return;
-  if (!fs::is_directory(status)) fail(folder, "is a file; name a folder");
+  if (!fs::is_directory(status)) fail_output(folder, "is a file; name a folder");
   bool empty = true;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     empty = false;
     const fs::path name = entry->path().filename();
     if (!is_own_file(name, more_own_files)) {
-      fail(folder, fmt::format("holds other files ({}); name a new folder or an earlier result",
-                               name.string()));
+      fail_output(folder,
+                  fmt::format("holds other files ({}); name a new folder or an earlier result",
+                              name.string()));
     }
   }
-  if (error) fail(folder, error.message());
+  if (error) fail_output(folder, error.message());
   if (!empty && !fs::exists(folder / kManifest, error)) {
-    fail(folder,
-         "is neither empty nor an earlier result (it has no manifest.json); name a new folder");
+    fail_output(
+        folder,
+        "is neither empty nor an earlier result (it has no manifest.json); name a new folder");
   }
 }
 
 }  // namespace
+
+void fail_output(const fs::path& folder, const std::string& problem) {
+  throw OutputError(fmt::format("--output {}: {}", folder.string(), problem));
+}
 
 std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
 
@@ -130,12 +131,12 @@ OutputFolder::OutputFolder(const fs::path& folder, const std::vector<std::string
   const fs::path parent = folder_.parent_path();
   std::error_code error;
   if (!fs::is_directory(parent, error)) {
-    fail(folder, fmt::format("there is no folder {}; make it first", parent.string()));
+    fail_output(folder, fmt::format("there is no folder {}; make it first", parent.string()));
   }
   temporary_ = parent / fmt::format(".{}.{}.unfinished", folder_.filename().string(), getpid());
   fs::remove_all(temporary_, error);  // of an earlier process with this one's number
   fs::create_directory(temporary_, error);
-  if (error) fail(folder, fmt::format("cannot be written: {}", error.message()));
+  if (error) fail_output(folder, fmt::format("cannot be written: {}", error.message()));
 }
 
 OutputFolder::~OutputFolder() {
@@ -148,7 +149,7 @@ std::ostream& OutputFolder::file(const std::string& name) {
   finish_file();
   open_name_ = temporary_ / name;
   open_.open(open_name_, std::ios::binary);
-  if (!open_) fail(folder_, fmt::format("cannot write {}: {}", name, system_reason()));
+  if (!open_) fail_output(folder_, fmt::format("cannot write {}: {}", name, system_reason()));
   return open_;
 }
 
@@ -156,8 +157,8 @@ void OutputFolder::finish_file() {
   if (!open_.is_open()) return;
   open_.close();
   if (!open_) {
-    fail(folder_, fmt::format("cannot write {}: {}; nothing was kept",
-                              open_name_.filename().string(), system_reason()));
+    fail_output(folder_, fmt::format("cannot write {}: {}; nothing was kept",
+                                     open_name_.filename().string(), system_reason()));
   }
 }
 
@@ -169,13 +170,13 @@ void OutputFolder::publish() {
     aside = temporary_;
     aside += ".old";
     fs::rename(folder_, aside, error);
-    if (error) fail(folder_, fmt::format("cannot be replaced: {}", error.message()));
+    if (error) fail_output(folder_, fmt::format("cannot be replaced: {}", error.message()));
   }
   fs::rename(temporary_, folder_, error);
   if (error) {
     std::error_code ignored;
     if (!aside.empty()) fs::rename(aside, folder_, ignored);
-    fail(folder_, fmt::format("cannot be written: {}", error.message()));
+    fail_output(folder_, fmt::format("cannot be written: {}", error.message()));
   }
   temporary_.clear();
   if (!aside.empty()) fs::remove_all(aside, error);

@@ -57,6 +57,11 @@ void write_file(const std::string& path, std::string_view content);
 // Returns the system's reason for the last failed call.
 std::string system_reason();
 
+// The file that every folder of results has.
+inline constexpr const char* kManifest = "manifest.json";
+
+[[noreturn]] void fail_output(const std::filesystem::path& folder, const std::string& problem);
+
 class OutputFolder {
  public:
   // Checks that `folder` may be written and makes the temporary one. `more_own_files`: files that

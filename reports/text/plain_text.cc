@@ -25,7 +25,7 @@ struct Slot {
 };
 using Part = std::vector<Slot>;
 
-Lines lines_of(const std::string& text) {
+Lines text_lines(const std::string& text) {
   Lines lines;
   std::size_t begin = 0;
   for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
@@ -54,7 +54,7 @@ struct Need {
 
 Need need_of(const Column& column, std::size_t index, const Rows& rows) {
   Need need;
-  need.natural = need.least = widest(lines_of(column.header));
+  need.natural = need.least = widest(text_lines(column.header));
   for (const auto& row : rows) {
     const std::string& cell = row[index];
     need.natural = std::max(need.natural, cell.size());
@@ -155,7 +155,7 @@ std::string part_text(const Part& part, const std::vector<Column>& columns, cons
   std::vector<Lines> cells;
   std::vector<Lines> rule;
   for (const Slot& slot : part) {
-    cells.push_back(lines_of(columns[slot.column].header));
+    cells.push_back(text_lines(columns[slot.column].header));
     rule.push_back({std::string(slot.width, '-')});
   }
   std::string out = side_by_side(cells, part, columns, true);

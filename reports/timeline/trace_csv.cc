@@ -18,18 +18,18 @@ std::string seconds_text(TrueTime at) {
 
 // The columns in their order; only those with a value are written.
 enum class Series : std::uint8_t { kPulse, kClock, kStep, kLatency, kStampError, kRange, kFrames };
-struct Column {
+struct TraceColumn {
   std::uint8_t group = 0;
   std::uint32_t place = 0;
   bool colour = false;
   Series series = Series::kPulse;
-  friend bool operator<(const Column& a, const Column& b) {
+  friend bool operator<(const TraceColumn& a, const TraceColumn& b) {
     return std::tie(a.group, a.place, a.colour, a.series) <
            std::tie(b.group, b.place, b.colour, b.series);
   }
 };
 
-std::string name_of(const Column& column) {
+std::string column_name(const TraceColumn& column) {
   const char* colour = column.colour ? "/colour" : "";
   switch (column.series) {
     case Series::kPulse:
@@ -52,7 +52,7 @@ std::string name_of(const Column& column) {
 
 class TraceTable {
  public:
-  void add(TrueTime at, const Column& column, double value) {
+  void add(TrueTime at, const TraceColumn& column, double value) {
     if (column.place >= kTraceCsvPlaces) return;
     const auto number = columns_.try_emplace(column, columns_.size()).first->second;
     cells_.push_back({at, number, value});
@@ -64,7 +64,7 @@ class TraceTable {
     std::size_t place = 0;
     for (const auto& [column, number] : columns_) {
       places[number] = place++;
-      line.append(",").append(name_of(column));
+      line.append(",").append(column_name(column));
     }
     out << line << '\n';
     std::stable_sort(cells_.begin(), cells_.end(),
@@ -87,7 +87,7 @@ class TraceTable {
     std::size_t column;
     double value;
   };
-  std::map<Column, std::size_t> columns_;
+  std::map<TraceColumn, std::size_t> columns_;
   std::vector<Cell> cells_;
 };
 

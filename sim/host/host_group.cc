@@ -12,7 +12,7 @@ constexpr double kMsPerHour = 3.6e6;
 constexpr double kMsPerMinute = 6e4;
 constexpr double kSteadyEpochMaxMs = kMsPerHour;
 
-std::string component(std::size_t host, const char* what) {
+std::string host_component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
 }
 
@@ -20,12 +20,12 @@ std::string component(std::size_t host, const char* what) {
 double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
                  InitialClocks initial_clocks, std::size_t host, double skew_against_master) {
   if (initial_clocks == InitialClocks::kLastSet) {
-    RandomStream draw(run_seed, component(host, "clock since the last set"));
+    RandomStream draw(run_seed, host_component(host, "clock since the last set"));
     const double skew_then = draw.normal(clock.last_set.skew_sigma_ppm * 1e-6);
     return skew_then * clock.last_set.hours_ago * kMsPerHour +
            skew_against_master * clock.last_set.minutes_since_baseline * kMsPerMinute;
   }
-  RandomStream draw(run_seed, component(host, "initial offset"));
+  RandomStream draw(run_seed, host_component(host, "initial offset"));
   return draw.normal(clock.initial_offset_sigma_ms);
 }
 
@@ -60,8 +60,8 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
 void HostGroup::make_clock(const scenarios::HostClock& parameters, std::uint64_t run_seed,
                            InitialClocks initial_clocks) {
   const std::size_t host = clocks_.size();
-  OscillatorModel oscillator(parameters.oscillator, run_seed, component(host, "oscillator"));
-  RandomStream epoch(run_seed, component(host, "steady epoch"));
+  OscillatorModel oscillator(parameters.oscillator, run_seed, host_component(host, "oscillator"));
+  RandomStream epoch(run_seed, host_component(host, "steady epoch"));
   const SteadyTime steady_epoch{from_ms(epoch.uniform(0, kSteadyEpochMaxMs))};
   Nanoseconds offset{};
   if (host > 0) {

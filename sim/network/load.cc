@@ -7,7 +7,7 @@
 namespace simbench::sim {
 namespace {
 
-std::string component(std::string_view what, std::string_view load_key) {
+std::string load_component(std::string_view what, std::string_view load_key) {
   return std::string(what).append(": ").append(load_key);
 }
 
@@ -20,10 +20,10 @@ constexpr ComponentKey kLoadBursts("host: bursts of load");
 RunLoad::RunLoad(std::uint64_t run_seed, std::string_view load_key, const scenarios::Hosts& hosts,
                  const scenarios::Network& network)
     : run_seed_(run_seed),
-      session_key_(component("session load", load_key)),
-      set_cost_key_(component("set cost", load_key)),
-      factor_(
-          RandomStream(run_seed, component("run load", load_key)).lognormal(hosts.load_log_sigma)),
+      session_key_(load_component("session load", load_key)),
+      set_cost_key_(load_component("set cost", load_key)),
+      factor_(RandomStream(run_seed, load_component("run load", load_key))
+                  .lognormal(hosts.load_log_sigma)),
       send_cost_mean_ms_(hosts.send_cost_session_exponential_ms * factor_),
       latency_mean_ms_(network.latency_session_exponential_ms * factor_),
       set_cost_log_sigma_(hosts.clock.set_cost_session_log_sigma) {}

@@ -15,7 +15,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 
 template <class Entry>
-std::vector<std::string> names(const std::vector<Entry>& entries) {
+std::vector<std::string> entry_names(const std::vector<Entry>& entries) {
   std::vector<std::string> all;
   for (const Entry& entry : entries) all.push_back(entry.info.name);
   return all;
@@ -32,7 +32,7 @@ DeviceTimeEntry constant(const std::string& name) {
 }
 
 TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
-  std::vector<std::string> device_time = names(device_time_algorithms());
+  std::vector<std::string> device_time = entry_names(device_time_algorithms());
   device_time.resize(20);  // other tests may have registered more
   EXPECT_THAT(
       device_time,
@@ -41,7 +41,7 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
                   "regression_300", "regression_all", "hull_300", "hull_switch_10s",
                   "hull_switch_60s", "hull_offline", "two_way_poll", "olson_50ppm", "minimum_1s",
                   "theil_sen_300", "kalman", "librealsense_global"));
-  EXPECT_THAT(names(gathering_algorithms()),
+  EXPECT_THAT(entry_names(gathering_algorithms()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",
                           "phase_binning", "oracle"));
@@ -76,7 +76,7 @@ TEST(Registry, FindsByName) {
 
 TEST(Registry, TakesAUsersAlgorithmOnce) {
   register_device_time(constant("registry_test_constant"));
-  EXPECT_THAT(names(device_time_algorithms()), Contains("registry_test_constant"));
+  EXPECT_THAT(entry_names(device_time_algorithms()), Contains("registry_test_constant"));
   const DeviceTimeEntry* entry = find_device_time("registry_test_constant");
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->make({})->stamp({}), GlobalTime(from_ms(1)));

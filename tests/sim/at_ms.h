@@ -1,13 +1,18 @@
-// Instants of true time in ms, as tests state and read them.
+// Instants as tests state and read them: in ms, or never.
 #ifndef SIMBENCH_TESTS_SIM_AT_MS_H_
 #define SIMBENCH_TESTS_SIM_AT_MS_H_
 
+#include "algorithms/ports/time.h"
 #include "recording/true_time.h"
 
 namespace simbench {
 
 inline TrueTime at_ms(double ms) { return TrueTime(from_ms(ms)); }
+inline HostTime host_ms(double ms) { return HostTime(from_ms(ms)); }
 inline double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
+inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
+
+inline constexpr SteadyTime kNoDeadline = SteadyTime::max();
 
 }  // namespace simbench
 

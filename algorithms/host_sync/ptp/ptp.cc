@@ -12,8 +12,8 @@
 namespace simbench {
 namespace {
 
-Task<void> serve(Host& host, PeerId slave, PtpSettings settings,
-                 std::shared_ptr<const bool> is_ready) {
+Task<void> serve_ptp(Host& host, PeerId slave, PtpSettings settings,
+                     std::shared_ptr<const bool> is_ready) {
   PtpMaster master(host, slave, settings, std::move(is_ready));
   co_await master.run();
 }
@@ -37,7 +37,7 @@ Task<void> Ptp::run_master(Host& host, std::vector<PeerId> slaves) {
   auto is_ready = std::make_shared<bool>(!needs_card);
   std::vector<Task<void>> tasks;
   tasks.reserve(slaves.size() + 1);
-  for (const PeerId slave : slaves) tasks.push_back(serve(host, slave, settings_, is_ready));
+  for (const PeerId slave : slaves) tasks.push_back(serve_ptp(host, slave, settings_, is_ready));
   if (needs_card) tasks.push_back(couple_card(host, settings_, is_ready));
   co_await join_all(std::move(tasks));
 }

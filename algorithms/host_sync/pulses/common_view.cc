@@ -17,8 +17,8 @@ constexpr Nanoseconds kAnswerTimeout{500'000'000};
 constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
 
 // The master's end towards one slave.
-Task<void> serve(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
-                 std::shared_ptr<PulseObserver> observer, bool is_naive) {
+Task<void> serve_pulses(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
+                        std::shared_ptr<PulseObserver> observer, bool is_naive) {
   TwoWayServer server(host, slave, clock, is_naive);
   MessageChannel& channel = host.open_channel(slave, Transport::kDatagram);
   while (true) {
@@ -103,7 +103,7 @@ Task<void> CommonView::run_master(Host& host, std::vector<PeerId> slaves) {
   std::vector<Task<void>> servers;
   servers.reserve(slaves.size());
   for (const PeerId slave : slaves) {
-    servers.push_back(serve(host, slave, clock, observer, settings_.two_way.is_naive));
+    servers.push_back(serve_pulses(host, slave, clock, observer, settings_.two_way.is_naive));
   }
   co_await join_all(std::move(servers));
 }

@@ -28,7 +28,7 @@ class EveryGatherer : public testing::TestWithParam<std::string> {
   }
 };
 
-std::vector<std::string> names() {
+std::vector<std::string> gatherer_names() {
   std::vector<std::string> all;
   for (const GatheringEntry& entry : gathering_algorithms()) all.push_back(entry.info.name);
   return all;
@@ -257,7 +257,7 @@ TEST_P(EveryGatherer, ASourceThatDoesNotExistIsAProgrammingError) {
   EXPECT_DEATH(gatherer->push(frame_at(2, 0, 0), out), "does not exist");
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryGatherer, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Registered, EveryGatherer, testing::ValuesIn(gatherer_names()),
                          [](const auto& entry) { return entry.param; });
 
 }  // namespace

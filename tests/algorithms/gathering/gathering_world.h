@@ -20,6 +20,7 @@ struct GatheringWorld {
   double period_ms = 22;
   double sigma_ms = 0;      // of the stamps
   double drop = 0;          // share of lost frames
+  double outage = 0;        // share of sources that are silent in the middle third
   double delay_max_ms = 0;  // of delivery, beyond 8 ms
   double quantum_ms = 0;    // of the stamps: makes ties
 };
@@ -32,6 +33,7 @@ inline std::vector<GatherFrame> frames_of(const GatheringWorld& world, std::uint
   boost::random::uniform_01<double> uniform;
   std::vector<GatherFrame> frames;
   for (std::uint32_t source = 0; source < world.sources; ++source) {
+    const bool fails = world.outage > 0 && uniform(random) < world.outage;
     double last_ms = 0;
     for (std::int64_t pulse = 0; pulse < world.pulses; ++pulse) {
       const double at_ms = static_cast<double>(pulse) * world.period_ms;
@@ -40,7 +42,8 @@ inline std::vector<GatherFrame> frames_of(const GatheringWorld& world, std::uint
         stamp_ms = std::floor(stamp_ms / world.quantum_ms) * world.quantum_ms;
       }
       last_ms = std::max(last_ms, at_ms + 8 + world.delay_max_ms * uniform(random));
-      if (uniform(random) < world.drop) continue;
+      const bool silent = fails && pulse > world.pulses / 3 && pulse < 2 * world.pulses / 3;
+      if (uniform(random) < world.drop || silent) continue;
       frames.push_back(frame_at(source, stamp_ms, pulse));
       frames.back().arrival = GlobalTime(from_ms(last_ms));
     }

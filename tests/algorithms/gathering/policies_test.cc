@@ -49,7 +49,7 @@ Found gather(const std::string& name, double sigma_ms, double drop) {
           right / static_cast<double>(complete_pulses(frames, world.sources))};
 }
 
-struct Expectation {
+struct PolicyExpectation {
   std::string name;
   double sigma_ms;
   double drop;
@@ -59,7 +59,7 @@ struct Expectation {
 };
 
 TEST(GatheringPolicies, PrecisionAndRecallAreTheReferences) {
-  const Expectation expectations[] = {
+  const PolicyExpectation expectations[] = {
       {"yoon2021", 0.05, 0.1, 1, 1, 1e-9},
       {"yoon2021", 3, 0, 0.9997, 0.9570, 0.012},
       {"yoon2021", 3, 0.1, 0.9995, 0.9512, 0.012},
@@ -76,7 +76,7 @@ TEST(GatheringPolicies, PrecisionAndRecallAreTheReferences) {
       {"phase_binning", 3, 0, 0.9990, 0.9977, 0.003},
       {"phase_binning", 3, 0.1, 0.9995, 0.9985, 0.003},
   };
-  for (const Expectation& expected : expectations) {
+  for (const PolicyExpectation& expected : expectations) {
     const Found found = gather(expected.name, expected.sigma_ms, expected.drop);
     EXPECT_NEAR(found.precision, expected.precision, expected.tolerance)
         << expected.name << ", sigma " << expected.sigma_ms << ", drop " << expected.drop;

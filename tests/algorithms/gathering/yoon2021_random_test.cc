@@ -4,18 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "algorithms/gathering/gatherers.h"
 #include "tests/algorithms/gathering/collected_sets.h"
+#include "tests/algorithms/gathering/gathering_world.h"
 #include "tests/nonempty.h"
 
 namespace simbench {
@@ -56,45 +54,8 @@ class NaiveGatherer {
   std::vector<std::deque<GatherFrame>> queues_;
 };
 
-struct World {
-  std::uint32_t sources = 18;
-  std::int64_t pulses = 300;
-  double sigma_ms = 1;      // of the stamps
-  double drop = 0;          // share of lost frames
-  double outage = 0;        // share of sources that are silent in the middle third
-  double delay_max_ms = 0;  // of delivery, per frame; frames of a source stay in order
-  double quantum_ms = 0;    // of the stamps: makes ties
-};
-
-// The frames of a world in order of arrival; the tag is the pulse.
-std::vector<GatherFrame> frames_of(const World& world, std::uint32_t seed) {
-  boost::random::mt19937 random(seed);
-  boost::random::normal_distribution<double> noise_ms(0, world.sigma_ms);
-  boost::random::uniform_01<double> uniform;
-  std::vector<std::pair<double, GatherFrame>> arrivals;
-  for (std::uint32_t source = 0; source < world.sources; ++source) {
-    const bool out = uniform(random) < world.outage;
-    double last_ms = 0;
-    for (std::int64_t pulse = 0; pulse < world.pulses; ++pulse) {
-      const double at_ms = static_cast<double>(pulse) * kPeriodMs;
-      double stamp_ms = at_ms + noise_ms(random);
-      if (world.quantum_ms > 0) {
-        stamp_ms = std::floor(stamp_ms / world.quantum_ms) * world.quantum_ms;
-      }
-      last_ms = std::max(last_ms, at_ms + 10 + world.delay_max_ms * uniform(random));
-      const bool silent = out && pulse > world.pulses / 3 && pulse < 2 * world.pulses / 3;
-      if (uniform(random) < world.drop || silent) continue;
-      arrivals.emplace_back(last_ms, frame_at(source, stamp_ms, pulse));
-    }
-  }
-  std::ranges::stable_sort(arrivals, {}, [](const auto& arrival) { return arrival.first; });
-  std::vector<GatherFrame> frames;
-  frames.reserve(arrivals.size());
-  for (const auto& arrival : arrivals) frames.push_back(arrival.second);
-  return frames;
-}
-
-GatheringSetup random_setup(const World& world, double interval_ms, std::uint32_t queue_limit) {
+GatheringSetup random_setup(const GatheringWorld& world, double interval_ms,
+                            std::uint32_t queue_limit) {
   return {.sources = world.sources,
           .period = from_ms(kPeriodMs),
           .interval = from_ms(interval_ms),
@@ -105,7 +66,8 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
   for (std::uint32_t seed = 1; seed <= 300; ++seed) {
     boost::random::mt19937 random(seed);
     boost::random::uniform_01<double> uniform;
-    World world;
+    GatheringWorld world;
+    world.period_ms = kPeriodMs;
     world.sources = 1 + static_cast<std::uint32_t>(random() % 9);
     world.pulses = 60;
     world.sigma_ms = 8 * uniform(random);
@@ -131,8 +93,13 @@ TEST(Yoon2021Random, EqualsTheNaiveImplementation) {
 
 TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
-    const World world = {
-        .sources = 6, .sigma_ms = 4, .drop = 0.05, .outage = 0.2, .delay_max_ms = 60};
+    const GatheringWorld world = {.sources = 6,
+                                  .pulses = 300,
+                                  .period_ms = kPeriodMs,
+                                  .sigma_ms = 4,
+                                  .drop = 0.05,
+                                  .outage = 0.2,
+                                  .delay_max_ms = 60};
     const GatheringSetup setup = random_setup(world, kPeriodMs / 2, 8);
     const auto gatherer = make_yoon2021_gatherer(setup);
     CollectedSets out;
@@ -160,7 +127,8 @@ TEST(Yoon2021Random, NeverReordersNeverReusesAndKeepsTheInterval) {
 
 TEST(Yoon2021Random, CleanInputHasRecallOne) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    const World world = {.sources = 18, .pulses = 200, .sigma_ms = 1, .delay_max_ms = 60};
+    const GatheringWorld world = {
+        .sources = 18, .pulses = 200, .period_ms = kPeriodMs, .sigma_ms = 1, .delay_max_ms = 60};
     const auto gatherer = make_yoon2021_gatherer(random_setup(world, kPeriodMs / 2, 64));
     CollectedSets out;
     for (const GatherFrame& frame : frames_of(world, seed)) gatherer->push(frame, out);
@@ -195,7 +163,8 @@ TEST(Yoon2021Random, SixIndependentPhasesMostlyGiveNoSet) {
 }
 
 TEST(Yoon2021Random, EighteenThousandSources) {
-  const World world = {.sources = 18'000, .pulses = 4, .sigma_ms = 0.5, .drop = 2e-5};
+  const GatheringWorld world = {
+      .sources = 18'000, .pulses = 4, .period_ms = kPeriodMs, .sigma_ms = 0.5, .drop = 2e-5};
   const auto gatherer = make_yoon2021_gatherer(random_setup(world, kPeriodMs / 2, 8));
   CollectedSets out;
   const std::vector<GatherFrame> frames = frames_of(world, 4);

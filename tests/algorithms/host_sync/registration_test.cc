@@ -20,7 +20,8 @@ const HostSyncEntry& entry(const std::string& name) {
   return *found;
 }
 
-std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& given = {}) {
+std::unique_ptr<HostSync> make_host_sync(const std::string& name,
+                                         const ParameterValues& given = {}) {
   return entry(name).make(check_parameters(entry(name).info.parameters, given));
 }
 
@@ -51,7 +52,7 @@ TEST(HostSyncRegistration, TheLimitsDifferInTheirClocksAndDoNothing) {
       {"ntp_last_set", InitialClocks::kLastSet},
       {"oracle", InitialClocks::kMaster}};
   for (const auto& [name, clocks] : limits) {
-    const auto algorithm = make(name);
+    const auto algorithm = make_host_sync(name);
     EXPECT_EQ(algorithm->initial_clocks(), clocks) << name;
     EXPECT_FALSE(algorithm->warm_up()) << name;
     ScriptWorld world(3);  // no link: a message would throw
@@ -67,7 +68,7 @@ Nanoseconds lead_with(const std::string& name, const ParameterValues& given = {}
   world.set_latency(0, 1, from_ms(1));
   world.set_latency(1, 0, from_ms(1));
   world.host(1).costs.set = from_ms(4);
-  world.run(*make(name, given));
+  world.run(*make_host_sync(name, given));
   return world.host(1).lead_over(world.host(0));
 }
 
@@ -89,16 +90,17 @@ TEST(HostSyncRegistration, ParametersReachTheAlgorithm) {
   ScriptWorld world(2);
   world.set_latency(0, 1, from_ms(1));
   world.set_latency(1, 0, from_ms(1));
-  world.run(*make("yoon2021_both", {{"threshold_ms", 1.5}, {"pass_limit", 7.0}}));
+  world.run(*make_host_sync("yoon2021_both", {{"threshold_ms", 1.5}, {"pass_limit", 7.0}}));
   EXPECT_FALSE(world.host(0).outcomes.at(0).synchronised);
   EXPECT_EQ(world.host(0).outcomes.at(0).passes, 7U);
-  EXPECT_EQ(make("w32time", {{"service_hours", 2.0}})->warm_up(), from_ms(7200e3));
+  EXPECT_EQ(make_host_sync("w32time", {{"service_hours", 2.0}})->warm_up(), from_ms(7200e3));
 }
 
 TEST(HostSyncRegistration, ValuesOutOfRangeAreRefused) {
-  EXPECT_THROW(make("yoon2021_both", {{"stamps", 0.0}}), ParameterError);
-  EXPECT_THROW(make("yoon2021_both", {{"latency_estimate", std::string("best")}}), ParameterError);
-  EXPECT_THROW(make("w32time", {{"poll_interval_s", 1.0}}), ParameterError);
+  EXPECT_THROW(make_host_sync("yoon2021_both", {{"stamps", 0.0}}), ParameterError);
+  EXPECT_THROW(make_host_sync("yoon2021_both", {{"latency_estimate", std::string("best")}}),
+               ParameterError);
+  EXPECT_THROW(make_host_sync("w32time", {{"poll_interval_s", 1.0}}), ParameterError);
 }
 
 }  // namespace

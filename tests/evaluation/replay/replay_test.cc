@@ -32,14 +32,14 @@ CameraStream camera(const std::string& name, int frames, double drift_ppm, const
 
 double no_latency(int) { return 0; }
 
-const DeviceTimeReplay& row(const CameraReplay& camera, const std::string& device_time) {
+const DeviceTimeReplay& replay_row(const CameraReplay& camera, const std::string& device_time) {
   const auto found = std::find_if(camera.rows.begin(), camera.rows.end(),
                                   [&](const auto& r) { return r.device_time == device_time; });
   EXPECT_NE(found, camera.rows.end()) << device_time;
   return *found;
 }
 
-const RigRow& row(const RigReplay& rig, const std::string& device_time) {
+const RigRow& replay_row(const RigReplay& rig, const std::string& device_time) {
   const auto found = std::find_if(rig.rows.begin(), rig.rows.end(),
                                   [&](const auto& r) { return r.device_time == device_time; });
   EXPECT_NE(found, rig.rows.end()) << device_time;
@@ -64,10 +64,10 @@ TEST(Replay, ACleanRecordingHasItsDriftAndNothingElse) {
   EXPECT_NEAR(found.excess.max_ms, 0, 2e-6);
   EXPECT_NEAR(found.sensor_period.mean_ms, kReplayPeriodMs / 1.000215, 1e-5);
   EXPECT_NEAR(found.arrival_period.mean_ms, kReplayPeriodMs, 1e-9);
-  EXPECT_NEAR(row(replay.cameras[0], "regression_offline").drift_ppm, 215, 0.01);
-  EXPECT_NEAR(row(replay.cameras[0], "regression_30").drift_ppm, 215, 0.1);
-  EXPECT_NEAR(row(replay.cameras[0], "raw_arrival").drift_ppm, 215, 0.01);
-  EXPECT_LT(row(replay.cameras[0], "regression_30").jitter_ms, 0.002);
+  EXPECT_NEAR(replay_row(replay.cameras[0], "regression_offline").drift_ppm, 215, 0.01);
+  EXPECT_NEAR(replay_row(replay.cameras[0], "regression_30").drift_ppm, 215, 0.1);
+  EXPECT_NEAR(replay_row(replay.cameras[0], "raw_arrival").drift_ppm, 215, 0.01);
+  EXPECT_LT(replay_row(replay.cameras[0], "regression_30").jitter_ms, 0.002);
   EXPECT_TRUE(replay.rigs.empty());
   EXPECT_TRUE(replay.warnings.empty());
 }
@@ -80,7 +80,7 @@ TEST(Replay, DriftIsSoundAfterHours) {
   }
   const Replay replay = run_replay({stream});
   EXPECT_NEAR(replay.cameras[0].statistics.drift_ppm, -20, 0.001);
-  EXPECT_NEAR(row(replay.cameras[0], "regression_offline").drift_ppm, -20, 0.01);
+  EXPECT_NEAR(replay_row(replay.cameras[0], "regression_offline").drift_ppm, -20, 0.01);
 }
 
 TEST(Replay, JitterStaysInRawArrivalsAndLeavesTheLine) {
@@ -89,15 +89,15 @@ TEST(Replay, JitterStaysInRawArrivalsAndLeavesTheLine) {
   const CameraReplay& found = replay.cameras[0];
   EXPECT_NEAR(found.statistics.residual.sd_ms, 1, 2e-3);
   EXPECT_NEAR(found.statistics.excess.max_ms, 2, 1e-3);
-  EXPECT_NEAR(row(found, "raw_arrival").jitter_ms, 2, 2e-3);
-  EXPECT_NEAR(row(found, "raw_arrival").residual.sd_ms, 0, 1e-9);
-  EXPECT_NEAR(row(found, "regression_offline").jitter_ms, 0, 2e-3);
-  EXPECT_NEAR(row(found, "regression_offline").residual.sd_ms, 1, 2e-3);
+  EXPECT_NEAR(replay_row(found, "raw_arrival").jitter_ms, 2, 2e-3);
+  EXPECT_NEAR(replay_row(found, "raw_arrival").residual.sd_ms, 0, 1e-9);
+  EXPECT_NEAR(replay_row(found, "regression_offline").jitter_ms, 0, 2e-3);
+  EXPECT_NEAR(replay_row(found, "regression_offline").residual.sd_ms, 1, 2e-3);
 }
 
 TEST(Replay, RelativeStampsHaveNoDriftAndTheCommonAnchor) {
   const Replay replay = run_replay({camera("a", 50, 10, no_latency)});
-  const DeviceTimeReplay& found = row(replay.cameras[0], "sensor_normalised");
+  const DeviceTimeReplay& found = replay_row(replay.cameras[0], "sensor_normalised");
   EXPECT_TRUE(std::isnan(found.drift_ppm));
   EXPECT_TRUE(std::isnan(found.residual.sd_ms));
   EXPECT_EQ(found.stamps[0], GlobalTime(from_ms(100)));
@@ -128,7 +128,7 @@ TEST(Replay, LostFramesAreCountedByTheCounter) {
 TEST(Replay, TooFewFramesGiveNoNumbers) {
   const Replay replay = run_replay({camera("a", 1, 0, no_latency), camera("b", 2, 0, no_latency)});
   EXPECT_TRUE(std::isnan(replay.cameras[0].statistics.drift_ppm));
-  EXPECT_TRUE(std::isnan(row(replay.cameras[0], "raw_arrival").jitter_ms));
+  EXPECT_TRUE(std::isnan(replay_row(replay.cameras[0], "raw_arrival").jitter_ms));
   EXPECT_FALSE(std::isnan(replay.cameras[1].statistics.drift_ppm));
 }
 
@@ -142,12 +142,12 @@ TEST(Replay, CamerasAreComparedByGenlockOrder) {
   EXPECT_EQ(rig.complete_pulses, 300);
   EXPECT_NEAR(rig.first_arrival_range_ms, 1.5, 1e-9);
   EXPECT_TRUE(rig.common_start_plausible);
-  EXPECT_NEAR(row(rig, "raw_arrival").amd_ms, 1.5, 1e-9);
-  EXPECT_NEAR(row(rig, "raw_arrival").rmdv_ms, 1.5 / std::sqrt(2), 1e-9);
-  EXPECT_NEAR(row(rig, "regression_30").amd_ms, 1.5, 2e-3);
-  EXPECT_EQ(gathering(row(rig, "regression_30"), "yoon2021").sets, 300);
-  EXPECT_EQ(gathering(row(rig, "regression_30"), "genlock").sets, 300);
-  EXPECT_NEAR(gathering(row(rig, "raw_arrival"), "yoon2021").amd_ms, 1.5, 1e-9);
+  EXPECT_NEAR(replay_row(rig, "raw_arrival").amd_ms, 1.5, 1e-9);
+  EXPECT_NEAR(replay_row(rig, "raw_arrival").rmdv_ms, 1.5 / std::sqrt(2), 1e-9);
+  EXPECT_NEAR(replay_row(rig, "regression_30").amd_ms, 1.5, 2e-3);
+  EXPECT_EQ(gathering(replay_row(rig, "regression_30"), "yoon2021").sets, 300);
+  EXPECT_EQ(gathering(replay_row(rig, "regression_30"), "genlock").sets, 300);
+  EXPECT_NEAR(gathering(replay_row(rig, "raw_arrival"), "yoon2021").amd_ms, 1.5, 1e-9);
 }
 
 TEST(Replay, ALostFrameLeavesItsPulseIncomplete) {
@@ -155,9 +155,9 @@ TEST(Replay, ALostFrameLeavesItsPulseIncomplete) {
   b.frames.erase(b.frames.begin() + 100);
   const Replay replay = run_replay({camera("a", 300, 0, no_latency), b});
   EXPECT_EQ(replay.rigs[0].complete_pulses, 299);
-  EXPECT_NEAR(row(replay.rigs[0], "raw_arrival").amd_ms, 0, 1e-9);
-  EXPECT_EQ(gathering(row(replay.rigs[0], "raw_arrival"), "yoon2021").sets, 299);
-  EXPECT_EQ(gathering(row(replay.rigs[0], "raw_arrival"), "yoon2021").discarded_frames, 1);
+  EXPECT_NEAR(replay_row(replay.rigs[0], "raw_arrival").amd_ms, 0, 1e-9);
+  EXPECT_EQ(gathering(replay_row(replay.rigs[0], "raw_arrival"), "yoon2021").sets, 299);
+  EXPECT_EQ(gathering(replay_row(replay.rigs[0], "raw_arrival"), "yoon2021").discarded_frames, 1);
 }
 
 TEST(Replay, WithoutACommonStartItSaysSo) {
@@ -168,8 +168,8 @@ TEST(Replay, WithoutACommonStartItSaysSo) {
   ASSERT_EQ(replay.warnings.size(), 1U);
   EXPECT_NE(replay.warnings[0].find("common start"), std::string::npos);
   // Order counts from the first frames and pairs neighbours; stamps do not.
-  EXPECT_NEAR(row(replay.rigs[0], "raw_arrival").amd_ms, kReplayPeriodMs, 1e-6);
-  EXPECT_NEAR(gathering(row(replay.rigs[0], "raw_arrival"), "yoon2021").amd_ms, 0, 1e-6);
+  EXPECT_NEAR(replay_row(replay.rigs[0], "raw_arrival").amd_ms, kReplayPeriodMs, 1e-6);
+  EXPECT_NEAR(gathering(replay_row(replay.rigs[0], "raw_arrival"), "yoon2021").amd_ms, 0, 1e-6);
 }
 
 TEST(Replay, WithoutAPeriodCamerasAreNotCompared) {

@@ -12,7 +12,7 @@
 namespace simbench::evaluation {
 namespace {
 
-Row row(const std::string& pipeline, std::vector<double> errors, bool offline = false) {
+Row leaderboard_row(const std::string& pipeline, std::vector<double> errors, bool offline = false) {
   Row row;
   row.pipeline = pipeline;
   row.offline = offline;
@@ -30,9 +30,10 @@ std::vector<std::string> names(const std::vector<Rank>& ranks) {
 
 TEST(Leaderboard, BoardsAreSortedByErrorOnlineAndOfflineApart) {
   Results results;
-  results.rows = {row("yoon2021_both", {4, 8}),   row("host.a", {3, 3}),
-                  row("host.none", {kNan, kNan}), row("host.oracle", {1, 1}),
-                  row("device.x", {2, 2}, true),  row("host.b", {2, 2})};
+  results.rows = {
+      leaderboard_row("yoon2021_both", {4, 8}),   leaderboard_row("host.a", {3, 3}),
+      leaderboard_row("host.none", {kNan, kNan}), leaderboard_row("host.oracle", {1, 1}),
+      leaderboard_row("device.x", {2, 2}, true),  leaderboard_row("host.b", {2, 2})};
   const std::vector<Board> boards = leaderboard(results);
   ASSERT_EQ(boards.size(), 3U);
   EXPECT_EQ(boards[0].name, "");
@@ -46,8 +47,9 @@ TEST(Leaderboard, BoardsAreSortedByErrorOnlineAndOfflineApart) {
 
 TEST(Leaderboard, RatiosArePairedBySeed) {
   Results results;
-  results.rows = {row("yoon2021_both", {4, 8, 16}), row("host.a", {2, 2, 2}),
-                  row("host.oracle", {1, 0, 0.5})};
+  results.rows = {leaderboard_row("yoon2021_both", {4, 8, 16}),
+                  leaderboard_row("host.a", {2, 2, 2}),
+                  leaderboard_row("host.oracle", {1, 0, 0.5})};
   const std::vector<Board> boards = leaderboard(results);
   const Rank& a = boards[1].online[1];
   ASSERT_EQ(a.row->pipeline, "host.a");
@@ -59,7 +61,8 @@ TEST(Leaderboard, RatiosArePairedBySeed) {
 
 TEST(Leaderboard, PoliciesOfOneStampAreInOrderOfRecall) {
   Results results;
-  results.rows = {row("gather.a", {2, 2}), row("gather.none", {2, 2}), row("gather.b", {2, 2})};
+  results.rows = {leaderboard_row("gather.a", {2, 2}), leaderboard_row("gather.none", {2, 2}),
+                  leaderboard_row("gather.b", {2, 2})};
   for (Row& row : results.rows) row.gathering = row.pipeline;
   results.rows[0].recall = 0.5;
   results.rows[1].recall = kNan;
@@ -72,7 +75,7 @@ TEST(Leaderboard, PoliciesOfOneStampAreInOrderOfRecall) {
 
 TEST(Leaderboard, ABoardWithoutOracleHasNoSuchRatio) {
   Results results;
-  results.rows = {row("device.x", {2, 2})};
+  results.rows = {leaderboard_row("device.x", {2, 2})};
   const std::vector<Board> boards = leaderboard(results);
   EXPECT_TRUE(std::isnan(boards[0].online[0].to_oracle.error.median));
   EXPECT_TRUE(std::isnan(boards[0].online[0].to_paper.amd.median));

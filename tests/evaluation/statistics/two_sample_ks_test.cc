@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::IsNan;
 
-constexpr double kTolerance = 1e-12;
+constexpr double kRounding = 1e-12;
 
 TEST(TwoSampleKs, DistanceOfSmallSamples) {
   EXPECT_DOUBLE_EQ(ks_distance({1, 2, 3}, {1, 2, 3}), 0);
@@ -38,11 +38,11 @@ TEST(TwoSampleKs, WithoutValuesThereIsNoDistance) {
 
 // Two of the C(n + m, n) orders keep the samples apart altogether.
 TEST(TwoSampleKs, ProbabilityOfNoOverlap) {
-  EXPECT_NEAR(ks_probability(1, 1, 1), 1, kTolerance);
-  EXPECT_NEAR(ks_probability(3, 3, 1), 2.0 / 20, kTolerance);
-  EXPECT_NEAR(ks_probability(5, 5, 1), 2.0 / 252, kTolerance);
-  EXPECT_NEAR(ks_probability(4, 2, 1), 2.0 / 15, kTolerance);
-  EXPECT_NEAR(ks_probability(7, 9, 0), 1, kTolerance);
+  EXPECT_NEAR(ks_probability(1, 1, 1), 1, kRounding);
+  EXPECT_NEAR(ks_probability(3, 3, 1), 2.0 / 20, kRounding);
+  EXPECT_NEAR(ks_probability(5, 5, 1), 2.0 / 252, kRounding);
+  EXPECT_NEAR(ks_probability(4, 2, 1), 2.0 / 15, kRounding);
+  EXPECT_NEAR(ks_probability(7, 9, 0), 1, kRounding);
 }
 
 // For equal sizes there is a closed form: the reflection principle gives

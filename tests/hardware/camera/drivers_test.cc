@@ -19,7 +19,7 @@ using ::testing::ThrowsMessage;
 constexpr const char* kCsv =
     "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\nDepth,0,7,1000,12\n";
 
-RigHost host(std::vector<RigCamera> cameras) {
+RigHost rig_host(std::vector<RigCamera> cameras) {
   RigHost result;
   result.cameras = std::move(cameras);
   return result;
@@ -28,7 +28,8 @@ RigHost host(std::vector<RigCamera> cameras) {
 TEST(CameraDrivers, ARecordedCameraIsPlayed) {
   const ScratchFolder folder;
   Rig rig;
-  rig.hosts = {host({recorded("real", "")}), host({recorded("left", folder.write("a.csv", kCsv))})};
+  rig.hosts = {rig_host({recorded("real", "")}),
+               rig_host({recorded("left", folder.write("a.csv", kCsv))})};
   const auto driver = make_camera_driver(rig, 1);
   ASSERT_EQ(driver->list().size(), 1U);
   EXPECT_EQ(driver->list()[0].serial, "left");
@@ -43,7 +44,7 @@ TEST(CameraDrivers, ARecordedCameraIsPlayed) {
 TEST(CameraDrivers, AnotherHostsCameraIsRefused) {
   const ScratchFolder folder;
   Rig rig;
-  rig.hosts = {host({recorded("left", folder.write("a.csv", kCsv))}), host({})};
+  rig.hosts = {rig_host({recorded("left", folder.write("a.csv", kCsv))}), rig_host({})};
   EXPECT_THAT([&] { make_camera_driver(rig, 0)->open("right"); },
               ThrowsMessage<CameraError>("camera right: not of this host, whose cameras are left"));
   EXPECT_THAT([&] { make_camera_driver(rig, 1)->open("left"); },
@@ -54,7 +55,7 @@ TEST(CameraDrivers, AnotherHostsCameraIsRefused) {
 TEST(CameraDrivers, ARealCameraNeedsTheLibrary) {
   Rig rig;
   rig.file = "rig.json";
-  rig.hosts = {host({recorded("018322071234", "")})};
+  rig.hosts = {rig_host({recorded("018322071234", "")})};
   EXPECT_THAT([&] { make_camera_driver(rig, 0); },
               ThrowsMessage<CameraError>(
                   AllOf(HasSubstr("camera 018322071234: "), HasSubstr("without librealsense2"),

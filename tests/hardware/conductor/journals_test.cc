@@ -29,7 +29,7 @@ std::string events_text(const std::vector<RecordingEvent>& events) {
   return text;
 }
 
-HostJournal journal_of(const std::vector<RecordingEvent>& events) {
+HostJournal host_journal(const std::vector<RecordingEvent>& events) {
   HostJournal journal;
   journal.append(events_text(events));
   return journal;
@@ -87,35 +87,36 @@ TEST(Journals, NotesAreNoEvents) {
 }
 
 TEST(Journals, FramesOfAllHostsComeInOrderOfArrival) {
-  EXPECT_THAT(told({journal_of({journal_frame(0, 1, 10), journal_frame(0, 2, 30)}),
-                    journal_of({journal_frame(1, 1, 5), journal_frame(1, 2, 20),
-                                journal_frame(1, 3, 40)})}),
+  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 10), journal_frame(0, 2, 30)}),
+                    host_journal({journal_frame(1, 1, 5), journal_frame(1, 2, 20),
+                                  journal_frame(1, 3, 40)})}),
               ElementsAre("1/1", "0/1", "1/2", "0/2", "1/3"));
 }
 
 TEST(Journals, AHostKeepsItsOwnOrderEvenIfItsClockStepsBack) {
-  EXPECT_THAT(told({journal_of({journal_frame(0, 1, 100), journal_frame(0, 2, 10)}),
-                    journal_of({journal_frame(1, 1, 50)})}),
+  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 100), journal_frame(0, 2, 10)}),
+                    host_journal({journal_frame(1, 1, 50)})}),
               ElementsAre("1/1", "0/1", "0/2"));
 }
 
 TEST(Journals, WhatIsNoFrameComesBeforeTheNextFrameOfItsHost) {
   ClockAdjustment adjustment;
   adjustment.host = 1;
-  EXPECT_THAT(
-      told({journal_of({journal_frame(0, 1, 1)}),
-            journal_of({adjustment, journal_frame(1, 1, 2), adjustment, journal_frame(1, 2, 3)})}),
-      ElementsAre("clock 1", "0/1", "1/1", "clock 1", "1/2"));
+  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 1)}),
+                    host_journal(
+                        {adjustment, journal_frame(1, 1, 2), adjustment, journal_frame(1, 2, 3)})}),
+              ElementsAre("clock 1", "0/1", "1/1", "clock 1", "1/2"));
 }
 
 TEST(Journals, CoveredPeriodsCountFromTheFirstFrameThroughGapsAndTheWrap) {
-  EXPECT_EQ(journal_of({}).covered(0, StreamKind::kDepth), 0);
-  EXPECT_EQ(journal_of({journal_frame(0, 7, 1)}).covered(0, StreamKind::kDepth), 1);
-  const HostJournal gap = journal_of({journal_frame(0, 7, 1), journal_frame(0, 9, 2)});
+  EXPECT_EQ(host_journal({}).covered(0, StreamKind::kDepth), 0);
+  EXPECT_EQ(host_journal({journal_frame(0, 7, 1)}).covered(0, StreamKind::kDepth), 1);
+  const HostJournal gap = host_journal({journal_frame(0, 7, 1), journal_frame(0, 9, 2)});
   EXPECT_EQ(gap.covered(0, StreamKind::kDepth), 3);
   EXPECT_EQ(gap.covered(0, StreamKind::kColour), 0);
   EXPECT_EQ(gap.covered(1, StreamKind::kDepth), 0);
-  const HostJournal wrapped = journal_of({journal_frame(0, 0xfffffffe, 1), journal_frame(0, 1, 2)});
+  const HostJournal wrapped =
+      host_journal({journal_frame(0, 0xfffffffe, 1), journal_frame(0, 1, 2)});
   EXPECT_EQ(wrapped.covered(0, StreamKind::kDepth), 4);
 }
 

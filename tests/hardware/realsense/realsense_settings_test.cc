@@ -22,7 +22,7 @@ CameraSettings exposed(CameraSettings settings, double exposure_ms) {
   return settings;
 }
 
-CameraSettings depth(const std::string& sync_mode, double trigger_rate_hz = 0) {
+CameraSettings depth_at(const std::string& sync_mode, double trigger_rate_hz = 0) {
   return exposed(settings(sync_mode, {stream("depth", 60)}, trigger_rate_hz), 8);
 }
 
@@ -35,25 +35,25 @@ TEST(RealsenseSettings, TheSyncModeIsItsNumber) {
   const std::vector<std::pair<const char*, float>> modes = {
       {"genlock", 4.F}, {"full_slave", 3.F}, {"slave", 2.F}, {"master", 1.F}, {"default", 0.F}};
   for (const auto& [mode, value] : modes) {
-    configure(camera, depth(mode, 30));
+    configure(camera, depth_at(mode, 30));
     EXPECT_EQ(camera.depth.get_option(RS2_OPTION_INTER_CAM_SYNC_MODE), value) << mode;
   }
 }
 
 TEST(RealsenseSettings, AModeThatTheFirmwareHasNotIsRefusedWithTheOneThatHas) {
   SoftwareCamera camera("old", 2);
-  EXPECT_THAT([&] { configure(camera, depth("genlock", 30)); },
+  EXPECT_THAT([&] { configure(camera, depth_at("genlock", 30)); },
               ThrowsMessage<CameraError>(AllOf(HasSubstr("camera old: sync mode genlock is 4"),
                                                HasSubstr("firmware 5.12.3.0 allows 0 to 2"),
                                                HasSubstr("needs firmware 5.12.4.0 or newer"))));
-  EXPECT_NO_THROW(configure(camera, depth("slave", 60)));
+  EXPECT_NO_THROW(configure(camera, depth_at("slave", 60)));
 }
 
 TEST(RealsenseSettings, ACameraWithoutTheOptionRunsFreeOnly) {
   SoftwareCamera camera = SoftwareCamera::bare();
   camera.depth.add_option(RS2_OPTION_EXPOSURE, {1, 200'000, 33'000, 1});
-  EXPECT_NO_THROW(configure(camera, depth("default")));
-  EXPECT_THAT([&] { configure(camera, depth("slave")); },
+  EXPECT_NO_THROW(configure(camera, depth_at("default")));
+  EXPECT_THAT([&] { configure(camera, depth_at("slave")); },
               ThrowsMessage<CameraError>(AllOf(HasSubstr("no option Inter Cam Sync Mode"),
                                                HasSubstr("firmware 5.9.15.1 or newer"))));
 }
@@ -86,13 +86,13 @@ TEST(RealsenseSettings, AStreamThatTheCameraHasNotIsRefused) {
 
 TEST(RealsenseSettings, GenlockTakesHalfTheModesRate) {
   SoftwareCamera camera;
-  EXPECT_NO_THROW(configure(camera, depth("genlock", 30)));
-  EXPECT_NO_THROW(configure(camera, depth("genlock", 30.015)));  // as the vendor advises
-  EXPECT_THAT([&] { configure(camera, depth("genlock", 45)); },
+  EXPECT_NO_THROW(configure(camera, depth_at("genlock", 30)));
+  EXPECT_NO_THROW(configure(camera, depth_at("genlock", 30.015)));  // as the vendor advises
+  EXPECT_THAT([&] { configure(camera, depth_at("genlock", 45)); },
               ThrowsMessage<CameraError>(HasSubstr(
                   "found triggers at 45 Hz, allowed in genlock: at most 30 Hz, half of the depth "
                   "mode's 60 Hz")));
-  EXPECT_NO_THROW(configure(camera, depth("slave", 60)));
+  EXPECT_NO_THROW(configure(camera, depth_at("slave", 60)));
 }
 
 TEST(RealsenseSettings, ExposureIsSetInTheUnitOfTheSensor) {
@@ -102,13 +102,13 @@ TEST(RealsenseSettings, ExposureIsSetInTheUnitOfTheSensor) {
   EXPECT_EQ(camera.colour.get_option(RS2_OPTION_EXPOSURE), 83.F);
   EXPECT_EQ(camera.depth.get_option(RS2_OPTION_ENABLE_AUTO_EXPOSURE), 0.F);
   EXPECT_EQ(camera.colour.get_option(RS2_OPTION_ENABLE_AUTO_EXPOSURE), 0.F);
-  EXPECT_THAT([&] { configure(camera, exposed(depth("default"), 201)); },
+  EXPECT_THAT([&] { configure(camera, exposed(depth_at("default"), 201)); },
               ThrowsMessage<CameraError>(HasSubstr("found exposure 201 ms, allowed 0.001 to 200")));
 }
 
 TEST(RealsenseSettings, AutoExposureIsSwitchedOnWhereThereIsSuchASwitch) {
   SoftwareCamera camera;
-  CameraSettings wanted = depth("default");
+  CameraSettings wanted = depth_at("default");
   configure(camera, wanted);
   wanted.auto_exposure = true;
   configure(camera, wanted);
@@ -117,25 +117,25 @@ TEST(RealsenseSettings, AutoExposureIsSwitchedOnWhereThereIsSuchASwitch) {
   const SoftwareCamera bare = SoftwareCamera::bare();
   EXPECT_THAT([&] { configure(bare, wanted); },
               ThrowsMessage<CameraError>(HasSubstr("auto exposure is wanted")));
-  EXPECT_THAT([&] { configure(bare, depth("default")); },
+  EXPECT_THAT([&] { configure(bare, depth_at("default")); },
               ThrowsMessage<CameraError>(HasSubstr("an exposure of 8 ms is wanted")));
 }
 
 TEST(RealsenseSettings, GlobalTimeIsSwitchedOff) {
   SoftwareCamera camera;
   ASSERT_EQ(camera.depth.get_option(RS2_OPTION_GLOBAL_TIME_ENABLED), 1.F);
-  configure(camera, depth("default"));
+  configure(camera, depth_at("default"));
   EXPECT_EQ(camera.depth.get_option(RS2_OPTION_GLOBAL_TIME_ENABLED), 0.F);
 }
 
 TEST(RealsenseSettings, AnOptionThatCannotBeWrittenIsACameraError) {
   SoftwareCamera camera = SoftwareCamera::bare();
   camera.depth.add_option(RS2_OPTION_INTER_CAM_SYNC_MODE, {0, 260, 0, 1}, false);
-  EXPECT_THAT([&] { configure(camera, depth("slave")); },
+  EXPECT_THAT([&] { configure(camera, depth_at("slave")); },
               ThrowsMessage<CameraError>(HasSubstr("sync mode slave cannot be set now")));
   SoftwareCamera fixed = SoftwareCamera::bare();
   fixed.depth.add_option(RS2_OPTION_EXPOSURE, {1, 200'000, 33'000, 1}, false);
-  EXPECT_THAT([&] { configure(fixed, depth("default")); },
+  EXPECT_THAT([&] { configure(fixed, depth_at("default")); },
               ThrowsMessage<CameraError>(HasSubstr("camera bare: setting its exposure: "
                                                    "librealsense2 says: ")));
 }

@@ -20,8 +20,8 @@ std::string rig_of(const std::string& hosts, const std::string& more = "") {
          "}";
 }
 
-std::string host(const std::string& name, const std::string& address,
-                 const std::string& cameras = "", const std::string& more = "") {
+std::string host_entry(const std::string& name, const std::string& address,
+                       const std::string& cameras = "", const std::string& more = "") {
   return R"({"name": ")" + name + R"(", "address": ")" + address + "\"" + more +
          ", \"cameras\": [" + cameras + "]}";
 }
@@ -37,12 +37,13 @@ std::string error_of(const std::string& text) {
 
 TEST(RigTest, ReadsHostsCamerasAndTrigger) {
   const Rig rig = load_rig_text(
-      rig_of(host("host0", "10.0.0.10", R"({"serial": "018322071234"})") + ",\n" +
-                 host("host1", "fd00::2",
-                      R"({"serial": "demo", "recording": "left.csv", "recorded_camera": "c 1",)"
-                      R"( "trigger_file": "../go"}, {"serial": "b", "recording": "/data/rec"})",
-                      R"(, "port": 5000)"),
-             R"(, "trigger": {"on_command": "trigger on", "off_command": "trigger off"})"),
+      rig_of(
+          host_entry("host0", "10.0.0.10", R"({"serial": "018322071234"})") + ",\n" +
+              host_entry("host1", "fd00::2",
+                         R"({"serial": "demo", "recording": "left.csv", "recorded_camera": "c 1",)"
+                         R"( "trigger_file": "../go"}, {"serial": "b", "recording": "/data/rec"})",
+                         R"(, "port": 5000)"),
+          R"(, "trigger": {"on_command": "trigger on", "off_command": "trigger off"})"),
       "rigs/my.json");
   EXPECT_EQ(rig.name, "studio");
   EXPECT_EQ(rig.file, "rigs/my.json");
@@ -66,7 +67,7 @@ TEST(RigTest, ReadsHostsCamerasAndTrigger) {
 }
 
 TEST(RigTest, ReadsAManualTriggerOrNone) {
-  const std::string hosts = host("a", "127.0.0.1");
+  const std::string hosts = host_entry("a", "127.0.0.1");
   EXPECT_EQ(load_rig_text(rig_of(hosts, R"(, "trigger": "manual")"), "r").trigger,
             (RigTrigger{.manual = true, .on_command = "", .off_command = ""}));
   EXPECT_FALSE(load_rig_text(rig_of(hosts), "r").trigger);
@@ -75,13 +76,14 @@ TEST(RigTest, ReadsAManualTriggerOrNone) {
 
 TEST(RigTest, AFileWithoutFolderIsRelativeToTheWorkingFolder) {
   const Rig rig = load_rig_text(
-      rig_of(host("a", "::1", R"({"serial": "x", "recording": "./rec/../left.csv"})")), "rig.json");
+      rig_of(host_entry("a", "::1", R"({"serial": "x", "recording": "./rec/../left.csv"})")),
+      "rig.json");
   EXPECT_EQ(rig.hosts[0].cameras[0].recording, "left.csv");
 }
 
 TEST(RigTest, LoopbackIsThisMachinesOwnAddressesOnly) {
   const auto loopback = [](const std::string& address) {
-    return load_rig_text(rig_of(host("a", "127.0.0.1") + "," + host("b", address)), "r")
+    return load_rig_text(rig_of(host_entry("a", "127.0.0.1") + "," + host_entry("b", address)), "r")
         .loopback_only();
   };
   EXPECT_TRUE(loopback("127.0.0.2"));
@@ -94,8 +96,8 @@ TEST(RigTest, LoopbackIsThisMachinesOwnAddressesOnly) {
 }
 
 TEST(RigTest, FindsHostsByName) {
-  const Rig rig =
-      load_rig_text(rig_of(host("left", "127.0.0.1") + "," + host("right", "::1")), "r.json");
+  const Rig rig = load_rig_text(
+      rig_of(host_entry("left", "127.0.0.1") + "," + host_entry("right", "::1")), "r.json");
   EXPECT_EQ(host_named(rig, "left"), 0u);
   EXPECT_EQ(host_named(rig, "right"), 1u);
   const auto error_for = [&](const std::string& name) -> std::string {
@@ -133,26 +135,27 @@ TEST(RigErrors, UnknownAndMissingMembers) {
             "rigs/my.json:3: /hosts/0/address: found nothing, allowed text of 1 to 253 characters");
   EXPECT_EQ(error_of(rig_of(R"({"address": "::1", "cameras": []})")),
             "rigs/my.json:3: /hosts/0/name: found nothing, allowed text of 1 to 64 characters");
-  EXPECT_EQ(error_of(rig_of(host("", "::1"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("", "::1"))),
             "rigs/my.json:3: /hosts/0/name: found \"\", allowed text of 1 to 64 characters");
-  EXPECT_EQ(error_of(rig_of(host("a", "::1", R"({"serials": "5"})"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1", R"({"serials": "5"})"))),
             "rigs/my.json:3: /hosts/0/cameras/0/serials: found an unknown key, did you mean "
             "serial?");
 }
 
 TEST(RigErrors, NamesAndSerialNumbersStandOnce) {
-  EXPECT_EQ(error_of(rig_of(host("a", "10.0.0.1") + ",\n" + host("a", "10.0.0.2"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "10.0.0.1") + ",\n" + host_entry("a", "10.0.0.2"))),
             "rigs/my.json:4: /hosts/1/name: found the host name a again, which is that of "
             "/hosts/0/name (line 3); allowed one host of each name");
-  EXPECT_EQ(error_of(rig_of(host("a", "10.0.0.1", R"({"serial": "77"})") + ",\n" +
-                            host("b", "10.0.0.2", "{\"serial\": \"78\"},\n{\"serial\": \"77\"}"))),
-            "rigs/my.json:5: /hosts/1/cameras/1/serial: found the serial number 77 again, which is "
-            "that of /hosts/0/cameras/0/serial (line 3); allowed each camera once, on one host");
+  EXPECT_EQ(
+      error_of(rig_of(host_entry("a", "10.0.0.1", R"({"serial": "77"})") + ",\n" +
+                      host_entry("b", "10.0.0.2", "{\"serial\": \"78\"},\n{\"serial\": \"77\"}"))),
+      "rigs/my.json:5: /hosts/1/cameras/1/serial: found the serial number 77 again, which is "
+      "that of /hosts/0/cameras/0/serial (line 3); allowed each camera once, on one host");
 }
 
 TEST(RigErrors, AddressesAndPorts) {
   const auto address_error = [](const std::string& address) {
-    return error_of(rig_of(host("a", address)));
+    return error_of(rig_of(host_entry("a", address)));
   };
   for (const char* const bad : {"10.0.0.300", "10.0.0", "1", "10.0.0.1:5000", "[::1]", "fd00::xyz",
                                 "a..b", "-a", "a b", "http://a", "a_b", "host."}) {
@@ -166,47 +169,49 @@ TEST(RigErrors, AddressesAndPorts) {
   for (const char* const good : {"10.0.0.1", "fd00::1", "localhost", "cam-3.example.org", "3com"}) {
     EXPECT_EQ(address_error(good), "");
   }
-  EXPECT_EQ(error_of(rig_of(host("a", "::1", "", R"(, "port": 0)"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1", "", R"(, "port": 0)"))),
             "rigs/my.json:3: /hosts/0/port: found 0, allowed a whole number from 1 to 65535");
-  EXPECT_EQ(error_of(rig_of(host("a", "::1", "", R"(, "port": 65536)"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1", "", R"(, "port": 65536)"))),
             "rigs/my.json:3: /hosts/0/port: found 65536, allowed a whole number from 1 to 65535");
 }
 
 TEST(RigErrors, TwoHostsAtOnePlace) {
   EXPECT_EQ(
-      error_of(rig_of(host("a", "::1") + ",\n" + host("b", "0:0:0:0:0:0:0:1"))),
+      error_of(rig_of(host_entry("a", "::1") + ",\n" + host_entry("b", "0:0:0:0:0:0:0:1"))),
       "rigs/my.json:4: /hosts/1/address: found the address and port ::1 port 47110 again, which is "
       "that of /hosts/0/address (line 3); allowed another address or another port for each host");
-  EXPECT_EQ(error_of(rig_of(host("a", "::1") + ",\n" + host("b", "::1", "", R"(, "port": 4000)"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1") + ",\n" +
+                            host_entry("b", "::1", "", R"(, "port": 4000)"))),
             "");
 }
 
 TEST(RigErrors, CharactersThatNoNameHas) {
-  EXPECT_EQ(error_of(rig_of(host("a b", "::1"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a b", "::1"))),
             "rigs/my.json:3: /hosts/0/name: found \"a b\", allowed letters, digits, '.', '_' and "
             "'-'");
-  EXPECT_EQ(error_of(rig_of(host("a", "::1", R"({"serial": "1/2"})"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1", R"({"serial": "1/2"})"))),
             "rigs/my.json:3: /hosts/0/cameras/0/serial: found \"1/2\", allowed letters, digits, "
             "'.', '_' and '-'");
   EXPECT_THAT(
-      error_of(rig_of(host("a", "::1", R"({"serial": "1", "recording": "a\u0000b"})"))),
+      error_of(rig_of(host_entry("a", "::1", R"({"serial": "1", "recording": "a\u0000b"})"))),
       HasSubstr("/hosts/0/cameras/0/recording: found \"a\\u0000b\", allowed text without control"));
-  EXPECT_THAT(error_of(rig_of(host("a", "::1"),
+  EXPECT_THAT(error_of(rig_of(host_entry("a", "::1"),
                               R"(, "trigger": {"on_command": "a\nb", "off_command": "b"})")),
               HasSubstr("/trigger/on_command: found \"a\\nb\", allowed text without control"));
 }
 
 TEST(RigErrors, OnlyARecordedCameraHasARecordingsMembers) {
-  EXPECT_EQ(error_of(rig_of(host("a", "::1", R"({"serial": "1", "trigger_file": "go"})"))),
+  EXPECT_EQ(error_of(rig_of(host_entry("a", "::1", R"({"serial": "1", "trigger_file": "go"})"))),
             "rigs/my.json:3: /hosts/0/cameras/0/trigger_file: found \"go\", allowed only beside "
             "\"recording\": a real camera has none");
-  EXPECT_THAT(error_of(rig_of(host("a", "::1", R"({"serial": "1", "recorded_camera": "l"})"))),
-              HasSubstr("/hosts/0/cameras/0/recorded_camera: found \"l\", allowed only beside"));
+  EXPECT_THAT(
+      error_of(rig_of(host_entry("a", "::1", R"({"serial": "1", "recorded_camera": "l"})"))),
+      HasSubstr("/hosts/0/cameras/0/recorded_camera: found \"l\", allowed only beside"));
 }
 
 TEST(RigErrors, Trigger) {
   const auto trigger_error = [](const std::string& trigger) {
-    return error_of(rig_of(host("a", "::1"), ",\n\"trigger\": " + trigger));
+    return error_of(rig_of(host_entry("a", "::1"), ",\n\"trigger\": " + trigger));
   };
   EXPECT_EQ(trigger_error("\"auto\""),
             "rigs/my.json:4: /trigger: found \"auto\", allowed \"manual\" or an object with "
@@ -240,16 +245,17 @@ TEST(RigTest, LoadsAFileWithPathsBesideIt) {
       std::filesystem::temp_directory_path() / ("simbench_rig_test_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = (folder / "rig.json").string();
-  std::ofstream(path) << rig_of(host("a", "::1", R"({"serial": "x", "recording": "l.csv"})"));
+  std::ofstream(path) << rig_of(host_entry("a", "::1", R"({"serial": "x", "recording": "l.csv"})"));
   const Rig rig = load_rig(path);
   EXPECT_EQ(rig.hosts[0].cameras[0].recording, (folder / "l.csv").string());
   std::filesystem::remove_all(folder);
 }
 
 TEST(RigGuardTest, WithoutAKeyARigStaysOnLoopback) {
-  const Rig home = load_rig_text(rig_of(host("a", "127.0.0.1") + "," + host("b", "::1")), "r");
-  const Rig away =
-      load_rig_text(rig_of(host("a", "127.0.0.1") + "," + host("b", "10.0.0.2")), "r.json");
+  const Rig home =
+      load_rig_text(rig_of(host_entry("a", "127.0.0.1") + "," + host_entry("b", "::1")), "r");
+  const Rig away = load_rig_text(
+      rig_of(host_entry("a", "127.0.0.1") + "," + host_entry("b", "10.0.0.2")), "r.json");
   EXPECT_NO_THROW(check_rig_is_guarded(home, false));
   EXPECT_NO_THROW(check_rig_is_guarded(home, true));
   EXPECT_NO_THROW(check_rig_is_guarded(away, true));

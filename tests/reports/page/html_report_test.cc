@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-ReportedArchive sample_archive() {
+ReportedArchive monday_archive() {
   Archive archive;
   archive.path = "results/monday";
   archive.version = "0.1.0";
@@ -58,7 +58,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 TEST(HtmlReport, HasTheNumbersOfTheTable) {
-  const std::string page = page_of({sample_archive()});
+  const std::string page = page_of({monday_archive()});
   for (const char* part :
        {"<th scope=\"row\" class=\"text\">yoon2021_both</th><td>2.000</td><td>[1.500, 2.500]</td>",
         "<td>2.438</td><td class=\"text\">inside</td><td>50 % [1-99]</td>",
@@ -69,8 +69,8 @@ TEST(HtmlReport, HasTheNumbersOfTheTable) {
   }
 }
 
-ReportedArchive archive_of(evaluation::Results results) {
-  ReportedArchive archive = sample_archive();
+ReportedArchive reported(evaluation::Results results) {
+  ReportedArchive archive = monday_archive();
   archive.archive.results = std::move(results);
   return archive;
 }
@@ -79,7 +79,7 @@ ReportedArchive archive_of(evaluation::Results results) {
 TEST(HtmlReport, SaysWhatTheTerminalSays) {
   for (const evaluation::Results& results :
        {sample_results(), sample_rig_results(), sample_genlock_results()}) {
-    const std::string page = page_of({archive_of(results)});
+    const std::string page = page_of({reported(results)});
     std::size_t cells = 0;
     for (const Block& block : results_document(results, "").blocks) {
       EXPECT_TRUE(has(page, html_escaped(block.heading))) << block.heading;
@@ -100,24 +100,24 @@ TEST(HtmlReport, SaysWhatTheTerminalSays) {
 }
 
 TEST(HtmlReport, ARealRigMeetsNoCommonWorlds) {
-  const std::string page = page_of({archive_of(sample_rig_results())});
+  const std::string page = page_of({reported(sample_rig_results())});
   EXPECT_FALSE(has(page, "meets the same worlds"));
   EXPECT_TRUE(has(page, "Every repetition of a pipeline is a capture of its own."));
   EXPECT_TRUE(has(page, "<td class=\"text\">unverified</td>"));
   EXPECT_TRUE(has(page, "<li>yoon2021_both, repetition 2: camera 7 was unplugged</li>"));
-  EXPECT_TRUE(has(page_of({sample_archive()}), "Every pipeline meets the same worlds"));
+  EXPECT_TRUE(has(page_of({monday_archive()}), "Every pipeline meets the same worlds"));
 }
 
 TEST(HtmlReport, IndexErrorsOfUnverifiedSetsAreNotKnown) {
   evaluation::Results results = sample_rig_results();
   results.rows[1].gathering = "epsilon";  // so that the sets are shown
-  EXPECT_TRUE(has(page_of({archive_of(results)}),
+  EXPECT_TRUE(has(page_of({reported(results)}),
                   "<td class=\"text\">yoon2021</td><td>720</td><td>-</td><td>-</td><td>-</td>"
                   "<td>4</td>"));
 }
 
 TEST(HtmlReport, ARealRigSimulatesNoSeconds) {
-  const std::string page = page_of({archive_of(sample_rig_results())});
+  const std::string page = page_of({reported(sample_rig_results())});
   EXPECT_FALSE(has(page, "simulated seconds"));
   EXPECT_FALSE(has(page, "events/s"));
   EXPECT_TRUE(has(page, "Cost: 0.25 s (0.50 s of CPU)."));
@@ -136,7 +136,7 @@ TEST(HtmlReport, ABoardOfGatheringIsAboutSets) {
     if (real) {
       for (evaluation::Row& row : results.rows) row.ground_truth = evaluation::GroundTruth::kNone;
     }
-    ReportedArchive archive = archive_of(results);
+    ReportedArchive archive = reported(results);
     archive.archive.scenario_json = R"({"evaluation": {"table": "leaderboard"}})";
     const std::string page = page_of({archive});
     const std::size_t heading =
@@ -152,7 +152,7 @@ TEST(HtmlReport, ABoardOfGatheringIsAboutSets) {
 }
 
 TEST(HtmlReport, SaysHowToReproduceIt) {
-  const std::string page = page_of({sample_archive()});
+  const std::string page = page_of({monday_archive()});
   EXPECT_TRUE(has(page, "simbench run --scenario &#39;it&#39;\\&#39;&#39;s mine.json&#39;"));
   EXPECT_TRUE(has(page, "simbench report results/monday<"));
   EXPECT_TRUE(has(page, "simbench figure frame_errors results/monday -o frame_errors.svg"));
@@ -160,7 +160,7 @@ TEST(HtmlReport, SaysHowToReproduceIt) {
 }
 
 TEST(HtmlReport, AsksNothingOfAnyServer) {
-  const std::string page = page_of({sample_archive()});
+  const std::string page = page_of({monday_archive()});
   EXPECT_TRUE(has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
   EXPECT_FALSE(has(page, "src="));
   EXPECT_FALSE(has(page, "@import"));
@@ -170,7 +170,7 @@ TEST(HtmlReport, AsksNothingOfAnyServer) {
 }
 
 TEST(HtmlReport, HoldsTheFiguresAsData) {
-  const Json data = data_of(page_of({sample_archive()}));
+  const Json data = data_of(page_of({monday_archive()}));
   ASSERT_EQ(data["figures"].size(), 7U);
   const Json& curves = data["figures"][0];
   EXPECT_EQ(curves["id"], "frame_errors");
@@ -191,7 +191,7 @@ TEST(HtmlReport, HoldsTheFiguresAsData) {
 
 TEST(HtmlReport, MarkupInNamesIsText) {
   const std::string evil = "</script><img src=x onerror=alert(1)>\"'&";
-  ReportedArchive archive = sample_archive();
+  ReportedArchive archive = monday_archive();
   archive.archive.path = evil;
   archive.archive.version = evil;
   archive.archive.command = {evil, evil};
@@ -211,11 +211,11 @@ TEST(HtmlReport, MarkupInNamesIsText) {
 }
 
 TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
-  ReportedArchive tuesday = sample_archive();
+  ReportedArchive tuesday = monday_archive();
   tuesday.archive.path = "results/tuesday";
   tuesday.archive.results.rows[0].amd_ms = series(3, 5);
   tuesday.archive.results.rows.pop_back();
-  const std::string page = page_of({sample_archive(), tuesday});
+  const std::string page = page_of({monday_archive(), tuesday});
   EXPECT_TRUE(has(page, "The archives side by side"));
   EXPECT_TRUE(has(page,
                   "<td>2.000 [1.500, 2.500]</td><td>29.000 [28.000, 30.000]</td>"
@@ -226,7 +226,7 @@ TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
 }
 
 TEST(HtmlReport, WithoutAManifestItSaysWhatIsMissing) {
-  ReportedArchive archive = sample_archive();
+  ReportedArchive archive = monday_archive();
   archive.archive.scenario_json.clear();
   archive.archive.command.clear();
   archive.archive.started.clear();
@@ -237,7 +237,7 @@ TEST(HtmlReport, WithoutAManifestItSaysWhatIsMissing) {
 }
 
 TEST(HtmlReport, EqualInputGivesEqualBytes) {
-  EXPECT_EQ(page_of({sample_archive()}), page_of({sample_archive()}));
+  EXPECT_EQ(page_of({monday_archive()}), page_of({monday_archive()}));
 }
 
 }  // namespace

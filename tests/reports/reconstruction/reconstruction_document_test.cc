@@ -18,11 +18,13 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string table() { return plain(reconstruction_document(sample_reconstruction())); }
+std::string reconstruction_table() {
+  return plain(reconstruction_document(sample_reconstruction()));
+}
 Json reconstruction_as_json() { return Json::parse(reconstruction_json(sample_reconstruction())); }
 
 TEST(ReconstructionTable, HasTheRowsOfTable4) {
-  const std::string text = table();
+  const std::string text = reconstruction_table();
   EXPECT_THAT(text, HasSubstr("a_studio: 3 seeds (1-3), 10 frame sets each\n"));
   // The 5 % and 95 % quantiles of 6, 8, 13 are 6.2 and 12.5.
   EXPECT_THAT(text, ContainsRegex("ntp_last_set +8.00 \\[6.20, 12.50\\] +9.70, inside +"
@@ -33,7 +35,7 @@ TEST(ReconstructionTable, HasTheRowsOfTable4) {
 }
 
 TEST(ReconstructionTable, SaysHowTheRowsCameAbout) {
-  const std::string text = table();
+  const std::string text = reconstruction_table();
   EXPECT_THAT(text, ContainsRegex("ntp_last_set +2.00 +24.00 +547.0 \\[547.0, 547.0\\] +66.7 % +"
                                   "30 +0 +7\n"));
   EXPECT_THAT(text,
@@ -43,7 +45,7 @@ TEST(ReconstructionTable, SaysHowTheRowsCameAbout) {
 }
 
 TEST(ReconstructionTable, DrawsItsConclusions) {
-  const std::string text = table();
+  const std::string text = reconstruction_table();
   EXPECT_THAT(text, HasSubstr("ntp_last_set : yoon2021_both = 3.33 [3.03, 4.83] in the mean error, "
                               "seed by seed; published: 4.05.\n"));
   EXPECT_THAT(text, HasSubstr("No speed of the subject up to 2.40 m/s gives"));
@@ -54,7 +56,7 @@ TEST(ReconstructionTable, DrawsItsConclusions) {
 }
 
 TEST(ReconstructionTable, IsHonest) {
-  const std::string text = table();
+  const std::string text = reconstruction_table();
   EXPECT_THAT(text, HasSubstr("The subject is a simulated person of 1.75 m, motion "
                               "\"walk_and_turn\" at 1.2 m/s and 1 rad/s; the paper states"));
   EXPECT_THAT(text, HasSubstr("calibration errors of 10 mm and 0.29 degrees per axis"));

@@ -23,7 +23,7 @@ std::vector<ReconstructionPicture> pictures() {
            .errors = {.mean_cm = 8, .std_cm = 11, .median_cm = 6, .p95_cm = 30, .count = 9}}};
 }
 
-std::string page_of(const reconstruction::ReconstructionResults& results) {
+std::string reconstruction_page(const reconstruction::ReconstructionResults& results) {
   return reconstruction_html({.results = results,
                               .pictures = pictures(),
                               .command = {"bin/simbench", "reconstruct", "--scenario", "it's"}});
@@ -35,7 +35,7 @@ bool page_has(const std::string& page, const std::string& part) {
 }
 
 TEST(ReconstructionHtml, HasTheNumbersOfTheTable) {
-  const std::string page = page_of(sample_reconstruction());
+  const std::string page = reconstruction_page(sample_reconstruction());
   for (const char* part :
        {"<th scope=\"row\" class=\"text\">ntp_last_set</th><td>8.00 [6.20, 12.50]</td>"
         "<td>9.70, inside</td>",
@@ -48,7 +48,7 @@ TEST(ReconstructionHtml, HasTheNumbersOfTheTable) {
 }
 
 TEST(ReconstructionHtml, ShowsThePicturesInTheOrderOfTheTable) {
-  const std::string page = page_of(sample_reconstruction());
+  const std::string page = reconstruction_page(sample_reconstruction());
   const std::size_t ntp = page.find("<img src=\"data:image/png;base64,cG5n\"");
   const std::size_t both = page.find("<img src=\"data:image/png;base64,iVBORw==\"");
   ASSERT_NE(ntp, std::string::npos);
@@ -61,7 +61,7 @@ TEST(ReconstructionHtml, ShowsThePicturesInTheOrderOfTheTable) {
 }
 
 TEST(ReconstructionHtml, HoldsTheFigureAsData) {
-  const std::string page = page_of(sample_reconstruction());
+  const std::string page = reconstruction_page(sample_reconstruction());
   const std::string open = "<script type=\"application/json\" class=\"data\">";
   const std::size_t start = page.find(open) + open.size();
   const Json data = Json::parse(page.substr(start, page.find("</script>", start) - start));
@@ -71,7 +71,7 @@ TEST(ReconstructionHtml, HoldsTheFigureAsData) {
 }
 
 TEST(ReconstructionHtml, AsksNothingOfAnyServer) {
-  const std::string page = page_of(sample_reconstruction());
+  const std::string page = reconstruction_page(sample_reconstruction());
   EXPECT_TRUE(page_has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
   for (std::size_t at = page.find("src="); at != std::string::npos;
        at = page.find("src=", at + 1)) {

@@ -10,8 +10,6 @@
 namespace simbench::sim {
 namespace {
 
-HostTime host_ms(double ms) { return HostTime(from_ms(ms)); }
-
 // Whatever a simulated host may have.
 OscillatorModel noisy_oscillator() {
   return OscillatorModel({.skew_sigma_ppm = 30,

@@ -30,8 +30,8 @@ TEST(Outages, CountFromTheStartOfTheCapture) {
   EXPECT_FALSE(other.unreachable(2, at_ms(10)));
 }
 
-struct End final : Endpoint {
-  End(Network& net, PeerId from, PeerId to, Transport transport)
+struct PathEnd final : Endpoint {
+  PathEnd(Network& net, PeerId from, PeerId to, Transport transport)
       : network(net), path(net.open(from, to, transport, *this)) {}
   void on_arrival() override {
     for (const ArrivedMessage& message : network.inbox(path)) {
@@ -61,8 +61,8 @@ struct Talk {
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
     Network network(engine, parameters, 1, 3, load, outages);
-    End here(network, from, to, transport);
-    End there(network, to, from, transport);
+    PathEnd here(network, from, to, transport);
+    PathEnd there(network, to, from, transport);
     for (int i = 0; i < 100; ++i) {
       engine.call_at(at_ms(10 * i), [&] { network.send(here.path, here.next++, Bytes(1)); });
     }
@@ -115,8 +115,8 @@ TEST(Outages, AStreamBreaksOnALinkThatStaysDeadBeyondItsRetransmissions) {
     outages.start(TrueTime{});
     const RunLoad load(1, "load", scenarios::Hosts{}, parameters);
     Network network(engine, parameters, 1, 2, load, outages);
-    End here(network, 0, 1, transport);
-    End there(network, 1, 0, transport);
+    PathEnd here(network, 0, 1, transport);
+    PathEnd there(network, 1, 0, transport);
     // One while the link is dead, one long after it came back.
     for (const double ms : {0.0, 2 * kSpanMs}) {
       engine.call_at(at_ms(ms), [&] { network.send(here.path, here.next++, Bytes(1)); });

@@ -32,8 +32,8 @@ struct Figures {
 };
 
 // One run of 10000 s; errors from 250 s on, as chrony's tests leave out the start.
-Figures run(const scenarios::Scenario& scenario, std::uint64_t seed, bool burst,
-            double limit_s = 1e-3) {
+Figures run_chrony(const scenarios::Scenario& scenario, std::uint64_t seed, bool burst,
+                   double limit_s = 1e-3) {
   ServiceWorld world(scenario, seed);
   world.clock(1).set(TrueTime{}, HostTime(from_ms(100)));
   ChronySettings settings;
@@ -66,7 +66,7 @@ Figures run(const scenarios::Scenario& scenario, std::uint64_t seed, bool burst,
 
 TEST(ChronyService, HoldsTheLimitsOfChronysOwnSimulation) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Figures figures = run(chrony_world(1e-4, 1e-9), seed, false);
+    const Figures figures = run_chrony(chrony_world(1e-4, 1e-9), seed, false);
     EXPECT_GE(figures.synchronised_s, 120) << "seed " << seed;
     EXPECT_LE(figures.synchronised_s, 210) << "seed " << seed;
     EXPECT_LE(figures.max_offset_s, 1e-3) << "seed " << seed;
@@ -81,19 +81,19 @@ TEST(ChronyService, HoldsTheLimitsOfChronysOwnSimulation) {
 }
 
 TEST(ChronyService, HoldsThemWithAThousandTimesTheJitter) {
-  const Figures figures = run(chrony_world(0.1, 1e-9), 1, false, 0.5);
+  const Figures figures = run_chrony(chrony_world(0.1, 1e-9), 1, false, 0.5);
   EXPECT_LE(figures.max_offset_s, 0.5);
   EXPECT_LE(figures.rms_offset_s, 0.1);
 }
 
 TEST(ChronyService, HoldsThemWithAHundredTimesTheWander) {
-  const Figures figures = run(chrony_world(1e-4, 1e-7), 1, false);
+  const Figures figures = run_chrony(chrony_world(1e-4, 1e-7), 1, false);
   EXPECT_LE(figures.max_offset_s, 5e-3);
   EXPECT_LE(figures.rms_offset_s, 1e-3);
 }
 
 TEST(ChronyService, ABurstSynchronisesWithinSeconds) {
-  const Figures figures = run(chrony_world(1e-4, 1e-9), 1, true);
+  const Figures figures = run_chrony(chrony_world(1e-4, 1e-9), 1, true);
   EXPECT_LE(figures.synchronised_s, 70);
   EXPECT_LE(figures.max_offset_s, 1e-3);
 }

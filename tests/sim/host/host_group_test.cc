@@ -61,7 +61,7 @@ TEST(HostGroupTest, AnOraclesSlavesHaveTheMastersClock) {
   SimWorld world(scattered(4), 5, InitialClocks::kMaster);
   for (std::size_t i = 1; i < 4; ++i) {
     for (const double ms : {0.0, 1e4, 1e7}) {
-      EXPECT_EQ(world.hosts.clock(i).read(true_ms(ms)), world.hosts.clock(0).read(true_ms(ms)));
+      EXPECT_EQ(world.hosts.clock(i).read(at_ms(ms)), world.hosts.clock(0).read(at_ms(ms)));
     }
   }
 }
@@ -76,8 +76,8 @@ TEST(HostGroupTest, ClocksDoNotDependOnTheLoadKey) {
   SimWorld time(scenario, 5, InitialClocks::kUnsynchronised, "time@world");
   for (std::size_t i = 0; i < 4; ++i) {
     for (const double ms : {-1e5, 0.0, 1e5}) {
-      EXPECT_EQ(both.hosts.clock(i).read(true_ms(ms)), time.hosts.clock(i).read(true_ms(ms)));
-      EXPECT_EQ(both.hosts.clock(i).steady(true_ms(ms)), time.hosts.clock(i).steady(true_ms(ms)));
+      EXPECT_EQ(both.hosts.clock(i).read(at_ms(ms)), time.hosts.clock(i).read(at_ms(ms)));
+      EXPECT_EQ(both.hosts.clock(i).steady(at_ms(ms)), time.hosts.clock(i).steady(at_ms(ms)));
     }
   }
 }

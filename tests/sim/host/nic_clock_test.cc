@@ -10,8 +10,6 @@
 namespace simbench::sim {
 namespace {
 
-constexpr SteadyTime kNoDeadline = SteadyTime::max();
-
 // Hosts whose clocks are exact: they read true time. No skew, no noise, full resolution.
 scenarios::Scenario stamping_hosts(std::int64_t count = 2) {
   scenarios::Scenario s = ideal_hosts(count);

@@ -37,9 +37,9 @@ Task<void> run_slave(SimWorld& world, Slave& out) {
   SimHost& host = world.host(1);
   MessageChannel& channel = host.open_channel(0, Transport::kStream);
   const SteadyClock& steady = host.steady_clock();
-  co_await channel.receive(SteadyTime::max());
+  co_await channel.receive(kNoDeadline);
   const SteadyTime first = steady.now();
-  for (int i = 0; i < kStamps; ++i) co_await channel.receive(SteadyTime::max());
+  for (int i = 0; i < kStamps; ++i) co_await channel.receive(kNoDeadline);
   out.network_delay_ms = to_ms(steady.now() - first) / kStamps;
   const SteadyTime before = steady.now();
   for (int i = 0; i < kClockCalls; ++i) {
@@ -49,7 +49,7 @@ Task<void> run_slave(SimWorld& world, Slave& out) {
   out.set_delay_ms = to_ms(steady.now() - before) / (2 * kClockCalls);
   out.measured_ms = world.now_ms();
   co_await channel.send(Bytes(1));
-  const std::optional<ReceivedMessage> stamp = co_await channel.receive(SteadyTime::max());
+  const std::optional<ReceivedMessage> stamp = co_await channel.receive(kNoDeadline);
   const double delay_ms = out.network_delay_ms + out.set_delay_ms;
   co_await host.clock().set(time_of(stamp->bytes) + from_ms(delay_ms));
   const HostTime now = co_await host.clock().now();
@@ -68,11 +68,11 @@ Task<void> run_master(SimWorld& world, Master& out) {
   SimHost& host = world.host(0);
   MessageChannel& channel = host.open_channel(1, Transport::kStream);
   for (int i = 0; i < 1 + kStamps; ++i) co_await channel.send(Bytes(8));
-  co_await channel.receive(SteadyTime::max());
+  co_await channel.receive(kNoDeadline);
   out.read_ms = world.now_ms();
   out.t_m = co_await host.clock().now();
   co_await channel.send(bytes_of(out.t_m));
-  const std::optional<ReceivedMessage> reply = co_await channel.receive(SteadyTime::max());
+  const std::optional<ReceivedMessage> reply = co_await channel.receive(kNoDeadline);
   out.t_s = time_of(reply->bytes);
   out.reply_ms = world.now_ms();
   out.t_r = co_await host.clock().now();
@@ -114,7 +114,7 @@ TEST(SessionModelTest, EveryInstantOfAPassIsAsCalculated) {
   // Step 5: the last step of the slave's clock.
   const double arrival = master.read_ms + kRead + kSend + kLatency + kWake;
   const ClockAdjustment& step = world.record.adjustments.back();
-  EXPECT_EQ(step.at, world.hosts.clock(1).steady(true_ms(arrival + 0.25 * kSet)));
+  EXPECT_EQ(step.at, world.hosts.clock(1).steady(at_ms(arrival + 0.25 * kSet)));
   const double set_to_ms = std::floor(ms_of(master.t_m) + kWake + (kRead + kSet) / 2);
   EXPECT_EQ(step.after, host_ms(set_to_ms));
   EXPECT_EQ(master.t_s, host_ms(std::floor(set_to_ms + 0.75 * kSet)));

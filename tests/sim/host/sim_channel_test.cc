@@ -32,9 +32,9 @@ Task<void> send_many(SimWorld& world, std::size_t from, PeerId to, int count,
   }
 }
 
-Task<void> send_one_at(SimWorld& world, double at_ms) {
+Task<void> send_one_at(SimWorld& world, TrueTime at) {
   MessageChannel& channel = world.host(0).open_channel(1, Transport::kStream);
-  co_await sleep_until(world.context, true_ms(at_ms), "test");
+  co_await sleep_until(world.context, at, "test");
   co_await channel.send(message(1));
 }
 
@@ -65,7 +65,7 @@ std::vector<double> returned_ms(const std::vector<Received>& received) {
 Task<void> echo(SimWorld& world, int count) {
   MessageChannel& channel = world.host(1).open_channel(0, Transport::kStream);
   for (int i = 0; i < count; ++i) {
-    std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
+    std::optional<ReceivedMessage> got = co_await channel.receive(kNoDeadline);
     co_await channel.send(std::move(got->bytes));
   }
 }
@@ -75,7 +75,7 @@ Task<void> ping(SimWorld& world, int count, std::vector<double>& round_trips_ms)
   for (int i = 0; i < count; ++i) {
     const double start_ms = world.now_ms();
     co_await channel.send(message(1));
-    const std::optional<ReceivedMessage> got = co_await channel.receive(SteadyTime::max());
+    const std::optional<ReceivedMessage> got = co_await channel.receive(kNoDeadline);
     EXPECT_TRUE(got);
     round_trips_ms.push_back(world.now_ms() - start_ms);
   }
@@ -172,7 +172,7 @@ TEST(SimChannelTest, AMessageThatArrivesInTimeIsReturnedAfterItsWakeUp) {
   SimWorld world(scenario);
   std::vector<Received> received;
   world.spawn(receive_many(world, 2, 10, received));
-  world.spawn(send_one_at(world, 9));
+  world.spawn(send_one_at(world, at_ms(9)));
   world.engine.run();
   ASSERT_EQ(received.size(), 2u);
   EXPECT_TRUE(received[0].got_one);
@@ -205,7 +205,7 @@ TEST(SimChannelTest, ApplicationStampsAreCoarseReadingsAtTheReturn) {
   world.spawn(receive_many(world, 1, 1000, received));
   world.engine.run();
   EXPECT_EQ(received.at(0).stamp, host_ms(8));
-  EXPECT_EQ(received.at(0).steady, world.hosts.clock(1).steady(true_ms(8.5)));
+  EXPECT_EQ(received.at(0).steady, world.hosts.clock(1).steady(at_ms(8.5)));
 }
 
 TEST(SimChannelTest, KernelStampsAreTakenAtTheArrival) {
@@ -220,7 +220,7 @@ TEST(SimChannelTest, KernelStampsAreTakenAtTheArrival) {
   world.spawn(receive_many(world, 1, 1000, received));
   world.engine.run();
   EXPECT_EQ(received.at(0).stamp, host_ms(5.5));
-  EXPECT_EQ(received.at(0).steady, world.hosts.clock(1).steady(true_ms(5.5)));
+  EXPECT_EQ(received.at(0).steady, world.hosts.clock(1).steady(at_ms(5.5)));
   EXPECT_EQ(received.at(0).returned_ms, 8.5);
 }
 
@@ -266,7 +266,7 @@ Task<void> give_up_a_send(SimWorld& world, Stamp& next) {
   MessageChannel& channel = host.open_channel(1, Transport::kStream);
   co_await (channel.send(message(1)) || host.sleep_for(from_ms(1)));
   const MessageId id = co_await channel.send(message(2));
-  next.stamp = co_await channel.transmit_stamp(id, SteadyTime::max());
+  next.stamp = co_await channel.transmit_stamp(id, kNoDeadline);
   next.returned_ms = world.now_ms();
 }
 
@@ -290,7 +290,7 @@ Task<void> give_up_a_receive(SimWorld& world, std::vector<Received>& received) {
   using boost::asio::experimental::awaitable_operators::operator||;
   SimHost& host = world.host(1);
   MessageChannel& channel = host.open_channel(0, Transport::kStream);
-  co_await (channel.receive(SteadyTime::max()) || host.sleep_for(from_ms(7)));
+  co_await (channel.receive(kNoDeadline) || host.sleep_for(from_ms(7)));
   co_await receive_many(world, 1, 100, received);
 }
 
@@ -300,7 +300,7 @@ TEST(SimChannelTest, ACancelledReceiveLeavesTheMessageToTheNext) {
   SimWorld world(scenario);
   std::vector<Received> received;
   world.spawn(give_up_a_receive(world, received));
-  world.spawn(send_one_at(world, 4));  // would be received at 9 ms
+  world.spawn(send_one_at(world, at_ms(4)));  // would be received at 9 ms
   world.engine.run();
   ASSERT_EQ(received.size(), 1u);
   EXPECT_TRUE(received[0].got_one);
@@ -372,8 +372,8 @@ TEST(SimChannelTest, AWorldMayEndWhileItsCoroutinesWait) {
   };
   world.spawn(receive_many(world, 1, 1e6, received));
   world.spawn(sleep(world, woken_ms));
-  world.spawn(send_one_at(world, 1e5));
-  world.engine.run_until(true_ms(1000));
+  world.spawn(send_one_at(world, at_ms(1e5)));
+  world.engine.run_until(at_ms(1000));
   EXPECT_TRUE(received.empty());
   EXPECT_EQ(woken_ms, -1);
 }

@@ -26,13 +26,13 @@ Task<void> set_clock(SimWorld& world, std::size_t host, HostTime value, double& 
   returned_ms = world.now_ms();
 }
 
-Task<void> set_clock_at(SimWorld& world, double at_ms, HostTime value) {
-  co_await sim::sleep_until(world.context, true_ms(at_ms), "test");
+Task<void> set_clock_at(SimWorld& world, TrueTime at, HostTime value) {
+  co_await sim::sleep_until(world.context, at, "test");
   co_await world.host(0).clock().set(value);
 }
 
-Task<void> slew_clock_at(SimWorld& world, double at_ms, double offset_ms, double rate_ppb) {
-  co_await sim::sleep_until(world.context, true_ms(at_ms), "test");
+Task<void> slew_clock_at(SimWorld& world, TrueTime at, double offset_ms, double rate_ppb) {
+  co_await sim::sleep_until(world.context, at, "test");
   co_await world.host(0).clock().slew(from_ms(offset_ms), rate_ppb);
 }
 
@@ -74,9 +74,9 @@ TEST(SimHostTest, ASetCountsFromItsEffectiveInstantAndRoundsDown) {
   world.engine.run();
   EXPECT_EQ(returned_ms, 4);
   const SystemClock& clock = world.hosts.clock(0);
-  EXPECT_EQ(clock.read(true_ms(1) - Nanoseconds(1)), host_ms(1) - Nanoseconds(1));
-  EXPECT_EQ(clock.read(true_ms(1)), host_ms(1000));
-  EXPECT_EQ(clock.read(true_ms(4)), host_ms(1003));
+  EXPECT_EQ(clock.read(at_ms(1) - Nanoseconds(1)), host_ms(1) - Nanoseconds(1));
+  EXPECT_EQ(clock.read(at_ms(1)), host_ms(1000));
+  EXPECT_EQ(clock.read(at_ms(4)), host_ms(1003));
   ASSERT_EQ(world.record.adjustments.size(), 1u);
   EXPECT_EQ(world.record.adjustments[0].before, host_ms(1));
   EXPECT_EQ(world.record.adjustments[0].after, host_ms(1000));
@@ -158,8 +158,8 @@ TEST(SimHostTest, SleepUntilIsRearmedByAStep) {
   world.spawn(sleep_to(world, host_ms(1000), early_ms));
   world.spawn(sleep_to(world, host_ms(200), late_ms));
   world.spawn(sleep_to(world, host_ms(600), over_ms));
-  world.spawn(set_clock_at(world, 100, host_ms(50)));   // late: 150 ms to go, at 250 ms
-  world.spawn(set_clock_at(world, 300, host_ms(700)));  // over: passed, wakes now
+  world.spawn(set_clock_at(world, at_ms(100), host_ms(50)));   // late: 150 ms to go, at 250 ms
+  world.spawn(set_clock_at(world, at_ms(300), host_ms(700)));  // over: passed, wakes now
   world.engine.run();
   EXPECT_EQ(late_ms, 250);
   EXPECT_EQ(over_ms, 300);
@@ -172,7 +172,7 @@ TEST(SimHostTest, SleepUntilIsRearmedByASlewAndItsEnd) {
   double after_ms = 0;
   world.spawn(sleep_to(world, host_ms(1100), during_ms));
   world.spawn(sleep_to(world, host_ms(5000), after_ms));
-  world.spawn(slew_clock_at(world, 1000, 100, 100'000'000));  // 10 % for 1000 ms
+  world.spawn(slew_clock_at(world, at_ms(1000), 100, 100'000'000));  // 10 % for 1000 ms
   world.engine.run();
   EXPECT_NEAR(during_ms, 1000 + 100 / 1.1, 2e-6);
   EXPECT_NEAR(after_ms, 4900, 2e-6);
@@ -184,7 +184,7 @@ TEST(SimHostTest, AFaultThatStepsTheClockWakesSleepersToo) {
   SimWorld world(ideal_hosts());
   double woken_ms = 0;
   world.spawn(sleep_to(world, host_ms(1000), woken_ms));
-  world.engine.call_at(true_ms(10), [&] { world.hosts.clock(0).set(true_ms(10), host_ms(2000)); });
+  world.engine.call_at(at_ms(10), [&] { world.hosts.clock(0).set(at_ms(10), host_ms(2000)); });
   world.engine.run();
   EXPECT_EQ(woken_ms, 10);
 }

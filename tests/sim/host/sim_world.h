@@ -8,13 +8,9 @@
 #include <vector>
 
 #include "sim/host/host_group.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
-
-inline TrueTime true_ms(double ms) { return TrueTime(from_ms(ms)); }
-inline HostTime host_ms(double ms) { return HostTime(from_ms(ms)); }
-inline double ms_of(TrueTime t) { return to_ms(t.time_since_epoch()); }
-inline double ms_of(HostTime t) { return to_ms(t.time_since_epoch()); }
 
 inline scenarios::Scenario ideal_hosts(std::int64_t count = 2) {
   scenarios::Scenario scenario{};

@@ -120,8 +120,8 @@ TEST(SwitchClock, SlavesOfABoundaryClockAreAheadOfTheMasterByItsError) {
 }
 
 // What arrived at one end of a link, with the times when it left the other's card.
-struct End final : Endpoint {
-  End(Network& net, PeerId from, PeerId to, Transport transport)
+struct LinkEnd final : Endpoint {
+  LinkEnd(Network& net, PeerId from, PeerId to, Transport transport)
       : network(net), path(net.open(from, to, transport, *this)) {}
   void send(Bytes message) { network.send(path, next++, std::move(message)); }
   void on_arrival() override {
@@ -149,7 +149,7 @@ struct Link {
   Outages outages{std::vector<scenarios::Fault>{}};
   RunLoad load;
   Network network;
-  End ends[2];
+  LinkEnd ends[2];
 };
 
 scenarios::Network rough_network(SwitchClockKind kind) {
@@ -172,14 +172,14 @@ scenarios::Network rough_network(SwitchClockKind kind) {
 TEST(SwitchClock, OnlyTheCableIsLeftAfterTheCorrection) {
   Link link(rough_network(SwitchClockKind::kTransparent));
   for (int i = 0; i < 200; ++i) {
-    for (End& end : link.ends) {
+    for (LinkEnd& end : link.ends) {
       link.engine.call_at(at_ms(i), [&end] { end.send(ptp(0)); });
     }
   }
   link.engine.run();
   double cable_ms[2] = {};
   for (const int to : {0, 1}) {
-    const End& end = link.ends[to];
+    const LinkEnd& end = link.ends[to];
     EXPECT_GT(end.arrived.size(), 205u) << "there are duplicates";
     for (const ArrivedMessage& message : end.arrived) {
       const Nanoseconds delay = message.at - link.ends[1 - to].passed.at(message.id);

@@ -11,12 +11,12 @@ namespace simbench::sim {
 namespace {
 
 // What a program on a host saw of its cameras.
-struct Seen {
+struct SeenReports {
   std::vector<FrameArrival> frames;
   std::vector<SteadyTime> at;
 };
 
-Task<void> watch(Host& host, std::vector<Seen>& seen) {
+Task<void> watch(Host& host, std::vector<SeenReports>& seen) {
   FrameFeed* feed = host.frame_feed();
   if (feed == nullptr) co_return;
   for (;;) {
@@ -49,7 +49,7 @@ scenarios::Scenario jittery_scenario() {
 
 TEST(FrameFeeds, EachHostSeesItsOwnCamerasFramesAsTheRecordingHasThem) {
   const scenarios::Scenario s = jittery_scenario();
-  std::vector<Seen> seen(2);
+  std::vector<SeenReports> seen(2);
   Service service([&](Host& host) { return watch(host, seen); });
   KeptLists kept;
   run_world(s, &service, kept);
@@ -77,7 +77,7 @@ TEST(FrameFeeds, OnlyTheScoredStream) {
   s.cameras.streams[1].kind = StreamKind::kColour;
   for (const StreamKind scored : {StreamKind::kDepth, StreamKind::kColour}) {
     s.evaluation.stream = scored;
-    std::vector<Seen> seen(2);
+    std::vector<SeenReports> seen(2);
     Service service([&](Host& host) { return watch(host, seen); });
     KeptLists kept;
     run_world(s, &service, kept);
@@ -149,7 +149,7 @@ TEST(FrameFeeds, CostNoEventUnlessSomebodyWaits) {
   const scenarios::Scenario s = jittery_scenario();
   Service nothing(idle);
   Service opened(open_only);
-  std::vector<Seen> seen(2);
+  std::vector<SeenReports> seen(2);
   Service watching([&](Host& host) { return watch(host, seen); });
   KeptLists without;
   KeptLists with;

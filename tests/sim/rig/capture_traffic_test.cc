@@ -75,7 +75,7 @@ Task<void> receive_stamps(Host& host, PeerId peer, Delays& delays) {
 }
 
 // Both directions of the link, a message every 7.3 ms each.
-class Probe final : public HostSync {
+class ProbeSync final : public HostSync {
  public:
   std::optional<Nanoseconds> warm_up() const override { return from_ms(0); }
   Task<void> run_master(Host& host, std::vector<PeerId>) override {
@@ -107,7 +107,7 @@ double backlog_ms(const KeptLists& kept, double at_ms, double frame_ms) {
 }
 
 TEST(CaptureTraffic, MessagesOfTheHostWaitBehindItsFrames) {
-  Probe probe;
+  ProbeSync probe;
   KeptLists kept;
   run_world(saturated_scenario(), &probe, kept);
   ASSERT_GT(probe.to_master.delay_ms.size(), 2700u);
@@ -136,7 +136,7 @@ TEST(CaptureTraffic, MessagesOfTheHostWaitBehindItsFrames) {
 TEST(CaptureTraffic, AShareOfTheFramesIsAShareOfTheQueue) {
   scenarios::Scenario s = saturated_scenario();
   s.network.capture_traffic_share = 0.25;
-  Probe probe;
+  ProbeSync probe;
   KeptLists kept;
   run_world(s, &probe, kept);
   for (std::size_t i = 0; i < nonempty(probe.to_master.delay_ms).size(); ++i) {
@@ -148,7 +148,7 @@ TEST(CaptureTraffic, AShareOfTheFramesIsAShareOfTheQueue) {
 TEST(CaptureTraffic, AnOverloadedPortsQueueIsBounded) {
   scenarios::Scenario s = saturated_scenario();
   s.network.bandwidth_mbit_per_s = 400;
-  Probe probe;
+  ProbeSync probe;
   KeptLists kept;
   run_world(s, &probe, kept);
   const double largest_ms =

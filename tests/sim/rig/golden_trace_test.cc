@@ -51,7 +51,7 @@ const scenarios::Pipeline& pipeline_of(const scenarios::Scenario& scenario,
 }
 
 // 64-bit FNV-1a, begun with the trace hash.
-std::uint64_t hash_of(const RecordingCost& cost, const KeptRecording& recording) {
+std::uint64_t trace_hash(const RecordingCost& cost, const KeptRecording& recording) {
   std::uint64_t hash = cost.trace_hash;
   for (const RecordingEvent& event : recording.events()) {
     for (const char c : to_line(event) + "\n") {
@@ -76,7 +76,7 @@ Golden run_golden(const Golden& golden) {
   KeptRecording recording;
   const RecordingCost cost = make_simulation(scenario)->record(
       {.seed = 1, .pipeline = pipeline.name, .host_sync = host_sync.get()}, recording);
-  return {golden.scenario, golden.pipeline, cost.events, hash_of(cost, recording)};
+  return {golden.scenario, golden.pipeline, cost.events, trace_hash(cost, recording)};
 }
 
 // The pipeline is the one that uses most of what is special about the scenario.

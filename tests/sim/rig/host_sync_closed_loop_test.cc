@@ -55,8 +55,8 @@ class HostErrors : public RecordingSink {
   double count_ = 0;
 };
 
-HostErrors run(const std::string& name, const scenarios::Scenario& scenario, std::uint64_t seed,
-               const ParameterValues& given = {}) {
+HostErrors closed_loop(const std::string& name, const scenarios::Scenario& scenario,
+                       std::uint64_t seed, const ParameterValues& given = {}) {
   const HostSyncEntry* entry = find_host_sync(name);
   const auto host_sync = entry->make(check_parameters(entry->info.parameters, given));
   HostErrors errors(scenario);
@@ -71,7 +71,7 @@ double error_us(const std::string& name, Overrides overrides, const ParameterVal
   const auto scenario = scenarios::load_scenario("18cam_6host_45fps_lan", overrides);
   std::vector<double> means;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const HostErrors errors = run(name, scenario, seed, given);
+    const HostErrors errors = closed_loop(name, scenario, seed, given);
     EXPECT_EQ(errors.synchronised, 5) << name << ", seed " << seed;
     EXPECT_TRUE(errors.failures.empty()) << errors.failures.front();
     means.push_back(errors.mean_us());
@@ -153,7 +153,7 @@ TEST(CommonViewClosedLoopTest, AWorldWithoutTheLineIsAnOutcomeForEverySlave) {
   const auto scenario =
       scenarios::load_scenario("18cam_6host_45fps_lan", {{"/timeline/frames", "20"}});
   for (const char* name : {"pps", "trigger_wired", "gnss", "ptp_e2e_hardware"}) {
-    const HostErrors errors = run(name, scenario, 1);
+    const HostErrors errors = closed_loop(name, scenario, 1);
     EXPECT_EQ(errors.synchronised, 0) << name;
     ASSERT_EQ(errors.failures.size(), 5u) << name;
     EXPECT_NE(errors.failures[0].find("Host::"), std::string::npos) << errors.failures[0];

@@ -10,6 +10,7 @@
 #include "algorithms/ports/host_sync.h"
 #include "recording/recording.h"
 #include "sim/rig/simulation.h"
+#include "tests/sim/at_ms.h"
 
 namespace simbench::sim {
 
@@ -58,8 +59,6 @@ inline RecordingCost run_world(const scenarios::Scenario& scenario, HostSync* ho
   return make_simulation(scenario)->record(
       {.seed = seed, .pipeline = "test", .host_sync = host_sync}, kept);
 }
-
-constexpr SteadyTime kNoDeadline = SteadyTime::max();
 
 }  // namespace simbench::sim
 

@@ -22,7 +22,7 @@ std::vector<double> exponential_table(double mean_ms) {
 }
 
 // What the table leaves unused would be seen.
-scenarios::Usb tabled(std::vector<double> table, double correlation) {
+scenarios::Usb tabled_usb(std::vector<double> table, double correlation) {
   scenarios::Usb usb{};
   usb.kernel_copy_exponential_ms = 50;
   usb.delivery_jitter_transfers = 50;
@@ -71,16 +71,16 @@ double rank_correlation(const std::vector<double>& values) {
 }
 
 TEST(DeliveryTable, ReplacesCopyJitterAndSpikes) {
-  for (const double delay : draws_ms(tabled({0.25, 0.25}, 0), 100, 1)) EXPECT_EQ(delay, 0.25);
+  for (const double delay : draws_ms(tabled_usb({0.25, 0.25}, 0), 100, 1)) EXPECT_EQ(delay, 0.25);
 }
 
 TEST(DeliveryTable, HasTheTablesDistribution) {
   constexpr int kDraws = 100'000;
   constexpr double kCritical = 1.95;  // of sqrt(n) times the distance: 1 in 1000
   const double limit = kCritical / std::sqrt(kDraws);
-  EXPECT_LT(distance_to_uniform(draws_ms(tabled({0, 1}, 0), kDraws, 7)), limit) << "seed 7";
+  EXPECT_LT(distance_to_uniform(draws_ms(tabled_usb({0, 1}, 0), kDraws, 7)), limit) << "seed 7";
 
-  std::vector<double> probabilities = draws_ms(tabled(exponential_table(0.3), 0), kDraws, 8);
+  std::vector<double> probabilities = draws_ms(tabled_usb(exponential_table(0.3), 0), kDraws, 8);
   for (double& value : probabilities) value = -std::expm1(-value / 0.3);
   // The last cell is a line to where the table is cut off.
   EXPECT_LT(distance_to_uniform(probabilities), limit + 0.001) << "seed 8";
@@ -90,13 +90,13 @@ TEST(DeliveryTable, CorrelationLeavesTheDistributionAlone) {
   constexpr int kDraws = 100'000;
   // An AR(1) of 0.8 has an effective size of n (1 - 0.8) / (1 + 0.8).
   const double limit = 1.95 / std::sqrt(kDraws / 9.0);
-  EXPECT_LT(distance_to_uniform(draws_ms(tabled({0, 1}, 0.8), kDraws, 9)), limit) << "seed 9";
+  EXPECT_LT(distance_to_uniform(draws_ms(tabled_usb({0, 1}, 0.8), kDraws, 9)), limit) << "seed 9";
 }
 
 TEST(DeliveryTable, HasTheRankCorrelationOfItsCopula) {
   constexpr int kDraws = 100'000;
   for (const double correlation : {-0.5, 0.0, 0.3, 0.8}) {
-    const scenarios::Usb usb = tabled(exponential_table(0.3), correlation);
+    const scenarios::Usb usb = tabled_usb(exponential_table(0.3), correlation);
     const double expected = 6 / std::numbers::pi * std::asin(correlation / 2);
     // Bartlett: of an AR(1)'s lag-1 correlation, sqrt((1 - r^2) / n); of ranks a little more.
     EXPECT_NEAR(rank_correlation(draws_ms(usb, kDraws, 11)), expected, 5 / std::sqrt(kDraws))
@@ -105,8 +105,8 @@ TEST(DeliveryTable, HasTheRankCorrelationOfItsCopula) {
 }
 
 TEST(DeliveryTable, DrawsOfOneSeedMoveTogether) {
-  const std::vector<double> narrow = draws_ms(tabled({0, 1}, 0.4), 100, 3);
-  const std::vector<double> wide = draws_ms(tabled({0, 2}, 0.4), 100, 3);
+  const std::vector<double> narrow = draws_ms(tabled_usb({0, 1}, 0.4), 100, 3);
+  const std::vector<double> wide = draws_ms(tabled_usb({0, 2}, 0.4), 100, 3);
   for (std::size_t i = 0; i < narrow.size(); ++i) EXPECT_DOUBLE_EQ(wide[i], 2 * narrow[i]);
 }
 

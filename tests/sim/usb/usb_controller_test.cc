@@ -18,8 +18,8 @@ struct Offer {
 };
 
 // Offers frames 0, 1, ... and collects the completions as an owner would.
-std::vector<Completion> run(UsbSharing sharing, const std::vector<Offer>& offers,
-                            std::uint32_t buffered_frames = 16) {
+std::vector<Completion> run_transfers(UsbSharing sharing, const std::vector<Offer>& offers,
+                                      std::uint32_t buffered_frames = 16) {
   UsbController bus({sharing, 1.0, buffered_frames, 1}, 8);
   std::vector<Completion> completions;
   const auto collect_before = [&](TrueTime limit) {
@@ -41,12 +41,12 @@ std::vector<Completion> run(UsbSharing sharing, const std::vector<Offer>& offers
 }
 
 TEST(UsbController, DedicatedCamerasDoNotDisturbEachOther) {
-  EXPECT_EQ(run(UsbSharing::kDedicated, {{0, 0, 300}, {0, 1, 300}, {10, 2, 100}}),
+  EXPECT_EQ(run_transfers(UsbSharing::kDedicated, {{0, 0, 300}, {0, 1, 300}, {10, 2, 100}}),
             (std::vector<Completion>{{2, 110}, {0, 300}, {1, 300}}));
 }
 
 TEST(UsbController, ADedicatedCameraTransfersItsOwnFramesOneAfterTheOther) {
-  EXPECT_EQ(run(UsbSharing::kDedicated, {{0, 0, 300}, {10, 0, 100}, {10, 1, 100}}),
+  EXPECT_EQ(run_transfers(UsbSharing::kDedicated, {{0, 0, 300}, {10, 0, 100}, {10, 1, 100}}),
             (std::vector<Completion>{{2, 110}, {0, 300}, {1, 400}}));
 }
 
@@ -62,20 +62,21 @@ TEST(UsbController, StreamsOfACameraShareItsDedicatedBandwidth) {
 }
 
 TEST(UsbController, FifoTransfersOneAfterTheOther) {
-  EXPECT_EQ(run(UsbSharing::kFifo, {{0, 0, 300}, {0, 1, 300}, {10, 2, 100}, {1000, 0, 50}}),
-            (std::vector<Completion>{{0, 300}, {1, 600}, {2, 700}, {3, 1050}}));
+  EXPECT_EQ(
+      run_transfers(UsbSharing::kFifo, {{0, 0, 300}, {0, 1, 300}, {10, 2, 100}, {1000, 0, 50}}),
+      (std::vector<Completion>{{0, 300}, {1, 600}, {2, 700}, {3, 1050}}));
 }
 
 TEST(UsbController, FairSharesEqually) {
   // Three equal frames at once end together after three times the time of one.
-  EXPECT_EQ(run(UsbSharing::kFair, {{0, 0, 300}, {0, 1, 300}, {0, 2, 300}}),
+  EXPECT_EQ(run_transfers(UsbSharing::kFair, {{0, 0, 300}, {0, 1, 300}, {0, 2, 300}}),
             (std::vector<Completion>{{0, 900}, {1, 900}, {2, 900}}));
 }
 
 TEST(UsbController, FairSharingOfLateComersIsProcessorSharing) {
   // 0 alone for 100 ns; then half each: 1 needs 200 ns for its 100 bytes and ends at 300, when 0
   // has 100 of its 300 bytes left and the bus to itself.
-  EXPECT_EQ(run(UsbSharing::kFair, {{0, 0, 300}, {100, 1, 100}}),
+  EXPECT_EQ(run_transfers(UsbSharing::kFair, {{0, 0, 300}, {100, 1, 100}}),
             (std::vector<Completion>{{1, 300}, {0, 400}}));
 }
 
@@ -101,7 +102,7 @@ TEST(UsbController, NoSharingCreatesOrLosesBandwidth) {
       total += bytes;
     }
     for (const UsbSharing sharing : {UsbSharing::kFifo, UsbSharing::kFair}) {
-      const auto completions = run(sharing, offers);
+      const auto completions = run_transfers(sharing, offers);
       ASSERT_EQ(completions.size(), offers.size()) << "seed " << seed;
       EXPECT_NEAR(static_cast<double>(completions.back().second), total, 61) << "seed " << seed;
     }

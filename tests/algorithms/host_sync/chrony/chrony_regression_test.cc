@@ -16,7 +16,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-void expect_near(double actual, double expected, const std::string& what) {
+void expect_nearly(double actual, double expected, const std::string& what) {
   EXPECT_NEAR(actual, expected, 1e-9 * std::abs(expected)) << what;
 }
 
@@ -40,11 +40,11 @@ TEST(ChronyRegressionVectors, AllFortyAgree) {
     EXPECT_EQ(best->runs, expected.at("runs").get<int>()) << name;
     EXPECT_EQ(best->degrees_of_freedom, expected.at("dof").get<int>()) << name;
     const auto line_agrees = [&](const WeightedLine& line, const nlohmann::json& values) {
-      expect_near(line.intercept, values.at("b0"), name + " b0");
-      expect_near(line.slope, values.at("b1"), name + " b1");
-      expect_near(line.variance, values.at("s2"), name + " s2");
-      expect_near(line.intercept_sd, values.at("sb0"), name + " sb0");
-      expect_near(line.slope_sd, values.at("sb1"), name + " sb1");
+      expect_nearly(line.intercept, values.at("b0"), name + " b0");
+      expect_nearly(line.slope, values.at("b1"), name + " b1");
+      expect_nearly(line.variance, values.at("s2"), name + " s2");
+      expect_nearly(line.intercept_sd, values.at("sb0"), name + " sb0");
+      expect_nearly(line.slope_sd, values.at("sb1"), name + " sb1");
     };
     line_agrees(best->line, expected);
 
@@ -52,7 +52,7 @@ TEST(ChronyRegressionVectors, AllFortyAgree) {
     ASSERT_TRUE(weighted) << name;
     line_agrees(*weighted, set.at("weighted"));
 
-    expect_near(median(used_y), set.at("median_y"), name + " median");
+    expect_nearly(median(used_y), set.at("median_y"), name + " median");
   }
 }
 

@@ -10,7 +10,7 @@ namespace simbench {
 namespace {
 
 // A client that lacks 10 ppm and is 1 ms behind at 0.
-ChronySample sample_at(double at_s, double extra_delay_s = 0, double offset_error_s = 0) {
+ChronySample chrony_sample(double at_s, double extra_delay_s = 0, double offset_error_s = 0) {
   return {at_s, 1e-3 + 10e-6 * at_s + offset_error_s, 300e-6 + extra_delay_s, 1e-7};
 }
 
@@ -18,7 +18,7 @@ ChronySample sample_at(double at_s, double extra_delay_s = 0, double offset_erro
 ChronySourceStats stats_with(int samples) {
   ChronySourceStats stats({});
   for (int i = 0; i < samples; ++i) {
-    stats.add(sample_at(i * 64, (i * 7 % 5) * 1e-6, i % 2 == 0 ? 50e-9 : -50e-9));
+    stats.add(chrony_sample(i * 64, (i * 7 % 5) * 1e-6, i % 2 == 0 ? 50e-9 : -50e-9));
   }
   return stats;
 }
@@ -41,7 +41,7 @@ TEST(ChronySourceStats, SlowSamplesCountLittle) {
   ChronySourceStats stats({});
   for (int i = 0; i < 20; ++i) {
     const bool is_slow = i % 4 == 2;
-    stats.add(sample_at(i * 64, is_slow ? 20e-3 : (i % 3) * 10e-6, is_slow ? 10e-3 : 0));
+    stats.add(chrony_sample(i * 64, is_slow ? 20e-3 : (i % 3) * 10e-6, is_slow ? 10e-3 : 0));
   }
   // Equal weights would be off by a quarter of 10 ms.
   EXPECT_NEAR(stats.predict_s(1216), 1e-3 + 10e-6 * 1216, 20e-6);
@@ -74,18 +74,19 @@ TEST(ChronySourceStats, KeepsAtMostMaxSamples) { EXPECT_EQ(stats_with(200).sampl
 
 TEST(ChronySourceStats, RefusesADelayThatTheSamplesDoNotExplain) {
   ChronySourceStats stats({});
-  for (int i = 0; i < 10; ++i) stats.add(sample_at(i * 64, (i * 7 % 5) * 1e-6, (i % 2) * 10e-6));
-  EXPECT_TRUE(stats.is_good(sample_at(640)));
-  EXPECT_FALSE(stats.is_good(sample_at(640, 5e-3, 2.5e-3)));
+  for (int i = 0; i < 10; ++i)
+    stats.add(chrony_sample(i * 64, (i * 7 % 5) * 1e-6, (i % 2) * 10e-6));
+  EXPECT_TRUE(stats.is_good(chrony_sample(640)));
+  EXPECT_FALSE(stats.is_good(chrony_sample(640, 5e-3, 2.5e-3)));
   // Off by more than its delay: the clock has changed.
-  EXPECT_TRUE(stats.is_good(sample_at(640, 5e-3, 100e-3)));
+  EXPECT_TRUE(stats.is_good(chrony_sample(640, 5e-3, 100e-3)));
 }
 
 TEST(ChronySourceStats, CorrectsAnAsymmetryThatPersists) {
   ChronySourceStats stats({});
   for (int i = 0; i < 30; ++i) {
     const double extra_s = (i * 7 % 5) * 1e-3;  // all of it on the request's way
-    stats.add(sample_at(i * 64, extra_s, extra_s / 2));
+    stats.add(chrony_sample(i * 64, extra_s, extra_s / 2));
     EXPECT_EQ(stats.asymmetry() != 0, i >= 13) << i;  // four samples, then ten more
   }
   EXPECT_NEAR(stats.asymmetry(), 0.5, 1e-9);
@@ -94,7 +95,7 @@ TEST(ChronySourceStats, CorrectsAnAsymmetryThatPersists) {
 
 TEST(ChronySourceStats, ASampleOfThePastRestarts) {
   ChronySourceStats stats = stats_with(10);
-  stats.add(sample_at(100));
+  stats.add(chrony_sample(100));
   EXPECT_EQ(stats.samples(), 1U);
   EXPECT_FALSE(stats.estimate());
 }

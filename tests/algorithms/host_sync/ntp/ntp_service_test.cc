@@ -26,7 +26,7 @@ std::vector<HostSyncEntry> ntp_host_syncs() {
   return entries;
 }
 
-std::unique_ptr<HostSync> make(const std::string& name, const ParameterValues& given = {}) {
+std::unique_ptr<HostSync> make_service(const std::string& name, const ParameterValues& given = {}) {
   for (const HostSyncEntry& entry : ntp_host_syncs()) {
     if (entry.info.name == name) return entry.make(check_parameters(entry.info.parameters, given));
   }
@@ -45,11 +45,12 @@ TEST(NtpRegistration, EveryMemberIsAService) {
 
 TEST(NtpRegistration, ImpossibleParametersAreRefused) {
   for (const std::string name : {"ntp", "chrony"}) {
-    EXPECT_THROW(make(name, {{"min_poll", 8.0}, {"max_poll", 7.0}}), ParameterError) << name;
-    EXPECT_THROW(make(name, {{"max_poll", 18.0}}), ParameterError) << name;
-    EXPECT_THROW(make(name, {{"stamps", std::string("hardware")}}), ParameterError) << name;
+    EXPECT_THROW(make_service(name, {{"min_poll", 8.0}, {"max_poll", 7.0}}), ParameterError)
+        << name;
+    EXPECT_THROW(make_service(name, {{"max_poll", 18.0}}), ParameterError) << name;
+    EXPECT_THROW(make_service(name, {{"stamps", std::string("hardware")}}), ParameterError) << name;
   }
-  EXPECT_THROW(make("w32time_domain", {{"poll_interval_s", 1.0}}), ParameterError);
+  EXPECT_THROW(make_service("w32time_domain", {{"poll_interval_s", 1.0}}), ParameterError);
 }
 
 TEST(NtpRegistration, ParametersReachTheAlgorithm) {
@@ -57,7 +58,7 @@ TEST(NtpRegistration, ParametersReachTheAlgorithm) {
   ScriptWorld world(2);
   world.connect(from_ms(1));
   world.host(0).offset = from_ms(300);
-  world.run(*make("ntp", {{"step_ms", 400.0}, {"iburst", true}}), from_ms(30e3));
+  world.run(*make_service("ntp", {{"step_ms", 400.0}, {"iburst", true}}), from_ms(30e3));
   EXPECT_TRUE(world.host(1).steps.empty());
   ASSERT_EQ(world.host(1).slews.size(), 1U);
   EXPECT_EQ(world.host(1).slews[0].offset, from_ms(300));
@@ -71,7 +72,7 @@ TEST(NtpService, AServerThatReturnsIsAskedInABurst) {
     const bool is_down = index >= 10 && index < 25;
     return is_down ? std::vector<Nanoseconds>{} : std::vector{from_ms(1)};
   });
-  world.run(*make("ntp"), from_ms(1800e3));
+  world.run(*make_service("ntp"), from_ms(1800e3));
   const auto& exchanges = world.host(1).exchanges;
   ASSERT_GE(exchanges.size(), 18U);
   for (std::size_t i = 1; i < 18; ++i) {

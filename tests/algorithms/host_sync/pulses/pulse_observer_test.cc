@@ -31,7 +31,7 @@ class FeedHost : public ScriptHost, private FrameFeed {
 
 SteadyTime pulse_at(int number) { return SteadyTime(from_ms(1000) + number * kPeriod); }
 
-FrameArrival frame_of(std::uint32_t camera, int pulse, Nanoseconds early = {}) {
+FrameArrival arrival_of(std::uint32_t camera, int pulse, Nanoseconds early = {}) {
   return {.camera = camera,
           .counter = 0,
           .exposure_us = 2000,
@@ -65,8 +65,8 @@ TEST_F(PulseObserverTest, AHostWithoutThePortCannotObserve) {
 
 TEST_F(PulseObserverTest, CamerasAreAveraged) {
   for (int pulse = 0; pulse < 500; ++pulse) {
-    host_.frames.push_back(frame_of(1, pulse));
-    host_.frames.push_back(frame_of(2, pulse, -from_ms(0.2)));
+    host_.frames.push_back(arrival_of(1, pulse));
+    host_.frames.push_back(arrival_of(2, pulse, -from_ms(0.2)));
   }
   EXPECT_NEAR(error_us(), 100, 0.1);
 }
@@ -76,8 +76,10 @@ TEST_F(PulseObserverTest, FramesThatDidNotShareTheBusAreLeftOut) {
     // Without the other camera's frame a frame is a millisecond faster.
     const bool has_one = pulse % 7 != 3;
     const bool has_two = pulse % 5 != 1;
-    if (has_one) host_.frames.push_back(frame_of(1, pulse, has_two ? Nanoseconds(0) : from_ms(1)));
-    if (has_two) host_.frames.push_back(frame_of(2, pulse, has_one ? Nanoseconds(0) : from_ms(1)));
+    if (has_one)
+      host_.frames.push_back(arrival_of(1, pulse, has_two ? Nanoseconds(0) : from_ms(1)));
+    if (has_two)
+      host_.frames.push_back(arrival_of(2, pulse, has_one ? Nanoseconds(0) : from_ms(1)));
   }
   EXPECT_NEAR(error_us(), 0, 0.1);
 }
@@ -86,19 +88,19 @@ TEST_F(PulseObserverTest, FramesOfTheFirstSecondsAreLeftOut) {
   for (int pulse = 0; pulse < 500; ++pulse) {
     const Nanoseconds early =
         pulse_at(pulse) - pulse_at(0) < from_ms(4e3) ? from_ms(1) : from_ms(0);
-    host_.frames.push_back(frame_of(1, pulse, early));
+    host_.frames.push_back(arrival_of(1, pulse, early));
   }
   EXPECT_NEAR(error_us(), 0, 0.1);
   EXPECT_TRUE(host_.frames.empty());
 }
 
 TEST_F(PulseObserverTest, FewFramesGiveNoPulse) {
-  for (int pulse = 0; pulse < 10; ++pulse) host_.frames.push_back(frame_of(1, pulse));
+  for (int pulse = 0; pulse < 10; ++pulse) host_.frames.push_back(arrival_of(1, pulse));
   EXPECT_TRUE(std::isnan(error_us({.settle = Nanoseconds(0)})));
 }
 
 TEST_F(PulseObserverTest, IdenticalStampsGiveNoPulse) {
-  for (int i = 0; i < 500; ++i) host_.frames.push_back(frame_of(1, 0));
+  for (int i = 0; i < 500; ++i) host_.frames.push_back(arrival_of(1, 0));
   EXPECT_TRUE(std::isnan(error_us({.settle = Nanoseconds(0)})));
 }
 

@@ -11,7 +11,7 @@
 namespace simbench {
 namespace {
 
-double error_ns(const ClockLine& line, const ClockLine& truth, SteadyTime at) {
+double line_error_ns(const ClockLine& line, const ClockLine& truth, SteadyTime at) {
   return static_cast<double>((line.read(at) - truth.read(at)).count());
 }
 
@@ -25,7 +25,7 @@ TEST(TwoWayHullTest, OneExchangeGivesTheOffset) {
   const ClockLine truth = remote_clock(from_ms(-1234.5), 0);
   TwoWayHull hull({});
   hull.add(exchange_at(truth, at_second(3), from_ms(0.2), from_ms(0.2)));
-  EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(3)), 0, 1);
+  EXPECT_NEAR(line_error_ns(*hull.line(), truth, at_second(3)), 0, 1);
   EXPECT_EQ(hull.line()->rate_ppb, 0);
 }
 
@@ -36,7 +36,7 @@ TEST(TwoWayHullTest, WithoutJitterOffsetAndRateAreExact) {
     hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.2), from_ms(0.2)));
   }
   EXPECT_NEAR(hull.line()->rate_ppb, 23'456, 0.1);
-  EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 0, 10);
+  EXPECT_NEAR(line_error_ns(*hull.line(), truth, at_second(50)), 0, 10);
   EXPECT_NEAR(static_cast<double>(hull.width()->count()), 400'000, 20);
 }
 
@@ -48,7 +48,8 @@ TEST(TwoWayHullTest, DelaysShorterThanTheDriftSayTheRateAtOnce) {
   double seconds = 0;
   for (int i = 0; i < 40; ++i) {
     hull.add(exchange_at(truth, at_second(seconds), from_ms(0.002), from_ms(0.002)));
-    EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(seconds)), 0, 6000) << "exchange " << i;
+    EXPECT_NEAR(line_error_ns(*hull.line(), truth, at_second(seconds)), 0, 6000)
+        << "exchange " << i;
     seconds += i < 16 ? 0.02 : 0.25;
   }
   EXPECT_EQ(hull.resets(), 0u);
@@ -61,7 +62,7 @@ TEST(TwoWayHullTest, AsymmetryIsInTheOffsetWithItsHalfAndNotInTheRate) {
   for (int i = 0; i < 100; ++i) {
     hull.add(exchange_at(truth, at_second(0.5 * i), from_ms(0.3), from_ms(0.1)));
   }
-  EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(50)), 100'000, 10);
+  EXPECT_NEAR(line_error_ns(*hull.line(), truth, at_second(50)), 100'000, 10);
   EXPECT_NEAR(hull.line()->rate_ppb, -8'000, 0.1);
 }
 
@@ -77,7 +78,7 @@ TEST(TwoWayHullTest, ExponentialTailsLeaveLittleAtTheEndOfTheWindow) {
       hull.add(exchange_at(truth, at_second(0.25 * i), from_ms(0.15 + tail(engine)),
                            from_ms(0.15 + tail(engine))));
     }
-    const double error = error_ns(*hull.line(), truth, at_second(60));
+    const double error = line_error_ns(*hull.line(), truth, at_second(60));
     squares += error * error;
     EXPECT_NEAR(hull.line()->rate_ppb, 31'000, 120) << "seed 11, run " << run;
   }
@@ -98,7 +99,7 @@ TEST(TwoWayHullTest, AStepOfTheRemoteClockStartsAfreshAndKeepsTheRate) {
     const ClockLine later = remote_clock(from_ms(1 + std::max(step_ms, 0.0)), 12'000);
     const double at = step_ms > 0 ? 50 : 60;
     hull.add(exchange_at(later, at_second(at), from_ms(0.2), from_ms(0.2)));
-    EXPECT_NEAR(error_ns(*hull.line(), later, at_second(at + 1)), 0, 10);
+    EXPECT_NEAR(line_error_ns(*hull.line(), later, at_second(at + 1)), 0, 10);
     EXPECT_NEAR(hull.line()->rate_ppb, 12'000, 0.1);
   }
   EXPECT_EQ(hull.resets(), 2u);
@@ -130,7 +131,7 @@ TEST(TwoWayHullTest, IdenticalExchangesGiveOneFiniteLine) {
   for (int i = 0; i < 10; ++i) {
     hull.add(exchange_at(truth, at_second(1), from_ms(0.2), from_ms(0.2)));
   }
-  EXPECT_NEAR(error_ns(*hull.line(), truth, at_second(1)), 0, 1);
+  EXPECT_NEAR(line_error_ns(*hull.line(), truth, at_second(1)), 0, 1);
   EXPECT_EQ(hull.line()->rate_ppb, 0);
 }
 
