@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/statistics/in_double.h"
 #include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
@@ -46,12 +47,15 @@ class PairDraw {
   boost::random::mt19937 random_{static_cast<std::uint32_t>(kRandomSeed)};
 };
 
+using StudentsT = boost::math::students_t_distribution<double, InDouble>;
+using Normal = boost::math::normal_distribution<double, InDouble>;
+
 // The share of resamples to leave on each side (Hesterberg 2015).
 double expanded_tail(std::size_t pairs) {
   const auto n = static_cast<double>(pairs);
-  const boost::math::students_t_distribution<double> t(n - 1);
+  const StudentsT t(n - 1);
   const double reach = std::sqrt(n / (n - 1)) * boost::math::quantile(t, kPairedTail);
-  return boost::math::cdf(boost::math::normal_distribution<double>(), reach);
+  return boost::math::cdf(Normal(), reach);
 }
 
 // For equal differences every resample's mean is the same except for rounding, which must not show.
@@ -89,7 +93,7 @@ double width_by_deviation(const std::vector<Pair>& pairs, double mean) {
   double squares = 0;
   for (const Pair& pair : pairs) squares += std::pow(pair.b - pair.a - mean, 2);
   const auto n = static_cast<double>(pairs.size());
-  const double z = -boost::math::quantile(boost::math::normal_distribution<double>(), kPairedTail);
+  const double z = -boost::math::quantile(Normal(), kPairedTail);
   return 2 * z * std::sqrt(squares / (n - 1) / n);
 }
 
@@ -170,8 +174,6 @@ PairedComparison compare(const PairedValues& values, const ComparisonRule& rule)
 }
 
 namespace {
-
-using StudentsT = boost::math::students_t_distribution<double>;
 
 double two_sided_p(double mean, double standard_error, std::size_t pairs) {
   if (mean == 0) return 1;

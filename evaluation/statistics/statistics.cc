@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/statistics/in_double.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -122,7 +123,7 @@ Series make_series(std::vector<double> values) {
 
 Interval binomial_interval(std::int64_t successes, std::int64_t trials) {
   SIMBENCH_ASSERT(successes >= 0 && successes <= trials, "successes are some of the trials");
-  using Binomial = boost::math::binomial_distribution<double>;
+  using Binomial = boost::math::binomial_distribution<double, InDouble>;
   if (trials == 0) return {};
   const auto n = static_cast<double>(trials);
   const auto k = static_cast<double>(successes);
@@ -153,7 +154,7 @@ bool inside(double published, const Series& series) {
 
 MedianInterval median_interval(const std::vector<double>& values, std::int64_t seeds) {
   const double shape = (static_cast<double>(seeds) + 1) / 2;
-  const double low_at = boost::math::ibeta_inv(shape, shape, kTail);
+  const double low_at = boost::math::ibeta_inv(shape, shape, kTail, InDouble());
   const double centre = median(values);
   MedianInterval interval;
   interval.seeds = seeds;
