@@ -1,7 +1,7 @@
 // Boost.Math in double, where it would take long double: that differs from one machine to another,
 // and its tables of constants do not start under valgrind.
 //
-//   using Normal = boost::math::normal_distribution<double, InDouble>;
+//   const InDouble policy;   // the last parameter of each of its functions and distributions
 #ifndef SIMBENCH_EVALUATION_STATISTICS_IN_DOUBLE_H_
 #define SIMBENCH_EVALUATION_STATISTICS_IN_DOUBLE_H_
 

@@ -1,6 +1,6 @@
 // A 4-ary min-heap of queue entries whose pop leaves the root open.
 //
-// A discrete-event simulation mostly pops one event and pushes its successor. A usual heap then
+// A discrete-event simulation mostly pops one event and pushes its successor. A plain heap then
 // moves two entries through its whole depth; this one leaves the root empty after a pop, and the
 // next push sinks from there, so the pair costs one pass. Only a pop that follows a pop has to
 // close the root with the last entry first.

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_service.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
@@ -196,10 +195,7 @@ ChronySample ChronyClient::sample_of(const NtpMeasurement& measurement) const {
 }
 
 Task<void> ChronyService::run_master(Host& host, std::vector<PeerId> slaves) {
-  std::vector<Task<void>> servers;
-  servers.reserve(slaves.size());
-  for (const PeerId slave : slaves) servers.push_back(serve_ntp(host, slave));
-  co_await join_all(std::move(servers));
+  co_await serve_ntp(host, std::move(slaves));
 }
 
 Task<void> ChronyService::run_slave(Host& host, PeerId master) {

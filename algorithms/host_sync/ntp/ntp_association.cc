@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "algorithms/host_sync/join.h"
+
 namespace simbench {
 namespace {
 
@@ -189,7 +191,9 @@ Task<std::optional<NtpBroadcast>> NtpAssociation::next_broadcast(SteadyTime dead
   }
 }
 
-Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s) {
+namespace {
+
+Task<void> serve_client(Host& host, PeerId client, double root_dispersion_s) {
   MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
   while (true) {
     const std::optional<ReceivedMessage> received =
@@ -208,6 +212,17 @@ Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s) {
     Bytes bytes = encode(reply);
     co_await channel.send(std::move(bytes));
   }
+}
+
+}  // namespace
+
+Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, double root_dispersion_s) {
+  std::vector<Task<void>> servers;
+  servers.reserve(clients.size());
+  for (const PeerId client : clients) {
+    servers.push_back(serve_client(host, client, root_dispersion_s));
+  }
+  co_await join_all(std::move(servers));
 }
 
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval) {

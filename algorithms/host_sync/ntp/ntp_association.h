@@ -119,9 +119,9 @@ class NtpAssociation {
   MessageChannel& channel_;
 };
 
-// Serves one client for ever, as a local reference of stratum 1, in the version of each request.
+// Serves these clients for ever, as a local reference of stratum 1, in the version of each request.
 // The server announces `root_dispersion_s`, up to 65535, as the error bound of its own clock.
-Task<void> serve_ntp(Host& host, PeerId client, double root_dispersion_s = 0);
+Task<void> serve_ntp(Host& host, std::vector<PeerId> clients, double root_dispersion_s = 0);
 
 // Sends a broadcast (mode 5) to each client every `interval`, for ever.
 Task<void> broadcast_ntp(Host& host, std::vector<PeerId> clients, Nanoseconds interval);

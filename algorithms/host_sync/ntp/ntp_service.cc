@@ -263,8 +263,7 @@ NtpService::NtpService(const NtpSettings& settings) : settings_(settings) {
 
 Task<void> NtpService::run_master(Host& host, std::vector<PeerId> slaves) {
   std::vector<Task<void>> servers;
-  servers.reserve(slaves.size() + 1);
-  for (const PeerId slave : slaves) servers.push_back(serve_ntp(host, slave));
+  servers.push_back(serve_ntp(host, slaves));
   if (settings_.mode != NtpMode::kUnicast) {
     servers.push_back(broadcast_ntp(host, std::move(slaves), settings_.broadcast_interval));
   }

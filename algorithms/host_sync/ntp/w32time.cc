@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/join.h"
 #include "algorithms/host_sync/ntp/ntp_association.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
@@ -105,12 +104,7 @@ W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& 
 }
 
 Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
-  std::vector<Task<void>> servers;
-  servers.reserve(slaves.size());
-  for (const PeerId slave : slaves) {
-    servers.push_back(serve_ntp(host, slave, kLocalClockDispersion));
-  }
-  co_await join_all(std::move(servers));
+  co_await serve_ntp(host, std::move(slaves), kLocalClockDispersion);
 }
 
 Task<void> W32Time::run_slave(Host& host, PeerId master) {

@@ -231,7 +231,7 @@ TEST(Diagnose, HostsWhoseClocksDifferCannotBeToldFromTriggers) {
   EXPECT_EQ(diagnose(streams, {.one_host = true}).verdict.status, SyncStatus::kDoesNotWork);
 }
 
-TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsTold) {
+TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsFound) {
   std::vector<CameraStream> streams = rig();
   streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20}));
   streams.push_back(
@@ -240,7 +240,7 @@ TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsTold) {
   EXPECT_EQ(found.verdict.status, SyncStatus::kDoesNotWork);
 }
 
-TEST(Diagnose, SynchronisedHostsOfOneCameraEachCanBeTold) {
+TEST(Diagnose, SynchronisedHostsOfOneCameraEachAreRecognised) {
   std::vector<CameraStream> streams = rig();
   for (CameraStream& stream : streams) stream.host = stream.camera;
   EXPECT_EQ(diagnose(streams, {}).verdict.status, SyncStatus::kWorks);

@@ -182,7 +182,7 @@ TEST(PipelineScorerUnverified, TheOracleOfGatheringNeedsPulses) {
   EXPECT_NO_THROW(score(capture_without_truth(1, 2), setup));
 }
 
-TEST(PipelineScorerUnverified, GroundTruthIsTold) {
+TEST(PipelineScorerUnverified, GroundTruthIsReported) {
   EXPECT_EQ(score(TestCapture(1, 2), arrival_setup()).ground_truth, GroundTruth::kSimulation);
   ScorerSetup genlock = arrival_setup();
   genlock.genlock = true;

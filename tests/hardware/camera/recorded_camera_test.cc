@@ -152,7 +152,7 @@ TEST(RecordedCamera, WhatWasDueBeforeTheCameraWasOnIsNotPlayed) {
   EXPECT_GE(zero + from_ms(4.0 * seen.frames()[0].counter), before);
 }
 
-TEST(RecordedCamera, ATriggerFileWithoutAnInstantIsTold) {
+TEST(RecordedCamera, ATriggerFileWithoutAnInstantIsReported) {
   const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 3));
   RecordedCameraDriver driver({recorded("front", csv, "", folder.write("trigger", "soon\x01"))});

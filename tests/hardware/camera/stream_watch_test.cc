@@ -142,7 +142,7 @@ TEST(StreamWatch, ACameraThatWaitsForTriggersIsWatchedFromItsFirstFrame) {
   EXPECT_EQ(notified.kinds(), std::vector{EventKind::kStalled});
 }
 
-TEST(StreamWatch, ARestartedCameraIsTold) {
+TEST(StreamWatch, ARestartedCameraIsReported) {
   Notified notified;
   StreamWatch watch(depth("default", 30), false);
   watch.start(watched_at_ms(0));

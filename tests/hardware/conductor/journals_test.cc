@@ -35,8 +35,8 @@ HostJournal host_journal(const std::vector<RecordingEvent>& events) {
   return journal;
 }
 
-// "frame C/N" and "adjustment H", in the order in which they were told.
-std::vector<std::string> told(const std::vector<HostJournal>& journals) {
+// "frame C/N" and "adjustment H", in the order in which they were reported.
+std::vector<std::string> reported(const std::vector<HostJournal>& journals) {
   KeptRecording kept;
   kept.on_start({});
   play_in_order(journals, kept);
@@ -87,24 +87,24 @@ TEST(Journals, NotesAreNoEvents) {
 }
 
 TEST(Journals, FramesOfAllHostsComeInOrderOfArrival) {
-  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 10), journal_frame(0, 2, 30)}),
-                    host_journal({journal_frame(1, 1, 5), journal_frame(1, 2, 20),
-                                  journal_frame(1, 3, 40)})}),
+  EXPECT_THAT(reported({host_journal({journal_frame(0, 1, 10), journal_frame(0, 2, 30)}),
+                        host_journal({journal_frame(1, 1, 5), journal_frame(1, 2, 20),
+                                      journal_frame(1, 3, 40)})}),
               ElementsAre("1/1", "0/1", "1/2", "0/2", "1/3"));
 }
 
 TEST(Journals, AHostKeepsItsOwnOrderEvenIfItsClockStepsBack) {
-  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 100), journal_frame(0, 2, 10)}),
-                    host_journal({journal_frame(1, 1, 50)})}),
+  EXPECT_THAT(reported({host_journal({journal_frame(0, 1, 100), journal_frame(0, 2, 10)}),
+                        host_journal({journal_frame(1, 1, 50)})}),
               ElementsAre("1/1", "0/1", "0/2"));
 }
 
 TEST(Journals, WhatIsNoFrameComesBeforeTheNextFrameOfItsHost) {
   ClockAdjustment adjustment;
   adjustment.host = 1;
-  EXPECT_THAT(told({host_journal({journal_frame(0, 1, 1)}),
-                    host_journal(
-                        {adjustment, journal_frame(1, 1, 2), adjustment, journal_frame(1, 2, 3)})}),
+  EXPECT_THAT(reported({host_journal({journal_frame(0, 1, 1)}),
+                        host_journal({adjustment, journal_frame(1, 1, 2), adjustment,
+                                      journal_frame(1, 2, 3)})}),
               ElementsAre("clock 1", "0/1", "1/1", "clock 1", "1/2"));
 }
 

@@ -93,7 +93,7 @@ TEST(RealsenseCamera, MissingMetadataIsToldOnce) {
   EXPECT_THAT(seen.events()[0].text, HasSubstr("SENSOR_TIMESTAMP"));
 }
 
-TEST(RealsenseCamera, AGapOfTheCounterIsTold) {
+TEST(RealsenseCamera, AGapOfTheCounterIsReported) {
   SoftwareCamera software;
   RealsenseCamera camera(software.device);
   camera.configure(wanted());

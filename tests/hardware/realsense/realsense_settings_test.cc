@@ -58,7 +58,7 @@ TEST(RealsenseSettings, ACameraWithoutTheOptionRunsFreeOnly) {
                                                HasSubstr("firmware 5.9.15.1 or newer"))));
 }
 
-TEST(RealsenseSettings, AProfileIsChosenOrTheNearestAreTold) {
+TEST(RealsenseSettings, AProfileIsChosenOrTheNearestAreNamed) {
   SoftwareCamera camera;
   const auto chosen =
       choose_sensors(camera.device, "s",

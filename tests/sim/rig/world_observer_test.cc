@@ -93,7 +93,7 @@ TEST(WorldObserver, AFrameIsToldWithItsWholeWay) {
   }
 }
 
-TEST(WorldObserver, FramesLostInCamerasAreTold) {
+TEST(WorldObserver, FramesLostInCamerasAreReported) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.cameras.drop_probability = 0.5;
   const KeptWorld observed = observe(scenario);
@@ -112,7 +112,7 @@ TEST(WorldObserver, FramesLostInCamerasAreTold) {
   }
 }
 
-TEST(WorldObserver, FramesThatAFullBusRefusesAreTold) {
+TEST(WorldObserver, FramesThatAFullBusRefusesAreReported) {
   scenarios::Scenario scenario = ideal_scenario();
   scenario.usb.bandwidth_mb_per_s = 24;  // 29 ms for a frame every 22 ms
   scenario.usb.buffered_frames = 1;

@@ -5,20 +5,15 @@
 #include <cmath>
 #include <set>
 
+#include "tests/sim/rig/ideal_scenario.h"
+
 namespace simbench::sim {
 namespace {
 
 scenarios::Trigger ideal(double rate_hz) {
-  return {.rate_hz = rate_hz,
-          .rate_error_ppm = 0,
-          .pulse_jitter_sigma_us = 0,
-          .branch_delay_max_us = 0,
-          .cable_delay_max_us = 0,
-          .cameras_per_sub_trigger = 6,
-          .start_delay_ms = 0,
-          .daisy_chain_delay_us = 0,
-          .missed_pulse_probability = 0,
-          .pauses = {}};
+  scenarios::Trigger trigger = ideal_scenario().trigger;
+  trigger.rate_hz = rate_hz;
+  return trigger;
 }
 
 TEST(TriggerTree, SlotsAreEquallySpacedOverHours) {

@@ -4,21 +4,12 @@
 
 #include <cmath>
 
+#include "tests/sim/rig/ideal_scenario.h"
+
 namespace simbench::sim {
 namespace {
 
-scenarios::Usb quiet() {
-  return {.bandwidth_mb_per_s = 350,
-          .sharing = scenarios::UsbSharing::kDedicated,
-          .cameras_per_controller = 3,
-          .buffered_frames = 4,
-          .kernel_copy_exponential_ms = 0,
-          .delivery_jitter_transfers = 0,
-          .host_jitter_transfers = 0,
-          .host_jitter_correlation = 0,
-          .spike_probability = 0,
-          .spike_max_transfers = 0};
-}
+scenarios::Usb quiet() { return ideal_scenario().usb; }
 
 TEST(FrameDelays, AreNoneWithoutJitter) {
   FrameDelays delays(quiet(), 1, 0);

@@ -78,7 +78,7 @@ TEST(NtpAssociation, MeasuresOffsetAndDelay) {
   world.host(0).costs.send = from_ms(0.25);
   world.host(1).costs.send = from_ms(0.25);
   std::vector<std::optional<NtpMeasurement>> results;
-  world.start(serve_ntp(world.host(0), 1));
+  world.start(serve_ntp(world.host(0), {1}));
   world.start(ask(world.host(1), 1, results));
   world.run(from_ms(100));
   ASSERT_TRUE(results.at(0));
@@ -92,7 +92,7 @@ TEST(NtpAssociation, UnequalLatenciesCountHalf) {
   ScriptWorld world(2);
   world.connect(kLatency).set_latency(0, 1, from_ms(7));
   std::vector<std::optional<NtpMeasurement>> results;
-  world.start(serve_ntp(world.host(0), 1));
+  world.start(serve_ntp(world.host(0), {1}));
   world.start(ask(world.host(1), 1, results));
   world.run(from_ms(100));
   ASSERT_TRUE(results.at(0));
@@ -141,7 +141,7 @@ TEST(NtpAssociation, LostDuplicatedAndLateRepliesAreNoneOfTheNextRequest) {
     return {kLatency};
   });
   std::vector<std::optional<NtpMeasurement>> results;
-  world.start(serve_ntp(world.host(0), 1));
+  world.start(serve_ntp(world.host(0), {1}));
   world.start(ask(world.host(1), 5, results));
   world.run(from_ms(10e3));
   ASSERT_EQ(results.size(), 5U);
@@ -186,7 +186,7 @@ TEST(NtpAssociation, NoiseHurtsNeitherSide) {
     ScriptWorld world(2);
     world.connect(kLatency);
     std::vector<std::optional<NtpMeasurement>> results;
-    world.start(serve_ntp(world.host(0), 1));
+    world.start(serve_ntp(world.host(0), {1}));
     world.start(ask(world.host(1), 50, results));
     for (int i = 0; i < 500; ++i) {
       const PeerId to = i % 2 == 0 ? 0 : 1;
