@@ -42,7 +42,11 @@ bool is_hardware(const BackendOptions& options) {
 }
 
 hardware::SecretKey key_of(const std::string& key_file) {
-  return key_file.empty() ? hardware::SecretKey() : hardware::SecretKey::from_file(key_file);
+  try {
+    return key_file.empty() ? hardware::SecretKey() : hardware::SecretKey::from_file(key_file);
+  } catch (const hardware::KeyError& error) {
+    throw scenarios::InputError(error.what());
+  }
 }
 
 std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& options,

@@ -33,10 +33,11 @@ void add_backend_options(Command& command, BackendOptions& options);
 bool is_hardware(const BackendOptions& options);
 
 // The key of --key-file; if it is empty, the key that stands in for a missing one.
+// Throws scenarios::InputError.
 hardware::SecretKey key_of(const std::string& key_file);
 
 // Steps become notes; a prompt at the terminal asks the user to switch a manual trigger; Ctrl-C
-// stops the cameras. Throws scenarios::InputError and hardware::KeyError.
+// stops the cameras. Throws scenarios::InputError.
 std::unique_ptr<hardware::RigSource> make_rig_source(const BackendOptions& options,
                                                      const scenarios::Scenario& scenario);
 

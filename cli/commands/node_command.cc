@@ -177,8 +177,6 @@ int run_node(const NodeOptions& options) {
   try {
     serve(options);
     return kOk;
-  } catch (const hardware::KeyError& error) {
-    print_error(error.what());
   } catch (const hardware::ClockError& error) {
     print_error(error.what());
   } catch (const hardware::CameraError& error) {

@@ -116,6 +116,20 @@ TEST_F(BadInput, DamagedRecordings) {
   refuses({"convert-ibl", "cut.csv"}, {"cut.csv", "*.timestamps.ssv"});
 }
 
+TEST_F(BadInput, AKeyThatCannotBeRead) {
+  file("rig.json", R"({"schema_version": 1, "name": "test", "hosts": [
+    {"name": "host0", "address": "127.0.0.1", "cameras": [{"serial": "left"}]}]})");
+  const std::vector<std::string> on_rig = {
+      "--scenario", "3cam_1host_30fps", "--backend",  "hardware",
+      "--rig",      "rig.json",         "--key-file", "no_such.key"};
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run"}, {"record", "-o", "rec"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), on_rig.begin(), on_rig.end());
+    refuses(arguments, {"no_such.key"});
+  }
+}
+
 TEST_F(BadInput, OutputFoldersAreCheckedBeforeTheWork) {
   const auto to = [](const std::string& folder) {
     return std::vector<std::string>{"--scenario", "18cam_6host_45fps", "--output", folder};
