@@ -91,6 +91,9 @@ std::string bare_names(const ListOptions& options) {
   if (options.what == "cameras") {
     for (const auto& camera : scenarios::camera_profiles()) names.push_back(camera.model);
   }
+  if (options.what == "studies") {
+    for (const scenarios::Study& study : scenarios::studies()) names.push_back(study.name);
+  }
   return fmt::format("{}\n", fmt::join(names, "\n"));
 }
 

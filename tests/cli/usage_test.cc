@@ -1,6 +1,8 @@
 // Help, lists and mistakes in the use of the command.
 #include <gmock/gmock.h>
 
+#include <utility>
+
 #include "recording/version.h"
 #include "tests/cli/program.h"
 
@@ -71,9 +73,15 @@ TEST_F(Usage, ListsWhatThereIs) {
   EXPECT_THAT(run({"list", "cameras"}).out, HasSubstr("d455: RealSense D455"));
   EXPECT_THAT(run({"list", "cameras", "--format", "json"}).out, HasSubstr("\"model\": \"d435\""));
   refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
-  EXPECT_THAT(run({"list", "scenarios", "--format", "names"}).out,
-              AllOf(HasSubstr("18cam_6host_45fps\n"), Not(HasSubstr(" "))));
-  EXPECT_THAT(run({"list", "cameras", "--format", "names"}).out, HasSubstr("d455\n"));
+  for (const auto& [what, name] :
+       {std::pair{"scenarios", "18cam_6host_45fps"}, std::pair{"pipelines", "genlock"},
+        std::pair{"algorithms", "regression_30"}, std::pair{"cameras", "d455"},
+        std::pair{"studies", "scalability"}}) {
+    EXPECT_THAT(
+        run({"list", what, "--format", "names"}).out,
+        AllOf(HasSubstr(std::string(name) + "\n"), Not(StartsWith("\n")), Not(HasSubstr(" "))))
+        << what;
+  }
   refuses({"list", "fish"}, {"found 'fish'", "scenarios, pipelines, algorithms, cameras"});
 }
 
