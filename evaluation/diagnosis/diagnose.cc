@@ -38,7 +38,7 @@ class Findings {
   std::vector<Finding> all() {
     for (const CameraDiagnosis& camera : diagnosis_.cameras) {
       camera_ = &camera;
-      if (camera.facts.frames < 2 || !(camera.facts.period_ms > 0)) {
+      if (!is_enough(camera)) {
         add_too_little();
         continue;
       }
@@ -127,12 +127,17 @@ class Findings {
     }
   }
 
-  // One finding for all cameras of a host, as they move together.
+  static bool is_enough(const CameraDiagnosis& camera) {
+    return camera.facts.frames >= 2 && camera.facts.period_ms > 0;
+  }
+
+  // One finding for all cameras of a host that move together.
   void add_host() {
     std::string names;
     int count = 0;
     for (const CameraDiagnosis& other : diagnosis_.cameras) {
       if (other.stream != camera_->stream || other.host != camera_->host) continue;
+      if (!is_enough(other) || other.standing.follows != Follows::kHostOrOwn) continue;
       if (count++ == 0 && &other != camera_) return;  // reported with the first one
       names += (names.empty() ? "" : ", ") + other.camera;
     }

@@ -231,6 +231,16 @@ TEST(Diagnose, HostsWhoseClocksDifferCannotBeToldFromTriggers) {
   EXPECT_EQ(diagnose(streams, {.one_host = true}).verdict.status, SyncStatus::kDoesNotWork);
 }
 
+TEST(Diagnose, AHostIsReportedThoughItsFirstCameraHasTooFewFrames) {
+  std::vector<CameraStream> streams = rig();
+  streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20, .frames = 1}));
+  streams.push_back(record({.name = "e", .host = "other", .host_ppm = 20}));
+  streams.push_back(record({.name = "f", .host = "other", .host_ppm = 20}));
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_THAT(kinds(found), ElementsAre("d too_few_frames", "e host_or_free_running"));
+  EXPECT_THAT(found.findings.back().text, HasSubstr("host other (Depth 0 of cameras e, f)"));
+}
+
 TEST(Diagnose, AFreeRunningCameraAmongOthersOfItsHostIsFound) {
   std::vector<CameraStream> streams = rig();
   streams.push_back(record({.name = "d", .host = "other", .host_ppm = 20}));
