@@ -189,6 +189,15 @@ TEST(ComparisonOutput, CsvHasALinePerPipelineAndMetric) {
   EXPECT_THAT(csv, HasSubstr("\nplain,good,seed_recall,32,0,1,1,1,1,0,0,0,1,1,1,"));
 }
 
+TEST(ComparisonOutput, CsvQuotesNamesOfPipelines) {
+  Archive a = sample_archive("a");
+  a.results.rows[1].pipeline = "good, indeed";
+  EXPECT_THAT(comparison_csv(compare_with_baseline(a, "plain", {})),
+              HasSubstr("\nplain,\"good, indeed\",amd_ms,32,"));
+  EXPECT_THAT(comparison_csv(compare_with_baseline(a, "good, indeed", {})),
+              HasSubstr("\n\"good, indeed\",plain,amd_ms,32,"));
+}
+
 TEST(ComparisonOutput, MarkdownIsATableWithItsNotes) {
   Archive b = sample_archive("b");
   b.version = "2";
