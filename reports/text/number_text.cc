@@ -54,7 +54,7 @@ std::string short_text(double value) {
   };
   constexpr std::array<Prefix, 3> kPrefixes = {{{1e9, " G"}, {1e6, " M"}, {1e3, " k"}}};
   for (const Prefix& prefix : kPrefixes) {
-    if (value >= prefix.factor)
+    if (value >= 0.9995 * prefix.factor)  // which three digits round up
       return fmt::format("{:.3g}{}", value / prefix.factor, prefix.symbol);
   }
   return fmt::format("{:.3g}", value);

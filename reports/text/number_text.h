@@ -26,7 +26,7 @@ std::string percentile_text(const evaluation::Percentile& percentile);
 // A count with thousands set apart: "1 234 567".
 std::string count_text(std::int64_t count);
 
-// A large number in short: "950", "12.3 k", "4.56 M", "1.20 G".
+// A large number in short: "950", "12.3 k", "4.56 M", "1.2 G".
 std::string short_text(double value);
 
 // The seeds of a result: "1 seed (7)", "32 seeds (1-32)".

@@ -53,6 +53,9 @@ TEST(NumberText, CountsAreGroupedByThousands) {
 
 TEST(NumberText, LargeNumbersInShort) {
   EXPECT_EQ(short_text(950), "950");
+  EXPECT_EQ(short_text(999.4), "999");
+  EXPECT_EQ(short_text(999.7), "1 k");
+  EXPECT_EQ(short_text(999'700), "1 M");
   EXPECT_EQ(short_text(12345), "12.3 k");
   EXPECT_EQ(short_text(4.56e6), "4.56 M");
   EXPECT_EQ(short_text(1.2e9), "1.2 G");
