@@ -8,11 +8,12 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
-#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -37,10 +38,11 @@ std::string_view variable(const char* name) {
 }  // namespace
 
 void print_result(const std::string& text) {
+  errno = 0;
   std::cout << text << std::flush;
   if (!std::cout) {
     throw std::runtime_error(fmt::format("the result could not be written to standard output: {}",
-                                         errno ? std::strerror(errno) : "write error"));
+                                         reports::system_reason()));
   }
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -103,8 +102,7 @@ class Output {
 
  private:
   [[noreturn]] void fail() const {
-    throw reports::OutputError(
-        fmt::format("--output {}: {}", name_, errno != 0 ? std::strerror(errno) : "write error"));
+    throw reports::OutputError(fmt::format("--output {}: {}", name_, reports::system_reason()));
   }
 
   std::string name_;

@@ -96,9 +96,12 @@ class RelayLateness {
  public:
   void add(const std::string& statistics) {
     const auto relay = nlohmann::json::parse(statistics, nullptr, false);
-    if (!relay.is_object() || !relay["late_p50_us"].is_number()) return;
-    p50_us_.push_back(relay["late_p50_us"].get<double>());
-    p95_us_.push_back(relay["late_p95_us"].get<double>());
+    if (!relay.is_object()) return;
+    const auto p50 = relay.find("late_p50_us");
+    const auto p95 = relay.find("late_p95_us");
+    if (p50 == relay.end() || !p50->is_number() || p95 == relay.end() || !p95->is_number()) return;
+    p50_us_.push_back(p50->get<double>());
+    p95_us_.push_back(p95->get<double>());
   }
   void print() const {
     if (p50_us_.empty()) return;
