@@ -128,7 +128,7 @@ PulseTable::PulseTable(std::int64_t first_pulse, std::int64_t pulses, std::size_
       sources_(sources),
       rows_(static_cast<std::size_t>(pulses)),
       global_ns_(rows_.size() * sources, kNothing),
-      reference_ns_(rows_.size() * sources) {}
+      reference_ns_(rows_.size() * sources, kNoReference) {}
 
 void PulseTable::shift(Nanoseconds by) {
   for (std::int64_t& cell : global_ns_) {

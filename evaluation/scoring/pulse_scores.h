@@ -49,10 +49,12 @@ class PulseTable {
     ++rows_[row].delivered;
   }
 
-  // Stores the truth about that frame.
+  // Stores the truth about that frame; that about a second one is ignored too.
   void store_truth(std::int64_t pulse, std::size_t source, const FrameTruth& truth) {
     const std::size_t row = row_of(pulse);
-    reference_ns_[row * sources_ + source] = nanoseconds_of(truth.reference);
+    std::int64_t& cell = reference_ns_[row * sources_ + source];
+    if (cell != kNoReference) return;
+    cell = nanoseconds_of(truth.reference);
     rows_[row].earliest = std::min(rows_[row].earliest, truth.mid_exposure());
     rows_[row].latest = std::max(rows_[row].latest, truth.mid_exposure());
     has_truth_ = true;
@@ -94,6 +96,7 @@ class PulseTable {
  private:
   static constexpr std::int64_t kNothing = std::numeric_limits<std::int64_t>::min();
   static constexpr std::int64_t kFarthest = (std::int64_t{1} << 62) - 1;
+  static constexpr std::int64_t kNoReference = -kFarthest;  // so that differences do not overflow
 
   struct Row {
     std::size_t delivered = 0;
