@@ -9,6 +9,7 @@
 
 #include "algorithms/parameters.h"
 #include "evaluation/scoring/claims.h"
+#include "scenarios/document.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -25,21 +26,6 @@ std::string unknown(const std::string& name, const std::vector<std::string>& kno
       near.empty() ? "" : fmt::format(", did you mean {}? Known", fmt::join(near, " or "));
   return fmt::format("found \"{}\"{}: {}", name, guess.empty() ? ", known" : guess,
                      fmt::join(known, ", "));
-}
-
-// A name as a part of a JSON pointer (RFC 6901).
-std::string escaped(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    if (c == '~') {
-      text += "~0";
-    } else if (c == '/') {
-      text += "~1";
-    } else {
-      text += c;
-    }
-  }
-  return text;
 }
 
 template <class Entry>
@@ -63,7 +49,8 @@ bool declares(const AlgorithmInfo& info, const std::string& parameter) {
 // Requires that an algorithm of that name or family declares the parameter, and allows its value.
 void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
                      const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
-  const std::string pointer = fmt::format("/algorithms/{}/{}", escaped(key), escaped(parameter));
+  const std::string pointer =
+      scenarios::child_pointer(scenarios::child_pointer("/algorithms", key), parameter);
   bool declared = false;
   std::vector<std::string> known;
   for (const AlgorithmInfo* info : named) {
@@ -98,7 +85,8 @@ void check_all_parameters(const Scenario& scenario) {
       if (info->family == key || info->name == key) named.push_back(info);
     }
     if (named.empty()) {
-      scenarios::fail_at(scenario, "/algorithms/" + escaped(key), unknown(key, known));
+      scenarios::fail_at(scenario, scenarios::child_pointer("/algorithms", key),
+                         unknown(key, known));
     }
     for (const auto& [parameter, value] : parameters) {
       check_parameter(scenario, key, parameter, value, named);

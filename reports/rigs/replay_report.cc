@@ -229,9 +229,10 @@ std::string replay_csv(const Replay& replay) {
 
 void write_replay_frames(const Replay& replay, std::ostream& out) {
   out << "camera,frame,sensor_ms,arrival_ms";
-  if (replay.cameras.empty()) return;
-  for (const DeviceTimeReplay& row : replay.cameras.front().rows) {
-    out << ",global_ms_" << csv_cell(row.device_time);
+  if (!replay.cameras.empty()) {
+    for (const DeviceTimeReplay& row : replay.cameras.front().rows) {
+      out << ",global_ms_" << csv_cell(row.device_time);
+    }
   }
   out << '\n';
   fmt::memory_buffer text;
