@@ -11,8 +11,7 @@
 //  - A slew ends by itself; a step or another slew before its end leaves the rest of it undone, a
 //    change of rate does not.
 //  - The observer is notified of each adjustment in order of time, also of the end of a slew, in
-//  time
-//    if settle() is called at settles_at().
+//    time if settle() is called at settles_at().
 //  - Errors: ClockError for a rate that is not finite or not below 0.5, and for a slew without a
 //    positive rate; the clock is then as it was.
 //  - Used by one thread.

@@ -1,11 +1,8 @@
 #include "reconstruction/motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 namespace simbench::reconstruction {
 namespace {

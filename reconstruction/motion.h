@@ -56,7 +56,6 @@ struct MotionState {
 
 class Motion {
  public:
-  // Throws std::invalid_argument for an unknown script.
   explicit Motion(const scenarios::StudioSubject& subject, double speed_factor = 1.0);
   MotionState at(double seconds) const;
 

@@ -34,7 +34,7 @@ class Subject {
 // height (skeleton.h); tessellated to within 1 mm of the smooth surface at a height of 1.75 m,
 // otherwise in proportion. Standing, the soles are at z = 0 and the top of the head at the height.
 //
-// Throws std::invalid_argument for a height that is not positive or an unknown script.
+// Throws std::invalid_argument for a height that is not positive.
 std::unique_ptr<Subject> make_person(const scenarios::StudioSubject& subject, double speed_factor);
 
 // One rigid mesh, such as a scan, that follows the script as a whole: limbs have no effect. `mesh`

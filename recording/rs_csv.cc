@@ -55,16 +55,6 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
   }
 }
 
-// For messages: a damaged file may hold anything, so control characters and long texts are cut.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown = "'";
-  for (const char c : text.substr(0, kLongest)) {
-    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  }
-  return shown + (text.size() > kLongest ? "...'" : "'");
-}
-
 // The plain name: blanks and capitals differ between versions of the tool.
 std::string plain_name(std::string_view cell) {
   std::string name;
@@ -102,7 +92,7 @@ bool is_motion(std::string_view stream) {
 Nanoseconds stamp_of(std::string_view cell, const char* column, const Place& place) {
   const std::optional<Nanoseconds> stamp = parse_ms(cell, kLargestStampMs);
   if (!stamp) {
-    place.fail(std::string(column) + ": found " + quoted(cell) +
+    place.fail(std::string(column) + ": found " + quoted_bytes(cell) +
                ", allowed: a number of milliseconds up to 4e12");
   }
   return *stamp;
@@ -112,7 +102,7 @@ std::uint64_t counter_of(std::string_view cell, const Place& place) {
   std::uint64_t counter = 0;
   const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), counter);
   if (error != std::errc() || stop != cell.data() + cell.size()) {
-    place.fail("F#: found " + quoted(cell) + ", allowed: a whole number");
+    place.fail("F#: found " + quoted_bytes(cell) + ", allowed: a whole number");
   }
   return counter;
 }
@@ -123,7 +113,7 @@ StampedFrame frame_of(const std::vector<std::string_view>& cells, const Header& 
   frame.counter = counter_of(cells[header.position[kCounter]], place);
   frame.sensor = stamp_of(cells[header.position[kSensor]], "HW Timestamp (ms)", place);
   if (frame.sensor < Nanoseconds::zero()) {
-    place.fail("HW Timestamp (ms): found " + quoted(cells[header.position[kSensor]]) +
+    place.fail("HW Timestamp (ms): found " + quoted_bytes(cells[header.position[kSensor]]) +
                ", allowed: 0 or more");
   }
   frame.arrival = stamp_of(cells[header.position[kArrival]], "Host Timestamp(ms)", place);
@@ -181,7 +171,7 @@ void CsvRecordingReader::read_text(std::string_view text, const std::string& pat
       }
       preamble = preamble || line.starts_with("Configuration");
       if (preamble) continue;
-      place.fail("found " + quoted(line) + ", allowed: the header " + kHeader);
+      place.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader);
     }
     if (cells.size() < header->cells_needed) {
       place.fail("found " + std::to_string(cells.size()) + " cells, allowed: at least " +

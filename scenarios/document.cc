@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -319,6 +324,47 @@ void Places::adopt(const std::string& pointer, const Places& other) {
   }
   places_.insert(other.places_.lower_bound(begin_below(pointer)),
                  other.places_.lower_bound(end_below(pointer)));
+}
+
+void fail_to_read(const std::string& prefix, std::string_view reason) {
+  throw InputError(fmt::format("{}: cannot be read: {}", prefix, reason));
+}
+
+std::string read_input_file(const std::string& path, const std::string& prefix,
+                            std::string_view thing) {
+  constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) fail_to_read(prefix, "it is a folder");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
+  std::string text(kMaximumBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kMaximumBytes) {
+    fail_to_read(prefix,
+                 fmt::format("found more than {} bytes, which no {} needs", kMaximumBytes, thing));
+  }
+  return text;
+}
+
+PlacedDocument parse_placed(std::string_view text, const Place& file) {
+  PlacedDocument placed;
+  try {
+    Document parsed = parse_document(text);
+    placed.root = std::move(parsed.root);
+    for (const auto& [pointer, line] : parsed.lines) {
+      Place place = file;
+      place.label = fmt::format("{}:{}", file.label, line);
+      place.line = line;
+      placed.places.set(pointer, std::move(place));
+    }
+  } catch (const DocumentError& error) {
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", file.label, error.line(), error.column(), error.what()));
+  }
+  return placed;
 }
 
 }  // namespace simbench::scenarios

@@ -51,8 +51,8 @@ bool is_utf8(const std::string& text);
 
 // The source of a value: a file and line, or a --set.
 struct Place {
-  std::string label;        // "FILE:LINE" or "--set /pointer=value"
-  std::string set_pointer;  // of a --set: the pointer it names
+  std::string label{};        // "FILE:LINE" or "--set /pointer=value"
+  std::string set_pointer{};  // of a --set: the pointer it names
   bool is_set = false;
   bool is_builtin = false;  // a file of the distribution
   std::size_t level = 0;    // later sources have higher levels
@@ -84,6 +84,21 @@ class Places final : public Origin {
 std::string shown(const nlohmann::json& value);
 // Text for a message: without control characters and broken UTF-8, cut after 160 bytes.
 std::string shown_text(std::string_view text);
+
+// The text of a file of at most 4 MiB, which is far above any scenario or rig. Throws InputError:
+// `prefix`, "cannot be read" and the reason; `thing` is what the text is of.
+std::string read_input_file(const std::string& path, const std::string& prefix,
+                            std::string_view thing);
+[[noreturn]] void fail_to_read(const std::string& prefix, std::string_view reason);
+
+struct PlacedDocument {
+  nlohmann::json root;
+  Places places;
+};
+
+// `file` is the place of all values, but for their lines; its label is the file's name in messages.
+// Throws InputError with line and column.
+PlacedDocument parse_placed(std::string_view text, const Place& file);
 
 }  // namespace simbench::scenarios
 

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -57,9 +54,6 @@ struct Source {
   bool is_builtin = false;
 };
 
-// Far above any scenario, and small enough to read before refusing.
-constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
-
 std::optional<Source> find_builtin(const std::string& name) {
   for (const BuiltinFile& file : builtin_files()) {
     if (file.name == name) {
@@ -82,34 +76,13 @@ bool looks_like_path(const std::string& name) {
   return name.find('/') != std::string::npos || name.ends_with(".json");
 }
 
-[[noreturn]] void fail_to_read(const std::string& prefix, const std::string& reason) {
-  throw InputError(prefix + ": cannot be read: " + reason);
-}
-
-// `prefix` begins the message if the file cannot be read.
-Source read_file(const std::string& path, const std::string& prefix) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) fail_to_read(prefix, "it is a folder");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
-  std::string text(kMaximumBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaximumBytes) {
-    fail_to_read(prefix,
-                 fmt::format("found more than {} bytes, which no scenario needs", kMaximumBytes));
-  }
-  return {path, std::move(text), false};
-}
-
 // The user's built-in scenario, else a file. Throws InputError.
 Source find_source(const std::string& name_or_path) {
   if (const auto builtin = find_builtin(name_or_path)) return *builtin;
   std::error_code ignored;
   if (looks_like_path(name_or_path) || fs::exists(name_or_path, ignored)) {
-    return read_file(name_or_path, shown_text(name_or_path));
+    return {name_or_path, read_input_file(name_or_path, shown_text(name_or_path), "scenario"),
+            false};
   }
   throw InputError("scenario: " + unknown_name(name_or_path));
 }
@@ -127,7 +100,7 @@ Source find_base(const Source& from, const std::string& base, const std::string&
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
     fail_to_read(prefix, "it is no regular file");
   }
-  return read_file(path, prefix);
+  return {path, read_input_file(path, prefix, "scenario"), false};
 }
 
 // The keys of a pointer, unescaped.
@@ -237,45 +210,27 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
 }
 
 // One file as written, checked by itself.
-struct Layer {
-  json document;
-  Places places;
-};
-
-Layer read_layer(const Source& source, std::size_t level) {
-  const std::string label = source.is_builtin ? source.label : shown_text(source.label);
-  Layer layer;
-  try {
-    Document parsed = parse_document(source.text);
-    layer.document = std::move(parsed.root);
-    for (const auto& [pointer, line] : parsed.lines) {
-      layer.places.set(pointer, {.label = fmt::format("{}:{}", label, line),
-                                 .set_pointer = "",
-                                 .is_set = false,
-                                 .is_builtin = source.is_builtin,
-                                 .level = level,
-                                 .line = line});
-    }
-  } catch (const DocumentError& error) {
-    throw InputError(
-        fmt::format("{}:{}:{}: {}", label, error.line(), error.column(), error.what()));
-  }
-  validate(layer.document, Completeness::kDifferences, layer.places);
+PlacedDocument read_layer(const Source& source, std::size_t level) {
+  PlacedDocument layer = parse_placed(
+      source.text, {.label = source.is_builtin ? source.label : shown_text(source.label),
+                    .is_builtin = source.is_builtin,
+                    .level = level});
+  validate(layer.root, Completeness::kDifferences, layer.places);
   return layer;
 }
 
 // The file and its bases, the most basic one first.
-std::vector<Layer> read_layers(Source source) {
+std::vector<PlacedDocument> read_layers(Source source) {
   constexpr std::size_t kMostLayers = 32;
-  std::vector<Layer> layers;
+  std::vector<PlacedDocument> layers;
   std::vector<std::string> files;
   for (;;) {
     files.push_back(source.label);
     layers.push_back(read_layer(source, kMostLayers - layers.size()));
-    const Layer& layer = layers.back();
-    if (!layer.document.contains("base")) break;
+    const PlacedDocument& layer = layers.back();
+    if (!layer.root.contains("base")) break;
     const std::string place = layer.places.describe("/base");
-    Source base = find_base(source, layer.document["base"].get<std::string>(), place);
+    Source base = find_base(source, layer.root["base"].get<std::string>(), place);
     if (std::find(files.begin(), files.end(), base.label) != files.end()) {
       throw InputError(fmt::format("{}: found a circle of bases: {} -> {}", place,
                                    fmt::join(files, " -> "), base.label));
@@ -347,10 +302,10 @@ void drop_outlived_results(const std::string& published, Resolved& resolved) {
 // Drops inherited published results whose pipelines are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
   Resolved resolved;
-  for (Layer& layer : read_layers(std::move(source))) {
-    layer.document.erase("base");
-    layer.document.erase("$schema");
-    merge("", layer.document, layer.places, resolved.document, *resolved.places);
+  for (PlacedDocument& layer : read_layers(std::move(source))) {
+    layer.root.erase("base");
+    layer.root.erase("$schema");
+    merge("", layer.root, layer.places, resolved.document, *resolved.places);
   }
   std::size_t level = resolved.places->latest_level("");
   for (const Override& setting : overrides) {

@@ -104,8 +104,8 @@ void warn_about_capture_traffic(Lines& lines, const Scenario& scenario) {
                                     network.capture_traffic_share;
   if (offered_mbit_per_s <= network.bandwidth_mbit_per_s) return;
   warn(lines, scenario, "/network/capture_traffic_share",
-       fmt::format("the frames of a host are {:.0f} Mbit/s on a link that carries {:g}: its queue "
-                   "grows without limit during the capture",
+       fmt::format("the frames of a host are {:.0f} Mbit/s on a link that carries {:g}: what "
+                   "finds more than a second of traffic queued is lost",
                    offered_mbit_per_s, network.bandwidth_mbit_per_s));
 }
 

@@ -7,6 +7,7 @@
 
 #include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
+#include "algorithms/median.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"
 
@@ -77,14 +78,6 @@ std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings
 
 namespace {
 
-// Reorders the values, at least one; the mean of the middle two if their number is even.
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*std::max_element(values.begin(), middle) + *middle) / 2;
-}
-
 class TheilSen final : public DeviceTimeEstimator {
  public:
   explicit TheilSen(TheilSenWindow window) : frames_(window.frames) {
@@ -126,13 +119,13 @@ class TheilSen final : public DeviceTimeEstimator {
                             static_cast<double>(points_[i].x - points_[j].x));
         }
       }
-      slope_ = median_of(values_);
+      slope_ = median_in_place(values_);
     }
     values_.clear();
     for (const LinePoint& point : points_) {
       values_.push_back(static_cast<double>(point.y) - slope_ * from_origin(point.x));
     }
-    level_ = median_of(values_);
+    level_ = median_in_place(values_);
   }
 
   double from_origin(std::int64_t x) const { return static_cast<double>(x - origin_); }

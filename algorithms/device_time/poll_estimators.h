@@ -100,8 +100,8 @@ std::unique_ptr<DeviceTimeEstimator> make_two_way_poll(TwoWayPollSettings settin
 //   poll     every 100 ms until the window is full, then every second; earlier polls are left out
 //            (5 % of the interval is tolerated)
 //   sample   (d, y), y = t1 - d_min, d_min the least half round trip ever: all extra delay is
-//   assumed
-//            to lie before the camera's reading. When d_min falls, the stored y move by (new - old)
+//            assumed to lie before the camera's reading. When d_min falls, the stored y move by
+//            (new - old)
 //   fit      least squares of y on d over the last 16 samples
 //   blend    a new line replaces the one in use linearly over one second of device time
 //

@@ -155,7 +155,7 @@ class FrontMatcher {
 //
 //   FrontTournament fronts(sources);
 //   fronts.set(3, key);              // for all sources, before the first query
-//   auto range = key_of(fronts.latest()) - key_of(fronts.earliest());
+//   auto range = fronts.key(fronts.latest()) - fronts.key(fronts.earliest());
 class FrontTournament {
  public:
   explicit FrontTournament(std::uint32_t sources);

@@ -63,6 +63,11 @@ inline constexpr std::int64_t kSecondNs = 1'000'000'000;
 // After so long the register of a camera's clock begins anew.
 inline constexpr std::int64_t kDeviceRegisterNs = (std::int64_t{1} << 32) * 1000;
 
+// a / b, rounded down; b > 0.
+constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+  return a / b - (a % b < 0 ? 1 : 0);
+}
+
 // The nearest whole nanosecond, halves away from zero as std::llround has them, and the next below
 // or equal, as std::floor has it: without a call of either. |ns| < 2^63.
 constexpr Nanoseconds from_ns(double ns) {

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -25,61 +22,21 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using scenarios::InputError;
+using scenarios::PlacedDocument;
 using scenarios::Scenario;
 using scenarios::shown_text;
 
-// Far above a rig of a thousand hosts, and small enough to be read.
-constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
-
-[[noreturn]] void fail_to_read(const std::string& path, const std::string& reason) {
-  throw InputError(fmt::format("{}: cannot be read: {}", shown_text(path), reason));
+std::string read_rig_text(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_other(path, ignored))
+    scenarios::fail_to_read(shown_text(path), "it is no regular file");
+  return scenarios::read_input_file(path, shown_text(path), "rig");
 }
 
 // A rig file as JSON that the schema accepts; RigReader checks the rest.
-struct RigDocument {
-  json root;
-  scenarios::Places places;
-};
-
-std::string read_rig_text(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) fail_to_read(path, "it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    fail_to_read(path, "it is no regular file");
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_to_read(path, std::strerror(errno == 0 ? EIO : errno));
-  std::string text(kMaximumBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) fail_to_read(path, std::strerror(errno == 0 ? EIO : errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaximumBytes) {
-    fail_to_read(path, fmt::format("found more than {} bytes, which no rig needs", kMaximumBytes));
-  }
-  return text;
-}
-
-RigDocument parse_rig_document(const std::string& text, const std::string& path) {
+PlacedDocument parse_rig_document(const std::string& text, const std::string& path) {
   static const scenarios::JsonSchema schema(json::parse(rig_schema_text()));
-  const std::string label = shown_text(path);
-  RigDocument document;
-  try {
-    scenarios::Document parsed = scenarios::parse_document(text);
-    document.root = std::move(parsed.root);
-    for (const auto& [pointer, line] : parsed.lines) {
-      document.places.set(pointer, {.label = fmt::format("{}:{}", label, line),
-                                    .set_pointer = "",
-                                    .is_set = false,
-                                    .is_builtin = false,
-                                    .level = 0,
-                                    .line = line});
-    }
-  } catch (const scenarios::DocumentError& error) {
-    throw InputError(
-        fmt::format("{}:{}:{}: {}", label, error.line(), error.column(), error.what()));
-  }
+  PlacedDocument document = scenarios::parse_placed(text, {.label = shown_text(path)});
   scenarios::validate(document.root, schema, document.places);
   return document;
 }
@@ -114,7 +71,7 @@ bool is_host_name(const std::string& text) {
 // Reads a document that the schema accepts, and checks what a schema cannot.
 class RigReader {
  public:
-  RigReader(const RigDocument& document, const std::string& path)
+  RigReader(const PlacedDocument& document, const std::string& path)
       : document_(document), folder_(fs::path(path).parent_path()) {
     rig_.file = path;
   }
@@ -244,7 +201,7 @@ class RigReader {
                    .off_command = plain_text(in.at("off_command"), "/trigger/off_command")};
   }
 
-  const RigDocument& document_;
+  const PlacedDocument& document_;
   fs::path folder_;
   Rig rig_;
   std::map<std::pair<std::string, std::string>, std::string> seen_;  // (kind, value) -> pointer
@@ -296,7 +253,7 @@ bool Rig::loopback_only() const {
 Rig load_rig(const std::string& path) { return load_rig_text(read_rig_text(path), path); }
 
 Rig load_rig_text(const std::string& text, const std::string& path) {
-  const RigDocument document = parse_rig_document(text, path);
+  const PlacedDocument document = parse_rig_document(text, path);
   return RigReader(document, path).read();
 }
 

@@ -26,8 +26,7 @@ class DeviceClock {
   DeviceStamp stamp(TrueTime t, double noise_ns) {
     const double wander_ns = oscillator_.deviation_ns(t) + noise_ns;
     const std::int64_t ns = epoch_ns_ + (t - zero_ + from_ns_down(wander_ns)).count();
-    const std::int64_t us = ns >= 0 ? ns / 1000 : (ns - 999) / 1000;
-    return DeviceStamp{static_cast<std::uint32_t>(us)};
+    return DeviceStamp{static_cast<std::uint32_t>(floor_div(ns, 1000))};
   }
 
   // Nanoseconds of true time per device nanosecond, by the constant skew alone: the stretch of the

@@ -19,6 +19,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/ports/time.h"
+
 namespace simbench::sim {
 
 template <class State>
@@ -35,8 +37,7 @@ class GridWalk {
   // that grid point to the next.
   template <class Step>
   double phase_ns(std::int64_t since_zero_ns, const Step& step) const {
-    std::int64_t index = since_zero_ns / step_ns_;
-    if (since_zero_ns % step_ns_ < 0) --index;
+    const std::int64_t index = floor_div(since_zero_ns, step_ns_);
     const double part =
         static_cast<double>(since_zero_ns - index * step_ns_) / static_cast<double>(step_ns_);
     const double before_ns = grid_phase_ns(index, step);

@@ -52,4 +52,11 @@ void SystemClock::follow(SystemClock& master) {
   master.followers_.push_back(this);
 }
 
+void read_errors(std::span<SystemClock* const> clocks, TrueTime t, std::span<Nanoseconds> errors) {
+  const HostTime master = clocks.front()->read(t);
+  for (std::size_t host = 0; host < clocks.size(); ++host) {
+    errors[host] = clocks[host]->read(t) - master;
+  }
+}
+
 }  // namespace simbench::sim

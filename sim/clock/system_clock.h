@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,9 @@ class SystemClock {
   Observer observer_;
   std::vector<SystemClock*> followers_;
 };
+
+// How far each clock is from the first, the master's, at `t`; as many `errors` as clocks.
+void read_errors(std::span<SystemClock* const> clocks, TrueTime t, std::span<Nanoseconds> errors);
 
 }  // namespace simbench::sim
 

@@ -4,7 +4,7 @@
 //    Pulses are numbered and each is a function of its number, so they need no generation: an
 //    unused line costs nothing, however long it is connected.
 //  - SimPulseInput: the line at the host. A pulse interrupts it, and the interrupt reads its
-//  clocks.
+//    clocks.
 //
 // Source: docs/design.md section 7; scenario /hosts/pulse_lines; algorithms/ports/host.h
 // (PulseInput).

@@ -12,24 +12,19 @@ double asymmetry_ms(double sigma_ms, std::uint64_t run_seed, PeerId from, PeerId
   return from < to ? forward_minus_backward_ms : -forward_minus_backward_ms;
 }
 
-// The least latency of a message, without the asymmetry.
-double least_ms(const scenarios::Network& network) {
-  return network.latency_quantiles_ms.empty() ? network.latency_fixed_ms
-                                              : network.latency_quantiles_ms.front();
-}
-
 }  // namespace
 
 LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from,
                          PeerId to, double session_latency_ms)
     : network_(&network),
       table_ms_(network.latency_quantiles_ms),
-      fixed_ms_((table_ms_.empty() ? network.latency_fixed_ms : 0) + session_latency_ms +
-                asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2),
-      cable_(from_ms(std::max(
-          0.0,
-          least_ms(network) + asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2))),
-      bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {}
+      bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {
+  const bool is_table = !table_ms_.empty();
+  const double asymmetry = asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2;
+  fixed_ms_ = (is_table ? 0 : network.latency_fixed_ms) + session_latency_ms + asymmetry;
+  const double least_ms = is_table ? table_ms_.least() : network.latency_fixed_ms;
+  cable_ = from_ms(std::max(0.0, least_ms + asymmetry));
+}
 
 Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
   double latency_ms =

@@ -51,8 +51,8 @@ class LinkLatency {
 
   const scenarios::Network* network_;
   QuantileTable table_ms_;
-  double fixed_ms_;  // of every message
-  Nanoseconds cable_;
+  double fixed_ms_ = 0;  // of every message
+  Nanoseconds cable_{};
   BurstProcess bursts_;
 };
 

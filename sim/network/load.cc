@@ -56,7 +56,7 @@ BurstProcess::BurstProcess(const scenarios::Burst& parameters, std::uint64_t run
 bool BurstProcess::active(TrueTime t) {
   if (cell_ns_ == 0) return false;
   const std::int64_t since_zero_ns = t.time_since_epoch().count();
-  const std::int64_t cell = since_zero_ns / cell_ns_ - (since_zero_ns % cell_ns_ < 0 ? 1 : 0);
+  const std::int64_t cell = floor_div(since_zero_ns, cell_ns_);
   if (!is_sampled_ || cell != cell_) {
     is_sampled_ = true;
     cell_ = cell;

@@ -73,7 +73,7 @@ class Nagle {
   bool owes_ack_ = false;           // the receiver, for one segment
   TrueTime ack_due_{};
   std::uint64_t acks_ = 0;  // sent
-  TrueTime last_ack_{};
+  TrueTime last_ack_ = TrueTime::min();
   std::deque<std::uint64_t> acks_on_the_way_;  // each covers the segments up to this count
 };
 

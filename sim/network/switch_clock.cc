@@ -57,8 +57,7 @@ void SwitchClock::correct(Bytes& message, const Passage& passage, Nanoseconds re
 
 double SwitchClock::boundary_error_ns(TrueTime at) const {
   const std::int64_t since_zero_ns = at.time_since_epoch().count();
-  std::int64_t index = since_zero_ns / kBoundaryGridNs;
-  if (since_zero_ns % kBoundaryGridNs < 0) --index;
+  const std::int64_t index = floor_div(since_zero_ns, kBoundaryGridNs);
   const double part = static_cast<double>(since_zero_ns - index * kBoundaryGridNs) /
                       static_cast<double>(kBoundaryGridNs);
   const auto value_ns = [&](std::int64_t i) {

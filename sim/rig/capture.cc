@@ -125,10 +125,7 @@ void Capture::on_pulse(std::int64_t slot) {
 
 void Capture::record_pulse(std::int64_t slot) {
   const TrueTime now = engine_.now();
-  const HostTime master = clocks_[0]->read(now);
-  for (std::size_t host = 0; host < clocks_.size(); ++host) {
-    host_errors_[host] = clocks_[host]->read(now) - master;
-  }
+  read_errors(clocks_, now, host_errors_);
   reports_.recorded_pulse({.pulse = slot, .at = now, .host_errors = host_errors_});
 }
 

@@ -64,10 +64,7 @@ void ClockSampling::sample_until(TrueTime end) {
 }
 
 void ClockSampling::sample() {
-  const HostTime master = clocks_[0]->read(next_);
-  for (std::size_t host = 0; host < clocks_.size(); ++host) {
-    errors_[host] = clocks_[host]->read(next_) - master;
-  }
+  read_errors(clocks_, next_, errors_);
   on_clocks(next_, errors_);
 }
 

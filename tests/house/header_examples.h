@@ -54,7 +54,6 @@ extern const GatheringSetup setup;
 extern FrameSetSink& set_sink;
 extern const GlobalTime stamp;
 extern const std::int64_t frame_index, offset_ns, t1_ns, t2_ns, t3_ns, t4_ns;
-std::int64_t key_of(std::uint32_t source);
 extern const Parameters parameters;
 extern ChronySourceStats stats;
 extern double now_s, left_s, offset_s, delay_s, dispersion_s, slope;

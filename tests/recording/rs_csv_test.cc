@@ -101,7 +101,7 @@ TEST(RsCsv, RefusesWhatIsNoRecording) {
   EXPECT_THAT(refusal("Configuration:\nDepth,Depth,Z16\n"), HasSubstr(":2: the file ends"));
   EXPECT_THAT(refusal(kHeader), HasSubstr(":1: the file ends without a frame"));
   EXPECT_THAT(refusal(kHeader + "Gyro,0,1,10,100\n"), HasSubstr("without a frame"));
-  EXPECT_THAT(refusal(std::string("\0\1\2\3", 4)), HasSubstr(":1: found '\?\?\?\?'"));
+  EXPECT_THAT(refusal(std::string("\0\1\2\3", 4)), HasSubstr(":1: found '\\x00\\x01\\x02\\x03'"));
 }
 
 TEST(RsCsv, NamesTheDamagedLine) {

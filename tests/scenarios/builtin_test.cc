@@ -142,8 +142,8 @@ TEST(Warnings, CaptureTrafficAboveTheBandwidth) {
       warnings(load_scenario("18cam_6host_45fps_lan", {{"/network/capture_traffic_share", "1"},
                                                        {"/network/bandwidth_mbit_per_s", "800"}})),
       ElementsAre("--set /network/capture_traffic_share=1: the frames of a host are 879 "
-                  "Mbit/s on a link that carries 800: its queue grows without limit during "
-                  "the capture"));
+                  "Mbit/s on a link that carries 800: what finds more than a second of "
+                  "traffic queued is lost"));
 }
 
 TEST(Warnings, ScoredFramesThatAreNotTriggered) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/median.h"
 #include "algorithms/ports/assert.h"
 
 namespace simbench {
@@ -174,12 +175,8 @@ std::optional<double> second_slope(std::span<const double> a, std::span<const do
 }
 
 double median(std::span<const double> values) {
-  SIMBENCH_ASSERT(!values.empty(), "a median needs a value");
-  std::vector<double> sorted(values.begin(), values.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  if (sorted.size() % 2 == 1) return *middle;
-  return (*std::max_element(sorted.begin(), middle) + *middle) / 2;
+  std::vector<double> copy(values.begin(), values.end());
+  return median_in_place(copy);
 }
 
 int critical_runs(std::size_t n) {

@@ -18,13 +18,8 @@ struct SplitTime {
 
 SplitTime split(HostTime time) {
   const std::int64_t total_ns = nanoseconds_of(time);
-  std::int64_t seconds = total_ns / kSecondNs;
-  std::int64_t rest_ns = total_ns % kSecondNs;
-  if (rest_ns < 0) {
-    rest_ns += kSecondNs;
-    --seconds;
-  }
-  return {seconds + kSeconds1900To1970, static_cast<std::uint64_t>(rest_ns)};
+  const std::int64_t seconds = floor_div(total_ns, kSecondNs);
+  return {seconds + kSeconds1900To1970, static_cast<std::uint64_t>(total_ns - seconds * kSecondNs)};
 }
 
 void store(unsigned char* at, NtpTimestamp stamp) {

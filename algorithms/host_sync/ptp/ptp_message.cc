@@ -65,12 +65,8 @@ Bytes encode(const PtpMessage& message) {
   boost::endian::store_big_u16(at + 30, message.sequence);
   at[32] = control_of(message.type);
   at[33] = kNoInterval;
-  std::int64_t seconds = message.time_ns / kSecondNs;
-  std::int64_t rest_ns = message.time_ns % kSecondNs;
-  if (rest_ns < 0) {
-    rest_ns += kSecondNs;
-    --seconds;
-  }
+  const std::int64_t seconds = floor_div(message.time_ns, kSecondNs);
+  const std::int64_t rest_ns = message.time_ns - seconds * kSecondNs;
   boost::endian::store_big_s48(at + 34, seconds);
   boost::endian::store_big_u32(at + 40, static_cast<std::uint32_t>(rest_ns));
   if (is_response(message.type)) store_port(at + 44, message.asked_by);

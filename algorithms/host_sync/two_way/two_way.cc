@@ -10,7 +10,6 @@
 namespace simbench {
 namespace {
 
-// A host that stamps departures reports a stamp soon, or not at all.
 // A request this much older than the last one is not late: its sender has started again.
 constexpr std::uint32_t kLateRequests = 64;
 

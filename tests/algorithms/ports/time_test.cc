@@ -33,7 +33,14 @@ TEST(Time, NanosecondsAreRoundedAsTheStandardLibraryRounds) {
   }
 }
 
-TEST(Time, UnitsAreNamedByWhatTheyAre) {
+TEST(Time, FloorDivisionRoundsDown) {
+  EXPECT_EQ(floor_div(7, 3), 2);
+  EXPECT_EQ(floor_div(6, 3), 2);
+  EXPECT_EQ(floor_div(-6, 3), -2);
+  EXPECT_EQ(floor_div(-7, 3), -3);
+}
+
+TEST(Time, UnitsConvertToWholeNanoseconds) {
   EXPECT_EQ(from_ms(-1.5).count(), -1'500'000);
   EXPECT_EQ(from_us(0.0005).count(), 1);
   EXPECT_EQ(to_ms(from_ms(9e9)), 9e9);

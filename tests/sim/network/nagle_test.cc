@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sim/network/nagle.h"
 #include "sim/network/network.h"
 #include "tests/sim/at_ms.h"
 
@@ -77,6 +78,13 @@ class NagleWithoutDelayTest : public NagleTest {
 
 // The signal leaves at once and the stamps wait for its acknowledgement, 200 ms delayed and 1 ms on
 // the way; then they arrive together. Over n stamps this makes a spacing of 200 ms / n.
+TEST(Nagle, AcknowledgementsArriveInOrderAlsoBeforeTrueZero) {
+  Nagle stream(from_ms(40));
+  EXPECT_EQ(stream.ack_in_order(at_ms(-1000)), at_ms(-1000));
+  EXPECT_EQ(stream.ack_in_order(at_ms(-1001)), at_ms(-1000));
+  EXPECT_EQ(stream.ack_in_order(at_ms(-990)), at_ms(-990));
+}
+
 TEST_F(NagleTest, StampsBehindASignalAreCoalescedByTheDelayedAcknowledgement) {
   send_at(0, a_);
   for (int i = 1; i <= 10; ++i) send_at(i * 0.01, a_);
