@@ -19,11 +19,9 @@ void record(const evaluation::PipelineChoice& choice, std::uint64_t seed, Record
   const auto warn = [&](const std::string& text) {
     made.warnings.push_back(fmt::format("pipeline {}, seed {}: {}", pipeline, seed, text));
   };
-  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
   RecordingSink& sink = writer.begin(pipeline, seed);
   try {
-    const RecordingCost cost =
-        source.record({.seed = seed, .pipeline = pipeline, .host_sync = host_sync.get()}, sink);
+    const RecordingCost cost = evaluation::record_run(source, choice, seed, sink);
     writer.end(cost);
     ++made.recorded;
     for (const std::string& note : cost.notes) warn(note);

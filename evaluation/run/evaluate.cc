@@ -16,6 +16,7 @@
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/rows.h"
+#include "recording/counted.h"
 #include "recording/version.h"
 
 namespace simbench::evaluation {
@@ -116,13 +117,7 @@ class Evaluation {
   SeedScore score_of(const PipelineChoice& choice, std::uint64_t seed,
                      RecordingSource& source) const {
     PipelineScorer scorer(scorer_setup(scenario_, choice));
-    const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-    const RecordingCost cost = source.record(
-        {.seed = seed, .pipeline = choice.pipeline.name, .host_sync = host_sync.get()}, scorer);
-    SeedScore score = scorer.finish();
-    score.seed = seed;
-    score.cost = cost;
-    return score;
+    return score_run(source, choice, seed, scorer, scorer);
   }
 
   // Returns the results of the finished jobs, and moves their scores there.
@@ -185,12 +180,10 @@ class Evaluation {
     if (seeds.empty()) return;
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
-    results.warnings.push_back(
-        fmt::format("GenLock order differs from the pulses of up to {} frame{} a run, in {} of {} "
-                    "seed{}, though "
-                    "no evaluated frame was lost; did all cameras start with the same pulse?",
-                    errors, errors == 1 ? "" : "s", seeds.size(), results.seed_count,
-                    results.seed_count == 1 ? "" : "s"));
+    results.warnings.push_back(fmt::format(
+        "GenLock order differs from the pulses of up to {} a run, in {} of {}, "
+        "though no evaluated frame was lost; did all cameras start with the same pulse?",
+        counted(errors, "frame"), seeds.size(), counted(results.seed_count, "seed")));
   }
 
   const Scenario& scenario_;

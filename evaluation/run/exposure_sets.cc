@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <memory>
 #include <span>
 #include <utility>
 
@@ -22,7 +21,7 @@ constexpr double kFarthestPeriods = 0.75;
 // More than the difference of any two stamps (PulseTable::clamped_ns).
 constexpr std::int64_t kFarthest = std::numeric_limits<std::int64_t>::max();
 
-struct StampedFrame {
+struct StampedExposure {
   std::int64_t stamp_ns = 0;
   std::int64_t pulse = 0;
   TrueTime mid_exposure{};
@@ -36,7 +35,7 @@ struct CapturedCamera {
   };
   DeviceStampUnwrapper unwrapper;
   std::map<DeviceTime, Exposed> exposed;  // by sensor stamp, which identifies a frame in the scorer
-  std::vector<StampedFrame> frames;       // stamped by device_time
+  std::vector<StampedExposure> frames;    // stamped by device_time
 };
 
 // Whether trigger pulses expose the scored frames.
@@ -98,9 +97,10 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
   std::vector<ExposureSet> sets(std::size_t count) {
     std::vector<ExposureSet> sets;
     for (CapturedCamera& camera : cameras_) {
-      std::stable_sort(
-          camera.frames.begin(), camera.frames.end(),
-          [](const StampedFrame& a, const StampedFrame& b) { return a.stamp_ns < b.stamp_ns; });
+      std::stable_sort(camera.frames.begin(), camera.frames.end(),
+                       [](const StampedExposure& a, const StampedExposure& b) {
+                         return a.stamp_ns < b.stamp_ns;
+                       });
     }
     const std::vector<std::int64_t> stamps = anchors();
     const std::size_t taken = std::min(count, stamps.size());
@@ -146,7 +146,7 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     std::vector<std::int64_t> overlapping;
     const CapturedCamera* anchor = anchor_camera();
     if (anchor == nullptr) return all;
-    for (const StampedFrame& frame : anchor->frames) {
+    for (const StampedExposure& frame : anchor->frames) {
       if (!is_evaluated(frame.pulse)) continue;
       all.push_back(frame.stamp_ns);
       if (begin <= frame.stamp_ns && frame.stamp_ns <= end) overlapping.push_back(frame.stamp_ns);
@@ -162,12 +162,12 @@ class ExposureKeeper final : public ForwardingSink, public ScoreObserver {
     return set;
   }
 
-  std::optional<SetExposure> nearest(const std::vector<StampedFrame>& frames,
+  std::optional<SetExposure> nearest(const std::vector<StampedExposure>& frames,
                                      std::int64_t stamp_ns) const {
     const auto later = std::lower_bound(
         frames.begin(), frames.end(), stamp_ns,
-        [](const StampedFrame& frame, std::int64_t wanted) { return frame.stamp_ns < wanted; });
-    const StampedFrame* best = nullptr;
+        [](const StampedExposure& frame, std::int64_t wanted) { return frame.stamp_ns < wanted; });
+    const StampedExposure* best = nullptr;
     std::int64_t distance_ns = kFarthest;
     if (later != frames.begin()) {
       best = &*std::prev(later);
@@ -217,13 +217,8 @@ ExposureSets exposure_sets(const scenarios::Scenario& scenario, const PipelineCh
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
   ExposureKeeper keeper(scorer, setup.stream, is_triggered(scenario));
-  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-  const RecordingCost cost = source.record(
-      {.seed = seed, .pipeline = choice.pipeline.name, .host_sync = host_sync.get()}, keeper);
   ExposureSets result;
-  result.score = scorer.finish();
-  result.score.seed = seed;
-  result.score.cost = cost;
+  result.score = score_run(source, choice, seed, scorer, keeper);
   result.gathered_sets = result.score.sets.emitted;
   result.sets = keeper.sets(count);
   return result;

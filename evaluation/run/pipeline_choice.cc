@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 
 #include "algorithms/parameters.h"
 #include "evaluation/scoring/claims.h"
@@ -244,6 +246,25 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
     };
   }
   return setup;
+}
+
+RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
+                         RecordingSink& sink, WorldObserver* observer) {
+  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  return source.record({.seed = seed,
+                        .pipeline = choice.pipeline.name,
+                        .host_sync = host_sync.get(),
+                        .observer = observer},
+                       sink);
+}
+
+SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
+                    PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer) {
+  RecordingCost cost = record_run(source, choice, seed, sink, observer);
+  SeedScore score = scorer.finish();
+  score.seed = seed;
+  score.cost = std::move(cost);
+  return score;
 }
 
 }  // namespace simbench::evaluation

@@ -8,16 +8,19 @@
 //
 //   for (const PipelineChoice& choice : choose_pipelines(scenario, {"yoon2021_both"})) {
 //     PipelineScorer scorer(scorer_setup(scenario, choice));
+//     const SeedScore score = score_run(source, choice, /*seed=*/1, scorer, scorer);
 //   }
 #ifndef SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_
 #define SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
 #include "evaluation/scoring/pipeline_scorer.h"
+#include "recording/recording.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
@@ -42,6 +45,14 @@ std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario
 // Returns the scorer's setup for the pipeline. It has the second, offline estimator, which keeps
 // all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.
 ScorerSetup scorer_setup(const scenarios::Scenario& scenario, const PipelineChoice& choice);
+
+// Records one capture of the pipeline, with a host_sync of its own. `observer` may be null.
+RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
+                         RecordingSink& sink, WorldObserver* observer = nullptr);
+
+// The same, and its score. `sink` passes the capture on to the scorer, or is the scorer.
+SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
+                    PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer = nullptr);
 
 }  // namespace simbench::evaluation
 

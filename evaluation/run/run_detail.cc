@@ -331,16 +331,9 @@ RunDetail run_detail(const scenarios::Scenario& scenario, const PipelineChoice& 
   const ScorerSetup setup = scorer_setup(scenario, choice);
   PipelineScorer scorer(setup);
   DetailKeeper keeper(scorer, setup, run);
-  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-  RunWorld world(setup.stream, scenario.hosts.count, host_sync->warm_up());
-  const RecordingCost cost = source.record({.seed = seed,
-                                            .pipeline = choice.pipeline.name,
-                                            .host_sync = host_sync.get(),
-                                            .observer = &world},
-                                           keeper);
-  run.score = scorer.finish();
-  run.score.seed = seed;
-  run.score.cost = cost;
+  const auto service = choice.host_sync.make(choice.host_sync_parameters)->warm_up();
+  RunWorld world(setup.stream, scenario.hosts.count, service);
+  run.score = score_run(source, choice, seed, scorer, keeper, &world);
   run.gathering_interval_ms = 1000 / run.frame_rate_hz * setup.gathering_interval_periods;
   keeper.finish(estimator_named(scenario, choice, "regression_30"),
                 estimator_named(scenario, choice, "regression_offline"));

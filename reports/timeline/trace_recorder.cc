@@ -196,13 +196,7 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
   const evaluation::ScorerSetup setup = evaluation::scorer_setup(scenario, choice);
   evaluation::PipelineScorer scorer(setup);
   TraceRecorder recorder(scorer, setup.stream, options);
-  const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-  source.record({.seed = seed,
-                 .pipeline = choice.pipeline.name,
-                 .host_sync = host_sync.get(),
-                 .observer = &recorder},
-                recorder);
-  scorer.finish();
+  evaluation::score_run(source, choice, seed, scorer, recorder, &recorder);
   Trace trace = recorder.finish();
   trace.scenario = scenario.name;
   trace.pipeline = choice.pipeline.name;
