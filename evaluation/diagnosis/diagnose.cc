@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "recording/counted.h"
+
 namespace simbench::evaluation {
 namespace {
 
@@ -15,14 +17,6 @@ constexpr double kLeastGapS = 0.5;
 constexpr double kLateS = 1;        // a later start or earlier end than this is reported
 constexpr double kUnsteady = 0.02;  // jitter as a share of the period
 constexpr std::size_t kMostJumps = 3;
-
-std::string times(std::int64_t count) {
-  return count == 1 ? "once" : fmt::format("{} times", count);
-}
-
-std::string counted_frames(std::int64_t count) {
-  return fmt::format("{} frame{}", count, count == 1 ? "" : "s");
-}
 
 // Finds the faults camera by camera.
 class Findings {
@@ -166,13 +160,13 @@ class Findings {
     if (facts.lost_frames > 0) {
       add("lost_frames", fmt::format("{} lost after the camera had counted them: in the "
                                      "camera, on USB or in the host",
-                                     counted_frames(facts.lost_frames)));
+                                     counted(facts.lost_frames, "frame")));
     }
     if (facts.skipped_pulses > 0) {
       add("skipped_pulses",
           fmt::format("{} never exposed: periods that its counter did not count, because "
                       "the camera missed triggers or there were none",
-                      counted_frames(facts.skipped_pulses)));
+                      counted(facts.skipped_pulses, "frame")));
     }
     if (facts.counter_restarts > 0) {
       add("counter_restarts",
@@ -188,7 +182,7 @@ class Findings {
     for (const StampJump& jump : facts.jumps) {
       if (shown++ == kMostJumps) {
         const std::size_t more = facts.jumps.size() - kMostJumps;
-        add("jumps", fmt::format("{} more jump{}", more, more == 1 ? "" : "s"));
+        add("jumps", counted(more, "more jump"));
         break;
       }
       if (jump.periods != 0) {
@@ -211,9 +205,9 @@ class Findings {
     }
     if (facts.future_stamps > 0) {
       add("future_stamps",
-          fmt::format("{} stamp{} in the future: up to {:.1f} ms later than the delay of all other "
+          fmt::format("{} in the future: up to {:.1f} ms later than the delay of all other "
                       "frames allows",
-                      facts.future_stamps, facts.future_stamps == 1 ? "" : "s", facts.future_ms));
+                      counted(facts.future_stamps, "stamp"), facts.future_ms));
     }
     if (facts.backward_stamps > 0) {
       add("backward_stamps", "its stamps go back " + times(facts.backward_stamps));

@@ -10,6 +10,7 @@
 
 #include "algorithms/device_time/lower_hull.h"
 #include "evaluation/replay/replay.h"
+#include "recording/counted.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -19,9 +20,8 @@ constexpr std::size_t kParts = 8;
 void check_stamps(const std::string& camera, const FitStream& stream) {
   const std::vector<StampedFrame>& frames = stream.frames;
   if (frames.size() < kFewestFrames) {
-    throw FitError(fmt::format("camera {}, {}: found {} frame{}, a fit needs {} at least", camera,
-                               stream.kind, frames.size(), frames.size() == 1 ? "" : "s",
-                               kFewestFrames));
+    throw FitError(fmt::format("camera {}, {}: found {}, a fit needs {} at least", camera,
+                               stream.kind, counted(frames.size(), "frame"), kFewestFrames));
   }
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const bool device_back = frames[i].sensor <= frames[i - 1].sensor;

@@ -15,6 +15,7 @@
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/counted.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -284,9 +285,7 @@ void warn(const CameraReplay& camera, std::vector<std::string>& warnings) {
   const CameraStatistics& found = camera.statistics;
   const std::string name = camera.camera + " " + camera.stream + ": ";
   if (found.backward_steps > 0) {
-    const std::string times =
-        found.backward_steps == 1 ? "once" : std::to_string(found.backward_steps) + " times";
-    warnings.push_back(name + "sensor stamps go back " + times +
+    warnings.push_back(name + "sensor stamps go back " + times(found.backward_steps) +
                        ": frames were reordered, or the camera was restarted");
   }
   if (found.frames < 2) {
