@@ -124,9 +124,8 @@ std::int64_t peak_memory_kb() {
 void print_row(const char* engine, const char* workload, std::uint32_t size,
                const WorkloadResult& result) {
   fmt::print("{},{},{},{},{:.4f},{:.2f},{},{:016x},{:016x}\n", engine, workload, size,
-             result.events, result.seconds,
-             1e9 * result.seconds / static_cast<double>(result.events), peak_memory_kb(),
-             result.checksum, result.order_checksum);
+             result.events, result.seconds, ns_per_event(result), peak_memory_kb(), result.checksum,
+             result.order_checksum);
 }
 
 void run_workload(const CLI::App& app, const Arguments& arguments, bool is_reference) {

@@ -75,8 +75,7 @@ int run_files(const ReplayOptions& options) {
   print_note("host_sync cannot be replayed; only device_time and gathering were run");
   provenance.finished = std::chrono::system_clock::now();
   if (output) {
-    const nlohmann::ordered_json files = {{"files", options.files}};
-    output->file("manifest.json") << reports::manifest_json(provenance, files.dump());
+    output->file("manifest.json") << reports::manifest_json(provenance, {{"files", options.files}});
     output->file("results.json") << reports::replay_json(replay, options.files);
     reports::write_replay_frames(replay, output->file("frames.csv"));
     output->publish();

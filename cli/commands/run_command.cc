@@ -14,6 +14,7 @@
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reports/results/budget_report.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/rigs/prediction_report.h"
 
 namespace simbench::cli {
@@ -129,9 +130,7 @@ void check_anything_was_captured(const evaluation::Results& measured) {
     }
   }
   std::string why = "nothing could be captured";
-  for (const evaluation::Row& row : measured.rows) {
-    for (const std::string& note : row.notes) why += fmt::format("\n  {}, {}", row.pipeline, note);
-  }
+  for (const std::string& line : reports::note_lines(measured)) why += "\n  " + line;
   throw scenarios::InputError(why);
 }
 

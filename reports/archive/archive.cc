@@ -63,15 +63,15 @@ std::string simbench_line(std::vector<std::string> command) {
   return shell_line(command);
 }
 
-std::string manifest_json(const Provenance& provenance, const std::string& more) {
-  Json manifest = {{"schema_version", 1},
+std::string manifest_json(const Provenance& provenance, const Json& more) {
+  Json manifest = {{"schema_version", kArchiveSchemaVersion},
                    {"program", "simbench"},
                    {"version", version()},
                    {"commit", commit()},
                    {"command", provenance.command},
                    {"started", utc_text(provenance.started)},
                    {"finished", utc_text(provenance.finished)}};
-  manifest.update(Json::parse(more));
+  manifest.update(more);
   return file_text(manifest);
 }
 
@@ -81,7 +81,7 @@ void write_archive(OutputFolder& output, const evaluation::Results& results,
                {"pipelines", Json::array()},
                {"scenario", Json::parse(scenario.resolved_json)}};
   for (const evaluation::Row& row : results.rows) more["pipelines"].push_back(row.pipeline);
-  output.file("manifest.json") << manifest_json(provenance, more.dump());
+  output.file("manifest.json") << manifest_json(provenance, more);
   output.file("results.json") << json(results);
   write_frames_csv(results, output.file("frames.csv"));
   write_hosts_csv(results, output.file("hosts.csv"));
@@ -314,38 +314,45 @@ class CsvFile {
   std::string_view cells_[kCells];
 };
 
-// The score for a line, which begins with pipeline and seed.
-SeedScore& score_of(const CsvFile& file, evaluation::Results& results) {
+// The score for a line, which begins with pipeline and seed. `row`: that of the line before, or
+// null; mostly the same.
+SeedScore& score_of(const CsvFile& file, evaluation::Results& results, Row*& row) {
   const auto seed = file.number<std::uint64_t>(1);
   if (seed < results.first_seed || seed - results.first_seed >= results.seed_count) {
     file.fail(fmt::format("found seed {}, allowed: {} to {}, the seeds of results.json", seed,
                           results.first_seed, results.first_seed + results.seed_count - 1));
   }
-  for (Row& row : results.rows) {
-    if (row.pipeline == file.name()) return row.seeds[seed - results.first_seed];
+  if (row == nullptr || row->pipeline != file.name()) {
+    const auto found = std::find_if(results.rows.begin(), results.rows.end(),
+                                    [&](const Row& r) { return r.pipeline == file.name(); });
+    if (found == results.rows.end()) {
+      file.fail(fmt::format("found pipeline '{}', which results.json does not have",
+                            scenarios::shown_text(file.name())));
+    }
+    row = &*found;
   }
-  file.fail(fmt::format("found pipeline '{}', which results.json does not have",
-                        scenarios::shown_text(file.name())));
+  return row->seeds[seed - results.first_seed];
 }
 
 }  // namespace
 
 void read_seed_details(Archive& archive) {
   evaluation::Results& results = archive.results;
-  for (Row& row : results.rows) {
-    row.seeds.assign(results.seed_count, SeedScore{});
-    for (std::size_t i = 0; i < row.seeds.size(); ++i) row.seeds[i].seed = results.first_seed + i;
+  for (Row& each : results.rows) {
+    each.seeds.assign(results.seed_count, SeedScore{});
+    for (std::size_t i = 0; i < each.seeds.size(); ++i) each.seeds[i].seed = results.first_seed + i;
   }
   CsvFile frames(archive, "frames.csv", "pipeline,seed,pulse,spread_ms,deviation_ms");
+  Row* row = nullptr;
   while (frames.next_row()) {
-    score_of(frames, results)
+    score_of(frames, results, row)
         .pulses.push_back({.pulse = frames.number<std::int64_t>(2),
                            .spread_ms = frames.value(3),
                            .deviation_ms = frames.value(4)});
   }
   CsvFile hosts(archive, "hosts.csv", "pipeline,seed,host,error_ms,synchronised");
   while (hosts.next_row()) {
-    SeedScore& score = score_of(hosts, results);
+    SeedScore& score = score_of(hosts, results, row);
     if (hosts.number<std::size_t>(2) != score.host_errors_ms.size()) {
       hosts.fail(fmt::format("found host {}, allowed: {}, the next one", hosts.text(2),
                              score.host_errors_ms.size()));

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/text/json_node.h"
 #include "reports/text/output_file.h"
 #include "scenarios/scenario.h"
 
@@ -41,15 +42,12 @@ std::string shell_line(const std::vector<std::string>& words);
 std::string simbench_line(std::vector<std::string> command);
 
 // Returns a manifest: schema_version, program, version, commit, command, started, finished (ISO
-// 8601, UTC), and `more`, the text of a JSON object, merged in.
-std::string manifest_json(const Provenance& provenance, const std::string& more);
+// 8601, UTC), and the members of `more`.
+std::string manifest_json(const Provenance& provenance, const Json& more);
 
 // Writes and publishes. After an OutputError nothing is left.
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance);
-
-// The schema of manifest.json and results.json: the written one, and the newest that can be read.
-inline constexpr int kArchiveSchemaVersion = 1;
 
 struct Archive {
   std::string path;  // as the user stated it

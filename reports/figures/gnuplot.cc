@@ -20,6 +20,7 @@
 #include <system_error>
 #include <vector>
 
+#include "reports/text/file_content.h"
 #include "reports/text/output_file.h"
 
 extern char** environ;
@@ -371,11 +372,6 @@ int run_gnuplot(const fs::path& script, const fs::path& log) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-std::string content(const fs::path& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::string& output) {
@@ -416,7 +412,7 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
   const bool drawn = status == 0 && fs::file_size(picture.path(), error) > 0 && !error;
   if (!drawn) {
     throw OutputError(fmt::format("{}: gnuplot failed (status {}): {}", output.string(), status,
-                                  content(log.path())));
+                                  content_of(log.path()).value_or("")));
   }
   picture.publish();
 }
@@ -424,14 +420,9 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
 std::string drawn_svg(const Figure& figure) {
   const fs::path picture =
       fs::temp_directory_path() / fmt::format("simbench_{}_{}.svg", figure.id, ::getpid());
+  draw(figure, PlotFormat::kSvg, picture);
+  std::string svg = content_of(picture).value_or("");
   std::error_code ignored;
-  try {
-    draw(figure, PlotFormat::kSvg, picture);
-  } catch (const OutputError&) {
-    fs::remove(picture, ignored);
-    throw;
-  }
-  std::string svg = content(picture);
   fs::remove(picture, ignored);
   return svg;
 }

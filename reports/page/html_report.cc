@@ -110,7 +110,7 @@ std::string cell_of(const Archive& archive, const std::string& pipeline, Series 
   const Row* const row = evaluation::find_row(archive.results.rows, pipeline);
   if (row == nullptr || std::isnan(((*row).*series).median)) return "-";
   return fmt::format("{} {}{}", number_text(((*row).*series).median), band_text((*row).*series),
-                     ground_truth_label(*row) == "unverified" ? " (unverified)" : "");
+                     is_unverified(*row) ? " (unverified)" : "");
 }
 
 // The pipelines of all archives, in order.

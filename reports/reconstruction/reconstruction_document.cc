@@ -188,9 +188,7 @@ Table table_4(const ReconstructionResults& results) {
 Table reconstructed_sets_table(const ReconstructionResults& results) {
   const auto total = [](const char* header, std::int64_t SeedReprojection::*member) {
     return Field<ReprojectionRow>{{header}, [member](const ReprojectionRow& row) {
-                                    std::int64_t sum = 0;
-                                    for (const auto& seed : row.seeds) sum += seed.*member;
-                                    return count_text(sum);
+                                    return count_text(total_over_seeds(row, member));
                                   }};
   };
   const std::vector<Field<ReprojectionRow>> fields = {
@@ -391,6 +389,12 @@ std::string published_text(const std::optional<PublishedReprojection>& published
   if (std::isnan(simulated.median)) return cm_text(value);
   return fmt::format("{}, {}", cm_text(value),
                      evaluation::inside(value, simulated) ? "inside" : "outside");
+}
+
+std::int64_t total_over_seeds(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
+  std::int64_t sum = 0;
+  for (const SeedReprojection& seed : row.seeds) sum += seed.*member;
+  return sum;
 }
 
 double no_gathered_set_share(const ReprojectionRow& row) {

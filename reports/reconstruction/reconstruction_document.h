@@ -11,6 +11,7 @@
 #ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
 #define SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,12 +78,16 @@ std::string speed_text(double speed_m_per_s, double speed_factor);
 std::string published_text(const std::optional<scenarios::PublishedReprojection>& published,
                            double scenarios::PublishedReprojection::*member,
                            const evaluation::Series& simulated);
+// The sum of a count over the row's seeds.
+std::int64_t total_over_seeds(const reconstruction::ReprojectionRow& row,
+                              std::int64_t reconstruction::SeedReprojection::*member);
 // The share of seeds for which the pipeline's own gathering emitted no set.
 double no_gathered_set_share(const reconstruction::ReprojectionRow& row);
 std::string limit_text(const SyncLimit& limit);  // "12.5" or "> 500"
 std::string cost_text(const SyncLimit& limit);   // "0.0123"
 
-// "ntp_last_set : yoon2021_both = 3.2 [2.9, 3.9] in the mean error, seed by seed (published 4.05)."
+// "ntp_last_set : yoon2021_both = 3.21 [2.90, 3.94] in the mean error, seed by seed; published:
+// 4.05."
 std::string ratio_sentence(const PublishedRatio& ratio);
 // The speed of the subject that the largest published mean would need.
 std::string speed_sentence(const reconstruction::SpeedNeeded& needed);

@@ -89,8 +89,9 @@ std::string reproduce_html(const ReconstructionPage& page) {
 }
 
 std::string reconstruction_line(const ReconstructionResults& results) {
-  return fmt::format("{} from {} on, {} each, simbench {} ({})", counted(results.seeds, "seed"),
-                     results.first_seed, counted(results.frames, "frame set"), version(), commit());
+  return fmt::format("{}, {} each, simbench {} ({})",
+                     counted_seeds(results.first_seed, results.seeds),
+                     counted(results.frames, "frame set"), version(), commit());
 }
 
 std::string file_name(const std::string& pipeline) {
@@ -162,7 +163,7 @@ std::string ReconstructionFolder::write(const ReconstructionResults& results,
                                         const Provenance& provenance) {
   const Figure figure = reconstruction_figure(results);
   std::string not_drawn;
-  output_.file("manifest.json") << manifest_json(provenance, R"({"kind": "reconstruction"})");
+  output_.file("manifest.json") << manifest_json(provenance, {{"kind", "reconstruction"}});
   output_.file("scenario.json") << results.scenario.resolved_json;
   {
     const FilePage page;

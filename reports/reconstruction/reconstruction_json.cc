@@ -20,12 +20,6 @@ using reconstruction::ReconstructionResults;
 using reconstruction::ReprojectionRow;
 using reconstruction::SeedReprojection;
 
-std::int64_t json_total(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {
-  std::int64_t sum = 0;
-  for (const SeedReprojection& seed : row.seeds) sum += seed.*member;
-  return sum;
-}
-
 Json published_error_json(const ReprojectionRow& row) {
   if (!row.published) return nullptr;
   return {{"mean_cm", row.published->mean_cm},
@@ -44,9 +38,9 @@ Json reprojection_row_json(const ReprojectionRow& row) {
           {"median_cm", series_json(row.median_cm())},
           {"p95_cm", series_json(row.p95_cm())},
           {"desync_ms", series_json(row.desync_ms())},
-          {"sets", json_total(row, &SeedReprojection::sets)},
-          {"failed_sets", json_total(row, &SeedReprojection::failed_sets)},
-          {"missing_frames", json_total(row, &SeedReprojection::missing_frames)},
+          {"sets", total_over_seeds(row, &SeedReprojection::sets)},
+          {"failed_sets", total_over_seeds(row, &SeedReprojection::failed_sets)},
+          {"missing_frames", total_over_seeds(row, &SeedReprojection::missing_frames)},
           {"no_gathered_set_share", no_gathered_set_share(row)},
           {"published", published_error_json(row)},
           {"notes", row.notes}};
@@ -137,7 +131,7 @@ std::string reconstruction_csv_line(const ReprojectionRow& row) {
   }
   for (const auto member : {&SeedReprojection::sets, &SeedReprojection::failed_sets,
                             &SeedReprojection::missing_frames}) {
-    cells.push_back(std::to_string(json_total(row, member)));
+    cells.push_back(std::to_string(total_over_seeds(row, member)));
   }
   cells.push_back(csv_cell(no_gathered_set_share(row)));
   cells.push_back(row.published ? csv_cell(row.published->mean_cm) : "");

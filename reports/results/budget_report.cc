@@ -53,8 +53,8 @@ Table budget_table(const Budget& budget) {
 }
 
 std::string budget_heading(const BudgetReport& report, const Budget& budget) {
-  return fmt::format("Error budget of {} in {}, {} from {}", budget.pipeline, report.scenario,
-                     counted(report.seeds, "seed"), report.first_seed);
+  return fmt::format("Error budget of {} in {}, {}", budget.pipeline, report.scenario,
+                     counted_seeds(report.first_seed, report.seeds));
 }
 
 std::string budget_legend(const Budget& budget) {

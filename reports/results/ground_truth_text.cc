@@ -32,6 +32,10 @@ const char* ground_truth_name(GroundTruth truth) {
   return "none";
 }
 
+bool is_unverified(const Row& row) {
+  return row.ground_truth == GroundTruth::kNone && has_values(row);
+}
+
 std::string ground_truth_label(const Row& row) {
   switch (row.ground_truth) {
     case GroundTruth::kSimulation:
@@ -41,7 +45,7 @@ std::string ground_truth_label(const Row& row) {
     case GroundTruth::kNone:
       break;
   }
-  return has_values(row) ? "unverified" : "-";
+  return is_unverified(row) ? "unverified" : "-";
 }
 
 bool has_real_rows(const Results& results) {
@@ -50,10 +54,7 @@ bool has_real_rows(const Results& results) {
 }
 
 std::string unverified_legend(const Results& results) {
-  const bool any = std::any_of(results.rows.begin(), results.rows.end(), [](const Row& row) {
-    return ground_truth_label(row) == "unverified";
-  });
-  if (!any) return "";
+  if (std::none_of(results.rows.begin(), results.rows.end(), is_unverified)) return "";
   return "unverified: it is unknown which frames belong together, so AMD and RMDV are over the "
          "sets "
          "that gathering emitted, and \"pulses scored\" counts these. A gatherer that mixes "

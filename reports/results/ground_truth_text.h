@@ -14,6 +14,9 @@ namespace simbench::reports {
 // For programs: "simulation", "genlock_order" or "none".
 const char* ground_truth_name(evaluation::GroundTruth truth);
 
+// Whether the row was scored without knowing which frames belong together.
+bool is_unverified(const evaluation::Row& row);
+
 // For people: "simulation", "GenLock order", "unverified"; "-" for a row without any recording.
 std::string ground_truth_label(const evaluation::Row& row);
 

@@ -62,7 +62,7 @@ Json claim_json(const evaluation::Claim& claim) {
 }  // namespace
 
 std::string json(const evaluation::Results& results) {
-  Json root = {{"schema_version", 1},
+  Json root = {{"schema_version", kArchiveSchemaVersion},
                {"version", version()},
                {"commit", commit()},
                {"scenario", results.scenario},

@@ -8,6 +8,7 @@
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
+//              "offline": whether device_time needs the whole recording,
 //              each metric under the id and in the object of evaluation/scoring/metrics.h,
 //              {"median", "p05", "p95", "values": [in seed order]}, a number or a count: "amd_ms",
 //              ..., "gathering_score": {"precision", ...}, "frames": {"expected", ...}, ...,
@@ -17,7 +18,9 @@
 //              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside",
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],
-//    "claims": [{"id", "holds_fraction", "text", "needs"}], "warnings": [...],
+//    "claims": [{"id", "holds_fraction", "text", "needs"}],
+//    "asymmetry_floor": null or {"sigma_ms", "host_error_ms", "amd_ms"}
+//      (evaluation/scoring/asymmetry_floor.h), "warnings": [...],
 //    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}
 #ifndef SIMBENCH_REPORTS_RESULTS_JSON_H_
 #define SIMBENCH_REPORTS_RESULTS_JSON_H_
@@ -27,6 +30,9 @@
 #include "evaluation/scoring/results.h"
 
 namespace simbench::reports {
+
+// The schema of manifest.json and results.json: the written one, and the newest that can be read.
+inline constexpr int kArchiveSchemaVersion = 1;
 
 // Indented by two, ends with a line feed.
 std::string json(const evaluation::Results& results);

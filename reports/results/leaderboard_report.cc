@@ -24,7 +24,7 @@ using evaluation::Series;
 Table error_table(const Board& board) {
   const auto name = [&board](const Rank& rank) {
     const std::string& pipeline = rank.row->pipeline;
-    const bool unverified = ground_truth_label(*rank.row) == "unverified";
+    const bool unverified = is_unverified(*rank.row);
     return (board.name.empty() ? pipeline : pipeline.substr(board.name.size() + 1)) +
            (unverified ? " (unverified)" : "");
   };
@@ -125,8 +125,8 @@ std::vector<Block> board_blocks(const Results& results) {
 }
 
 Document leaderboard_document(const Results& results, const std::string& summary) {
-  Document document{.title = fmt::format("{}: {} from {}", results.scenario,
-                                         counted(results.seed_count, "seed"), results.first_seed),
+  Document document{.title = fmt::format("{}: {}", results.scenario,
+                                         counted_seeds(results.first_seed, results.seed_count)),
                     .blocks = board_blocks(results)};
   if (!summary.empty()) document.head.push_back(summary);
   if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {

@@ -11,8 +11,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
@@ -20,6 +18,7 @@
 #include <vector>
 
 #include "algorithms/ports/assert.h"
+#include "reports/text/file_content.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::reports {
@@ -59,12 +58,6 @@ std::vector<std::string> own_names() {
     names.push_back(fmt::format("{}.tmp", name));
   }
   return names;
-}
-
-std::optional<std::string> content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string shown(const nlohmann::json& flat, const std::string& pointer) {
@@ -155,10 +148,9 @@ bool SweepLog::take(std::string_view line) {
 void SweepLog::read() {
   std::error_code error;
   if (!fs::exists(path_, error)) return;
-  std::ifstream in(path_, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(in), {}};
-  if (!in) log_failed(path_, "cannot be read");
-  std::string_view rest = content;
+  const std::optional<std::string> content = content_of(path_);
+  if (!content) log_failed(path_, "cannot be read");
+  std::string_view rest = *content;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     // Without its newline the last line is not whole.

@@ -4,11 +4,12 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "evaluation/statistics/statistics.h"
+#include "reports/text/file_content.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -47,9 +48,9 @@ std::string place_of(const JsonFile& file, const std::string& pointer) {
 }  // namespace
 
 JsonFile read_json_file(const std::string& path, const std::string& advice) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: {}; {}", path, std::strerror(errno), advice));
-  JsonFile file{path, {std::istreambuf_iterator<char>(in), {}}, {}};
+  std::optional<std::string> text = content_of(path);
+  if (!text) throw InputError(fmt::format("{}: {}; {}", path, std::strerror(errno), advice));
+  JsonFile file{path, std::move(*text), {}};
   try {
     file.value = json::parse(file.text);
   } catch (const json::exception&) {  // not JSON, or a number beyond a double
@@ -80,13 +81,6 @@ std::vector<JsonNode> JsonNode::elements() const {
   for (std::size_t i = 0; i < value_.size(); ++i) {
     all.emplace_back(file_, value_[i], fmt::format("{}/{}", pointer_, i));
   }
-  return all;
-}
-
-std::vector<std::string> JsonNode::keys() const {
-  if (!value_.is_object()) refuse("an object");
-  std::vector<std::string> all;
-  for (const auto& member : value_.items()) all.push_back(member.key());
   return all;
 }
 

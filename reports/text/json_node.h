@@ -44,8 +44,6 @@ class JsonNode {
   JsonNode operator[](const char* key) const;
   bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
   std::vector<JsonNode> elements() const;
-  // In alphabetical order.
-  std::vector<std::string> keys() const;
 
   bool is_null() const { return value_.is_null(); }
   std::string text() const;

@@ -37,7 +37,7 @@ BudgetReport sample_report() {
 
 TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
   const std::string text = plain(budget_document(sample_report()));
-  EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed from 1"));
+  EXPECT_THAT(text, HasSubstr("Error budget of mine in sample, 1 seed (1)"));
   EXPECT_THAT(text, HasSubstr("USB delivery"));
   EXPECT_THAT(text, HasSubstr("28.4 %"));  // of the gathering: 6 / 21.125
   EXPECT_THAT(text, HasSubstr("over the sets that gathering emits"));

@@ -42,9 +42,9 @@ TEST(LeaderboardReport, SaysWhatABoardVariesAndTheRatios) {
 
 TEST(LeaderboardReport, CountsItsSeeds) {
   evaluation::Results results = boards();
-  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("2 seeds from 1"));
+  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("2 seeds (1-2)"));
   results.seed_count = 1;
-  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("1 seed from 1"));
+  EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("1 seed (1)"));
 }
 
 TEST(LeaderboardReport, PrintsTheFloorOfUnequalLinks) {
