@@ -56,9 +56,6 @@ SupportLine hull_line(std::span<const LinePoint> points, std::size_t first = 0,
   return middle_line(hull.vertices());
 }
 
-// From arrival / device - 1 to device / arrival - 1.
-double skew_of_slope_ppm(double slope) { return -slope / (1 + slope) * 1e6; }
-
 double skew_error_ppm(std::span<const LinePoint> points) {
   std::vector<double> skews;
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -210,6 +207,8 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
   return fit;
 }
 
+double skew_of_slope_ppm(double slope) { return -slope / (1 + slope) * 1e6; }
+
 double RigFit::drop_share() const {
   return static_cast<double>(missing) / static_cast<double>(frames + missing);
 }
@@ -218,12 +217,8 @@ std::vector<double> quantile_table(const std::vector<double>& sorted) {
   const std::size_t size = std::min(kLongestTable, sorted.size());
   std::vector<double> table;
   for (std::size_t i = 0; i < size; ++i) {
-    const double place = static_cast<double>(i) / static_cast<double>(size - 1) *
-                         static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    table.push_back(sorted[below] +
-                    (place - static_cast<double>(below)) * (sorted[above] - sorted[below]));
+    const auto last = static_cast<double>(std::max<std::size_t>(size - 1, 1));
+    table.push_back(quantile_of_sorted(sorted, static_cast<double>(i) / last));
   }
   return table;
 }

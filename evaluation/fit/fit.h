@@ -117,6 +117,9 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream);
 double successive_rank_correlation(const std::vector<double>& values,
                                    const std::vector<bool>& follows);
 
+// From the slope of (host - device) over device time to the rate device / host - 1.
+double skew_of_slope_ppm(double slope);
+
 inline constexpr std::size_t kLongestTable = 1001;
 
 struct RigFit {

@@ -77,7 +77,7 @@ FitInput FitInputSink::take() {
   return std::move(input_);
 }
 
-FitInput fit_input(std::vector<CameraStream> streams, bool one_host) {
+FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host) {
   FitInput input;
   const auto number_of = [](auto& all, const std::string& name, auto&& add) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& known) {
@@ -91,7 +91,7 @@ FitInput fit_input(std::vector<CameraStream> streams, bool one_host) {
     all.push_back(add());
     return all.size() - 1;
   };
-  for (CameraStream& stream : streams) {
+  for (const CameraStream& stream : streams) {
     const std::string& host = one_host ? kOneHost : stream.host;
     const std::size_t host_number = number_of(input.hosts, host, [&] { return host; });
     const std::size_t camera = number_of(input.cameras, stream.camera, [&] {

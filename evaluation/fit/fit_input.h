@@ -88,7 +88,7 @@ class FitInputSink final : public RecordingSink {
 
 // Returns the input from files of real cameras. `one_host`: one computer stamped all arrivals,
 // whatever the files state.
-FitInput fit_input(std::vector<CameraStream> streams, bool one_host);
+FitInput fit_input(const std::vector<CameraStream>& streams, bool one_host);
 
 // Returns the halves of every stream, for a fit to one and a test on the other.
 std::pair<FitInput, FitInput> halves(const FitInput& input);

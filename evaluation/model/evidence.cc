@@ -1,6 +1,5 @@
 #include "evaluation/model/evidence.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -20,18 +19,16 @@ constexpr StageEvidence kStages[] = {
      {false, false, false, true, true},
      "delay after the pulse, pulses ignored in genlock, waiting slaves: reported for the D455, but "
      "not measured here; the spread of exposures in the calibrated worlds is a fit to eight "
-     "published "
-     "numbers"},
+     "published numbers"},
     {"device clock",
      {true, false, false, true, true},
      "32-bit microseconds and their wrap as in the SDK's code, wander tested against its "
-     "configured "
-     "Allan deviation; rate errors and wander of a camera's quartz are assumed"},
+     "configured Allan deviation; rate errors and wander of a camera's quartz are assumed"},
     {"USB and host stack",
      {false, false, false, true, true},
      "whole latencies as reported for the D455; their parts, the distribution of the jitter and "
-     "the "
-     "sharing of a controller are assumed. simbench fit replaces them by a rig's own quantiles"},
+     "the sharing of a controller are assumed. simbench fit replaces them by a rig's own "
+     "quantiles"},
     {"host oscillator",
      {true, false, false, true, true},
      "simulated Allan deviation follows the configured one; sizes are those of ordinary quartz. "
@@ -47,10 +44,8 @@ constexpr StageEvidence kStages[] = {
     {"transport and kernel stamps",
      {false, true, false, false, false},
      "real sockets and kernel stamps under the scenario's delay, jitter, loss and reordering; the "
-     "gap "
-     "above shows the effects that the simulator omits. The experiment has no network card, switch "
-     "or "
-     "second kernel"},
+     "gap above shows the effects that the simulator omits. The experiment has no network card, "
+     "switch or second kernel"},
     {"host_sync protocols",
      {true, true, false, true, false},
      "the same code in both worlds; closed forms, recorded outputs of chrony's regression and "
@@ -59,25 +54,21 @@ constexpr StageEvidence kStages[] = {
     {"device_time",
      {true, false, true, true, false},
      "closed forms, and a recording of other cameras with a real drift of -215 ppm, but without "
-     "true "
-     "exposure times, so that a constant delay stays unknown"},
+     "true exposure times, so that a constant delay stays unknown"},
     {"gathering",
      {true, false, false, true, false},
      "exact small cases, and the test vectors of the projects with these policies; in the "
-     "experiment "
-     "gathering runs on stamps of simulated cameras"},
+     "experiment gathering runs on stamps of simulated cameras"},
     {"metrics",
      {true, false, false, true, false},
      "the definitions of the paper with bounds that hold for any data; two published rows break "
-     "the "
-     "bound of eq. (4), so nothing is fitted to them"},
+     "the bound of eq. (4), so nothing is fitted to them"},
 };
 
 GapSide gap_side(const Series& series) {
   GapSide side;
   side.series = make_series(series.values);
-  side.count = static_cast<std::size_t>(std::count_if(
-      series.values.begin(), series.values.end(), [](double value) { return !std::isnan(value); }));
+  side.count = count_of_existing(series.values);
   for (std::size_t i = 0; i < kGapQuantiles.size(); ++i) {
     side.quantiles[i] = quantile(series.values, kGapQuantiles[i]);
   }

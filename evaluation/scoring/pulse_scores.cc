@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/statistics/statistics.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -76,21 +77,14 @@ class HostSpreads {
 // Change of the spread from the first complete pulse to the last, along the least-squares line.
 double trend_ms(const std::vector<PulseScore>& pulses) {
   if (pulses.size() < 2) return kNan;
-  Mean mean_pulse;
-  Mean mean_spread;
   const std::int64_t first = pulses.front().pulse;
+  std::vector<double> since_first;
+  std::vector<double> spreads;
   for (const PulseScore& pulse : pulses) {
-    mean_pulse.add(static_cast<double>(pulse.pulse - first));
-    mean_spread.add(pulse.spread_ms);
+    since_first.push_back(static_cast<double>(pulse.pulse - first));
+    spreads.push_back(pulse.spread_ms);
   }
-  double variance = 0;
-  double covariance = 0;
-  for (const PulseScore& pulse : pulses) {
-    const double x = static_cast<double>(pulse.pulse - first) - mean_pulse.value();
-    variance += x * x;
-    covariance += x * (pulse.spread_ms - mean_spread.value());
-  }
-  return covariance / variance * static_cast<double>(pulses.back().pulse - first);
+  return fit_line(since_first, spreads).slope * since_first.back();
 }
 
 void score_errors(const PulseTable& table, SeedScore& score) {

@@ -21,15 +21,6 @@ void leave_out_nan(std::vector<double>& values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
 }
 
-double quantile_of_sorted(const std::vector<double>& sorted, double p) {
-  if (sorted.empty()) return kNan;
-  const double position = static_cast<double>(sorted.size() - 1) * p;
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double share = position - static_cast<double>(below);
-  return sorted[below] + share * (sorted[above] - sorted[below]);
-}
-
 void sort_existing(std::vector<double>& values) {
   leave_out_nan(values);
   std::sort(values.begin(), values.end());
@@ -63,6 +54,15 @@ double probability(std::int64_t n, std::int64_t m, std::int64_t bound) {
 
 }  // namespace
 
+double quantile_of_sorted(const std::vector<double>& sorted, double p) {
+  if (sorted.empty()) return kNan;
+  const double position = static_cast<double>(sorted.size() - 1) * p;
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  const double share = position - static_cast<double>(below);
+  return sorted[below] + share * (sorted[above] - sorted[below]);
+}
+
 double quantile(std::vector<double> values, double p) {
   SIMBENCH_ASSERT(p >= 0 && p <= 1, "the place of a quantile is a share");
   leave_out_nan(values);
@@ -86,6 +86,11 @@ double mean_of_existing(const std::vector<double>& values) {
     count += 1;
   }
   return sum / count;  // 0/0 is NaN
+}
+
+std::size_t count_of_existing(std::span<const double> values) {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
 }
 
 double mean_of(std::span<const double> values) {
@@ -161,7 +166,7 @@ MedianInterval median_interval(const std::vector<double>& values, std::int64_t s
   interval.low = quantile(values, low_at);
   interval.high = quantile(values, 1 - low_at);  // the distribution is symmetric
   interval.relative = std::max(interval.high - centre, centre - interval.low) / std::fabs(centre);
-  if (!std::isfinite(interval.relative)) interval.relative = std::nan("");
+  if (!std::isfinite(interval.relative)) interval.relative = kNan;
   return interval;
 }
 

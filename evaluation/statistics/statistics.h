@@ -36,10 +36,13 @@ Series make_series(std::vector<double> values);
 // the one at index (n - 1) * p ("type 7" of Hyndman and Fan 1996, the default of R and NumPy).
 // O(n).
 double quantile(std::vector<double> values, double p);
+// The same of values that all exist, in ascending order. O(1).
+double quantile_of_sorted(const std::vector<double>& sorted, double p);
 
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
 double mean_of_existing(const std::vector<double>& values);
+std::size_t count_of_existing(std::span<const double> values);
 
 // These two want values that all exist. The standard deviation is that of the population that the
 // values are a sample of (divisor n - 1); NaN with fewer than two.

@@ -55,7 +55,6 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
 
 SweepScore::SweepScore() : values(sweep_metrics().size(), 0.0) {}
 
-double SweepScore::at(std::string_view column) const { return values[place_of(column)]; }
 double& SweepScore::at(std::string_view column) { return values[place_of(column)]; }
 
 SweepScore sweep_score(const Row& row) {
@@ -101,8 +100,9 @@ Series score_series(std::span<const SweepScore> seeds, std::size_t column) {
 }
 
 double sum_of(std::span<const SweepScore> seeds, std::string_view column) {
+  const std::size_t place = place_of(column);
   double sum = 0;
-  for (const SweepScore& seed : seeds) sum += seed.at(column);
+  for (const SweepScore& seed : seeds) sum += seed.values[place];
   return sum;
 }
 

@@ -26,7 +26,6 @@ struct SweepScore {
   SweepScore();  // zero in every column
 
   // The value of a column, which must exist: "amd_ms", "emitted_sets".
-  double at(std::string_view column) const;
   double& at(std::string_view column);
 };
 

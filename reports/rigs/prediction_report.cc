@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <string_view>
 
@@ -26,17 +25,12 @@ constexpr const char* kOfSets[] = {"set_amd_ms"};
 constexpr const char* kPredictionLegend =
     "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
     "simulated 5-95 % band, so this number does not distinguish the rig from such a world; "
-    "outside: "
-    "the scenario does not describe this rig (simbench fit makes one that does).";
+    "outside: the scenario does not describe this rig (simbench fit makes one that does).";
 constexpr const char* kOneRepetition = "One repetition has a value and no band.";
 
-std::size_t count_of(const Series& series) {
-  return static_cast<std::size_t>(std::count_if(series.values.begin(), series.values.end(),
-                                                [](double value) { return !std::isnan(value); }));
-}
-
 std::span<const char* const> metrics_of(const Row& measured) {
-  if (measured.verified() || count_of(measured.amd_ms) == 0) return kOfPulses;
+  if (measured.verified() || evaluation::count_of_existing(measured.amd_ms.values) == 0)
+    return kOfPulses;
   return kOfSets;
 }
 
@@ -102,10 +96,10 @@ std::vector<Prediction> predictions(const Results& measured, const Results& simu
                      .verified = found.verified(),
                      .measured = metric.series(found),
                      .simulated = metric.series(*predicted),
-                     .measured_count = count_of(metric.series(found)),
+                     .measured_count = evaluation::count_of_existing(metric.series(found).values),
                      .inside = std::nullopt};
       if (!is_predicted(id, row.measured_count)) continue;
-      if (row.measured_count > 0 && count_of(row.simulated) > 0) {
+      if (row.measured_count > 0 && evaluation::count_of_existing(row.simulated.values) > 0) {
         row.inside = evaluation::inside(row.measured.median, row.simulated);
       }
       all.push_back(std::move(row));

@@ -191,6 +191,8 @@ TEST(FitInput, CamerasWithoutFrameStampsAreFittedByTheirOther) {
 }
 
 TEST(QuantileTable, IsAsLongAsThereIsSomethingToSay) {
+  EXPECT_EQ(quantile_table({}), std::vector<double>());
+  EXPECT_EQ(quantile_table({3}), std::vector<double>{3});
   EXPECT_EQ(quantile_table({1, 2, 4}), (std::vector<double>{1, 2, 4}));
   std::vector<double> many(20'001);
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<double>(i);
