@@ -40,23 +40,15 @@ using scenarios::Scenario;
 constexpr double kSameAmd = 1e-9;
 
 constexpr const char* kBudget = "budget";
-constexpr std::uint64_t kRunsOfABudget = 128;  // a seed; only for the progress
 constexpr std::size_t kMostNotes = 6;
 
 // The ids of the wanted figures.
 std::vector<std::string> wanted_ids(const FigureOptions& options) {
   std::vector<std::string> ids;
-  std::vector<std::string> known;
-  for (const FigureEntry& entry : reports::figure_catalogue()) known.push_back(entry.id);
-  if (options.figures.empty()) return known;
-  for (const std::string& name : options.figures) {
-    const FigureEntry* entry = reports::find_figure(name);
-    if (entry == nullptr) {
-      throw InputError(
-          fmt::format("figure: found '{}', allowed: {}", name, fmt::join(known, ", ")));
-    }
-    ids.push_back(entry->id);
+  if (options.figures.empty()) {
+    for (const FigureEntry& entry : reports::figure_catalogue()) ids.push_back(entry.id);
   }
+  for (const std::string& name : options.figures) ids.push_back(reports::figure_named(name).id);
   return ids;
 }
 
@@ -80,6 +72,10 @@ class FigureMaker {
   FigureMaker(const Archive& archive, const FigureOptions& options,
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
+
+  bool wants(const std::string& id) const {
+    return std::find(wanted_.begin(), wanted_.end(), id) != wanted_.end();
+  }
 
   // The figures of what the archive holds.
   void add_result_figures() {
@@ -119,9 +115,6 @@ class FigureMaker {
     return reports::find_figure(figure.id) - reports::figure_catalogue().data();
   }
 
-  bool wants(const std::string& id) const {
-    return std::find(wanted_.begin(), wanted_.end(), id) != wanted_.end();
-  }
   bool wants_scope(FigureScope scope) const {
     return std::any_of(wanted_.begin(), wanted_.end(), [scope](const std::string& id) {
       return reports::find_figure(id)->scope == scope;
@@ -219,15 +212,12 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
                                 std::uint64_t over_seeds, const evaluation::Progress& progress) {
   FigureOptions chosen = options;
   if (chosen.seeds.empty()) chosen.seeds = {1};
-  const std::vector<std::string> ids = wanted_ids(chosen);
-  const auto wants = [&ids](const char* id) {
-    return std::find(ids.begin(), ids.end(), id) != ids.end();
-  };
   Archive archive;
   archive.path = scenario.name;
   archive.results.scenario = scenario.name;
-  const bool over = wants("distributions") || wants("host_order");
-  if (over || wants("frame_errors")) {
+  FigureMaker maker(archive, chosen, progress);
+  const bool over = maker.wants("distributions") || maker.wants("host_order");
+  if (over || maker.wants("frame_errors")) {
     const auto [first, last] = std::minmax_element(chosen.seeds.begin(), chosen.seeds.end());
     const std::uint64_t shown = *last - *first + 1;
     archive.results = evaluation::evaluate(
@@ -238,7 +228,6 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
          .keep_pulses = true},
         progress);
   }
-  FigureMaker maker(archive, chosen, progress);
   maker.add_result_figures();
   maker.add_run_figures(scenario);
   return maker.finish();
@@ -271,7 +260,7 @@ std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
     step.options.pipelines = {pipeline};
     step.options.budget_seeds = budget_seeds;
     step.options.figures = {kBudget};
-    step.runs = budget_seeds * kRunsOfABudget;
+    step.runs = budget_seeds * evaluation::StageSet::kSets;
     steps.push_back(step);
   }
   return steps;
@@ -302,9 +291,9 @@ void draw(ReportedArchive& reported, const std::vector<Step>& steps,
 
 // The figures of what the archive holds; runs nothing.
 void draw_stored(ReportedArchive& reported, const FigureOptions& options) {
-  Archive stored = reported.archive;
-  stored.scenario_json.clear();
-  reported.figures = archive_figures(stored, options).figures;
+  std::string scenario = std::exchange(reported.archive.scenario_json, {});
+  reported.figures = archive_figures(reported.archive, options).figures;
+  reported.archive.scenario_json = std::move(scenario);
 }
 
 void shorten(std::vector<std::string>& notes) {

@@ -78,15 +78,6 @@ std::string catalogue_text() {
   return plain(table) + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
 }
 
-const FigureEntry& entry_named(const std::string& name) {
-  const FigureEntry* entry = reports::find_figure(name);
-  if (entry != nullptr) return *entry;
-  std::vector<std::string> known;
-  for (const FigureEntry& each : reports::figure_catalogue()) known.push_back(each.id);
-  throw InputError(fmt::format("figure: found '{}', allowed: {}, or the paper's numbers as fig8",
-                               name, fmt::join(known, ", ")));
-}
-
 enum class FileKind : std::uint8_t { kSvg, kPdf, kCsv };
 
 FileKind file_kind(const std::string& output) {
@@ -169,7 +160,7 @@ int draw_figure(const FigureCommand& command) {
     print_result(catalogue_text());
     return kOk;
   }
-  const FigureEntry& entry = entry_named(command.name);
+  const FigureEntry& entry = reports::figure_named(command.name);
   const FileKind kind = file_kind(command.output);
   const reports::OutputFile file(command.output);
   const std::optional<app::ArchiveFigures> made =

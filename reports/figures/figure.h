@@ -102,6 +102,8 @@ const std::vector<FigureEntry>& figure_catalogue();
 
 // By id or alias; null if there is none.
 const FigureEntry* find_figure(std::string_view name);
+// The same; throws scenarios::InputError if there is none.
+const FigureEntry& figure_named(std::string_view name);
 
 // Returns a figure as tidy CSV, one line for each point:
 //

@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "reports/figures/figure.h"
+#include "scenarios/loader.h"
 
 namespace simbench::reports {
 
@@ -51,6 +55,15 @@ const FigureEntry* find_figure(std::string_view name) {
     if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return &entry;
   }
   return nullptr;
+}
+
+const FigureEntry& figure_named(std::string_view name) {
+  if (const FigureEntry* entry = find_figure(name)) return *entry;
+  std::vector<std::string> known;
+  for (const FigureEntry& entry : figure_catalogue()) known.push_back(entry.id);
+  throw scenarios::InputError(
+      fmt::format("figure: found '{}', allowed: {}, or the paper's numbers as fig8", name,
+                  fmt::join(known, ", ")));
 }
 
 }  // namespace simbench::reports

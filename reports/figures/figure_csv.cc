@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <string_view>
 
+#include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure.h"
 #include "reports/results/csv.h"
 
 namespace simbench::reports {
 namespace {
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::string figure_line(std::string_view panel, std::string_view series, const std::string& x,
                         double y) {
@@ -30,11 +28,11 @@ std::string panel_lines(const FigurePanel& panel) {
   }
   for (const FigureLine& drawn : panel.lines) {
     text += figure_line(panel.title, drawn.label, drawn.vertical ? csv_cell(drawn.at) : "",
-                        drawn.vertical ? kNothing : drawn.at);
+                        drawn.vertical ? evaluation::kNan : drawn.at);
   }
   for (const FigureSpan& span : panel.spans) {
     for (const double end : {span.from, span.to}) {
-      text += figure_line(panel.title, span.label, csv_cell(end), kNothing);
+      text += figure_line(panel.title, span.label, csv_cell(end), evaluation::kNan);
     }
   }
   return text;

@@ -111,6 +111,20 @@ FigurePanel panel(std::string title, std::string x_label, std::string y_label) {
   return made;
 }
 
+bool is_wide(const FigurePanel& panel) {
+  constexpr double kLogSpan = 50;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0;
+  for (const FigureSeries& series : panel.series) {
+    for (const double value : series.y) {
+      if (value < 0) return false;
+      if (value > 0) least = std::min(least, value);
+      greatest = std::fmax(greatest, value);
+    }
+  }
+  return greatest > kLogSpan * least;
+}
+
 FigureSeries series(std::string label, Mark mark, int colour) {
   FigureSeries made;
   made.label = std::move(label);

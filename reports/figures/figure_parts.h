@@ -1,4 +1,4 @@
-// Shared parts of the makers of figures; for the files of this folder.
+// Shared parts of the makers of figures.
 #ifndef SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
 #define SIMBENCH_REPORTS_FIGURES_FIGURE_PARTS_H_
 
@@ -25,6 +25,9 @@ Figure absent(Figure figure, std::string why);
 // An empty panel.
 FigurePanel panel(std::string title, std::string x_label, std::string y_label);
 FigureSeries series(std::string label, Mark mark, int colour);
+// Whether the y values need a logarithmic axis: none is negative, and those above zero span more
+// than a factor of 50.
+bool is_wide(const FigurePanel& panel);
 
 // "host 1, camera 3"; "camera 3" where there is one host.
 std::string camera_label(const evaluation::RunDetail& run, std::size_t camera);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,8 +31,6 @@ using evaluation::SeedScore;
 constexpr std::array<std::string_view, 4> kPaperRows = {"ntp_last_set", "yoon2021_network",
                                                         "yoon2021_time", "yoon2021_both"};
 constexpr std::size_t kMostTogether = 12;  // more curves in one panel cannot be told apart
-// A panel whose values span more than this has a logarithmic axis.
-constexpr double kLogSpan = 50;
 
 struct RowRef {
   const Row* row = nullptr;
@@ -69,22 +66,13 @@ const SeedScore* seed_of(const Row& row, std::uint64_t seed) {
   return found == row.seeds.end() ? nullptr : &*found;
 }
 
-// Makes the y axis logarithmic if no value is negative and the values span more than kLogSpan.
-// Zeros are then gaps, and curves of zeros alone are left out.
+// Makes the y axis of a wide panel logarithmic. Zeros are then gaps, and curves of zeros alone are
+// left out.
 void choose_scale(FigurePanel& panel) {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = 0;
-  for (const FigureSeries& series : panel.series) {
-    for (const double value : series.y) {
-      if (value < 0) return;
-      if (value > 0) least = std::min(least, value);
-      greatest = std::fmax(greatest, value);
-    }
-  }
-  if (greatest <= kLogSpan * least) return;
-  panel.log_y = true;
+  panel.log_y = is_wide(panel);
+  if (!panel.log_y) return;
   for (FigureSeries& series : panel.series) {
-    std::replace(series.y.begin(), series.y.end(), 0.0, std::numeric_limits<double>::quiet_NaN());
+    std::replace(series.y.begin(), series.y.end(), 0.0, evaluation::kNan);
   }
   std::erase_if(panel.series, [](const FigureSeries& series) {
     return std::all_of(series.y.begin(), series.y.end(), [](double y) { return std::isnan(y); });
@@ -309,10 +297,8 @@ Figure budget_figure(const Budget& budget) {
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   figure.caption = fmt::format(
       "The reduction of the error by an ideal stage, averaged over all orders in which the stages "
-      "can "
-      "be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
-      "zero "
-      "cancels another.",
+      "can be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
+      "zero cancels another.",
       counted(budget.amd_ms.total.values.size(), "seed"));
   return figure;
 }

@@ -473,8 +473,7 @@ Figure first_seconds(const RunDetail& run) {
   figure.panels.push_back(std::move(made));
   figure.caption =
       "The pipeline's device_time from each camera's first frame on. The paper found cameras "
-      "unsteady "
-      "for 5 s and discards these; so does every score.";
+      "unsteady for 5 s and discards these; so does every score.";
   return figure;
 }
 

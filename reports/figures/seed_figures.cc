@@ -209,8 +209,7 @@ Figure digital_clocks(std::span<const RunDetail> runs) {
       "Simulated photographs of a clock on a {:.0f} Hz display, in the frames that each pipeline "
       "takes for simultaneous (global stamps nearest to the master's first camera, in the middle "
       "of the capture). Equal readings mean cameras that are synchronised within the display's "
-      "steps "
-      "of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
+      "steps of {:.1f} ms; an exposure across a step shows both readings, with their shares.",
       kDisplayRateHz, 1000 / kDisplayRateHz);
   return figure;
 }

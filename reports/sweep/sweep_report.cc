@@ -15,6 +15,7 @@
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
+#include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -80,10 +81,9 @@ std::string heading(const SweepPlan& plan) {
 }
 
 std::string percent_text(double share) {
-  return share != share ? "-" : fmt::format("{:.1f} %", share * 100);
+  return std::isnan(share) ? "-" : fmt::format("{:.1f} %", share * 100);
 }
 
-constexpr double kLogFromRatio = 50;  // of the largest value to the smallest
 constexpr std::size_t kMostCurves = 24;
 
 // The place of each step of the first axis on x.
@@ -128,17 +128,13 @@ std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
   return label;
 }
 
+// A zero keeps the axis linear: it would be a gap in a response.
 void use_log_scale_if_wide(FigurePanel& panel) {
-  double low = INFINITY;
-  double high = 0;
-  for (const FigureSeries& series : panel.series) {
-    for (const double y : series.y) {
-      if (std::isnan(y)) continue;
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
-  }
-  panel.log_y = low > 0 && high > kLogFromRatio * low;
+  const bool has_zero =
+      std::any_of(panel.series.begin(), panel.series.end(), [](const FigureSeries& series) {
+        return std::find(series.y.begin(), series.y.end(), 0.0) != series.y.end();
+      });
+  panel.log_y = !has_zero && is_wide(panel);
 }
 
 // The next curve of the panel; null if it has the most curves already.

@@ -41,7 +41,7 @@ Block seeds_needed_block(const evaluation::SweepPlan& plan,
                          const std::vector<evaluation::ResponseRow>& rows);
 
 // A panel for each metric with TablePlaces::response_panel. x is the first axis of the sweep: its
-// first pointer's values, or 1, 2, ... for words. There is a curve for each pipeline and each step
+// first pointer's values, or 0, 1, ... for words. There is a curve for each pipeline and each step
 // of the other axes. With a single point, Figure::absent.
 Figure response_figure(const evaluation::SweepPlan& plan,
                        const std::vector<evaluation::ResponseRow>& rows);

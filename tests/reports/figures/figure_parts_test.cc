@@ -9,11 +9,28 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 namespace simbench::reports {
 namespace {
 
 using evaluation::kNan;
+
+TEST(IsWide, IfPositiveValuesSpanMoreThanAFactorOfFifty) {
+  const auto wide = [](std::vector<double> y) {
+    FigurePanel made = panel("", "", "");
+    made.series.push_back(series("", Mark::kLine, 0));
+    made.series.back().y = std::move(y);
+    return is_wide(made);
+  };
+  EXPECT_TRUE(wide({1, kNan, 51}));
+  EXPECT_TRUE(wide({0, 1, 51}));
+  EXPECT_FALSE(wide({1, 50}));
+  EXPECT_FALSE(wide({-1, 1, 51}));
+  EXPECT_FALSE(wide({0, 0}));
+  EXPECT_FALSE(wide({}));
+}
 
 FigureSeries ramp(std::size_t size) {
   FigureSeries series;
