@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "app/interrupt.h"
 #include "scenarios/loader.h"

@@ -14,8 +14,7 @@
 // messages call by its place holder. The place holder also tells the shells what to offer:
 // SCENARIO, DIR or FOLDER, else a file. Help lists options in the order in which they are added.
 // The variable of an option must live as long as the action; its value is the default, which the
-// text states
-// ("Default: 32").
+// text states ("Default: 32").
 #ifndef SIMBENCH_CLI_COMMAND_H_
 #define SIMBENCH_CLI_COMMAND_H_
 

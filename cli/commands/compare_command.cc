@@ -45,8 +45,7 @@ reports::Comparison compared(const CompareOptions& options) {
   if (with_baseline == !pipelines.empty()) {
     throw scenarios::InputError(
         "found one archive, allowed with it: either --pipelines X,Y or --with-baseline PIPELINE; "
-        "or "
-        "name a second archive");
+        "or name a second archive");
   }
   const reports::Archive archive = reports::read_archive(options.archives[0]);
   if (with_baseline) {

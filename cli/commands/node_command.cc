@@ -1,6 +1,5 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -169,8 +168,7 @@ void serve(const NodeOptions& options) {
 }
 
 int run_node(const NodeOptions& options) {
-  // Makes timers of this process expire on time instead of up to 50 us later.
-  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  hardware::ask_for_exact_timers();
   // A closed log and a limit of file size must not end a capture.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

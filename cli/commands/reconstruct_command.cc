@@ -67,12 +67,12 @@ struct ReconstructOptions {
 
 [[noreturn]] void become_reconstruct_program(std::vector<std::string> arguments) {
   const int reason = become_sibling("simbench-reconstruct", std::move(arguments));
-  throw scenarios::InputError(fmt::format(
-      "reconstruction needs Embree and Open3D, and this simbench was built without them (no "
-      "simbench-reconstruct beside it: {}). tools/run --with-reconstruction installs them and "
-      "builds "
-      "with them (Debian: libembree-dev libopen3d-dev; CMake: -DSIMBENCH_WITH_RECONSTRUCTION=ON)",
-      std::strerror(reason)));
+  throw scenarios::InputError(
+      fmt::format("reconstruction needs Embree and Open3D, and this simbench was built without "
+                  "them (no simbench-reconstruct beside it: {}). tools/run --with-reconstruction "
+                  "installs them and builds with them (Debian: libembree-dev libopen3d-dev; CMake: "
+                  "-DSIMBENCH_WITH_RECONSTRUCTION=ON)",
+                  std::strerror(reason)));
 }
 
 // The options of the subject are short for --set, which overrides them.

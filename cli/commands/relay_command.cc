@@ -46,7 +46,7 @@ struct RelayOptions {
 
 int run_relay(const RelayOptions& options) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  prctl(PR_SET_TIMERSLACK, 1UL);
+  hardware::ask_for_exact_timers();
   // Above the nodes' priority, if permitted: the relay's own lateness is no part of the network.
   setpriority(PRIO_PROCESS, 0, -20);
   const scenarios::Scenario scenario =

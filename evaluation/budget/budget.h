@@ -8,8 +8,7 @@
 //                       its microsecond)
 //   device clock        camera oscillators without any error
 //   USB delivery        every frame stamped as if it arrived in the middle of its exposure; polls
-//   of
-//                       a camera's clock answered at once
+//                       of a camera's clock answered at once
 //   host clock          every host reads the master's clock
 //   gathering           sets by the true pulse
 //

@@ -156,7 +156,7 @@ struct CameraDiagnosis {
 
 // A fault or a noteworthy fact, in words.
 struct Finding {
-  std::string camera;  // empty: about all
+  std::string camera;
   std::string stream;
   std::string kind;  // one of a fixed set, for programs: "free_running", "lost_frames", ...
   std::string text;  // with the camera's name

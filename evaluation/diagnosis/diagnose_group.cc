@@ -236,8 +236,7 @@ class Group {
       const double needed_s = longest_s_ * std::pow(resolution / kResolutionPpm, 2.0 / 3);
       text += fmt::format(
           "; periods are known to {:.2g} ppm, but {:.0f} ppm are needed because free-running "
-          "cameras "
-          "differ by tens: record about {:.0f} s",
+          "cameras differ by tens: record about {:.0f} s",
           resolution, kResolutionPpm, std::ceil(needed_s));
     }
     if (count(Follows::kTrigger) > 0) {

@@ -49,7 +49,7 @@ Json margins_json(const Baseline& baseline) {
   return all;
 }
 
-// "{", a member a line, "}"; `indent` blanks before each.
+// The members of the object, a line each, after `indent` blanks; without its braces.
 std::string object_lines(const Json& object, std::size_t indent) {
   std::vector<std::string> members;
   for (const auto& [key, value] : object.items()) {

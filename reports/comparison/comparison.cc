@@ -77,8 +77,7 @@ void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions
     if (name_a != name_b) notes.push_back(names);
     notes.emplace_back(
         "a results.json alone does not hold its scenario, so whether both are of the same world "
-        "was "
-        "not checked");
+        "was not checked");
     return;
   }
   const ScenarioDifferences found = compare_scenarios(a.scenario_json, b.scenario_json);

@@ -181,8 +181,7 @@ std::string comparison_legend(const Comparison& comparison) {
       "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
       "interval excludes 0. no difference seen: it includes 0 and lies within {:.3g} % of A's mean "
       "(--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds needed "
-      "it "
-      "is so narrow that it leads to one of the other results.",
+      "it is so narrow that it leads to one of the other results.",
       100 * comparison.smallest_effect);
 }
 

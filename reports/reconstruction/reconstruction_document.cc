@@ -88,16 +88,14 @@ constexpr const char* kErrorLegend =
     "from 5 to 95 %.";
 constexpr const char* kDesyncLegend =
     "desynchronisation: how far apart the true mid-exposures of a frame set are. In every row "
-    "frames "
-    "are grouped by the nearest global stamp, without a threshold; seeds without a gathered set: "
-    "those in which the pipeline's own gathering emitted none.";
+    "frames are grouped by the nearest global stamp, without a threshold; seeds without a gathered "
+    "set: those in which the pipeline's own gathering emitted none.";
 constexpr const char* kPublishedLegend =
     "published: the paper's Table 4, one recording. inside: within the band.";
 constexpr const char* kLimitLegend =
     "desynchronisation up to: the largest one at which the median error stays within 10 % of its "
     "floor, the error at the smallest desynchronisation of the curve (interpolated). cost: the "
-    "local "
-    "slope of the curve there, or at its end.";
+    "local slope of the curve there, or at its end.";
 
 std::string motion_text(const StudioSubject& subject) {
   std::string text = fmt::format("motion \"{}\"", to_text(subject.motion));
@@ -124,10 +122,8 @@ std::string subject_note(const StudioSubject& subject) {
 std::string assumptions_note(const Studio& studio) {
   return fmt::format(
       "Assumptions: calibration errors of {:g} mm and {:g} degrees per axis, depth noise of {:g} "
-      "px of "
-      "disparity; a vertex counts as seen up to {:g} mm behind the mesh's own z-buffer, spread by "
-      "{} "
-      "pixels.",
+      "px of disparity; a vertex counts as seen up to {:g} mm behind the mesh's own z-buffer, "
+      "spread by {} pixels.",
       studio.calibration_translation_sigma_mm, studio.calibration_rotation_sigma_deg,
       studio.subpixel_error_px, studio.visibility_tolerance_mm, studio.visibility_spread_px);
 }

@@ -9,8 +9,8 @@
 //                           letters, digits, '.', '_' and '-' in the name become '_'
 //   curve.csv, curve.svg    reports/reconstruction/reconstruction_document.h; the SVG needs gnuplot
 //   report.html             one self-contained file (reports/page/html_page.h): Table 4, the
-//   painted
-//                           meshes side by side as in the paper's Figure 1, the curve, the command
+//                           painted meshes side by side as in the paper's Figure 1, the curve, the
+//                           command
 //
 // keep() writes each mesh while the experiment runs, write() the rest at the end:
 //

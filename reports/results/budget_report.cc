@@ -65,10 +65,8 @@ std::string budget_legend(const Budget& budget) {
             "gathering has no part in them.";
   return over +
          " A stage's part is its Shapley value over all 128 worlds with some stages ideal. Parts "
-         "and "
-         "remainder add up to the total; a part below zero cancels others. Physical: how far apart "
-         "the "
-         "exposures of a pulse really were, which no clock can remove.";
+         "and remainder add up to the total; a part below zero cancels others. Physical: how far "
+         "apart the exposures of a pulse really were, which no clock can remove.";
 }
 
 Json part_json(const BudgetPart& part) {

@@ -56,8 +56,7 @@ bool has_real_rows(const Results& results) {
 std::string unverified_legend(const Results& results) {
   if (std::none_of(results.rows.begin(), results.rows.end(), is_unverified)) return "";
   return "unverified: it is unknown which frames belong together, so AMD and RMDV are over the "
-         "sets "
-         "that gathering emitted, and \"pulses scored\" counts these. A gatherer that mixes "
+         "sets that gathering emitted, and \"pulses scored\" counts these. A gatherer that mixes "
          "neighbours consistently looks perfect there; capture in genlock to verify it.";
 }
 

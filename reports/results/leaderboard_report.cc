@@ -85,10 +85,8 @@ std::string order_legend(const Results& results) {
   return fmt::format(
       "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's clock|. "
       "Ratios are medians over the seeds, seed by seed: to the row of the board with the oracle in "
-      "its "
-      "place, and to the paper's proposal. {} Online stamps a frame when it arrives; offline needs "
-      "the "
-      "whole recording.",
+      "its place, and to the paper's proposal. {} Online stamps a frame when it arrives; offline "
+      "needs the whole recording.",
       has_real_rows(results) ? "Every repetition of a pipeline is a capture of its own."
                              : "Every pipeline meets the same worlds.");
 }

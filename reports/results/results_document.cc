@@ -219,8 +219,7 @@ std::vector<std::string> sets_legend(const Results& results) {
   if (has_real_rows(results)) {
     lines.emplace_back(
         "Arrivals on a real rig are read from the hosts' own clocks: their difference is an error "
-        "of "
-        "\"emitted after\", which may be negative.");
+        "of \"emitted after\", which may be negative.");
   }
   return lines;
 }

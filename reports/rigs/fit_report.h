@@ -1,8 +1,8 @@
 // A fit to a recording as text or JSON: the fitted values with their evidence, and the agreement of
 // the simulated model with the recording.
 //
-// JSON: {"schema_version", "version", "commit", "inputs", "base", "model", "evidence": [text],
-// "not_identified": [text], "checks": [{"check": "whole" | "hold_out", "ks", "ks_limit",
+// JSON: {"schema_version", "version", "commit", "inputs", "capture", "base", "model", "evidence":
+// [text], "not_identified": [text], "checks": [{"check": "whole" | "hold_out", "ks", "ks_limit",
 // "excess_ms": [{"probability", "recorded", "simulated"}], "skew_ppm": [{"camera", "recorded":
 // {"value", "error"}, "simulated"}], "correlation": {"recorded", "simulated"}, "drop_share":
 // {"recorded", "simulated"}, "frames": {"recorded", "simulated"}}]}; what does not exist is null.

@@ -24,15 +24,12 @@ constexpr std::array kGapLegend = {
     "(simulated), which are independent of each other.",
     "KS: largest distance between the two distribution functions, 0 (equal) to 1 (no overlap). "
     "From the critical distance on they differ at the 5 % level. It is exact for these sample "
-    "sizes, "
-    "and coarse for few repetitions: with 5 against 5 only 1 is significant; none: no distance is "
-    "significant.",
+    "sizes, and coarse for few repetitions: with 5 against 5 only 1 is significant; none: no "
+    "distance is significant.",
     "gap: (simulated - measured) / measured median. within 20 %: for medians above 0.05 ms; "
-    "smaller "
-    "ones depend on noise.",
+    "smaller ones depend on noise.",
     "The experiment validates the implementation of transport and protocols. It has no cameras: "
-    "see "
-    "the evidence for each stage."};
+    "see the evidence for each stage."};
 
 std::string quantiles_text(const GapSide& side, std::size_t low, std::size_t high) {
   if (side.count == 0) return "-";

@@ -89,8 +89,7 @@ std::string rig_text(const RigReplay& rig) {
   std::string text = fmt::format(
       "\n{} of {} cameras, unverified (a recording has no ground truth)\n"
       "  GenLock order finds {} complete pulses, period {} ms. It counts from the first frames, "
-      "which "
-      "arrived within {} ms:\n  {}\n\n",
+      "which arrived within {} ms:\n  {}\n\n",
       rig.stream, rig.cameras.size(), count_text(rig.complete_pulses), number_text(rig.period_ms),
       number_text(rig.first_arrival_range_ms),
       rig.common_start_plausible

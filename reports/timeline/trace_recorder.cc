@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include "algorithms/ports/host_sync.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
