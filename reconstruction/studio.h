@@ -12,8 +12,8 @@
 // axis and rotated by N(calibration_rotation_sigma_deg) about each axis of the camera, drawn once
 // per (seed, camera). The user's reconstruction knows believed poses only.
 //
-// Throws scenarios::InputError if the scenario has no studio. A loaded scenario with one has a depth
-// stream of known focal length, and room for its cameras.
+// Throws scenarios::InputError if the scenario has no studio. A loaded scenario with one has a
+// depth stream of known focal length, and room for its cameras.
 //
 // Source: section 4 of the paper (6 angles, 3 heights), docs/reference/calibration.md section 6.
 //

@@ -5,22 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 namespace simbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_all(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void redirect(const fs::path& path, int descriptor) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -58,31 +50,15 @@ bool has_reconstruction() {
   return fs::exists(fs::path(SIMBENCH_PROGRAM).parent_path() / "simbench-reconstruct");
 }
 
-ProgramTest::ProgramTest() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string name = std::string("simbench_") + test->test_suite_name() + "_" + test->name() +
-                           "_" + std::to_string(getpid());
-  folder_ = fs::temp_directory_path() / name;
-  captures_ = fs::temp_directory_path() / (name + "_captures");
-  for (const fs::path& path : {folder_, captures_}) {
-    fs::remove_all(path);
-    fs::create_directory(path);
-  }
-}
-
-ProgramTest::~ProgramTest() {
-  fs::remove_all(folder_);
-  fs::remove_all(captures_);
-}
-
 ProgramResult ProgramTest::run(const std::vector<std::string>& arguments,
                                const ProgramOptions& options) const {
-  const fs::path out = options.out_file.empty() ? captures_ / "out" : fs::path(options.out_file);
+  const fs::path out =
+      options.out_file.empty() ? fs::path(captures_ / "out") : fs::path(options.out_file);
   const fs::path err = captures_ / "err";
   std::vector<std::string> command = {SIMBENCH_PROGRAM};
   command.insert(command.end(), arguments.begin(), arguments.end());
   const pid_t process = fork();
-  if (process == 0) become_program(folder_, command, out, err, options);
+  if (process == 0) become_program(folder(), command, out, err, options);
   if (options.interrupt_after) {
     std::this_thread::sleep_for(*options.interrupt_after);
     kill(process, SIGINT);
@@ -91,25 +67,20 @@ ProgramResult ProgramTest::run(const std::vector<std::string>& arguments,
   waitpid(process, &wait_status, 0);
   ProgramResult result;
   result.status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status);
-  if (options.out_file.empty()) result.out = read_all(out);
-  result.err = read_all(err);
+  if (options.out_file.empty()) result.out = simbench::content(out);
+  result.err = simbench::content(err);
   return result;
 }
 
 std::string ProgramTest::file(const std::string& name, const std::string& content) const {
-  std::ofstream(folder_ / name, std::ios::binary) << content;
+  put(folder_ / name, content);
   return name;
 }
 
-std::string ProgramTest::content(const std::string& name) const { return read_all(folder_ / name); }
+std::string ProgramTest::content(const std::string& name) const { return folder_.content(name); }
 
 std::vector<std::string> ProgramTest::names_in(const std::string& folder) const {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder_ / folder)) {
-    names.push_back(entry.path().filename());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+  return folder_.names(folder);
 }
 
 }  // namespace simbench

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.h"
+
 namespace simbench {
 
 struct ProgramResult {
@@ -35,10 +37,6 @@ bool has_reconstruction();
 
 // A test with a folder of its own, which is also the program's working directory.
 class ProgramTest : public testing::Test {
- public:
-  ProgramTest();
-  ~ProgramTest() override;
-
  protected:
   ProgramResult run(const std::vector<std::string>& arguments,
                     const ProgramOptions& options = {}) const;
@@ -49,11 +47,11 @@ class ProgramTest : public testing::Test {
   // Names in a folder below the test's, in alphabetical order.
   std::vector<std::string> names_in(const std::string& folder = ".") const;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_;
-  std::filesystem::path captures_;  // beside the folder: tests look at what is in that
+  ScratchFolder folder_;
+  ScratchFolder captures_;  // not in the folder: tests look at what is in that
 };
 
 }  // namespace simbench

@@ -2,7 +2,6 @@
 // here, of a quantity that scores have and results do not show, is found in every output.
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -19,6 +18,7 @@
 #include "reports/text/block.h"
 #include "reports/text/output_file.h"
 #include "tests/reports/sample_archive.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -75,10 +75,8 @@ TEST_F(AddedMetric, ItsRowHasMedianAndBand) {
 TEST_F(AddedMetric, IsInJsonAndReadFromTheArchive) {
   const std::string text = json(added_archive().results);
   EXPECT_EQ(nlohmann::json::parse(text)["rows"][1]["trend_ms"]["median"], 33);
-  const std::string path =
-      (std::filesystem::path(testing::TempDir()) / "added_metric.json").string();
-  write_file(path, text);
-  EXPECT_EQ(read_archive(path).results.rows[1].trend_ms.median, 33);
+  const ScratchFolder folder;
+  EXPECT_EQ(read_archive(folder.write("results.json", text)).results.rows[1].trend_ms.median, 33);
 }
 
 TEST_F(AddedMetric, IsInCsv) {

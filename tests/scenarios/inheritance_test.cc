@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "tests/scenarios/support.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -16,15 +16,10 @@ namespace fs = std::filesystem;
 // A folder of files for one test.
 class Files : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
-    fs::create_directories(fs::path(path(name)).parent_path());
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
+    return folder_.write(name, text);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
   static std::string error_of_file(const std::string& name_or_path) {
     try {
@@ -36,9 +31,7 @@ class Files : public testing::Test {
   }
 
  private:
-  fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      ("simbench_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  ScratchFolder folder_;
 };
 
 std::string over(const std::string& base, const std::string& members = "") {

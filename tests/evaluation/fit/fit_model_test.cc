@@ -2,10 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "scenarios/loader.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -83,16 +81,14 @@ TEST(FitModel, AWholeScenarioNeedsNoBase) {
 }
 
 TEST(FitModel, ABaseThatIsAFileIsStatedFromTheModelsFolder) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "fit_model_test";
-  std::filesystem::create_directories(folder / "out");
-  const std::string file = (folder / "mine.json").string();
-  std::ofstream(file) << R"({"base": "3cam_1host_30fps", "name": "mine", "summary": "s",
-                            "cameras": {"exposure_ms": 3}})";
+  const ScratchFolder folder;
+  const std::string file = folder.write("mine.json",
+                                        R"({"base": "3cam_1host_30fps", "name": "mine",
+                                            "summary": "s", "cameras": {"exposure_ms": 3}})");
   const FitBase base{.scenario = scenarios::load_scenario(file), .stated = file};
-  const FitModel model = model_of(rig_of({0}), base, (folder / "out" / "model.json").string());
+  const FitModel model = model_of(rig_of({0}), base, folder / "out/model.json");
   EXPECT_THAT(model.text, HasSubstr("\"base\": \"../mine.json\""));
   EXPECT_EQ(model.scenario.cameras.exposure_ms, 3);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(FitModel, ADefaultBaseTakesTheRateOfTheCameras) {

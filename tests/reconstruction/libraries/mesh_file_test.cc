@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "reconstruction/primitives.h"
 #include "scenarios/loader.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reconstruction {
 namespace {
@@ -21,13 +20,8 @@ using testing::IsEmpty;
 // A file that is gone after the test.
 class MeshFile : public testing::Test {
  protected:
-  ~MeshFile() override { std::filesystem::remove(path_); }
-
-  const std::string& write(const std::string& extension, const std::string& bytes) {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = testing::TempDir() + "simbench_" + test->name() + extension;
-    std::ofstream(path_, std::ios::binary) << bytes;
-    return path_;
+  std::string write(const std::string& extension, const std::string& bytes) const {
+    return folder_.write("mesh" + extension, bytes);
   }
 
   std::string problem_of(const std::string& path) {
@@ -40,7 +34,7 @@ class MeshFile : public testing::Test {
   }
 
  private:
-  std::string path_;
+  ScratchFolder folder_;
 };
 
 std::string box_in(double unit) {

@@ -1,9 +1,7 @@
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
@@ -13,6 +11,7 @@
 #include "reports/results/json.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -25,20 +24,14 @@ class ArchiveReader : public testing::Test {
   ArchiveReader() {
     const scenarios::Scenario scenario = scenarios::load_scenario("3cam_1host_30fps");
     written_.scenario = scenario.name;
-    OutputFolder output(folder_);
+    OutputFolder output(folder_.path());
     write_archive(output, written_, scenario,
                   {.command = {"simbench", "run"}, .started = {}, .finished = {}});
   }
-  ~ArchiveReader() override { std::filesystem::remove_all(folder_); }
 
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string content(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
+  std::string path(const std::string& name) const { return folder_ / name; }
+  std::string content(const std::string& name) const { return folder_.content(name); }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   void edit(const std::string& name, const std::string& from, const std::string& to) const {
     std::string text = content(name);
     const std::size_t at = text.find(from);
@@ -48,7 +41,7 @@ class ArchiveReader : public testing::Test {
   // What reading the archive says is wrong.
   std::string problem() const {
     try {
-      Archive archive = read_archive(folder_.string());
+      Archive archive = read_archive(folder_.path().string());
       read_seed_details(archive);
     } catch (const scenarios::InputError& error) {
       return error.what();
@@ -56,13 +49,12 @@ class ArchiveReader : public testing::Test {
     return "nothing";
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("archive_reader_" + std::to_string(getpid()));
+  ScratchFolder folder_;
   evaluation::Results written_ = sample_results();
 };
 
 TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
-  const Archive archive = read_archive(folder_.string());
+  const Archive archive = read_archive(folder_.path().string());
   EXPECT_EQ(archive.version, version());
   EXPECT_EQ(archive.commit, commit());
   EXPECT_EQ(archive.command, (std::vector<std::string>{"simbench", "run"}));
@@ -76,7 +68,7 @@ TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
 }
 
 TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
-  Archive archive = read_archive(folder_.string());
+  Archive archive = read_archive(folder_.path().string());
   for (std::size_t i = 0; i < archive.results.rows.size(); ++i) {
     evaluation::Row& read = archive.results.rows[i];
     const evaluation::Row& row = written_.rows[i];
@@ -96,7 +88,7 @@ TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
 
 TEST_F(ArchiveReader, MediansAreComputedNotRead) {
   edit("results.json", "\"median\": 2.0", "\"median\": 7.0");
-  EXPECT_EQ(read_archive(folder_.string()).results.rows[0].amd_ms.median, 2.0);
+  EXPECT_EQ(read_archive(folder_.path().string()).results.rows[0].amd_ms.median, 2.0);
 }
 
 TEST_F(ArchiveReader, AResultAloneHasNoManifest) {
@@ -106,7 +98,7 @@ TEST_F(ArchiveReader, AResultAloneHasNoManifest) {
 }
 
 TEST_F(ArchiveReader, SeedsHaveTheirPulsesAndHosts) {
-  Archive archive = read_archive(folder_.string());
+  Archive archive = read_archive(folder_.path().string());
   read_seed_details(archive);
   const evaluation::SeedScore& second = archive.results.rows[0].seeds[1];
   EXPECT_EQ(second.seed, 2);

@@ -73,6 +73,7 @@ TEST(ReconstructionHtml, HoldsTheFigureAsData) {
 TEST(ReconstructionHtml, AsksNothingOfAnyServer) {
   const std::string page = reconstruction_page(sample_reconstruction());
   EXPECT_TRUE(page_has(page, "Content-Security-Policy\" content=\"default-src 'none'"));
+  ASSERT_TRUE(page_has(page, "src="));
   for (std::size_t at = page.find("src="); at != std::string::npos;
        at = page.find("src=", at + 1)) {
     EXPECT_EQ(page.compare(at, 9, "src=\"data"), 0) << page.substr(at, 40);

@@ -2,11 +2,8 @@
 #include "reports/results/ground_truth_text.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,6 +14,7 @@
 #include "reports/results/results_document.h"
 #include "scenarios/loader.h"
 #include "tests/reports/sample_results.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::reports {
 namespace {
@@ -112,14 +110,10 @@ TEST(GroundTruthText, JsonSaysItOfEachRow) {
 
 class GroundTruthArchive : public testing::Test {
  protected:
-  ~GroundTruthArchive() override { std::filesystem::remove(path_); }
   Results read(const nlohmann::ordered_json& root) const {
-    std::ofstream(path_) << root.dump(2);
-    return read_archive(path_).results;
+    return read_archive(folder_.write("results.json", root.dump(2))).results;
   }
-  std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("ground_truth_" + std::to_string(getpid()) + ".json"))
-                          .string();
+  ScratchFolder folder_;
 };
 
 TEST_F(GroundTruthArchive, ReadsWhatItWrites) {

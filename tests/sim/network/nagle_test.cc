@@ -1,10 +1,11 @@
 // Streams under Nagle's algorithm and delayed acknowledgements: mechanism H9 of
 // docs/reference/calibration.md section 5.
+#include "sim/network/nagle.h"
+
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "sim/network/nagle.h"
 #include "sim/network/network.h"
 #include "tests/sim/at_ms.h"
 

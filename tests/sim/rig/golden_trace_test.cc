@@ -1,5 +1,5 @@
 // What the world does must not change by accident, nor with the compiler, its flags or sanitizers:
-// a hash of a short run_golden of every built-in scenario, over the events of the engine (what
+// a hash of a short run of every built-in scenario, over the events of the engine (what
 // happened when) and over the recording (every stamp, exchange and true value). Clocks that read
 // something else at the same instants change only the recording. A change that is meant changes
 // these numbers; say why in its commit.
