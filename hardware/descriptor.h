@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace simbench::hardware {
@@ -45,6 +46,18 @@ class Descriptor {
     }
     text.resize(have);
     return text;
+  }
+  // How much of the text was written: all of it, unless there was an error, which is in errno.
+  std::size_t write_all(std::string_view text) const {
+    std::size_t done = 0;
+    while (done < text.size()) {
+      const ssize_t put = ::write(number_, text.data() + done, text.size() - done);
+      if (put < 0 && errno == EINTR) continue;
+      if (put == 0) errno = ENOSPC;
+      if (put <= 0) break;
+      done += static_cast<std::size_t>(put);
+    }
+    return done;
   }
 
  private:

@@ -38,8 +38,8 @@ class HostCameraDriver final : public CameraDriver {
     std::vector<std::string> known = played_serials_;
     known.insert(known.end(), real_serials_.begin(), real_serials_.end());
     throw CameraError(
-        fmt::format("camera {}: not of this host, whose cameras are {}", serial,
-                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+        serial, fmt::format("not of this host, whose cameras are {}",
+                            known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
   }
 
  private:
@@ -59,10 +59,11 @@ std::unique_ptr<CameraDriver> real_driver(const Rig& /*rig*/, const std::string&
 }
 #else
 std::unique_ptr<CameraDriver> real_driver(const Rig& rig, const std::string& serial) {
-  throw CameraError(fmt::format(
-      "camera {}: this simbench was built without librealsense2; install it (docs/rigs.md: "
-      "RealSense cameras) and build again, or give the camera a \"recording\" in {}",
-      serial, rig.file));
+  throw CameraError(
+      serial,
+      fmt::format("this simbench was built without librealsense2; install it (docs/rigs.md: "
+                  "RealSense cameras) and build again, or give the camera a \"recording\" in {}",
+                  rig.file));
 }
 #endif
 

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -248,7 +247,7 @@ MonotonicTime RecordedPlayer::turn(MonotonicTime now) {
 }
 
 void RecordedPlayer::run() {
-  prctl(PR_SET_TIMERSLACK, 1UL);
+  ask_for_exact_timers();
   std::unique_lock lock(mutex_);
   while (!ending_) {
     if (plays_.empty()) {
@@ -352,8 +351,8 @@ std::unique_ptr<Camera> RecordedCameraDriver::open(const std::string& serial) {
     }
     known.push_back(entry.info.serial);
   }
-  throw CameraError(fmt::format("camera {}: not among the recorded cameras, which are {}", serial,
-                                fmt::join(known, ", ")));
+  throw CameraError(
+      serial, fmt::format("not among the recorded cameras, which are {}", fmt::join(known, ", ")));
 }
 
 }  // namespace simbench::hardware

@@ -15,7 +15,7 @@
 //
 // Source: docs/reference/d455.md sections 1 and 4.
 //
-//   StreamWatch watch(settings);
+//   StreamWatch watch(settings, /*waits=*/true);
 //   watch.start(monotonic_now());
 //   watch.on_frame(frame, report);       // every frame
 //   watch.check(monotonic_now(), report);  // now and then, at least twice a second

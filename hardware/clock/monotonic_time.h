@@ -4,9 +4,11 @@
 // the stamps into the steady and the system time that algorithms see. All processes of a machine
 // share this clock, so the truth of the real-network experiment is known.
 //
-// Source: clock_gettime(2).
+// Source: clock_gettime(2), prctl(2).
 #ifndef SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
 #define SIMBENCH_HARDWARE_CLOCK_MONOTONIC_TIME_H_
+
+#include <sys/prctl.h>
 
 #include <chrono>
 
@@ -34,6 +36,10 @@ inline std::chrono::steady_clock::time_point for_timer(MonotonicTime at) {
   return std::chrono::steady_clock::time_point(
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(at.time_since_epoch()));
 }
+
+// Makes timers of this thread, and of threads that it starts later, expire on time instead of up to
+// 50 us later.
+inline void ask_for_exact_timers() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
 // What the operating system's clock reads (CLOCK_REALTIME).
 inline HostTime read_system_clock() {

@@ -103,14 +103,22 @@ timex read_kernel_clock(ClockCalls& calls) {
   return kernel;
 }
 
+namespace {
+
+constexpr const char* kStopOtherKeeper =
+    "two keepers fight: stop that one while the rig runs (systemctl stop systemd-timesyncd chronyd "
+    "ntpd)";
+
+}  // namespace
+
 std::string other_keeper(const timex& kernel) {
   const bool has_loop = (kernel.status & (STA_PLL | STA_FLL | STA_PPSFREQ | STA_PPSTIME)) != 0;
   const bool is_synchronised = (kernel.status & STA_UNSYNC) == 0;
   if (!has_loop && !is_synchronised) return "";
   return fmt::format(
-      "system clock: another program seems to keep it ({}); two keepers fight: stop that one while "
-      "the rig runs (systemctl stop systemd-timesyncd chronyd ntpd)",
-      has_loop ? "the kernel's own control loop is on" : "it is marked as synchronised");
+      "system clock: another program seems to keep it ({}); {}",
+      has_loop ? "the kernel's own control loop is on" : "it is marked as synchronised",
+      kStopOtherKeeper);
 }
 
 namespace {
@@ -356,9 +364,7 @@ void OsClock::begin(Nanoseconds ahead) {
 void OsClock::look_for_others() {
   if (read_kernel_clock(calls_).freq != kernel_frequency_ && !std::exchange(logged_others_, true)) {
     options_.log(
-        "system clock: another program has changed its rate; two keepers fight: stop that one "
-        "while "
-        "the rig runs (systemctl stop systemd-timesyncd chronyd ntpd)");
+        fmt::format("system clock: another program has changed its rate; {}", kStopOtherKeeper));
   }
   const Nanoseconds ahead = measured_ahead();
   const Nanoseconds moved = ahead - settings_.back().ahead;

@@ -9,7 +9,7 @@
 //  - A step beyond max_step, or a rate beyond the kernel's 500 ppm, is refused (ClockError). A slew
 //    takes what the kernel has left, so it may take longer.
 //  - Without the privilege (CAP_SYS_TIME) construction throws ClockError, which states how to get
-//  it.
+//    it.
 //  - `log` gets a line for each step, and one if another program keeps or changes this clock.
 //  - The end of a slew is a timer of the context. observe(nullptr) and destruction end a slew at
 //    once; destruction puts the frequency back to what was found. A kill leaves it as it was last.

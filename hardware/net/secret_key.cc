@@ -39,17 +39,6 @@ void check_owner_and_rights(const std::string& path, int file) {
   }
 }
 
-void write_all(const std::string& path, int file, const std::string& text) {
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t put = write(file, text.data() + size, text.size() - size);
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) refuse(path, std::strerror(errno));
-    size += static_cast<std::size_t>(put);
-  }
-  if (fsync(file) != 0) refuse(path, std::strerror(errno));
-}
-
 }  // namespace
 
 SecretKey SecretKey::from_file(const std::string& path) {
@@ -96,11 +85,10 @@ void SecretKey::create_file(const std::string& path) {
   std::string text(kDigits + 1, '\0');
   sodium_bin2hex(text.data(), text.size(), bytes.data(), bytes.size());
   text.back() = '\n';
-  try {
-    write_all(path, file.number(), text);
-  } catch (const KeyError&) {
+  if (file.write_all(text) < text.size() || fsync(file.number()) != 0) {
+    const int error = errno;
     unlink(path.c_str());
-    throw;
+    refuse(path, std::strerror(error));
   }
   sodium_memzero(bytes.data(), bytes.size());
   sodium_memzero(text.data(), text.size());

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <exception>
@@ -69,13 +68,9 @@ Task<void> ConductorConnection::answer_waiting(Self self) {
 }
 
 Task<void> ConductorConnection::throttle() {
-  const MonotonicTime now = monotonic_now();
-  allowance_ += to_seconds(now - allowance_at_) * kRequestsPerSecond;
-  allowance_ = std::min(allowance_, kRequestsPerSecond) - 1;
-  allowance_at_ = now;
-  if (allowance_ >= 0) co_return;
-  const Nanoseconds wait = from_ms(-allowance_ / kRequestsPerSecond * 1000);
-  co_await pause(context_.get_executor(), wait);
+  while (!allowance_.take(monotonic_now(), kRequestsPerSecond, kRequestsPerSecond)) {
+    co_await pause(context_.get_executor(), from_ms(1000 / kRequestsPerSecond));
+  }
 }
 
 Task<void> ConductorConnection::answer(Request request) {

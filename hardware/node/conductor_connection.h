@@ -2,8 +2,7 @@
 //
 // Contract
 //  - Requests are bounded: kMaxRequestBytes each, kRequestsPerSecond (further ones wait, and so
-//  does
-//    their sender), kWaitingRequests behind a slow one.
+//    does their sender), kWaitingRequests behind a slow one.
 //  - A message that is no request ends this connection alone.
 //  - Read, synchronise and ping are answered at once, all others one after the other.
 //  - An exception of the handler becomes the reply's error.
@@ -23,6 +22,7 @@
 #include <string>
 
 #include "hardware/net/secure_stream.h"
+#include "hardware/net/token_bucket.h"
 #include "hardware/node/protocol.h"
 
 namespace simbench::hardware {
@@ -65,8 +65,7 @@ class ConductorConnection : public std::enable_shared_from_this<ConductorConnect
   std::string session_;
   std::deque<Request> waiting_;
   bool answering_ = false;
-  double allowance_ = kRequestsPerSecond;
-  MonotonicTime allowance_at_ = monotonic_now();
+  TokenBucket allowance_;
 };
 
 }  // namespace simbench::hardware

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "hardware/descriptor.h"
 #include "hardware/node/protocol.h"
 #include "recording/event_text.h"
 #include "recording/text_fields.h"
@@ -91,8 +90,8 @@ Journal::Journal(boost::asio::io_context& context, const std::string& folder,
     : path_(journal_path(folder, session)), trouble_(std::move(trouble)), timer_(context) {
   make_journal_folder(folder);
   delete_old(folder);
-  file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (file_ < 0) {
+  file_.reset(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file_.good()) {
     throw JournalError(fmt::format("{}: cannot be made: {}", path_, std::strerror(errno)));
   }
 }
@@ -104,18 +103,20 @@ void Journal::write(const RecordingEvent& event) {
     ++frames_;
     if (failed_) ++frames_not_kept_;
   }
-  append(to_line(event));
+  if (failed_ || !file_.good()) return;
+  append_event(batch_, event);
+  end_line();
 }
 
 void Journal::note(const std::string& text) {
   using nlohmann::json;
   const std::string clean = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
-  append(note_line(json::parse(clean).get<std::string>()));
+  if (failed_ || !file_.good()) return;
+  batch_ += note_line(json::parse(clean).get<std::string>());
+  end_line();
 }
 
-void Journal::append(const std::string& line) {
-  if (failed_ || file_ < 0) return;
-  batch_ += line;
+void Journal::end_line() {
   batch_ += '\n';
   if (batch_.size() >= kLongBatch) {
     flush();
@@ -133,17 +134,12 @@ void Journal::append(const std::string& line) {
 void Journal::flush() {
   if (std::exchange(armed_, false)) timer_.cancel();
   const std::string batch = std::exchange(batch_, {});
-  std::string_view left = batch;
-  while (!left.empty() && file_ >= 0 && !failed_) {
-    const ssize_t done = ::write(file_, left.data(), left.size());
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) {
-      const int error = done < 0 ? errno : ENOSPC;
-      const std::string_view written(batch.data(), batch.size() - left.size());
-      fail(error, written.rfind('\n') + 1, batch);
-      return;
-    }
-    left.remove_prefix(static_cast<std::size_t>(done));
+  if (batch.empty() || failed_ || !file_.good()) return;
+  const std::size_t done = file_.write_all(batch);
+  if (done < batch.size()) {
+    const int error = errno;
+    fail(error, std::string_view(batch).substr(0, done).rfind('\n') + 1, batch);
+    return;
   }
   size_ += batch.size();
 }
@@ -155,7 +151,7 @@ void Journal::fail(int error, std::size_t kept, std::string_view batch) {
     if (batch.starts_with(kFrameKind)) ++frames_not_kept_;
   }
   // If this fails too, read_journal() leaves the half line out.
-  if (ftruncate(file_, static_cast<off_t>(size_ + kept)) != 0) errno = 0;
+  if (ftruncate(file_.number(), static_cast<off_t>(size_ + kept)) != 0) errno = 0;
   if (trouble_) {
     trouble_(fmt::format("journal {}: {}; from here on frames are counted, not kept", path_,
                          std::strerror(error)));
@@ -163,9 +159,9 @@ void Journal::fail(int error, std::size_t kept, std::string_view batch) {
 }
 
 void Journal::close() {
-  if (file_ < 0) return;
+  if (!file_.good()) return;
   flush();
-  ::close(std::exchange(file_, -1));
+  file_.reset();
 }
 
 std::optional<JournalChunk> read_journal(const std::string& folder, const std::string& session,

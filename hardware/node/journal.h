@@ -31,6 +31,7 @@
 #include <string>
 #include <string_view>
 
+#include "hardware/descriptor.h"
 #include "recording/event.h"
 
 namespace simbench::hardware {
@@ -68,14 +69,14 @@ class Journal {
   std::uint64_t frames_not_kept() const { return frames_not_kept_; }
 
  private:
-  void append(const std::string& line);
+  void end_line();  // of the batch
   void fail(int error, std::size_t kept, std::string_view batch);
 
   std::string path_;
   Trouble trouble_;
   boost::asio::steady_timer timer_;
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // for an expired timer
-  int file_ = -1;
+  Descriptor file_;
   bool failed_ = false;
   bool armed_ = false;
   std::string batch_;

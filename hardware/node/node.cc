@@ -83,10 +83,6 @@ std::string name_of(const json& arguments) {
   return name;
 }
 
-std::string optional_text(const json& arguments, const char* name) {
-  return arguments.contains(name) ? text_argument(arguments, name).substr(0, kLongestName) : "";
-}
-
 std::vector<PeerId> slaves_of(const json& arguments, std::size_t hosts) {
   std::vector<PeerId> slaves;
   if (!arguments.contains("slaves")) return slaves;
@@ -401,12 +397,8 @@ SessionPlan Node::State::plan_of(const json& arguments) const {
   try {
     plan.host_sync = make_host_sync_(plan.scenario, plan.pipeline);
   } catch (const scenarios::InputError& error) {
-    const std::string theirs = optional_text(arguments, "version");
     throw RequestError(
-        fmt::format("{} (this node: simbench {}, commit {}{})", error.what(), version(), commit(),
-                    theirs.empty() ? ""
-                                   : fmt::format("; the conductor: simbench {}, commit {}", theirs,
-                                                 optional_text(arguments, "commit"))));
+        fmt::format("{} (this node: simbench {}, commit {})", error.what(), version(), commit()));
   }
   return plan;
 }

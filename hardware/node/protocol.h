@@ -15,7 +15,7 @@
 //                                               firmware, connection, problem}], session (of a live
 //                                               one, or null)
 // begin        session, conductor, scenario,    a session begins: journal opened, clock restarted,
-//              pipeline[, version, commit]      channels emptied. Refused while another conductor's
+//              pipeline                         channels emptied. Refused while another conductor's
 //                                               session lives, and if the pipeline's algorithms are
 //                                               not known to the node
 // synchronise  role "master" or "slave",        host_sync started; notice "synchronised" {error: text
@@ -59,7 +59,6 @@
 namespace simbench::hardware {
 
 inline constexpr Nanoseconds kConductorSilence = std::chrono::seconds(5);
-inline constexpr Nanoseconds kPingInterval = std::chrono::seconds(1);
 inline constexpr std::size_t kJournalChunkBytes = 256u << 10;
 
 class ProtocolError : public std::runtime_error {

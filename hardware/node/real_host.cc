@@ -1,7 +1,5 @@
 #include "hardware/node/real_host.h"
 
-#include <sys/prctl.h>
-
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -72,9 +70,6 @@ void KeptFrames::deliver(const FrameArrival& frame) {
   waiting_.cancel();
 }
 
-// Makes timers of this thread expire on time instead of up to 50 us later.
-void ask_for_exact_timers() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
-
 }  // namespace
 
 class RealHost::State {
@@ -99,6 +94,7 @@ class RealHost::State {
   Parts parts;
   NodeSteadyClock steady_clock;
   KeptFrames frames;
+  bool observes = true;  // the clock
   boost::random::mt19937_64 engine{std::random_device{}()};
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers;
 };
@@ -112,7 +108,11 @@ RealHost::RealHost(boost::asio::io_context& context, PeerId id, NodeClock& clock
   });
 }
 
-RealHost::~RealHost() { state_->parts.clock.observe(nullptr); }
+RealHost::~RealHost() { release_clock(); }
+
+void RealHost::release_clock() {
+  if (std::exchange(state_->observes, false)) state_->parts.clock.observe(nullptr);
+}
 
 PeerId RealHost::id() const { return state_->parts.id; }
 

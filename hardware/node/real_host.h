@@ -44,6 +44,8 @@ class RealHost final : public Host {
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
 
+  // Observes the clock no longer, so that another host may. The destructor does the same.
+  void release_clock();
   // A frame of one of this host's cameras, for the feed.
   void deliver(const FrameArrival& frame);
 

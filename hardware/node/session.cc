@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <ctime>
@@ -73,6 +74,12 @@ void Session::synchronise(const std::string& role, std::vector<PeerId> slaves) {
   require_not_ending();
   if (role != "master" && role != "slave") {
     throw SessionError(fmt::format("role: found '{}', allowed: master, slave", role));
+  }
+  if (role == "slave" && world_.me == 0) {
+    throw SessionError("role: found 'slave', allowed on the rig's first host: master");
+  }
+  if (std::find(slaves.begin(), slaves.end(), world_.me) != slaves.end()) {
+    throw SessionError(fmt::format("slaves: found {}, allowed: other hosts", world_.me));
   }
   if (sync_was_started_) throw SessionError("host_sync was already started in this session");
   sync_was_started_ = true;
@@ -162,7 +169,8 @@ Task<void> Session::end(std::string reason) {
   }
   feed_->close();
   journal_.close();
-  // The next session's host observes the same clock.
+  // The next session's host observes the same clock, even while an abandoned host_sync goes on.
+  host_->release_clock();
   if (!sync_runs_) host_.reset();
   world_.log(fmt::format("session {} ended ({}): {}, {} not kept", plan_.id, reason,
                          counted(journal_.frames(), "frame"),

@@ -80,7 +80,7 @@ class Session : public std::enable_shared_from_this<Session> {
   const std::string& since() const { return since_; }  // "14:03:59", local time
   bool ending() const { return ending_; }
 
-  // `role`: "master" or "slave". `slaves`: the master's; empty: all other hosts.
+  // `role`: "master", or "slave" of host 0. `slaves`: the master's; empty: all other hosts.
   void synchronise(const std::string& role, std::vector<PeerId> slaves = {});
   Task<CameraProblems> prepare();
   Task<CameraProblems> start();

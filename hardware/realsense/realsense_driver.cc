@@ -110,7 +110,8 @@ std::unique_ptr<Camera> RealsenseDriver::open(const std::string& serial) {
       if (info.serial == serial) return std::make_unique<OpenCamera>(device, state_->open);
       found.push_back(info.serial);
     }
-    throw CameraError(fmt::format("camera {}: not plugged in; RealSense cameras found: {}", serial,
+    throw CameraError(serial,
+                      fmt::format("not plugged in; RealSense cameras found: {}",
                                   found.empty() ? "none (are librealsense's udev rules installed?)"
                                                 : fmt::format("{}", fmt::join(found, ", "))));
   });

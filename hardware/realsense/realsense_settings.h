@@ -47,8 +47,8 @@ auto guarded(const std::string& serial, const std::string& doing, Call call) {
   try {
     return call();
   } catch (const rs2::error& error) {
-    throw CameraError(fmt::format("camera {}: {}: librealsense2 says: {} ({})", serial, doing,
-                                  error.what(), error.get_failed_function()));
+    throw CameraError(serial, fmt::format("{}: librealsense2 says: {} ({})", doing, error.what(),
+                                          error.get_failed_function()));
   }
 }
 

@@ -29,6 +29,10 @@ json with(json terms, const std::string& name, json value) {
   return terms;
 }
 
+json master_of(const std::string& slaves) {
+  return with(role("master"), "slaves", json::parse(slaves));
+}
+
 class NodeFailures : public NodeHarness {
  protected:
   static Task<void> begun(NodeFailures& test, TestConductor& conductor) {
@@ -62,7 +66,7 @@ class NodeFailures : public NodeHarness {
   static Task<void> vanish(NodeFailures& test) {
     std::optional<TestConductor> conductor = test.conductor();
     co_await begun(test, *conductor);
-    co_await conductor->ask("synchronise", role("slave"));
+    co_await conductor->ask("synchronise", role("master"));
     co_await conductor->ask("prepare");
     co_await conductor->ask("start");
     EXPECT_TRUE(test.cameras_->frame("serial0", arrived_now()));
@@ -127,11 +131,41 @@ class NodeFailures : public NodeHarness {
   static Task<void> throwing_sync(NodeFailures& test) {
     TestConductor conductor = test.conductor();
     co_await begun(test, conductor);
-    co_await conductor.ask("synchronise", role("slave"));
+    co_await conductor.ask("synchronise", role("master"));
     const json notice = co_await conductor.notice("synchronised");
     EXPECT_EQ(notice.at("error"), "no way to the master");
     const Answer ping = co_await conductor.ask("ping");
     EXPECT_EQ(ping.error, "");
+  }
+
+  static Task<void> itself_as_a_peer(NodeFailures& test) {
+    TestConductor conductor = test.conductor();
+    co_await begun(test, conductor);
+    Answer answer = co_await conductor.ask("synchronise", role("slave"));
+    EXPECT_THAT(answer.error, HasSubstr("allowed on the rig's first host: master"));
+    answer = co_await conductor.ask("synchronise", master_of("[1, 0]"));
+    EXPECT_THAT(answer.error, HasSubstr("slaves: found 0, allowed: other hosts"));
+    EXPECT_EQ(test.seen_.masters + test.seen_.slaves, 0);
+    answer = co_await conductor.ask("synchronise", master_of("[1]"));
+    EXPECT_EQ(answer.error, "") << "none of it did harm";
+  }
+
+  static Task<void> clinging_sync(NodeFailures& test) {
+    TestConductor conductor = test.conductor();
+    co_await begun(test, conductor);
+    co_await conductor.ask("synchronise", role("master"));
+    const std::string second = "fedcba9876543210";
+    const Answer answer = co_await conductor.ask("begin", test.terms(second));
+    EXPECT_EQ(answer.error, "");
+    EXPECT_THAT(test.logged(), HasSubstr("does not end"));
+    EXPECT_EQ(test.seen_.alive, 1);
+    test.seen_.let_go = true;
+    while (test.seen_.alive > 0) co_await test.pause(from_ms(5));
+    co_await test.pause(from_ms(5));
+    co_await test.clock_->adjust_frequency(5000);
+    co_await conductor.ask("end", in_session(second));
+    const std::vector<std::string> lines = test.journal(second);
+    EXPECT_THAT(lines, SizeIs(2)) << "the clock at the beginning, and its adjustment";
   }
 
   static Task<void> bad_terms(NodeFailures& test) {
@@ -141,9 +175,6 @@ class NodeFailures : public NodeHarness {
     Answer answer = co_await refusal(with(test.terms(), "pipeline", "unheard_of"));
     EXPECT_THAT(answer.error,
                 AllOf(HasSubstr("no such pipeline"), HasSubstr(version()), HasSubstr(commit())));
-    answer =
-        co_await refusal(with(with(test.terms(), "pipeline", "unheard_of"), "version", "9.9.9"));
-    EXPECT_THAT(answer.error, HasSubstr("the conductor: simbench 9.9.9"));
     answer = co_await refusal(with(test.terms(), "session", "../../../etc/passwd"));
     EXPECT_THAT(answer.error, HasSubstr("16 hexadecimal digits"));
     answer = co_await refusal(with(test.terms(), "scenario", 7));
@@ -183,7 +214,7 @@ class NodeFailures : public NodeHarness {
   static Task<void> capture_until_stopped(NodeFailures& test) {
     TestConductor conductor = test.conductor();
     co_await begun(test, conductor);
-    co_await conductor.ask("synchronise", role("slave"));
+    co_await conductor.ask("synchronise", role("master"));
     co_await conductor.ask("prepare");
     co_await conductor.ask("start");
     test.cameras_->frame("serial2", arrived_now());
@@ -249,6 +280,17 @@ TEST_F(NodeFailures, AHostSyncThatThrowsIsANotice) {
   sync_ = SyncKind::kThrows;
   make_node("3cam_1host_30fps");
   run(throwing_sync(*this));
+}
+
+TEST_F(NodeFailures, AHostIsNoPeerOfItself) {
+  make_node("6cam_2host_30fps");
+  run(itself_as_a_peer(*this));
+}
+
+TEST_F(NodeFailures, AHostSyncThatDoesNotEndLeavesTheClockToTheNextSession) {
+  sync_ = SyncKind::kClings;
+  make_node("3cam_1host_30fps");
+  run(clinging_sync(*this));
 }
 
 TEST_F(NodeFailures, TermsThatCannotBeAreRefused) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <boost/asio/cancellation_state.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstdlib>
 #include <exception>
@@ -51,6 +53,10 @@ class CountedSync final : public HostSync {
         {.peer = peer, .t1 = HostTime(Nanoseconds(5)), .t2 = {}, .t3 = {}, .t4 = {}});
     co_await host.clock().slew(Nanoseconds(0), 1000);
     if (kind == SyncKind::kThrows) throw std::runtime_error("no way to the master");
+    if (kind == SyncKind::kClings) {
+      co_await asio::this_coro::reset_cancellation_state(asio::disable_cancellation());
+      while (!seen.let_go) co_await host.sleep_for(from_ms(5));
+    }
     while (kind == SyncKind::kGoesOn) co_await host.sleep_for(from_ms(10'000));
   }
 

@@ -67,13 +67,15 @@ class MadeUpCameras final : public CameraDriver {
   CameraSettings settings_;
 };
 
-enum class SyncKind : std::uint8_t { kReturns, kThrows, kGoesOn };
+// kClings: goes on after it was cancelled, until SyncSeen::let_go.
+enum class SyncKind : std::uint8_t { kReturns, kThrows, kGoesOn, kClings };
 
-// What the host_sync did; outlives it.
+// What the host_sync did, and is told; outlives it.
 struct SyncSeen {
   int masters = 0;
   int slaves = 0;
   int alive = 0;  // coroutines that have begun and not ended
+  bool let_go = false;
 };
 
 // A conductor's end of a stream.

@@ -125,11 +125,11 @@ class NodeSession : public NodeHarness {
     TestConductor conductor = test.conductor();
     co_await conductor.connect();
     co_await expect_ok(conductor, "begin", test.terms());
-    co_await expect_ok(conductor, "synchronise", role("slave"));
-    EXPECT_EQ(test.seen_.slaves, 1);
+    co_await expect_ok(conductor, "synchronise", role("master"));
+    EXPECT_EQ(test.seen_.masters, 1);
     co_await test.pause(from_ms(20));
     EXPECT_EQ(test.seen_.alive, 1);
-    const Answer again = co_await conductor.ask("synchronise", role("slave"));
+    const Answer again = co_await conductor.ask("synchronise", role("master"));
     EXPECT_THAT(again.error, HasSubstr("already started"));
     co_await expect_ok(conductor, "end", in_session(kSession));
     EXPECT_EQ(test.seen_.alive, 0) << "the service goes on until the end, and no longer";

@@ -94,6 +94,16 @@ TEST_F(RealHostTest, AChangeOfRateMovesTheEndOfASleep) {
   EXPECT_GE(pair.clock(1).system_at(monotonic_now()), at);
 }
 
+TEST_F(RealHostTest, AReleasedClockIsTheNextObservers) {
+  host().release_clock();
+  int adjustments = 0;
+  pair.clock(1).observe([&](const ClockAdjustment&) { ++adjustments; });
+  host().release_clock();
+  await(context(), pair.clock(1).adjust_frequency(5000));
+  EXPECT_EQ(adjustments, 1);
+  pair.clock(1).observe(nullptr);
+}
+
 TEST_F(RealHostTest, DrawsNumbersFromZeroToOneAnewForEachHost) {
   for (int i = 0; i < 1000; ++i) {
     const double draw = host().random_uniform();
