@@ -39,15 +39,16 @@ void HostJournal::take(std::string_view line) {
   ++frames_;
   const FrameRecord& record = frame->record;
   const auto [found, is_first] = counters_.try_emplace({record.camera, record.stream});
-  if (is_first) found->second.first = record.counter;
-  found->second.last = record.counter;
+  Counters& counters = found->second;
+  // The counter is of 32 bits and may wrap; a step back is its restart.
+  const std::uint32_t step = is_first ? 1 : record.counter - counters.last;
+  if (step < 0x80000000) counters.covered += step;
+  counters.last = record.counter;
 }
 
 std::int64_t HostJournal::covered(std::uint32_t camera, StreamKind stream) const {
   const auto found = counters_.find({camera, stream});
-  if (found == counters_.end()) return 0;
-  // The counter is of 32 bits and may wrap.
-  return static_cast<std::int64_t>(found->second.last - found->second.first) + 1;
+  return found == counters_.end() ? 0 : found->second.covered;
 }
 
 void play_in_order(const std::vector<HostJournal>& journals, RecordingSink& sink) {

@@ -30,14 +30,14 @@ class HostJournal {
   std::uint64_t damaged() const { return damaged_; }
   std::uint64_t frames() const { return frames_; }
 
-  // How many periods a camera's scored stream has covered, by its frame counters: from its first
-  // frame to its last. 0: no frame.
+  // How many periods a camera's stream has covered, by its frame counters: from its first frame to
+  // its last; one whose counter restarts goes on from there. 0: no frame.
   std::int64_t covered(std::uint32_t camera, StreamKind stream) const;
 
  private:
   struct Counters {
-    std::uint32_t first = 0;
     std::uint32_t last = 0;
+    std::int64_t covered = 0;
   };
 
   void take(std::string_view line);

@@ -4,11 +4,11 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "hardware/net/connect.h"
 #include "hardware/net/notice.h"
 #include "hardware/net/secure_stream.h"
 
@@ -30,10 +30,10 @@ NodeError::Kind node_error_kind(const StreamError& error) {
   return NodeError::Kind::kLost;
 }
 
-// A request whose reply has not come; the timer is cancelled when there is news.
+// A request whose reply has not come.
 struct Pending {
-  explicit Pending(asio::io_context& context) : news(context) {}
-  asio::steady_timer news;
+  explicit Pending(asio::io_context& context) : news(context.get_executor()) {}
+  Notice news;
   std::optional<Answer> reply;
   bool broken = false;
 };
@@ -47,7 +47,7 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
         host_(host),
         key_(key),
         on_notice_(std::move(on_notice)),
-        opened_(context) {}
+        opened_(context.get_executor()) {}
 
   Task<nlohmann::json> ask(std::string verb, nlohmann::json arguments, Nanoseconds limit) {
     const auto self = shared_from_this();
@@ -55,7 +55,6 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     const std::shared_ptr<SecureStream> stream = co_await open_stream(deadline);
     const Request request = {next_id_++, std::move(verb), std::move(arguments)};
     const auto pending = std::make_shared<Pending>(context_);
-    pending->news.expires_at(for_timer(deadline));
     pending_[request.id] = pending;
     std::optional<StreamError> failure;
     try {
@@ -63,8 +62,9 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     } catch (const StreamError& error) {
       failure = error;
     }
-    if (!failure && !pending->reply && !pending->broken) {
-      co_await ended(pending->news);
+    bool in_time = !failure;
+    while (in_time && !pending->reply && !pending->broken) {
+      in_time = co_await pending->news.wait(deadline);
     }
     pending_.erase(request.id);
     if (failure) throw error(node_error_kind(*failure), failure->what());
@@ -79,8 +79,6 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     co_return std::move(pending->reply->details);
   }
 
-  std::uint64_t connections() const { return connections_; }
-
   void close() {
     closed_ = true;
     if (stream_) stream_->close();
@@ -90,17 +88,14 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
  private:
   // Errors of streams already begin with the address.
   NodeError error(NodeError::Kind kind, std::string what) const {
-    const std::string address = fmt::format("{}:{}", host_.address, host_.port);
+    const std::string address = address_text(host_.address, host_.port);
     if (what.starts_with(address + ": ")) what.erase(0, address.size() + 2);
     return {kind, fmt::format("{} ({}): {}", host_.name, address, what)};
   }
 
   // The stream; one caller opens it while the others wait.
   Task<std::shared_ptr<SecureStream>> open_stream(MonotonicTime deadline) {
-    while (opening_ && monotonic_now() < deadline) {
-      opened_.expires_at(for_timer(deadline));
-      co_await ended(opened_);
-    }
+    for (bool in_time = true; opening_ && in_time;) in_time = co_await opened_.wait(deadline);
     if (stream_) co_return stream_;
     if (closed_ || opening_) throw error(NodeError::Kind::kLost, "not connected");
     opening_ = true;
@@ -113,10 +108,9 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
       failure = error;
     }
     opening_ = false;
-    opened_.cancel();
+    opened_.notify();
     if (failure) throw error(node_error_kind(*failure), failure->what());
     stream_ = std::move(opened);
-    ++connections_;
     asio::co_spawn(context_, read(shared_from_this(), stream_), asio::detached);
     co_return stream_;
   }
@@ -145,14 +139,14 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
     const auto found = pending_.find(answer.id);
     if (found == pending_.end()) return;  // after its limit
     found->second->reply = std::move(answer);
-    found->second->news.cancel();
+    found->second->news.notify();
   }
 
   void broken() {
     stream_.reset();
     for (const auto& [id, pending] : pending_) {
       pending->broken = true;
-      pending->news.cancel();
+      pending->news.notify();
     }
   }
 
@@ -161,11 +155,10 @@ class NodeLink::State : public std::enable_shared_from_this<NodeLink::State> {
   SecretKey key_;
   NoticeHandler on_notice_;
   std::shared_ptr<SecureStream> stream_;
-  asio::steady_timer opened_;
+  Notice opened_;
   bool opening_ = false;
   bool closed_ = false;
   std::uint64_t next_id_ = 1;
-  std::uint64_t connections_ = 0;
   std::map<std::uint64_t, std::shared_ptr<Pending>> pending_;
 };
 
@@ -180,7 +173,6 @@ NodeLink::NodeLink(NodeLink&&) noexcept = default;
 Task<nlohmann::json> NodeLink::ask(std::string verb, nlohmann::json arguments, Nanoseconds limit) {
   return state_->ask(std::move(verb), std::move(arguments), limit);
 }
-std::uint64_t NodeLink::connections() const { return state_->connections(); }
 void NodeLink::close() { state_->close(); }
 
 }  // namespace simbench::hardware

@@ -57,8 +57,6 @@ class NodeLink {
 
   // The result of the reply.
   Task<nlohmann::json> ask(std::string verb, nlohmann::json arguments, Nanoseconds limit);
-  // How often a stream was opened; after a change the node may have been restarted.
-  std::uint64_t connections() const;
   void close();
 
  private:

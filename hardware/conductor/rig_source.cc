@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -20,7 +19,9 @@
 #include "algorithms/ports/host_sync.h"
 #include "hardware/conductor/journals.h"
 #include "hardware/conductor/node_link.h"
+#include "hardware/conductor/reply.h"
 #include "hardware/conductor/trigger_switch.h"
+#include "hardware/net/connect.h"
 #include "hardware/net/notice.h"
 #include "recording/counted.h"
 #include "recording/version.h"
@@ -86,32 +87,10 @@ json session_terms(const std::string& session, const std::string& scenario,
           {"scenario", scenario},
           {"pipeline", pipeline}};
 }
-json slave_role() { return {{"role", "slave"}, {"master", 0}}; }
+json slave_role() { return {{"role", "slave"}}; }
 json this_session(const std::string& session) { return {{"session", session}}; }
 json place_in_journal(const std::string& session, std::uint64_t offset) {
   return {{"session", session}, {"offset", offset}};
-}
-
-// A node may be of another version: a member that its reply lacks is an error of that host.
-template <class T>
-T member(const json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end()) throw ProtocolError(fmt::format("its reply has no '{}'", key));
-  try {
-    return found->get<T>();
-  } catch (const json::exception&) {
-    throw ProtocolError(fmt::format("its reply's '{}' has another type", key));
-  }
-}
-
-// The problems of a reply on one line: "camera 018322071234: unplugged; ...".
-std::string problems_in(const json& reply) {
-  std::vector<std::string> lines;
-  for (const json& problem : member<json>(reply, "problems")) {
-    lines.push_back(fmt::format("camera {}: {}", member<std::string>(problem, "camera"),
-                                member<std::string>(problem, "text")));
-  }
-  return fmt::format("{}", fmt::join(lines, "; "));
 }
 
 // Empty without a failure.
@@ -180,6 +159,7 @@ class RigSession {
 
   Task<void> synchronise();
   Task<void> capture();
+  Task<void> leave_trigger_off();
   // Runs the step on all remaining hosts at the same time; returns their errors, by host.
   Task<std::vector<std::string>> on_all(Step step);
   // on_all(); throws RecordingFailed if any failed.
@@ -265,6 +245,7 @@ Task<void> RigSession::conduct() {
     failure = std::current_exception();
   }
   co_await end_all();
+  co_await leave_trigger_off();
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -329,6 +310,16 @@ Task<void> RigSession::capture() {
   if (hosts_left() == 0) throw RecordingFailed("no host was left at the end of the capture");
 }
 
+// After a failure the trigger may still be on.
+Task<void> RigSession::leave_trigger_off() {
+  if (!trigger_.is_on()) co_return;
+  try {
+    co_await trigger_.turn(false);
+  } catch (const TriggerError& error) {
+    note(error.what());
+  }
+}
+
 // Ends what was begun and fetches what was recorded, also after a failure.
 Task<void> RigSession::end_all() {
   ending_ = true;
@@ -384,22 +375,22 @@ bool RigSession::all_covered() const {
 
 Task<void> RigSession::greet(std::size_t host) {
   const json hello = co_await hosts_[host].link.ask("hello", json::object(), kGreetingLimit);
-  const auto name = member<std::string>(hello, "name");
+  const auto name = reply_member<std::string>(hello, "name");
   if (name != rig_.hosts[host].name) {
-    throw RecordingFailed(fmt::format("{} ({}:{}): the node there is called {}",
-                                      rig_.hosts[host].name, rig_.hosts[host].address,
-                                      rig_.hosts[host].port, name));
+    const RigHost& wanted = rig_.hosts[host];
+    throw RecordingFailed(fmt::format("{} ({}): the node there is called {}", wanted.name,
+                                      address_text(wanted.address, wanted.port), name));
   }
-  const auto its_version = member<std::string>(hello, "version");
+  const auto its_version = reply_member<std::string>(hello, "version");
   if (its_version != version()) {
     note(fmt::format("{} runs simbench {}, this is {}", name, its_version, version()));
   }
-  const json clock = member<json>(hello, "clock");
+  const json clock = reply_member<json>(hello, "clock");
   hosts_[host].report.oscillator = {
       .monotonic_zero =
-          MonotonicTime(Nanoseconds(member<std::int64_t>(clock, "monotonic_zero_ns"))),
-      .steady_zero = SteadyTime(Nanoseconds(member<std::int64_t>(clock, "steady_zero_ns"))),
-      .skew_ppm = member<double>(clock, "skew_ppm")};
+          MonotonicTime(Nanoseconds(reply_member<std::int64_t>(clock, "monotonic_zero_ns"))),
+      .steady_zero = SteadyTime(Nanoseconds(reply_member<std::int64_t>(clock, "steady_zero_ns"))),
+      .skew_ppm = reply_member<double>(clock, "skew_ppm")};
 }
 
 Task<void> RigSession::begin(std::size_t host) {
@@ -462,7 +453,7 @@ Task<void> RigSession::fetch(std::size_t host) {
     if (!failure) {
       last_reply = monotonic_now();
       take_chunk(host, chunk);
-      if (state.journal.bytes() < member<std::uint64_t>(chunk, "size")) continue;
+      if (state.journal.bytes() < reply_member<std::uint64_t>(chunk, "size")) continue;
     } else if (failure->kind() != NodeError::Kind::kLost ||
                monotonic_now() - last_reply > kConductorSilence) {
       throw NodeError(*failure);
@@ -473,9 +464,9 @@ Task<void> RigSession::fetch(std::size_t host) {
 
 void RigSession::take_chunk(std::size_t host, const json& chunk) {
   HostState& state = hosts_[host];
-  state.journal.append(member<std::string>(chunk, "text"));
-  const bool complete = state.journal.bytes() >= member<std::uint64_t>(chunk, "size");
-  if (!member<bool>(chunk, "closed") || !complete) return;
+  state.journal.append(reply_member<std::string>(chunk, "text"));
+  const bool complete = state.journal.bytes() >= reply_member<std::uint64_t>(chunk, "size");
+  if (!reply_member<bool>(chunk, "closed") || !complete) return;
   state.fetched = true;
   if (ending_ || state.ended) return;
   state.ended = true;
@@ -487,8 +478,8 @@ void RigSession::take_chunk(std::size_t host, const json& chunk) {
 
 Task<std::vector<std::string>> RigSession::on_all(Step step) {
   struct Gathering {
-    explicit Gathering(asio::io_context& context) : news(context) {}
-    asio::steady_timer news;
+    explicit Gathering(asio::io_context& context) : news(context.get_executor()) {}
+    Notice news;
     std::size_t left = 0;
     std::vector<std::string> problems;
   };
@@ -500,14 +491,11 @@ Task<std::vector<std::string>> RigSession::on_all(Step step) {
     asio::co_spawn(context_, (this->*step)(host),
                    [gathering, host](const std::exception_ptr& failure) {
                      --gathering->left;
-                     gathering->news.cancel();
+                     gathering->news.notify();
                      gathering->problems[host] = message_of(failure);
                    });
   }
-  while (gathering->left > 0) {
-    gathering->news.expires_after(std::chrono::hours(1));
-    co_await ended(gathering->news);
-  }
+  while (gathering->left > 0) co_await gathering->news.wait(MonotonicTime::max());
   co_return std::move(gathering->problems);
 }
 

@@ -3,17 +3,19 @@
 // One call of record() is one session on the rig:
 //
 //   1. greet every node and begin the session (session ids are fresh, so no two sessions mix)
-//   2. open and set the cameras; a refusal is a note, and ends the session if no camera is left
+//   2. open and set the cameras
 //   3. run the pipeline's host_sync, master and slaves, for real
 //   4. wait as the scenario says, then capture in its sync mode: genlock: trigger off, cameras on,
 //      trigger on; other triggered modes: trigger on, cameras on; free-running: cameras on
 //   5. fetch the journals meanwhile; stop the cameras when the scenario's time is over, fetch the
 //      rest, and hand all events to the sink in order of arrival
 //
-// Failures (a killed node, a pulled cable, another conductor, another version) stay local: a host
-// without a reply for kConductorSilence is given up for this session, with a note, and its fetched
-// frames are kept. Without any host, or without the master, record() throws RecordingFailed. Every
-// wait has a limit.
+// Steps 1 and 2 need every host and every camera: a node that is not there or refuses, or a camera
+// that does, throws RecordingFailed. After that failures (a killed node, a pulled cable) stay
+// local: a host without a reply for kConductorSilence is given up for this session, with a note,
+// and its fetched frames are kept. Without any host at the end of the capture, or without the
+// master during synchronisation, record() throws RecordingFailed. Every wait has a limit. Whatever
+// happens, the sessions are ended and the trigger is left off; if that fails, it is a note.
 //
 // The sink gets frames without truth. `progress` gets a line for each step. The request's pipeline
 // is the one to run; its host_sync object only tells the kind (warm_up(), initial_clocks()), since
@@ -40,7 +42,8 @@ struct RigSourceSettings {
   std::function<void(const std::string& line)> progress;  // may be empty
   // For "manual" triggers: shows the text and returns when the user is done; false: given up.
   std::function<bool(const std::string& text)> prompt;
-  // Polled every 50 ms; once true, the cameras are stopped and record() throws. May be empty.
+  // Polled every 50 ms while host_sync runs, before the capture and in it, not while nodes carry
+  // out a request; once true, the cameras are stopped and record() throws. May be empty.
   std::function<bool()> cancelled;
   // The session whose journals are fetched (step 5) after its conductor was killed. Empty: a new
   // session.

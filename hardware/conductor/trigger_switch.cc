@@ -9,18 +9,15 @@
 #include <utility>
 
 #include "hardware/net/notice.h"
+#include "hardware/shell_quoted.h"
 
 namespace simbench::hardware {
 namespace {
 
-// GNU timeout ends a command that hangs; the parentheses keep the user's own redirections.
+// GNU timeout ends a command that hangs; a shell of its own keeps the user's redirections.
 std::string run(const std::string& command) {
-  const std::string line =
-      fmt::format("timeout {} /bin/sh -c '{}' 1>&2", TriggerSwitch::kCommandLimitSeconds, [&] {
-        std::string quoted;
-        for (const char c : command) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-        return quoted;
-      }());
+  const std::string line = fmt::format("timeout {} /bin/sh -c {} 1>&2",
+                                       TriggerSwitch::kCommandLimitSeconds, shell_quoted(command));
   const int status = std::system(line.c_str());
   if (status == 0) return {};
   if (WIFEXITED(status) && WEXITSTATUS(status) == 124) {
@@ -49,6 +46,7 @@ std::string TriggerSwitch::problem(bool on) const {
 
 Task<void> TriggerSwitch::turn(bool on) {
   if (!trigger_) co_return;
+  is_on_ = false;
   std::future<std::string> done =
       std::async(std::launch::async, [this, on] { return problem(on); });
   while (done.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
@@ -58,6 +56,7 @@ Task<void> TriggerSwitch::turn(bool on) {
   if (!problem.empty()) {
     throw TriggerError(fmt::format("trigger {}: {}", on ? "on" : "off", problem));
   }
+  is_on_ = on;
 }
 
 }  // namespace simbench::hardware

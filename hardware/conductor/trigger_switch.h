@@ -36,6 +36,8 @@ class TriggerSwitch {
   TriggerSwitch(boost::asio::io_context& context, std::optional<RigTrigger> trigger, Prompt prompt);
 
   Task<void> turn(bool on);
+  // It was switched on, and nobody has tried to switch it off since.
+  bool is_on() const { return is_on_; }
 
  private:
   std::string problem(bool on) const;  // empty: done
@@ -43,6 +45,7 @@ class TriggerSwitch {
   boost::asio::io_context& context_;
   std::optional<RigTrigger> trigger_;
   Prompt prompt_;
+  bool is_on_ = false;
 };
 
 }  // namespace simbench::hardware

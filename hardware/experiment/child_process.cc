@@ -91,14 +91,14 @@ ChildProcess::ChildProcess(const Settings& settings)
     arguments.push_back(const_cast<char*>(each.c_str()));
   }
   arguments.push_back(nullptr);
-  const int log = open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (log < 0) throw ChildError(fmt::format("{}: {}", log_, std::strerror(errno)));
+  const Descriptor log(open(log_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
+  if (!log.good()) throw ChildError(fmt::format("{}: {}", log_, std::strerror(errno)));
   Pipe output;
   Pipe left_hub;
   Pipe connected;
   const Plan plan{.program = settings.program.c_str(),
                   .arguments = arguments.data(),
-                  .log = log,
+                  .log = log.number(),
                   .output = output.write.number(),
                   .parent = getpid(),
                   .member = settings.sandbox_member,
@@ -107,9 +107,7 @@ ChildProcess::ChildProcess(const Settings& settings)
   std::fflush(nullptr);  // else the child may write its copy of the buffers again
   process_ = fork();
   if (process_ == 0) become(plan);
-  const int fork_error = errno;
-  close(log);
-  if (process_ < 0) throw ChildError(fmt::format("fork: {}", std::strerror(fork_error)));
+  if (process_ < 0) throw ChildError(fmt::format("fork: {}", std::strerror(errno)));
   output_.reset(output.read.release());
   if (!settings.sandbox_member) return;
   left_hub.write.reset();

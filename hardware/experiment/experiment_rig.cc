@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "hardware/experiment/network_sandbox.h"
+#include "hardware/shell_quoted.h"
 
 namespace simbench::hardware {
 namespace {
@@ -57,13 +58,6 @@ std::vector<std::uint16_t> free_ports(std::size_t count) {
   return ports;
 }
 
-// Quotes for /bin/sh.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 // The monotonic clock less /proc/uptime, which a shell can read. They differ if this machine has
 // slept, or is a container that counts from its own start.
 double monotonic_ahead_of_uptime_s() {
@@ -77,8 +71,9 @@ std::string on_command(const TemporaryFolder& folder) {
   const double ahead_s = monotonic_ahead_of_uptime_s() + to_seconds(ExperimentRig::kTriggerLead);
   return fmt::format(
       "awk '{{ printf \"%.0f\", ($1 + {:.3f}) * 1e9 }}' /proc/uptime > {} && cp {} {} && mv {} {}",
-      ahead_s, quoted(folder.file("zero.new")), quoted(folder.file("zero.new")),
-      quoted(folder.file("zero")), quoted(folder.file("zero.new")), quoted(folder.file("trigger")));
+      ahead_s, shell_quoted(folder.file("zero.new")), shell_quoted(folder.file("zero.new")),
+      shell_quoted(folder.file("zero")), shell_quoted(folder.file("zero.new")),
+      shell_quoted(folder.file("trigger")));
 }
 
 }  // namespace
@@ -157,7 +152,7 @@ std::string ExperimentRig::rig_text(std::optional<unsigned> node) const {
     rig["hosts"].push_back(std::move(entry));
   }
   rig["trigger"] = {{"on_command", on_command(folder_)},
-                    {"off_command", "rm -f " + quoted(folder_.file("trigger"))}};
+                    {"off_command", "rm -f " + shell_quoted(folder_.file("trigger"))}};
   return rig.dump(1);
 }
 

@@ -193,6 +193,9 @@ std::string NetworkSandbox::member_address(unsigned member) {
 bool NetworkSandbox::leave_hub() { return unshare(CLONE_NEWNET) == 0; }
 
 void NetworkSandbox::connect(unsigned member, pid_t process) {
+  if (member >= kMaxMembers) {
+    throw SandboxError(fmt::format("member {}: allowed: below {}", member, kMaxMembers));
+  }
   const std::string interface = interface_of(member);
   remove_pair(interface);
   errno = add_pair(interface, process);

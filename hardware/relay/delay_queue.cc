@@ -5,7 +5,7 @@
 
 namespace simbench::hardware {
 
-bool DelayQueue::add(MonotonicTime at, Bytes message, Action action) {
+bool DelayQueue::add(MonotonicTime at, Bytes& message, Action action) {
   if (stopped_ || heap_.size() >= kMaxWaiting || bytes_ + message.size() > kMaxBytes) return false;
   bytes_ += message.size();
   heap_.push_back({at, next_number_++, std::move(message), std::move(action)});

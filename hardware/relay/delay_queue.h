@@ -37,8 +37,8 @@ class DelayQueue {
   DelayQueue(const DelayQueue&) = delete;
   DelayQueue& operator=(const DelayQueue&) = delete;
 
-  // False: full, and nothing was taken.
-  bool add(MonotonicTime at, Bytes message, Action action);
+  // Takes the message. False: full, and nothing was taken.
+  bool add(MonotonicTime at, Bytes& message, Action action);
   std::size_t waiting() const { return heap_.size(); }
   // Discards all waiting actions and refuses new ones.
   void stop();

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "hardware/net/connect.h"
 #include "hardware/net/kernel_stamps.h"
 #include "hardware/net/notice.h"
 #include "hardware/net/token_bucket.h"
@@ -75,8 +76,8 @@ void bind(Gate& gate, const Rig& rig, const RigHost& host) {
     gate.socket.non_blocking(true);
     request_receive_stamps(gate.socket.native_handle());
   } catch (const boost::system::system_error& error) {
-    throw RelayError(fmt::format("{}: host '{}': cannot listen on {}:{}: {}", rig.file, host.name,
-                                 host.address, host.port, error.code().message()));
+    throw RelayError(fmt::format("{}: host '{}': cannot listen on {}: {}", rig.file, host.name,
+                                 address_text(host.address, host.port), error.code().message()));
   }
 }
 
@@ -190,7 +191,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
     for (const MonotonicTime at : gate.law.datagram(piece.received)) {
       Bytes message(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(piece.bytes));
       const bool taken = queue_.add(
-          at, std::move(message),
+          at, message,
           [self = shared_from_this(), &gate](const Bytes& due) { self->send(gate, due); });
       if (!taken) ++statistics_.dropped_full;
     }

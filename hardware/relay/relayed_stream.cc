@@ -132,8 +132,8 @@ Task<void> RelayedStream::pump(std::shared_ptr<RelayedStream> self, Side& from, 
   }
 }
 
-bool RelayedStream::send_later(Side& to, MonotonicTime at, Bytes message) {
-  return queue_.add(at, std::move(message), [self = shared_from_this(), &to](Bytes due) {
+bool RelayedStream::send_later(Side& to, MonotonicTime at, Bytes& message) {
+  return queue_.add(at, message, [self = shared_from_this(), &to](Bytes due) {
     if (due.empty()) {
       self->close();
     } else {

@@ -78,8 +78,8 @@ class RelayedStream : public std::enable_shared_from_this<RelayedStream> {
 
   static Task<void> run(std::shared_ptr<RelayedStream> self, boost::asio::ip::tcp::endpoint to);
   static Task<void> pump(std::shared_ptr<RelayedStream> self, Side& from, Side& to);
-  // False: the queue is full.
-  bool send_later(Side& to, MonotonicTime at, Bytes message);
+  // Takes the message. False: the queue is full, and nothing was taken.
+  bool send_later(Side& to, MonotonicTime at, Bytes& message);
   void write(Side& to, Bytes message);
   void write_front(Side& to);
 

@@ -42,9 +42,9 @@ std::vector<std::string> reported(const std::vector<HostJournal>& journals) {
   play_in_order(journals, kept);
   std::vector<std::string> names;
   for (const RecordingEvent& event : kept.events()) {
-    if (const auto* journal_frame = std::get_if<FrameEvent>(&event)) {
-      names.push_back(std::to_string(journal_frame->record.camera) + "/" +
-                      std::to_string(journal_frame->record.counter));
+    if (const auto* frame = std::get_if<FrameEvent>(&event)) {
+      names.push_back(std::to_string(frame->record.camera) + "/" +
+                      std::to_string(frame->record.counter));
     } else if (const auto* adjustment = std::get_if<ClockAdjustment>(&event)) {
       names.push_back("clock " + std::to_string(adjustment->host));
     }
@@ -118,6 +118,9 @@ TEST(Journals, CoveredPeriodsCountFromTheFirstFrameThroughGapsAndTheWrap) {
   const HostJournal wrapped =
       host_journal({journal_frame(0, 0xfffffffe, 1), journal_frame(0, 1, 2)});
   EXPECT_EQ(wrapped.covered(0, StreamKind::kDepth), 4);
+  const HostJournal restarted = host_journal({journal_frame(0, 7, 1), journal_frame(0, 9, 2),
+                                              journal_frame(0, 0, 3), journal_frame(0, 2, 4)});
+  EXPECT_EQ(restarted.covered(0, StreamKind::kDepth), 5);
 }
 
 }  // namespace

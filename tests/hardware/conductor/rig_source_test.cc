@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "recording/event.h"
 #include "tests/hardware/conductor/cuttable_link.h"
 #include "tests/hardware/conductor/test_rig.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::hardware {
 namespace {
@@ -19,6 +22,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // What a session gave, or why it failed.
 struct Outcome {
@@ -84,8 +88,17 @@ TEST(RigSource, SaysWhichNodeIsNotThere) {
   TestRig rig({0, 0});
   rig.take_away(1);
   const Outcome outcome = record(rig.rig(), small_scenario());
-  EXPECT_THAT(outcome.failure, AllOf(HasSubstr("greeting the nodes: host1 (127.0.0.1:"),
-                                     testing::Not(HasSubstr("host0"))));
+  EXPECT_THAT(outcome.failure,
+              AllOf(HasSubstr("greeting the nodes: host1 (127.0.0.1:"), Not(HasSubstr("host0"))));
+}
+
+TEST(RigSource, NamesAnIp6AddressOnce) {
+  const TestRig nodes({0, 0});
+  Rig rig = nodes.rig();
+  rig.hosts[1].address = "::1";
+  const Outcome outcome = record(rig, small_scenario());
+  EXPECT_THAT(outcome.failure,
+              HasSubstr("host1 ([::1]:" + std::to_string(rig.hosts[1].port) + "): no connection"));
 }
 
 TEST(RigSource, SaysWhichCameraRefuses) {
@@ -163,6 +176,54 @@ TEST(RigSource, TwoConductorsAreNotLetIn) {
   EXPECT_EQ(first.failure, "");
   EXPECT_GE(first.frames(0), 43U);
   EXPECT_THAT(second.failure, AllOf(HasSubstr("host0"), HasSubstr("busy")));
+}
+
+// Commands for the trigger that leave their names in `file`.
+RigTrigger logged_trigger(const std::string& file, const std::string& after_off = "") {
+  return {.manual = false,
+          .on_command = "echo on >> " + file,
+          .off_command = "echo off >> " + file + after_off};
+}
+
+std::string words_in(const std::string& file) {
+  std::ifstream in(file);
+  std::string words;
+  for (std::string word; in >> word;) words += (words.empty() ? "" : " ") + word;
+  return words;
+}
+
+// Records until the capture has frames, then cancels; the lines of progress.
+std::vector<std::string> interrupted(const TestRig& nodes, const Rig& rig) {
+  const scenarios::Scenario scenario = small_scenario({{"/timeline/frames", "400"}});
+  std::vector<std::string> progress;
+  RigSourceSettings settings;
+  settings.progress = [&](const std::string& line) { progress.push_back(line); };
+  settings.cancelled = [&] { return nodes.frames_delivered(0) > 5; };
+  RigSource source(rig, SecretKey(), scenario, settings);
+  KeptRecording kept;
+  EXPECT_THROW(source.record({.seed = 1, .pipeline = kTestPipeline}, kept), std::runtime_error);
+  return progress;
+}
+
+TEST(RigSource, AnInterruptSwitchesTheTriggerOff) {
+  const ScratchFolder folder;
+  const TestRig nodes({0, 0});
+  Rig rig = nodes.rig();
+  rig.trigger = logged_trigger(folder / "trigger");
+  const std::vector<std::string> progress = interrupted(nodes, rig);
+  EXPECT_THAT(progress, Not(Contains(HasSubstr("trigger off"))));
+  EXPECT_EQ(words_in(folder / "trigger"), "off on off");
+}
+
+TEST(RigSource, ATriggerThatStaysOnAfterAnInterruptIsANote) {
+  const ScratchFolder folder;
+  const TestRig nodes({0, 0});
+  Rig rig = nodes.rig();
+  const std::string file = folder / "trigger";
+  rig.trigger = logged_trigger(file, "; test $(grep -c off " + file + ") -lt 2");
+  const std::vector<std::string> progress = interrupted(nodes, rig);
+  EXPECT_THAT(progress, Contains(HasSubstr("trigger off: ")));
+  EXPECT_EQ(words_in(file), "off on off");
 }
 
 TEST(RigSource, CollectsTheJournalsOfAnEarlierSession) {

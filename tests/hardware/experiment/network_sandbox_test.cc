@@ -56,6 +56,10 @@ TEST(NetworkSandbox, AddressesOfAPairShareASmallNetwork) {
   EXPECT_EQ(NetworkSandbox::hub_address(5), "10.77.5.1");
 }
 
+TEST(NetworkSandbox, AMemberBeyondTheAddressesIsRefused) {
+  EXPECT_THROW(NetworkSandbox::connect(NetworkSandbox::kMaxMembers, getpid()), SandboxError);
+}
+
 TEST(NetworkSandbox, NothingOfItIsSeenOutside) {
   const int result = in_sandbox([] {
     const TemporaryFolder folder;

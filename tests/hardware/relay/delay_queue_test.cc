@@ -14,7 +14,8 @@ TEST(DelayQueue, DoesThingsInOrderAndNeverEarly) {
   std::vector<int> order;
   const auto add = [&](double after_ms, int name) {
     const MonotonicTime at = begin + from_ms(after_ms);
-    ASSERT_TRUE(queue.add(at, Bytes(1), [&order, at, name](const Bytes& message) {
+    Bytes one_byte(1);
+    ASSERT_TRUE(queue.add(at, one_byte, [&order, at, name](const Bytes& message) {
       EXPECT_GE(monotonic_now(), at);
       EXPECT_EQ(message.size(), 1u);
       order.push_back(name);
@@ -36,9 +37,10 @@ TEST(DelayQueue, WhatIsAddedMeanwhileHasItsTurn) {
   boost::asio::io_context context;
   DelayQueue queue(context);
   int done = 0;
-  queue.add(monotonic_now() + from_ms(1), Bytes{}, [&](const Bytes&) {
+  Bytes none;
+  queue.add(monotonic_now() + from_ms(1), none, [&](const Bytes&) {
     ++done;
-    queue.add(monotonic_now() + from_ms(1), Bytes{}, [&](const Bytes&) { ++done; });
+    queue.add(monotonic_now() + from_ms(1), none, [&](const Bytes&) { ++done; });
   });
   context.run();
   EXPECT_EQ(done, 2);
@@ -47,16 +49,20 @@ TEST(DelayQueue, WhatIsAddedMeanwhileHasItsTurn) {
 TEST(DelayQueue, IsBounded) {
   boost::asio::io_context context;
   DelayQueue queue(context);
+  Bytes none;
   const MonotonicTime far = monotonic_now() + std::chrono::hours(1);
   for (std::size_t i = 0; i < DelayQueue::kMaxWaiting; ++i) {
-    ASSERT_TRUE(queue.add(far, Bytes{}, [](const Bytes&) {}));
+    ASSERT_TRUE(queue.add(far, none, [](const Bytes&) {}));
   }
-  EXPECT_FALSE(queue.add(far, Bytes{}, [](const Bytes&) {}));
+  EXPECT_FALSE(queue.add(far, none, [](const Bytes&) {}));
   EXPECT_EQ(queue.waiting(), DelayQueue::kMaxWaiting);
 
   DelayQueue by_bytes(context);
-  EXPECT_TRUE(by_bytes.add(far, Bytes(DelayQueue::kMaxBytes), [](const Bytes&) {}));
-  EXPECT_FALSE(by_bytes.add(far, Bytes(1), [](const Bytes&) {}));
+  Bytes all(DelayQueue::kMaxBytes);
+  EXPECT_TRUE(by_bytes.add(far, all, [](const Bytes&) {}));
+  Bytes one_byte(1);
+  EXPECT_FALSE(by_bytes.add(far, one_byte, [](const Bytes&) {}));
+  EXPECT_EQ(one_byte.size(), 1U) << "what is refused is not taken";
   queue.stop();
   by_bytes.stop();
   context.run();  // ends at once
