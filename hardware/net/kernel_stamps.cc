@@ -106,10 +106,7 @@ ReceivedPiece receive_stamped(int socket, std::span<std::byte> to, sockaddr_stor
                          .truncated = (header.msg_flags & MSG_TRUNC) != 0,
                          .received = monotonic_now()};
   if (const auto stamp = control_messages(header).stamp) {
-    if (const auto at = monotonic_of(*stamp)) {
-      received.received = *at;
-      received.stamped_by_kernel = true;
-    }
+    if (const auto at = monotonic_of(*stamp)) received.received = *at;
   }
   return received;
 }

@@ -41,7 +41,6 @@ struct ReceivedPiece {
   std::size_t bytes = 0;  // 0 without an error: the stream has ended
   int error = 0;          // errno
   bool truncated = false;
-  bool stamped_by_kernel = false;
   MonotonicTime received{};
 };
 

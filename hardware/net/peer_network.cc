@@ -58,13 +58,6 @@ Bytes port_message(std::uint16_t port) {
   return message;
 }
 
-// "10.0.0.3" of "10.0.0.3:47110", "::1" of "[::1]:47110".
-std::string without_port(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (!text.starts_with('[')) return text.substr(0, colon);
-  return text.substr(1, colon - 2);
-}
-
 }  // namespace
 
 // The inside of a PeerNetwork, held by it and by every pending operation. stop() ends these; after
@@ -299,10 +292,7 @@ bool PeerNetwork::State::connected(PeerId peer) const {
   return peer < links_.size() && links_[peer] && links_[peer]->stream;
 }
 
-// A deadline of "for ever" has no instant on the oscillator's scale.
 MonotonicTime PeerNetwork::State::deadline_of(SteadyTime deadline) const {
-  constexpr Nanoseconds kForEver = std::chrono::hours(24 * 365 * 100);
-  if (deadline.time_since_epoch() > kForEver) return MonotonicTime::max();
   return clock_.oscillator().when(deadline);
 }
 
@@ -478,10 +468,8 @@ udp::endpoint PeerNetwork::State::destination(const Link& link, const SecureStre
   const PeerAddress& configured = settings_.peers[link.peer];
   error_code no_number;
   auto address = boost::asio::ip::make_address(configured.address, no_number);
-  if (no_number) {
-    address = boost::asio::ip::make_address(without_port(stream.peer_address()), no_number);
-  }
-  if (address.is_v4() && datagrams_.is_ip6()) {
+  if (no_number) address = stream.remote();
+  if (address.is_v4() && !address.is_unspecified() && datagrams_.is_ip6()) {
     address = boost::asio::ip::make_address_v6(boost::asio::ip::v4_mapped, address.to_v4());
   }
   return {address, configured.port};
@@ -539,7 +527,8 @@ MessageId PeerNetwork::State::send_datagram(PeerId peer, const Bytes& message) {
   }
   const MessageId id = next_datagram_++;
   Link& to = link(peer);
-  if (stopped_ || !to.session || to.datagrams_to.port() == 0) return id;
+  const bool known = to.datagrams_to.port() != 0 && !to.datagrams_to.address().is_unspecified();
+  if (stopped_ || !to.session || !known) return id;
   datagrams_.send(id, to.session->seal_next(message), to.datagrams_to);
   return id;
 }

@@ -7,7 +7,7 @@
 // these and survive a reconnection; messages sent meanwhile are lost, as over any network.
 //
 // Contract
-//  - Bounded everywhere: 64 unauthenticated connections of 2 s, kChannelQueue received messages a
+//  - Bounded everywhere: 64 unauthenticated connections of 2 s, 1024 received messages a
 //    channel (the oldest is dropped), 64 KiB a peer message, and a rate limit for datagrams from
 //    outside a session.
 //  - Receive stamps come from the kernel where it stamps; the channel turns them into host and
@@ -63,8 +63,6 @@ struct NetworkStatistics {
 
 class PeerNetwork {
  public:
-  static constexpr std::size_t kChannelQueue = 1024;
-
   // Throws StreamError if the address cannot be bound. `clock` outlives this.
   PeerNetwork(boost::asio::io_context& context, PeerNetworkSettings settings, NodeClock& clock);
   ~PeerNetwork();

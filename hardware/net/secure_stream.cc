@@ -45,10 +45,16 @@ void prepare_socket(int socket) {
   set_socket_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);
 }
 
-std::string remote_of(const tcp::socket& socket) {
+std::string text_of(const std::optional<tcp::endpoint>& remote) {
+  if (!remote) return "a peer that has gone";
+  return address_text(remote->address().to_string(), remote->port());
+}
+
+// Nothing if the peer has gone.
+std::optional<tcp::endpoint> remote_of(const tcp::socket& socket) {
   boost::system::error_code gone;
   const tcp::endpoint remote = socket.remote_endpoint(gone);
-  return gone ? "a peer that has gone" : address_text(remote.address().to_string(), remote.port());
+  return gone ? std::nullopt : std::optional(remote);
 }
 
 bool no_data_now(int error) { return error == EAGAIN || error == EWOULDBLOCK; }
@@ -86,6 +92,9 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
 
   PeerName peer() const { return theirs_.from; }
   const std::string& address() const { return address_; }
+  boost::asio::ip::address remote() const {
+    return remote_ ? remote_->address() : boost::asio::ip::address();
+  }
   const KeyBytes& session_key() const { return session_key_; }
 
  private:
@@ -117,6 +126,7 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
   [[noreturn]] void throw_failure() const;
 
   boost::asio::ip::tcp::socket socket_;
+  std::optional<boost::asio::ip::tcp::endpoint> remote_;
   std::string address_;
   SecretKey key_;
   Side side_;
@@ -152,7 +162,8 @@ class SecureStream::State : public std::enable_shared_from_this<State> {
 
 SecureStream::State::State(tcp::socket socket, const SecretKey& key, PeerName me, Side side)
     : socket_(std::move(socket)),
-      address_(remote_of(socket_)),
+      remote_(remote_of(socket_)),
+      address_(text_of(remote_)),
       key_(key),
       side_(side),
       mine_(fresh_hello(me)),
@@ -493,6 +504,8 @@ Task<std::unique_ptr<SecureStream>> SecureStream::accept(boost::asio::ip::tcp::s
 PeerName SecureStream::peer() const { return state_->peer(); }
 
 std::string SecureStream::peer_address() const { return state_->address(); }
+
+boost::asio::ip::address SecureStream::remote() const { return state_->remote(); }
 
 KeyBytes SecureStream::derived_key(std::uint64_t purpose) const {
   std::array<std::byte, sizeof purpose> which{};

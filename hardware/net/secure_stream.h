@@ -10,8 +10,7 @@
 //  - One receive and any number of sends may be pending. Sends leave in order; the queue is bounded
 //    (kMaxQueuedBytes): a peer that does not read ends the stream.
 //  - Stamps: `received` is the monotonic instant at which the kernel had the message's last byte,
-//  by
-//    the kernel's stamp (SO_TIMESTAMPING), else when it was read. Transmit stamps likewise.
+//    by the kernel's stamp (SO_TIMESTAMPING), else when it was read. Transmit stamps likewise.
 //  - All failures throw StreamError with one line for the user; `kind` is its reason.
 //  - One thread.
 //
@@ -25,6 +24,7 @@
 #define SIMBENCH_HARDWARE_NET_SECURE_STREAM_H_
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
 #include <memory>
@@ -88,7 +88,8 @@ class SecureStream {
   SecureStream& operator=(const SecureStream&) = delete;
 
   PeerName peer() const;
-  std::string peer_address() const;  // "10.0.0.3:47110", for messages
+  std::string peer_address() const;         // "10.0.0.3:47110", for messages
+  boost::asio::ip::address remote() const;  // unspecified for a peer that was gone at once
   // A key derived from the handshake, the same on both sides, for the datagrams of this pair
   // (peer_network.h). `purpose` separates uses.
   std::array<unsigned char, SecretKey::kBytes> derived_key(std::uint64_t purpose) const;

@@ -239,17 +239,6 @@ void check_cameras(const Rig& rig, const Scenario& scenario) {
 
 }  // namespace
 
-std::size_t Rig::cameras() const {
-  std::size_t count = 0;
-  for (const RigHost& host : hosts) count += host.cameras.size();
-  return count;
-}
-
-bool Rig::loopback_only() const {
-  return std::all_of(hosts.begin(), hosts.end(),
-                     [](const RigHost& host) { return is_loopback(host.address); });
-}
-
 Rig load_rig(const std::string& path) { return load_rig_text(read_rig_text(path), path); }
 
 Rig load_rig_text(const std::string& text, const std::string& path) {

@@ -68,10 +68,6 @@ struct Rig {
   std::string file;  // as the user named it, for messages
   std::vector<RigHost> hosts;
   std::optional<RigTrigger> trigger;
-
-  std::size_t cameras() const;
-  // All addresses are this machine's own loopback.
-  bool loopback_only() const;
 };
 
 Rig load_rig(const std::string& path);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "hardware/net/notice.h"
 #include "tests/hardware/net/networks.h"
 
 namespace simbench::hardware {
@@ -120,7 +121,7 @@ TEST_P(BothTransports, AFullQueueLosesItsOldest) {
   Networks hosts(2);
   ASSERT_TRUE(hosts.connect());
   constexpr std::size_t kMore = 5;
-  for (std::size_t i = 0; i < PeerNetwork::kChannelQueue + kMore; ++i) {
+  for (std::size_t i = 0; i < Inbox::kMaxMessages + kMore; ++i) {
     hosts.send(0, 1, GetParam(), std::to_string(i));
     // Datagrams: no more in the kernel than it keeps.
     if (i % 16 == 0) hosts.context.poll();
