@@ -1,6 +1,6 @@
 // A text as one word of a command for /bin/sh.
 //
-//   std::system(("rm " + shell_quoted(path)).c_str());
+//   shell_quoted("it's");
 #ifndef SIMBENCH_HARDWARE_SHELL_QUOTED_H_
 #define SIMBENCH_HARDWARE_SHELL_QUOTED_H_
 
