@@ -28,8 +28,8 @@ inline evaluation::SeedScore seed_score(std::uint64_t seed) {
   return score;
 }
 
-// Two pipelines over two seeds: one with a published value and everything there is, one without.
-inline evaluation::Results sample_results() {
+// A pipeline with a published value and everything there is.
+inline evaluation::Row full_row() {
   evaluation::Row both;
   both.pipeline = "yoon2021_both";
   both.host_sync = "yoon2021_both";
@@ -67,6 +67,11 @@ inline evaluation::Results sample_results() {
                                                    .amd_percentile = {50, 1.25, 98.75},
                                                    .rmdv_percentile = {100, 15.75, 100}};
   both.seeds = {seed_score(1), seed_score(2)};
+  return both;
+}
+
+// A pipeline that is not synchronised and gathers nothing.
+inline evaluation::Row bare_row() {
   evaluation::Row none;
   none.pipeline = "free_running";
   none.host_sync = "free_running";
@@ -86,12 +91,16 @@ inline evaluation::Results sample_results() {
   none.set_amd_ms = no_series();
   none.set_absolute_error_ms = no_series();
   none.emission_latency_ms = no_series();
+  return none;
+}
 
+// Both over two seeds.
+inline evaluation::Results sample_results() {
   evaluation::Results results;
   results.scenario = "sample";
   results.first_seed = 1;
   results.seed_count = 2;
-  results.rows = {both, none};
+  results.rows = {full_row(), bare_row()};
   results.claims = {{.id = "C1", .text = "none is worst", .holds_fraction = 0.5, .needs = ""},
                     {.id = "C4",
                      .text = "lower at 45 than at 15 FPS",
