@@ -1,16 +1,15 @@
-# simbench_folder_library(NAME [RUNS_ONCE | HOT] [PARSES] [PRECOMPILE header...] [LINK target...])
+# simbench_folder_library(NAME [RUNS_ONCE] [PARSES] [PRECOMPILE header...] [LINK target...])
 #
 # Makes the static library simbench_NAME from every .cc file below the calling folder, links it
 # publicly to the given targets, lets includes be written from the root of the project, and installs
 # it with its headers.
 #
-# RUNS_ONCE: code in which no run spends its time. It is optimised a little in Release.
-# HOT: code in which tests spend their time. It is optimised a little under the sanitizers, all other
-# code not at all: they find no less in it, and it compiles in a third of the time.
+# RUNS_ONCE: code in which no run spends its time. It is optimised a little in Release, and not at
+# all under the sanitizers, which find no less in it.
 # PARSES: code that fuzzers watch.
 # PRECOMPILE: headers that most files of the folder include (cmake/fast_build.cmake has the rest).
 function(simbench_folder_library name)
-  cmake_parse_arguments(arg "RUNS_ONCE;HOT;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
+  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/main\\.cc$")
   add_library(simbench_${name} STATIC ${sources})
@@ -21,7 +20,7 @@ function(simbench_folder_library name)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/simbench>)
   target_link_libraries(simbench_${name} PUBLIC simbench_flags ${arg_LINK})
   set(options "")
-  if(SIMBENCH_SANITIZE AND NOT arg_HOT)
+  if(arg_RUNS_ONCE AND SIMBENCH_SANITIZE)
     list(APPEND options -O0)
   elseif(arg_RUNS_ONCE AND CMAKE_BUILD_TYPE STREQUAL "Release")
     list(APPEND options -O1)

@@ -310,9 +310,13 @@ Task<void> RigSession::capture() {
   if (hosts_left() == 0) throw RecordingFailed("no host was left at the end of the capture");
 }
 
-// After a failure the trigger may still be on.
+// After a failure the trigger may still be on. Who has pressed Ctrl-C is not prompted again.
 Task<void> RigSession::leave_trigger_off() {
   if (!trigger_.is_on()) co_return;
+  if (rig_.trigger->manual) {
+    note("the trigger is still on: switch it off");
+    co_return;
+  }
   try {
     co_await trigger_.turn(false);
   } catch (const TriggerError& error) {

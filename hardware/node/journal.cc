@@ -138,7 +138,8 @@ void Journal::flush() {
   const std::size_t done = file_.write_all(batch);
   if (done < batch.size()) {
     const int error = errno;
-    fail(error, std::string_view(batch).substr(0, done).rfind('\n') + 1, batch);
+    const std::string_view written(batch.data(), done);
+    fail(error, written.rfind('\n') + 1, batch);
     return;
   }
   size_ += batch.size();

@@ -193,11 +193,13 @@ std::string words_in(const std::string& file) {
 }
 
 // Records until the capture has frames, then cancels; the lines of progress.
-std::vector<std::string> interrupted(const TestRig& nodes, const Rig& rig) {
+std::vector<std::string> interrupted(const TestRig& nodes, const Rig& rig,
+                                     std::function<bool(const std::string&)> prompt = {}) {
   const scenarios::Scenario scenario = small_scenario({{"/timeline/frames", "400"}});
   std::vector<std::string> progress;
   RigSourceSettings settings;
   settings.progress = [&](const std::string& line) { progress.push_back(line); };
+  settings.prompt = std::move(prompt);
   settings.cancelled = [&] { return nodes.frames_delivered(0) > 5; };
   RigSource source(rig, SecretKey(), scenario, settings);
   KeptRecording kept;
@@ -213,6 +215,19 @@ TEST(RigSource, AnInterruptSwitchesTheTriggerOff) {
   const std::vector<std::string> progress = interrupted(nodes, rig);
   EXPECT_THAT(progress, Not(Contains(HasSubstr("trigger off"))));
   EXPECT_EQ(words_in(folder / "trigger"), "off on off");
+}
+
+TEST(RigSource, AnInterruptDoesNotPromptAgain) {
+  const TestRig nodes({0, 0});
+  Rig rig = nodes.rig();
+  rig.trigger = RigTrigger{.manual = true, .on_command = {}, .off_command = {}};
+  std::vector<std::string> prompts;
+  const std::vector<std::string> progress = interrupted(nodes, rig, [&](const std::string& text) {
+    prompts.push_back(text);
+    return true;
+  });
+  EXPECT_THAT(prompts, ElementsAre("Switch the trigger off now", "Switch the trigger on now"));
+  EXPECT_THAT(progress, Contains(HasSubstr("the trigger is still on: switch it off")));
 }
 
 TEST(RigSource, ATriggerThatStaysOnAfterAnInterruptIsANote) {
