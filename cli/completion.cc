@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command_table.h"
+#include "hardware/shell_quoted.h"
 
 namespace simbench::cli {
 namespace {
@@ -216,10 +217,6 @@ else
 fi
 )zsh";
 
-std::string quoted_for_zsh(const std::string& text) {
-  return fmt::format("'{}'", replaced(text, "'", "'\\''"));
-}
-
 // Escapes text within the brackets of an option's explanation, and between colons.
 std::string escaped(std::string text) {
   text = replaced(std::move(text), "\\", "\\\\");
@@ -241,7 +238,7 @@ std::string option_specs(const OptionEntry& option) {
     const bool value = option.value != ValueKind::kNone;
     const std::string joined = value && name.starts_with("--") ? name + "=" : name;
     text += fmt::format(
-        "  {}\n", quoted_for_zsh(fmt::format(
+        "  {}\n", hardware::shell_quoted(fmt::format(
                       "{}{}[{}]{}", excluded, joined, escaped(option.text),
                       value ? fmt::format(":{}:{}", escaped(option.value_name), action(option))
                             : std::string())));
@@ -253,9 +250,9 @@ std::string specs(const std::string& name, const CommandEntry& command) {
   std::string text = fmt::format("_simbench_{}=(\n", replaced(name, "-", "_"));
   for (const OptionEntry& option : command.options) text += option_specs(option);
   for (const OptionEntry& argument : command.arguments) {
-    text += fmt::format(
-        "  {}\n", quoted_for_zsh(fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
-                                             escaped(argument.value_name), action(argument))));
+    text += fmt::format("  {}\n", hardware::shell_quoted(
+                                      fmt::format("{}:{}:{}", argument.repeatable ? "*" : "",
+                                                  escaped(argument.value_name), action(argument))));
   }
   return text + ")\n";
 }
@@ -265,8 +262,8 @@ std::string specs(const std::string& name, const CommandEntry& command) {
 std::string zsh_completion(const CommandTable& table) {
   std::string text = fmt::format("{}_simbench_commands=(\n", kZshHead);
   for (const CommandEntry& command : table.commands) {
-    text += fmt::format("  {}\n",
-                        quoted_for_zsh(fmt::format("{}:{}", command.name, escaped(command.text))));
+    text += fmt::format("  {}\n", hardware::shell_quoted(
+                                      fmt::format("{}:{}", command.name, escaped(command.text))));
   }
   text += ")\n" + specs("program_options", table.program);
   for (const CommandEntry& command : table.commands) text += specs(command.name, command);

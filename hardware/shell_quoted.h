@@ -1,4 +1,4 @@
-// A text as one word of a command for /bin/sh.
+// A text as one word of a command for /bin/sh, and for the shells that quote like it.
 //
 //   shell_quoted("it's");
 #ifndef SIMBENCH_HARDWARE_SHELL_QUOTED_H_

@@ -1,12 +1,8 @@
 #include "recording/recording_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,8 +13,10 @@
 #include <variant>
 
 #include "algorithms/ports/assert.h"
+#include "recording/append_file.h"
 #include "recording/event.h"
 #include "recording/event_text.h"
+#include "recording/line_reader.h"
 #include "recording/recording_manifest.h"
 
 namespace simbench {
@@ -29,8 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kFlushInterval{100};
 constexpr int kFlushEvents = 1000;
-constexpr std::size_t kBlock = 64U << 10U;
-constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million hosts fit
 
 // Whether an event names a camera or a host that the rig does not have.
 struct NumbersCheck {
@@ -57,38 +53,6 @@ struct NumbersCheck {
     if (number < count) return;
     throw TextFieldError(fmt::format("{}: found {}, allowed: 0 to {}", name, number, count - 1));
   }
-};
-
-[[noreturn]] void fail(const std::string& path, int reason) {
-  throw RecordingFolderError(fmt::format("{}: cannot be read: {}", path, std::strerror(reason)));
-}
-
-// Reads a file line by line. A last line without its line end is no line: its writer died (torn()).
-class LineReader {
- public:
-  explicit LineReader(std::string path);
-  ~LineReader();
-  LineReader(const LineReader&) = delete;
-  LineReader& operator=(const LineReader&) = delete;
-
-  // Valid until the next call; nothing at the end.
-  std::optional<std::string_view> next();
-  // After the last line: whether bytes without a line end follow.
-  bool torn() const { return at_end_ && begin_ < end_; }
-  // "FILE:LINE" of the line that was read last, or of the torn one.
-  std::string place() const;
-
- private:
-  // False at the end of the file.
-  bool read_more();
-
-  std::string path_;
-  std::string buffer_;
-  std::size_t begin_ = 0;  // of the unread bytes
-  std::size_t end_ = 0;
-  std::size_t line_ = 0;
-  int file_ = -1;
-  bool at_end_ = false;
 };
 
 // One of a capture's two files. `capture` must outlive it.
@@ -245,57 +209,6 @@ bool CaptureReader::next() {
   expected_order_ = current_->order() + 1;
   return true;
 }
-
-LineReader::LineReader(std::string path) : path_(std::move(path)), buffer_(kBlock, '\0') {
-  // Not O_RDONLY alone: opening a pipe in the place of the file would wait for its other end.
-  file_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file_ < 0) fail(path_, errno);
-}
-
-LineReader::~LineReader() {
-  if (file_ >= 0) close(file_);
-}
-
-std::optional<std::string_view> LineReader::next() {
-  std::size_t searched = begin_;
-  while (true) {
-    const std::size_t stop = std::string_view(buffer_.data(), end_).find('\n', searched);
-    if (stop != std::string_view::npos) {
-      const std::string_view line(buffer_.data() + begin_, stop - begin_);
-      begin_ = stop + 1;
-      ++line_;
-      return line;
-    }
-    const std::size_t length = end_ - begin_;
-    if (length > kLongestLine) {
-      ++line_;
-      throw RecordingFolderError(
-          fmt::format("{}: longer than {} bytes, no line of a recording", place(), kLongestLine));
-    }
-    if (at_end_ || !read_more()) return std::nullopt;
-    searched = begin_ + length;
-  }
-}
-
-bool LineReader::read_more() {
-  if (begin_ > 0) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-  }
-  if (end_ == buffer_.size()) buffer_.resize(buffer_.size() * 2);
-  ssize_t size = -1;
-  do {
-    size = read(file_, buffer_.data() + end_, buffer_.size() - end_);
-  } while (size < 0 && errno == EINTR);
-  if (size < 0) fail(path_, errno);
-  end_ += static_cast<std::size_t>(size);
-  at_end_ = size == 0;
-  if (torn()) ++line_;
-  return !at_end_;
-}
-
-std::string LineReader::place() const { return fmt::format("{}:{}", path_, line_); }
 
 class RecordedSource final : public RecordingSource {
  public:

@@ -1,4 +1,4 @@
-// manifest.json of a recording folder, the places of its other files, and how files are written.
+// manifest.json of a recording folder, and the places of its other files.
 //
 // Whatever the bytes of a manifest are, parsing returns numbers within bounds (cameras on hosts
 // that exist, a frame rate, sizes that a rig can have) or throws RecordingFolderError, "FILE:
@@ -41,37 +41,6 @@ std::string capture_folder(const std::string& folder, const std::string& pipelin
                            std::uint64_t seed);
 inline constexpr const char* kFramesFile = "/frames.csv";
 inline constexpr const char* kEventsFile = "/events.csv";
-
-// A file of the folder that is only written to at its end, through a buffer, straight to the
-// kernel: what flush() has written outlives the process. Otherwise it flushes only at destruction,
-// where errors are dropped.
-//
-// Errors: RecordingFolderError with the file and the reason (a full disk). After one, the file
-// takes nothing more: a line that was cut stays the last.
-//
-//   AppendFile file("DIR/frames.csv");   // must not be there yet
-//   file.buffer() += "a line\n";
-//   file.flush();
-class AppendFile {
- public:
-  explicit AppendFile(std::string path);
-  ~AppendFile();
-  AppendFile(const AppendFile&) = delete;
-  AppendFile& operator=(const AppendFile&) = delete;
-
-  std::string& buffer() { return buffer_; }
-  void flush();
-  // Flushes, and reports what only closing reveals.
-  void close();
-
- private:
-  [[noreturn]] void fail(int reason);
-
-  std::string path_;
-  std::string buffer_;
-  int file_ = -1;
-  bool failed_ = false;
-};
 
 }  // namespace simbench
 

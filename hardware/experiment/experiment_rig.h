@@ -22,47 +22,20 @@
 #ifndef SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
 #define SIMBENCH_HARDWARE_EXPERIMENT_EXPERIMENT_RIG_H_
 
-#include <stdlib.h>
-
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "hardware/clock/monotonic_time.h"
 #include "hardware/experiment/child_process.h"
+#include "hardware/experiment/temporary_folder.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::hardware {
-
-// A folder of its own among the system's temporary files, removed with everything in it.
-class TemporaryFolder {
- public:
-  // Readable by its owner only. Throws std::runtime_error.
-  TemporaryFolder() : path_(std::filesystem::temp_directory_path() / "simbench-XXXXXX") {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw std::runtime_error(path_ + ": a temporary folder cannot be made here");
-    }
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 // How a node's clock starts.
 struct ClockStart {
