@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hardware/net/peer_network.h"
@@ -16,7 +17,9 @@
 namespace simbench::hardware {
 
 struct Networks {
-  explicit Networks(std::size_t hosts) : networks(hosts) {
+  // `hosts_address`: of every host, as a rig file states it.
+  explicit Networks(std::size_t hosts, std::string hosts_address = "127.0.0.1")
+      : address(std::move(hosts_address)), networks(hosts) {
     for (PeerId host = 0; host < hosts; ++host) start(host);
   }
 
@@ -29,7 +32,7 @@ struct Networks {
     for (PeerId peer = 0; peer < networks.size(); ++peer) {
       const bool known = peer < host && networks[peer];
       settings.peers.push_back(
-          {"127.0.0.1", known ? networks[peer]->port() : static_cast<std::uint16_t>(0)});
+          {address, known ? networks[peer]->port() : static_cast<std::uint16_t>(0)});
     }
     networks[host] = std::make_unique<PeerNetwork>(context, settings, clock);
     networks[host]->start();
@@ -68,6 +71,7 @@ struct Networks {
   }
   const NetworkStatistics& statistics(PeerId host) const { return networks[host]->statistics(); }
 
+  std::string address;
   boost::asio::io_context context;
   PlainClock clock;
   std::vector<std::unique_ptr<PeerNetwork>> networks;

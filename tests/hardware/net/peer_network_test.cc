@@ -39,6 +39,15 @@ TEST_P(BothTransports, CarryMessagesBetweenAllHosts) {
   }
 }
 
+TEST_P(BothTransports, ReachAHostByItsName) {
+  Networks hosts(2, "localhost");
+  ASSERT_TRUE(hosts.connect());
+  for (PeerId from = 0; from < 2; ++from) {
+    hosts.send(from, 1 - from, GetParam(), "by name");
+    EXPECT_EQ(hosts.text(1 - from, from, GetParam()), "by name");
+  }
+}
+
 TEST_P(BothTransports, KeepTheBoundsOfMessages) {
   Networks hosts(2);
   ASSERT_TRUE(hosts.connect());
