@@ -138,7 +138,8 @@ Table comparison_table(const Comparison& comparison) {
                {"B - A\n95 % interval"},
                {"B / A\nof means"},
                {"B / A\n95 % interval"},
-               {"B is", Align::kLeft}});
+               {"B is", Align::kLeft}},
+              2);
   const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline

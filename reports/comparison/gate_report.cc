@@ -108,7 +108,8 @@ std::string changes(const GateReport& report) {
                {"change"},
                {"allowed"},
                {"seeds\nchanged"},
-               {"outcome", Align::kLeft}});
+               {"outcome", Align::kLeft}},
+              2);
   bool is_empty = true;
   for (const GateCheck& check : report.checks) {
     if (!is_shown(report, check)) continue;

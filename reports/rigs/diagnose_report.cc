@@ -96,7 +96,8 @@ std::string cameras_text(const Diagnosis& diagnosis) {
                {"intervals\nsd ms"},
                {"lost\nframes"},
                {"skipped\npulses"},
-               {"jumps"}});
+               {"jumps"}},
+              3);
   for (const CameraDiagnosis& camera : diagnosis.cameras) {
     const evaluation::StreamFacts& facts = camera.facts;
     const evaluation::Standing& standing = camera.standing;

@@ -239,11 +239,12 @@ std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>
 Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   const std::vector<const Metric*> metrics = evaluation::table_metrics(&TablePlaces::response);
   std::vector<Column> columns = point_columns(plan);
+  const std::size_t keys = columns.size();
   for (const Metric* metric : metrics) {
     columns.push_back({metric->heading});
     if (metric == metrics.front()) columns.push_back({metric->band_heading});
   }
-  Table table(std::move(columns));
+  Table table(std::move(columns), keys);
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (const Metric* metric : metrics) {
@@ -263,8 +264,9 @@ Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& ro
   std::size_t hosts = 0;
   for (const ResponseRow& row : rows) hosts = std::max(hosts, row.hosts.size());
   std::vector<Column> columns = point_columns(plan);
+  const std::size_t keys = columns.size();
   for (std::size_t host = 1; host < hosts; ++host) columns.push_back({fmt::format("{}", host)});
-  Table table(std::move(columns));
+  Table table(std::move(columns), keys);
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (std::size_t host = 1; host < hosts; ++host) {
@@ -280,6 +282,7 @@ Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& ro
 
 Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   std::vector<Column> columns = point_columns(plan);
+  const std::size_t keys = columns.size();
   columns.push_back({"AMD\nms"});
   std::vector<std::int64_t> counts;
   for (const std::int64_t count : kSeedCounts) {
@@ -291,7 +294,7 @@ Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& 
   for (const double wanted : kWanted) {
     columns.push_back({fmt::format("seeds for\n+-{:.0f} %", wanted * 100)});
   }
-  Table table(std::move(columns));
+  Table table(std::move(columns), keys);
   for (const ResponseRow& row : rows) {
     const std::vector<double>& values = row.of("amd_ms").values;
     std::vector<std::string> cells = point_cells(plan, row);

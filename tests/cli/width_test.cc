@@ -49,6 +49,42 @@ TEST_F(Width, TablesAndProseFit) {
   }
 }
 
+// The headers of a table's parts, the last line of each: what stands above the rule.
+std::vector<std::string> headers_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> found;
+  std::string above;
+  for (std::string line; std::getline(in, line); above = line) {
+    if (line.starts_with("--")) found.push_back(above);
+  }
+  return found;
+}
+
+TEST_F(Width, EveryPartOfATableSaysWhatItsRowsAreOf) {
+  const ProgramOptions narrow = {.environment = {"COLUMNS=80"}};
+  const ProgramResult swept =
+      run({"sweep", "--scenario", "3cam_1host_30fps", "--pipelines", "raw_arrival,genlock",
+           "--seeds", "2", "--set", "/timeline/frames=8", "--sweep",
+           "/usb/delivery_jitter_transfers=0,0.2", "--output", "swept"},
+          narrow);
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  ASSERT_GT(headers_of(swept.out).size(), 1U) << swept.out;
+  for (const std::string& header : headers_of(swept.out)) {
+    EXPECT_THAT(header, testing::MatchesRegex("/delivery_jitter_transfers +pipeline .*"));
+  }
+
+  ASSERT_EQ(run({"run", "--scenario", "3cam_1host_30fps", "--pipelines", "raw_arrival,genlock",
+                 "--seeds", "8", "--set", "/timeline/frames=8", "--output", "a"})
+                .status,
+            0);
+  const ProgramResult compared = run({"compare", "a", "--with-baseline", "raw_arrival"}, narrow);
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  ASSERT_GT(headers_of(compared.out).size(), 1U) << compared.out;
+  for (const std::string& header : headers_of(compared.out)) {
+    EXPECT_THAT(header, testing::MatchesRegex("pipeline +metric .*"));
+  }
+}
+
 TEST_F(Width, AFileOrAPipeIsAsWideAsNeedBe) {
   for (const std::vector<std::string>& command : commands()) {
     if (command.front() == "run") continue;  // says how long it took
