@@ -1,0 +1,240 @@
+#include "tests/robustness/inputs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "scenarios/loader.h"
+#include "tests/robustness/child.h"
+#include "tests/robustness/mutation.h"
+#include "tests/scratch_folder.h"
+
+namespace simbench::robustness {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGood = "good";    // the examples, which stay as they are
+constexpr const char* kTried = "tried";  // their copies, which are damaged
+constexpr const char* kWritten = "written";
+
+constexpr const char* kRig = R"({
+  "schema_version": 1,
+  "name": "studio",
+  "hosts": [
+    {"name": "host0", "address": "127.0.0.1", "port": 1,
+     "cameras": [{"serial": "0"}, {"serial": "1"},
+                 {"serial": "2", "recording": "left.csv", "recorded_camera": "c"}]}
+  ],
+  "trigger": "manual"
+}
+)";
+
+// The first lines of a text.
+std::string head(const std::string& text, int lines) {
+  std::size_t end = 0;
+  for (int i = 0; i < lines && end != std::string::npos; ++i) end = text.find('\n', end + 1);
+  return end == std::string::npos ? text : text.substr(0, end + 1);
+}
+
+}  // namespace
+
+Inputs::Inputs(std::string folder) : folder_(std::move(folder)) {
+  fs::create_directories(fs::path(folder_) / kGood);
+  scenarios::load_scenario("3cam_1host_30fps");  // compiles the schema, for all children
+  add_files();
+  add_archives();
+  fs::copy(fs::path(folder_) / kGood, fs::path(folder_) / kTried, fs::copy_options::recursive);
+  fs::create_directory(fs::path(folder_) / kWritten);
+  add_arguments();
+}
+
+void Inputs::copy(const std::string& from, const std::string& to) const {
+  const fs::path target = fs::path(folder_) / kGood / to;
+  fs::create_directories(target.parent_path());
+  fs::copy_file(fs::path(SIMBENCH_SOURCE_DIR) / from, target);
+}
+
+void Inputs::make(const std::vector<std::string>& arguments) const {
+  Call made{.arguments = {"simbench"}};
+  for (std::string argument : arguments) {
+    if (argument.starts_with('@')) argument = folder_ + "/" + kGood + argument.substr(1);
+    made.arguments.push_back(argument);
+  }
+  const Ending ending = call(made);
+  if (ending.status != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: {}", fmt::join(made.arguments, " "), ending.messages));
+  }
+}
+
+std::vector<std::string> Inputs::files_of(const std::string& below) const {
+  const fs::path good = fs::path(folder_) / kGood;
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(good / below)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(good));
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty()) throw std::runtime_error("no examples in " + below);
+  return files;
+}
+
+// Files that people write or that other programs have written.
+void Inputs::add_files() {
+  for (const auto& entry : fs::directory_iterator(fs::path(SIMBENCH_SOURCE_DIR) / "scenarios")) {
+    const std::string name = entry.path().filename();
+    if (!name.ends_with(".json") || name == "schema.json") continue;
+    copy("scenarios/" + name, "scenario/" + name);
+  }
+  add({"scenario", files_of("scenario"), {{"validate", "%"}, {"describe", "%"}}});
+
+  copy("tests/data/ibl/_iblrig_bodyCamera.timestamps.ssv", "ibl/_iblrig_bodyCamera.timestamps.ssv");
+  copy("tests/data/ibl/_iblrig_leftCamera.frameData.bin", "ibl/_iblrig_leftCamera.frameData.bin");
+  for (const std::string& file : files_of("ibl")) {
+    const std::string path = folder_ + "/" + kGood + "/" + file;
+    // Whole lines of text and whole rows of 32 bytes.
+    const std::string text = content(path);
+    put(path, file.ends_with(".bin") ? text.substr(0, 3200) : head(text, 100));
+  }
+  add({"ibl", files_of("ibl"), {{"convert-ibl", "%"}}});
+
+  fs::create_directories(fs::path(folder_) / kGood / "rig");
+  put(folder_ + "/" + kGood + "/rig/rig.json", kRig);
+  add({"rig",
+       files_of("rig"),
+       {{"record", "--backend", "hardware", "--scenario", "3cam_1host_30fps", "--pipelines",
+         "genlock", "--rig", "%", "--output", "@written/recording"}}});
+}
+
+// Folders that simbench has written.
+void Inputs::add_archives() {
+  const std::vector<std::string> world = {
+      "--scenario", "3cam_1host_30fps",         "--set",       "/timeline/frames=20",
+      "--set",      "/timeline/warm_up_ms=100", "--pipelines", "genlock,regression_offline"};
+  const auto with_world = [&](std::vector<std::string> first) {
+    first.insert(first.end(), world.begin(), world.end());
+    return first;
+  };
+  make(with_world({"record", "--output", "@/recording"}));
+  add({"recording",
+       files_of("recording"),
+       {{"replay", "@tried/recording", "--format", "json"},
+        {"fit", "@tried/recording", "--output", "@written/fit.json"}}});
+
+  fs::create_directories(fs::path(folder_) / kGood / "csv");
+  for (int camera = 0; camera < 2; ++camera) {
+    std::string text = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n";
+    for (int frame = 0; frame < 40; ++frame) {
+      const double late = 0.1 * ((frame * 7 + camera * 3) % 5);
+      text += fmt::format("Depth,0,{},{:.3f},{:.3f}\n", frame + 1, 1000 * camera + 33.333 * frame,
+                          5 + 33.334 * frame + late);
+    }
+    put(fmt::format("{}/{}/csv/camera{}.csv", folder_, kGood, camera), text);
+  }
+  const std::string first = "@tried/csv/camera0.csv";
+  const std::string second = "@tried/csv/camera1.csv";
+  add({"csv",
+       files_of("csv"),
+       {{"replay", first, second, "--format", "json"},
+        {"replay", first, second},
+        {"diagnose", first, second},
+        {"fit", first, second, "--output", "@written/fit.json"}}});
+
+  make(with_world({"run", "--seeds", "2", "--jobs", "1", "--output", "@/archive"}));
+  add({"archive",
+       files_of("archive"),
+       {{"compare", "@tried/archive"},
+        {"compare", "@tried/archive", "@good/archive", "--format", "json"},
+        {"report", "@tried/archive", "--budget-seeds", "0", "--seeds-in-detail", "1", "--output",
+         "@written/report.html"},
+        {"figure", "distributions", "@tried/archive", "--output", "@written/figure.csv"}}});
+  make({"gate", "@/archive", "--save-baseline", "@/baseline.json"});
+  add({"baseline",
+       {"baseline.json"},
+       {{"gate", "@good/archive", "--baseline", "%"},
+        {"gate", "@good/archive", "--baseline", "%", "--mode", "statistical", "--format",
+         "junit"}}});
+
+  const std::vector<std::string> sweep = with_world(
+      {"sweep", "--sweep", "/trigger/rate_hz=15,30", "--seeds", "1", "--jobs", "1", "--output"});
+  std::vector<std::string> made = sweep;
+  made.insert(std::find(made.begin(), made.end(), "--output") + 1, "@/sweep");
+  make(made);
+  std::vector<std::string> continued = sweep;
+  continued.insert(std::find(continued.begin(), continued.end(), "--output") + 1, "@tried/sweep");
+  add({"sweep", files_of("sweep"), {continued}});
+}
+
+void Inputs::add_arguments() {
+  add({"arguments",
+       {},
+       {{"describe", "18cam_6host_45fps", "--set", "/trigger/rate_hz=30"},
+        {"describe", "18cam_6host_45fps_lan", "--set", "/algorithms/ntp/min_poll=4"},
+        {"describe", "3cam_1host_30fps", "--set", "/cameras/streams/0/width=640"},
+        {"describe", "3cam_1host_30fps", "--set", "/faults=[{\"kind\": \"clock_step\"}]"},
+        {"run", "--scenario", "3cam_1host_30fps", "--seeds", "1", "--jobs", "1", "--set",
+         "/timeline/frames=10", "--format", "csv", "--pipelines", "genlock,oracle"},
+        {"sweep", "--scenario", "3cam_1host_30fps", "--sweep", "/trigger/rate_hz=15:30:5", "--set",
+         "/timeline/frames=5", "--seeds", "1", "--jobs", "1"},
+        {"trace", "--scenario", "3cam_1host_30fps", "--set", "/timeline/frames=5", "--pipeline",
+         "genlock", "--seed", "3", "--format", "csv", "--output", "@written/trace.csv"},
+        {"diagnose", "@good/csv/camera0.csv", "@good/csv/camera1.csv", "--rate-hz", "30"},
+        {"compare", "@good/archive", "--with-baseline", "genlock", "--smallest-effect", "5"},
+        {"gate", "@good/archive", "--baseline", "@good/baseline.json", "--mode", "exact"},
+        {"figure", "distributions", "@good/archive", "--output", "@written/figure.csv"},
+        {"list", "pipelines", "--format", "json"},
+        {"completion", "bash"},
+        {"manual", "run"}}});
+}
+
+std::vector<std::string> Inputs::resolved(std::vector<std::string> command,
+                                          const std::string& file) const {
+  for (std::string& argument : command) {
+    if (argument == "%") argument = folder_ + "/" + kTried + "/" + file;
+    if (argument.starts_with('@')) argument = folder_ + "/" + argument.substr(1);
+  }
+  command.insert(command.begin(), "simbench");
+  return command;
+}
+
+Attempt Inputs::undamaged(Random& random) const {
+  const Kind& kind = kinds_[random.below(kinds_.size())];
+  const std::string file = kind.files.empty() ? "" : random.of(kind.files);
+  return {kind.name, resolved(random.of(kind.commands), file), "", ""};
+}
+
+Attempt Inputs::next(Random& random) {
+  const Kind& kind = kinds_[random.below(kinds_.size())];
+  Attempt attempt{.kind = kind.name, .arguments = {}, .file = {}, .input = {}};
+  if (kind.files.empty()) {
+    attempt.arguments = resolved(random.of(kind.commands), "");
+    std::string& damaged = attempt.arguments[1 + random.below(attempt.arguments.size() - 1)];
+    // What is written stays in the folder.
+    if (damaged.find(kWritten) == std::string::npos) damaged = mutated(damaged, random);
+    attempt.input = damaged;
+    return attempt;
+  }
+  attempt.file = random.of(kind.files);
+  attempt.arguments = resolved(random.of(kind.commands), attempt.file);
+  attempt.input = mutated(content(folder_ + "/" + kGood + "/" + attempt.file), random);
+  put(folder_ + "/" + kTried + "/" + attempt.file, attempt.input);
+  return attempt;
+}
+
+void Inputs::restore(const Attempt& attempt) {
+  const fs::path folder = folder_;
+  for (const auto& entry : fs::directory_iterator(folder / kWritten)) fs::remove_all(entry.path());
+  if (attempt.kind == "sweep") {  // which its command continues
+    fs::remove_all(folder / kTried / "sweep");
+    fs::copy(folder / kGood / "sweep", folder / kTried / "sweep", fs::copy_options::recursive);
+  } else if (!attempt.file.empty()) {
+    fs::copy_file(folder / kGood / attempt.file, folder / kTried / attempt.file,
+                  fs::copy_options::overwrite_existing);
+  }
+}
+
+}  // namespace simbench::robustness
