@@ -53,8 +53,6 @@ struct SeedScore : MetricValues<double> {
 struct PublishedComparison {
   double amd_ms = 0;
   double rmdv_ms = 0;
-  bool amd_inside = false;  // between the 5 % and the 95 % quantile of the seeds
-  bool rmdv_inside = false;
   bool rmdv_attainable = false;  // rmdv_ms <= bound * amd_ms, the bound of eq. (4)
   Percentile amd_percentile;
   Percentile rmdv_percentile;

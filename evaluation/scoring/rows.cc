@@ -130,8 +130,6 @@ PublishedComparison compare(const scenarios::Published& published, const Row& ro
   const double bound = rmdv_bound(setting.sources, setting.median);
   return {.amd_ms = published.amd_ms,
           .rmdv_ms = published.rmdv_ms,
-          .amd_inside = inside(published.amd_ms, row.amd_ms),
-          .rmdv_inside = inside(published.rmdv_ms, row.rmdv_ms),
           .rmdv_attainable = published.rmdv_ms <= bound * published.amd_ms,
           .amd_percentile = percentile_of(published.amd_ms, row.amd_ms.values),
           .rmdv_percentile = percentile_of(published.rmdv_ms, row.rmdv_ms.values)};

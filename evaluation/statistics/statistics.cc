@@ -153,6 +153,14 @@ Percentile percentile_of(double published, const std::vector<double>& values) {
   return {100 * share, 100 * low, 100 * high};
 }
 
+Placement placement_of(const Percentile& percentile) {
+  constexpr double kLeast = 5;
+  constexpr double kGreatest = 95;
+  if (percentile.low >= kLeast && percentile.high <= kGreatest) return Placement::kInside;
+  if (percentile.high < kLeast || percentile.low > kGreatest) return Placement::kOutside;
+  return Placement::kTooFewSeeds;
+}
+
 bool inside(double published, const Series& series) {
   return series.p05 <= published && published <= series.p95;
 }

@@ -79,6 +79,14 @@ struct Percentile {
 // interval as an estimate of the distribution's percentage.
 Percentile percentile_of(double published, const std::vector<double>& values);
 
+// Where a value lies in a distribution, as far as the seeds can tell: inside if the whole interval
+// of its percentile lies from 5 to 95 %, outside if all of it lies beyond. One side of all seeds
+// shows that with kFewestOutside seeds, the middle of them with four.
+enum class Placement : std::uint8_t { kInside, kOutside, kTooFewSeeds };
+inline constexpr std::int64_t kFewestOutside = 72;
+
+Placement placement_of(const Percentile& percentile);
+
 // Whether `published` lies between the 5 % and the 95 % quantile of the series.
 bool inside(double published, const Series& series);
 

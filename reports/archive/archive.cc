@@ -7,10 +7,10 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
+#include "recording/line_reader.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
 #include "reports/results/ground_truth_text.h"
@@ -107,8 +107,6 @@ std::optional<evaluation::PublishedComparison> published(const JsonNode& node) {
   if (node.is_null()) return std::nullopt;
   return evaluation::PublishedComparison{.amd_ms = node["amd_ms"].number(),
                                          .rmdv_ms = node["rmdv_ms"].number(),
-                                         .amd_inside = node["amd_inside"].flag(),
-                                         .rmdv_inside = node["rmdv_inside"].flag(),
                                          .rmdv_attainable = node["rmdv_attainable"].flag(),
                                          .amd_percentile = percentile(node, "amd_percentile"),
                                          .rmdv_percentile = percentile(node, "rmdv_percentile")};
@@ -236,12 +234,20 @@ using evaluation::SeedScore;
 
 constexpr std::size_t kCells = 5;  // of a line of either file
 
+LineReader lines_of_archive(const std::string& path) {
+  try {
+    return LineReader(path);
+  } catch (const LineError& error) {
+    throw scenarios::InputError(
+        fmt::format("{}; only the folder of an archive has it", error.what()));
+  }
+}
+
 // One of the archive's CSV files, line by line. The first cell may be quoted (RFC 4180).
 class CsvFile {
  public:
   CsvFile(const Archive& archive, const char* name, std::string_view header)
-      : path_((std::filesystem::path(archive.path) / name).string()), in_(path_) {
-    if (!in_) fail("cannot be read; only the folder of an archive has it");
+      : lines_(lines_of_archive((std::filesystem::path(archive.path) / name).string())) {
     if (!next() || line_ != header) fail(fmt::format("line 1 has to be '{}'", header));
   }
 
@@ -279,13 +285,20 @@ class CsvFile {
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw scenarios::InputError(fmt::format("{}:{}: {}", path_, number_, problem));
+    throw scenarios::InputError(fmt::format("{}: {}", lines_.place(), problem));
   }
 
  private:
   bool next() {
-    ++number_;
-    return static_cast<bool>(std::getline(in_, line_));
+    std::optional<std::string_view> line;
+    try {
+      line = lines_.next();
+    } catch (const LineError& error) {
+      throw scenarios::InputError(error.what());
+    }
+    if (!line && lines_.torn()) fail("found no end of the line; was the file cut short?");
+    line_ = line.value_or("");
+    return line.has_value();
   }
 
   // The first cell, without its quotes; leaves what follows the comma.
@@ -306,11 +319,9 @@ class CsvFile {
     return name;
   }
 
-  std::string path_;
-  std::ifstream in_;
-  std::string line_;
+  LineReader lines_;
+  std::string_view line_;
   std::string name_;
-  std::size_t number_ = 0;
   std::string_view cells_[kCells];
 };
 

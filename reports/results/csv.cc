@@ -57,14 +57,21 @@ std::vector<std::string> header() {
 
 std::string flag(bool value) { return value ? "1" : "0"; }
 
+// Empty with too few seeds to tell.
+std::string inside_flag(const evaluation::Percentile& percentile) {
+  const evaluation::Placement placement = evaluation::placement_of(percentile);
+  if (placement == evaluation::Placement::kTooFewSeeds) return "";
+  return flag(placement == evaluation::Placement::kInside);
+}
+
 std::vector<std::string> published_cells(const Row& row) {
   if (!row.published) return std::vector<std::string>(6);
   const evaluation::PublishedComparison& published = *row.published;
   return {csv_cell(published.amd_ms),
-          flag(published.amd_inside),
+          inside_flag(published.amd_percentile),
           csv_cell(published.amd_percentile.percent),
           csv_cell(published.rmdv_ms),
-          flag(published.rmdv_inside),
+          inside_flag(published.rmdv_percentile),
           flag(published.rmdv_attainable)};
 }
 

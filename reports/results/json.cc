@@ -7,14 +7,21 @@
 namespace simbench::reports {
 namespace {
 
+// Null with too few seeds to tell.
+Json inside_json(const evaluation::Percentile& percentile) {
+  const evaluation::Placement placement = evaluation::placement_of(percentile);
+  if (placement == evaluation::Placement::kTooFewSeeds) return nullptr;
+  return placement == evaluation::Placement::kInside;
+}
+
 Json published_json(const std::optional<evaluation::PublishedComparison>& published) {
   if (!published) return nullptr;
   const evaluation::Percentile& amd = published->amd_percentile;
   const evaluation::Percentile& rmdv = published->rmdv_percentile;
   return {{"amd_ms", published->amd_ms},
           {"rmdv_ms", published->rmdv_ms},
-          {"amd_inside", published->amd_inside},
-          {"rmdv_inside", published->rmdv_inside},
+          {"amd_inside", inside_json(amd)},
+          {"rmdv_inside", inside_json(rmdv)},
           {"rmdv_attainable", published->rmdv_attainable},
           {"amd_percentile", amd.percent},
           {"amd_percentile_interval", Json::array({amd.low, amd.high})},

@@ -15,7 +15,8 @@
 //              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
 //                needs pulses is null), "notes": [failures, "repetition 3: ..."],
-//              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside",
+//              "published": null or {"amd_ms", "rmdv_ms", "amd_inside", "rmdv_inside" (null: too
+//                few seeds to tell),
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],
 //    "claims": [{"id", "holds_fraction", "text", "needs"}],

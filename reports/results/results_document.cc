@@ -44,9 +44,7 @@ RowFields published_amd_fields() {
   return {published_field({"published\nAMD ms"},
                           [](const auto& known) { return number_text(known.amd_ms); }),
           published_field({"published\nAMD is", Align::kLeft},
-                          [](const auto& known) {
-                            return std::string(known.amd_inside ? "inside" : "outside");
-                          }),
+                          [](const auto& known) { return placement_text(known.amd_percentile); }),
           published_field({"at percentile\n[95 % interval]"},
                           [](const auto& known) { return percentile_text(known.amd_percentile); })};
 }
@@ -55,9 +53,7 @@ RowFields published_rmdv_fields() {
   return {published_field({"published\nRMDV ms"},
                           [](const auto& known) { return number_text(known.rmdv_ms); }),
           published_field({"published\nRMDV is", Align::kLeft}, [](const auto& known) {
-            return std::string(!known.rmdv_attainable ? "not attainable"
-                               : known.rmdv_inside    ? "inside"
-                                                      : "outside");
+            return known.rmdv_attainable ? placement_text(known.rmdv_percentile) : "not attainable";
           })};
 }
 
@@ -129,9 +125,12 @@ std::vector<std::string> results_legend(const Results& results) {
     lines.push_back(unverified);
   }
   if (any_published(results)) {
-    lines.emplace_back(
-        "published: the paper's one recording. inside: within the band. not attainable: under eq. "
-        "(4) no data have that RMDV with that AMD.");
+    lines.emplace_back(fmt::format(
+        "published: the paper's one recording. inside: the whole interval of its "
+        "percentile lies from 5 to 95 %; outside: all of it lies beyond; too few seeds: "
+        "neither (outside takes {} seeds). not attainable: under eq. (4) no data have "
+        "that RMDV with that AMD.",
+        evaluation::kFewestOutside));
   }
   if (gatherings_differ(results)) {
     const std::vector<std::string> sets = sets_legend(results);

@@ -36,6 +36,18 @@ std::string percentile_text(const evaluation::Percentile& percentile) {
                      percentile.high);
 }
 
+std::string placement_text(const evaluation::Percentile& percentile) {
+  switch (evaluation::placement_of(percentile)) {
+    case evaluation::Placement::kInside:
+      return "inside";
+    case evaluation::Placement::kOutside:
+      return "outside";
+    case evaluation::Placement::kTooFewSeeds:
+      return "too few seeds";
+  }
+  return "";
+}
+
 std::string count_text(std::int64_t count) {
   const std::string digits = std::to_string(count);
   const std::size_t sign = count < 0 ? 1 : 0;

@@ -23,6 +23,9 @@ std::string share_text(double share);
 // A percentile with its binomial interval: "33 % [18-51]".
 std::string percentile_text(const evaluation::Percentile& percentile);
 
+// "inside", "outside" or "too few seeds" of the published value at this percentile.
+std::string placement_text(const evaluation::Percentile& percentile);
+
 // A count with thousands set apart: "1 234 567".
 std::string count_text(std::int64_t count);
 

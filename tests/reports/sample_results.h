@@ -61,11 +61,9 @@ inline evaluation::Row full_row() {
   both.unsynchronised_hosts = 1;
   both.published = evaluation::PublishedComparison{.amd_ms = 2.438,
                                                    .rmdv_ms = 1.8044,
-                                                   .amd_inside = true,
-                                                   .rmdv_inside = false,
                                                    .rmdv_attainable = false,
-                                                   .amd_percentile = {50, 1.25, 98.75},
-                                                   .rmdv_percentile = {100, 15.75, 100}};
+                                                   .amd_percentile = {50, 32.25, 67.75},
+                                                   .rmdv_percentile = {100, 95.25, 100}};
   both.seeds = {seed_score(1), seed_score(2)};
   return both;
 }

@@ -179,11 +179,10 @@ TEST(EvaluateTest, PublishedValuesAreComparedWithTheSeeds) {
   ASSERT_TRUE(results.rows[0].published.has_value());
   const PublishedComparison& published = *results.rows[0].published;
   EXPECT_DOUBLE_EQ(published.amd_ms, 2.5);
-  EXPECT_TRUE(published.amd_inside);
+  EXPECT_EQ(placement_of(published.amd_percentile), Placement::kInside);
   EXPECT_FALSE(published.rmdv_attainable);  // 0.96 of AMD
   EXPECT_DOUBLE_EQ(published.amd_percentile.percent, 50);
   // One of four late by s: RMDV is s / 2, at most 2.
-  EXPECT_FALSE(published.rmdv_inside);
   EXPECT_DOUBLE_EQ(published.rmdv_percentile.percent, 100);
   EXPECT_FALSE(results.rows[1].published.has_value());
 }

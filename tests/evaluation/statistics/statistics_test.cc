@@ -119,6 +119,33 @@ TEST(PercentileTest, AmongNoValuesIsNan) {
   EXPECT_THAT(percentile_of(1, {}).low, IsNan());
 }
 
+// n values, k of them below the published one.
+Placement placement_among(int n, int k) {
+  std::vector<double> values;
+  for (int i = 0; i < n; ++i) values.push_back(i < k ? 1 : 3);
+  return placement_of(percentile_of(2, values));
+}
+
+TEST(PlacementTest, FollowsFromTheIntervalOfThePercentile) {
+  EXPECT_EQ(placement_of({.percent = 50, .low = 5, .high = 95}), Placement::kInside);
+  EXPECT_EQ(placement_of({.percent = 50, .low = 4.9, .high = 95}), Placement::kTooFewSeeds);
+  EXPECT_EQ(placement_of({.percent = 50, .low = 5, .high = 95.1}), Placement::kTooFewSeeds);
+  EXPECT_EQ(placement_of({.percent = 2, .low = 0, .high = 4.9}), Placement::kOutside);
+  EXPECT_EQ(placement_of({.percent = 97, .low = 95.1, .high = 100}), Placement::kOutside);
+  EXPECT_EQ(placement_of(percentile_of(1, {})), Placement::kTooFewSeeds);
+}
+
+TEST(PlacementTest, NeedsSeeds) {
+  for (int below = 0; below <= 2; ++below) {
+    EXPECT_EQ(placement_among(2, below), Placement::kTooFewSeeds) << below;
+  }
+  EXPECT_EQ(placement_among(3, 1), Placement::kTooFewSeeds);
+  EXPECT_EQ(placement_among(4, 2), Placement::kInside);
+  EXPECT_EQ(placement_among(kFewestOutside - 1, 0), Placement::kTooFewSeeds);
+  EXPECT_EQ(placement_among(kFewestOutside, 0), Placement::kOutside);
+  EXPECT_EQ(placement_among(kFewestOutside, kFewestOutside), Placement::kOutside);
+}
+
 TEST(InsideTest, MeansBetweenTheQuantilesWithBothEnds) {
   const Series series = make_series({0, 100});
   EXPECT_TRUE(inside(5, series));

@@ -61,7 +61,7 @@ TEST(HtmlReport, HasTheNumbersOfTheTable) {
   const std::string page = page_of({monday_archive()});
   for (const char* part :
        {"<th scope=\"row\" class=\"text\">yoon2021_both</th><td>2.000</td><td>[1.500, 2.500]</td>",
-        "<td>2.438</td><td class=\"text\">inside</td><td>50 % [1-99]</td>",
+        "<td>2.438</td><td class=\"text\">inside</td><td>50 % [32-68]</td>",
         "<td class=\"text\">not attainable</td>", "<td>29.000</td>", "<td>75.0 %</td>",
         "none is worst", "(needs 18cam_6host_15fps)", "a host was not synchronised",
         "1.23 M events", "2 seeds (1-2)", "0.1.0 (abc)", "A rig.", "a note"}) {

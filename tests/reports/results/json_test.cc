@@ -47,8 +47,8 @@ TEST(ResultsJson, ARowHasEverything) {
     "ground_truth": "simulation", "verified": true, "notes": [],
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
                   "rmdv_attainable": false,
-                  "amd_percentile": 50.0, "amd_percentile_interval": [1.25, 98.75],
-                  "rmdv_percentile": 100.0, "rmdv_percentile_interval": [15.75, 100.0]}
+                  "amd_percentile": 50.0, "amd_percentile_interval": [32.25, 67.75],
+                  "rmdv_percentile": 100.0, "rmdv_percentile_interval": [95.25, 100.0]}
   })"));
 }
 

@@ -29,7 +29,7 @@ The paper's metrics
                      AMD               AMD  published  published    at percentile       RMDV            RMDV  published  published
 pipeline       median ms            5-95 %     AMD ms  AMD is     [95 % interval]  median ms          5-95 %    RMDV ms  RMDV is
 -------------  ---------  ----------------  ---------  ---------  ---------------  ---------  --------------  ---------  --------------
-yoon2021_both      2.000    [1.500, 2.500]      2.438  inside         50 % [1-99]      0.750  [0.500, 1.000]      1.804  not attainable
+yoon2021_both      2.000    [1.500, 2.500]      2.438  inside        50 % [32-68]      0.750  [0.500, 1.000]      1.804  not attainable
 free_running    750250.0  [500.0, 1.5e+06]          -  -                        -      250.0  [200.0, 300.0]          -  -
 
 Metrics that need true time
@@ -48,7 +48,8 @@ How to read it
   absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
   host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
   precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit less 99.9 % quantile of the range.
-  published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
+  published: the paper's one recording. inside: the whole interval of its percentile lies from 5 to 95 %; outside: all of it lies beyond;
+  too few seeds: neither (outside takes 72 seeds). not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 Pipelines = host_sync + device_time + gathering
   yoon2021_both = yoon2021_both + regression_30 + yoon2021
@@ -90,7 +91,7 @@ A fit, stated as such.
 
 | pipeline | AMD median ms | AMD 5-95 % | published AMD ms | published AMD is | at percentile [95 % interval] | RMDV median ms | RMDV 5-95 % | published RMDV ms | published RMDV is |
 |---|---:|---:|---:|---|---:|---:|---:|---:|---|
-| yoon2021_both | 2.000 | [1.500, 2.500] | 2.438 | inside | 50 % [1-99] | 0.750 | [0.500, 1.000] | 1.804 | not attainable |
+| yoon2021_both | 2.000 | [1.500, 2.500] | 2.438 | inside | 50 % [32-68] | 0.750 | [0.500, 1.000] | 1.804 | not attainable |
 | free_running | 750250.0 | [500.0, 1.5e+06] | - | - | - | 250.0 | [200.0, 300.0] | - | - |
 
 ### Metrics that need true time
@@ -109,7 +110,7 @@ yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 - absolute error: mean |global stamp - true mid-exposure on the master's clock|; bias: the signed mean, which AMD cannot show.
 - host clock error: mean |slave - master|. exposure spread: how far apart the exposures really were, a limit for AMD.
 - precision: gathered sets that hold one pulse only; recall: complete pulses found whole; margin: limit less 99.9 % quantile of the range.
-- published: the paper's one recording. inside: within the band. not attainable: under eq. (4) no data have that RMDV with that AMD.
+- published: the paper's one recording. inside: the whole interval of its percentile lies from 5 to 95 %; outside: all of it lies beyond; too few seeds: neither (outside takes 72 seeds). not attainable: under eq. (4) no data have that RMDV with that AMD.
 
 ### Pipelines = host_sync + device_time + gathering
 
@@ -153,13 +154,15 @@ TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {
 
 TEST(Table, AVerdictForEveryPublishedValue) {
   evaluation::Results results = sample_results();
-  results.rows[0].published->amd_inside = false;
+  results.rows[0].published->amd_percentile = {0, 0, 4.75};
   results.rows[0].published->rmdv_attainable = true;
   EXPECT_THAT(table(results, ""), Not(HasSubstr("2.438  inside")));
   EXPECT_THAT(table(results, ""), HasSubstr("2.438  outside"));
   EXPECT_THAT(table(results, ""), HasSubstr("1.804  outside"));
-  results.rows[0].published->rmdv_inside = true;
+  results.rows[0].published->rmdv_percentile = {50, 32.25, 67.75};
   EXPECT_THAT(table(results, ""), HasSubstr("1.804  inside"));
+  results.rows[0].published->rmdv_percentile = {50, 1.25, 98.75};
+  EXPECT_THAT(table(results, ""), HasSubstr("1.804  too few seeds"));
 }
 
 TEST(Table, FitsAWideTerminal) {
