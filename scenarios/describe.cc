@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenarios/camera_profile.h"
+#include "scenarios/changes.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
@@ -16,8 +17,6 @@ namespace simbench::scenarios {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::size_t kLongestListed = 32;
 
 // Units stand last in names; an ending comes before the shorter ones that it ends in.
 std::string unit_of(std::string_view name) {
@@ -77,23 +76,12 @@ std::string profile_source(const Cameras& cameras, const std::string& pointer) {
   return "";
 }
 
-// A measured table is one parameter; its numbers are in the file.
-bool is_table(const ordered_json& value) {
-  return value.is_array() && value.size() > kLongestListed && value.front().is_number();
-}
-
-std::string text_of(const ordered_json& value) {
-  if (is_table(value)) {
-    return fmt::format("[{}, ..., {}] ({} numbers)", value.front().dump(), value.back().dump(),
-                       value.size());
-  }
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 class Walker {
  public:
   explicit Walker(const Scenario& scenario)
-      : cameras_(scenario.cameras), places_(dynamic_cast<const Places&>(*scenario.origin)) {}
+      : cameras_(scenario.cameras),
+        derivation_(scenario.derivation),
+        places_(dynamic_cast<const Places&>(*scenario.origin)) {}
 
   void walk(const std::string& pointer, std::string_view name, const ordered_json* node,
             const ordered_json& value) {
@@ -114,7 +102,7 @@ class Walker {
            const ordered_json& value) {
     ParameterLine line;
     line.pointer = pointer;
-    line.value = text_of(value);
+    line.value = value_text(value);
     line.unit = unit_of(name);
     if (node != nullptr) {
       line.meaning = node->value("description", "");
@@ -128,15 +116,29 @@ class Walker {
       line.source =
           profile.empty() ? place.label : fmt::format("{}; offered: {}", place.label, profile);
     }
+    if (name == "published" && line.source.empty()) line.source = unpublished_text(derivation_);
     lines_.push_back(std::move(line));
   }
 
   const Cameras& cameras_;
+  const Derivation& derivation_;
   const Places& places_;
   std::vector<ParameterLine> lines_;
 };
 
 }  // namespace
+
+std::string world_text(const Scenario& scenario) {
+  std::string text =
+      fmt::format("Cameras: {}, hosts: {}, frames: {}, sync mode {}, trigger at {} Hz",
+                  scenario.cameras.count, scenario.hosts.count, scenario.timeline.frames,
+                  to_text(scenario.cameras.sync_mode), scenario.trigger.rate_hz);
+  if (const Stream* const stream = scenario.scored_stream()) {
+    text += fmt::format(", {} of {} x {} at {} Hz", to_text(stream->kind), stream->width,
+                        stream->height, scenario.frame_rate_hz(*stream));
+  }
+  return text + ".";
+}
 
 std::vector<ParameterLine> describe(const Scenario& scenario) {
   Walker walker(scenario);

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "scenarios/builtin_files.h"
+#include "scenarios/changes.h"
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
 #include "scenarios/schema.h"
@@ -270,25 +273,51 @@ void merge(const std::string& pointer, const json& patch, const Places& patch_pl
   }
 }
 
+// A scenario as one of its files leaves it, before later files and overrides.
+struct Stage {
+  std::size_t level = 0;
+  bool is_builtin = false;
+  json document;
+  bool same_world = true;  // as that of the resolved scenario
+};
+
 // From a source to the resolved scenario as JSON.
 struct Resolved {
   json document;  // complete and valid by the schema; without "base" and "$schema"
   std::shared_ptr<Places> places = std::make_shared<Places>();
+  std::vector<Stage> stages{};  // the most basic one first
+  Derivation derivation{};
+
+  // As the file of that level leaves it; null: a --set does, so it is the resolved scenario.
+  const Stage* stage_of(std::size_t level) const {
+    const auto found = std::find_if(stages.begin(), stages.end(),
+                                    [level](const Stage& stage) { return stage.level == level; });
+    return found == stages.end() ? nullptr : &*found;
+  }
 };
 
-// A published result belongs to a pipeline: it goes with the base's pipelines.
+// Whether a published result holds: in the world in which it is stated, of a pipeline with the
+// stages that it has there. Notes in the derivation that one does not for the sake of its world.
+bool holds(const std::string& name, const std::string& pointer, Resolved& resolved) {
+  const std::size_t level = resolved.places->latest_level(pointer);
+  const Stage* const stage = resolved.stage_of(level);
+  const json* const pipeline = find_pipeline(resolved.document, name);
+  if (pipeline == nullptr) return level >= resolved.places->latest_level("/pipelines");
+  if (stage == nullptr) return true;
+  const json* const stated = find_pipeline(stage->document, name);
+  if (stage->same_world) return stated == nullptr || *stated == *pipeline;
+  resolved.derivation.unpublished = stage->document.value("name", "");
+  return false;
+}
+
+// A published result goes with the base's pipelines and world.
 void drop_outlived_results(const std::string& published, Resolved& resolved) {
   const json::json_pointer at(published);
   if (!resolved.document.contains(at)) return;
-  const std::size_t pipelines_level = resolved.places->latest_level("/pipelines");
   json kept = json::object();
   for (const auto& [name, result] : resolved.document[at].items()) {
-    const json& pipelines = resolved.document["pipelines"];
-    const bool has_pipeline =
-        std::any_of(pipelines.begin(), pipelines.end(),
-                    [&wanted = name](const json& pipeline) { return pipeline["name"] == wanted; });
     const std::string pointer = child_pointer(published, name);
-    if (has_pipeline || resolved.places->latest_level(pointer) >= pipelines_level) {
+    if (holds(name, pointer, resolved)) {
       kept[name] = result;
     } else {
       resolved.places->erase(pointer);
@@ -297,32 +326,111 @@ void drop_outlived_results(const std::string& published, Resolved& resolved) {
   resolved.document[at] = std::move(kept);
 }
 
+void drop_outlived_results(Resolved& resolved) {
+  drop_outlived_results("/published", resolved);
+  drop_outlived_results("/studio/published", resolved);
+}
+
+void derive(Resolved& resolved);
+
 // Validates every file by itself, merges it over its base (RFC 7386: objects are merged, anything
 // else is replaced, null removes), applies the overrides in their order and validates the whole.
-// Drops inherited published results whose pipelines are gone. Throws InputError.
+// Drops inherited published results whose pipelines or worlds are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
   Resolved resolved;
   for (PlacedDocument& layer : read_layers(std::move(source))) {
     layer.root.erase("base");
     layer.root.erase("$schema");
     merge("", layer.root, layer.places, resolved.document, *resolved.places);
+    const Place& file = layer.places.nearest("");
+    resolved.stages.push_back(
+        {.level = file.level, .is_builtin = file.is_builtin, .document = resolved.document});
   }
   std::size_t level = resolved.places->latest_level("");
   for (const Override& setting : overrides) {
     apply_override(setting, ++level, resolved.document, *resolved.places);
   }
   validate(resolved.document, Completeness::kResolved, *resolved.places);
-  drop_outlived_results("/published", resolved);
-  drop_outlived_results("/studio/published", resolved);
+  for (Stage& stage : resolved.stages) {
+    const bool is_all = &stage == &resolved.stages.back() && overrides.empty();
+    stage.same_world = is_all || world_changes(stage.document, resolved.document).empty();
+  }
+  drop_outlived_results(resolved);
+  derive(resolved);
   return resolved;
+}
+
+// Whether `base` has a published result of a pipeline of the scenario, which itself has none.
+bool lacks_results_of(const json& base, const json& scenario) {
+  for (const char* const published : {"/published", "/studio/published"}) {
+    const json::json_pointer at(published);
+    if (!base.contains(at) || !scenario.contains(at)) continue;
+    for (const auto& [name, result] : base[at].items()) {
+      if (!scenario[at].contains(name) && find_pipeline(scenario, name) != nullptr) return true;
+    }
+  }
+  return false;
+}
+
+// The built-in scenarios as they resolve, for those that state a built-in scenario's name alone.
+const Resolved& resolved_builtin(const std::string& name) {
+  static std::mutex mutex;
+  static std::map<std::string, Resolved> known;
+  const std::lock_guard lock(mutex);
+  const auto found = known.find(name);
+  if (found != known.end()) return found->second;
+  return known.emplace(name, resolve(*find_builtin(name), {})).first->second;
+}
+
+void set_changes(const json& base, Resolved& resolved) {
+  Derivation& derivation = resolved.derivation;
+  derivation.changes = world_changes(base, resolved.document);
+  for (Change& change : pipeline_changes(base, resolved.document)) {
+    derivation.changes.push_back(std::move(change));
+  }
+  const std::string name = base.value("name", "");
+  if (!derivation.changes.empty() || name != resolved.document.value("name", "")) {
+    derivation.base = name;
+  }
+}
+
+// Sets what the scenario rests on (derivation.h).
+void derive(Resolved& resolved) {
+  const auto nearest_builtin = std::find_if(resolved.stages.rbegin(), resolved.stages.rend(),
+                                            [](const Stage& stage) { return stage.is_builtin; });
+  if (nearest_builtin != resolved.stages.rend()) {
+    return set_changes(nearest_builtin->document, resolved);
+  }
+  const std::string name = resolved.document.value("name", "");
+  if (!find_builtin(name)) return set_changes(resolved.stages.back().document, resolved);
+  const Resolved& builtin = resolved_builtin(name);
+  set_changes(builtin.document, resolved);
+  Derivation& derivation = resolved.derivation;
+  if (!derivation.changes.empty() && lacks_results_of(builtin.document, resolved.document)) {
+    derivation.unpublished = name;
+  }
+  if (derivation.unpublished.empty()) derivation.unpublished = builtin.derivation.unpublished;
+}
+
+std::string text_of(const json& scenario) { return in_schema_order(scenario).dump(2) + '\n'; }
+
+// Replaces a summary that was written for another world.
+void renew_summary(Resolved& resolved, Scenario& scenario) {
+  const Stage* const stage = resolved.stage_of(resolved.places->nearest("/summary").level);
+  if (stage == nullptr || stage->same_world) return;
+  scenario.summary = world_text(scenario);
+  resolved.document["summary"] = scenario.summary;
+  scenario.resolved_json = text_of(resolved.document);
 }
 
 Scenario load(Source source, const std::vector<Override>& overrides) {
   Resolved resolved = resolve(std::move(source), overrides);
   auto scenario = resolved.document.get<Scenario>();
-  scenario.resolved_json = in_schema_order(resolved.document).dump(2) + '\n';
-  scenario.origin = std::move(resolved.places);
+  scenario.derivation = resolved.derivation;
+  scenario.resolved_json = text_of(resolved.document);
+  scenario.origin = resolved.places;
   check(scenario);
+  renew_summary(resolved, scenario);
   return scenario;
 }
 

@@ -5,6 +5,10 @@
 // against scenarios/schema.json and then by the checks that a schema cannot express. The first
 // mistake is thrown as an InputError; nothing is guessed.
 //
+// What holds in one world alone goes when a later file or --set changes that world: published
+// values are left out, and a summary is replaced by world_text(). Scenario::derivation has the
+// changes.
+//
 // The scenarios of the distribution are built into the program, so they need no installed files.
 //
 //   Scenario s = load_scenario("18cam_6host_45fps", {{"/timeline/frames", "100"}});
@@ -59,6 +63,9 @@ std::vector<BuiltinScenario> builtin_scenarios();
 // Settings that are possible but suspicious, one line each: more bytes than USB carries (with the
 // drop rate to expect), an exposure that makes the camera miss pulses, ...
 std::vector<std::string> warnings(const Scenario& scenario);
+
+// The world in one line, as it is: cameras, hosts, sync mode, rates, the scored stream, frames.
+std::string world_text(const Scenario& scenario);
 
 // One line per parameter of the resolved scenario.
 struct ParameterLine {

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "scenarios/choices.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::scenarios {
 
@@ -361,6 +362,7 @@ struct Scenario {
   std::vector<Pipeline> pipelines;
   std::map<std::string, Published> published;  // by pipeline name
   std::optional<Studio> studio;                // only of scenarios that have one
+  Derivation derivation;                       // from a built-in scenario
   std::string resolved_json;                   // the fully resolved scenario, pretty-printed
   std::shared_ptr<const Origin> origin;
 

@@ -1,0 +1,122 @@
+#include "scenarios/changes.h"
+
+#include <fmt/format.h>
+
+#include "scenarios/document.h"
+#include "scenarios/schema.h"
+
+namespace simbench::scenarios {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kLongestListed = 32;
+
+// What is no part of the world; pipelines are compared by name.
+constexpr const char* kNoWorld[] = {"/name",      "/summary",          "/schema_version",
+                                    "/published", "/studio/published", "/evaluation/table",
+                                    "/pipelines"};
+
+json world_of(json scenario) {
+  for (const char* const pointer : kNoWorld) {
+    const json::json_pointer at(pointer);
+    if (scenario.contains(at)) scenario[at.parent_pointer()].erase(at.back());
+  }
+  return scenario;
+}
+
+// Whether its members are compared one by one: an object, or a list of objects.
+bool has_members(const ordered_json* value) {
+  if (value == nullptr) return false;
+  return value->is_object() || (value->is_array() && !value->empty() && value->front().is_object());
+}
+
+std::string text_or_nothing(const ordered_json* value) {
+  return value == nullptr ? "" : value->dump();
+}
+
+// The member, or the element at that place; null: not there.
+const ordered_json* member(const ordered_json* value, const std::string& key) {
+  if (value == nullptr || !value->is_object()) return nullptr;
+  const auto found = value->find(key);
+  return found == value->end() ? nullptr : &*found;
+}
+const ordered_json* element(const ordered_json* value, std::size_t index) {
+  if (value == nullptr || !value->is_array() || index >= value->size()) return nullptr;
+  return &(*value)[index];
+}
+
+// Null: not there. Elements of lists by their place.
+void compare(const std::string& pointer, const ordered_json* from, const ordered_json* to,
+             std::vector<Change>& changes) {
+  if (from != nullptr && to != nullptr && *from == *to) return;
+  if (!has_members(from) && !has_members(to)) {
+    changes.push_back({pointer, text_or_nothing(from), text_or_nothing(to)});
+    return;
+  }
+  for (std::size_t i = 0; element(from, i) != nullptr || element(to, i) != nullptr; ++i) {
+    compare(fmt::format("{}/{}", pointer, i), element(from, i), element(to, i), changes);
+  }
+  if (to != nullptr && to->is_object()) {
+    for (const auto& [key, value] : to->items()) {
+      compare(child_pointer(pointer, key), member(from, key), &value, changes);
+    }
+  }
+  if (from != nullptr && from->is_object()) {
+    for (const auto& [key, value] : from->items()) {
+      if (member(to, key) == nullptr) {
+        compare(child_pointer(pointer, key), &value, nullptr, changes);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Change> world_changes(const json& from, const json& to) {
+  const json before = world_of(from);
+  const json after = world_of(to);
+  std::vector<Change> changes;
+  if (before == after) return changes;
+  const ordered_json ordered_before = in_schema_order(before);
+  const ordered_json ordered_after = in_schema_order(after);
+  compare("", &ordered_before, &ordered_after, changes);
+  return changes;
+}
+
+std::vector<Change> pipeline_changes(const json& from, const json& to) {
+  std::vector<Change> changes;
+  if (!to.contains("pipelines")) return changes;
+  const json& pipelines = to["pipelines"];
+  for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    const json* const before = find_pipeline(from, pipelines[i]["name"].get<std::string>());
+    if (before == nullptr || *before == pipelines[i]) continue;
+    const ordered_json ordered_before = *before;
+    const ordered_json ordered_after = pipelines[i];
+    compare(fmt::format("/pipelines/{}", i), &ordered_before, &ordered_after, changes);
+  }
+  return changes;
+}
+
+const json* find_pipeline(const json& scenario, const std::string& name) {
+  if (!scenario.contains("pipelines")) return nullptr;
+  for (const json& pipeline : scenario["pipelines"]) {
+    if (pipeline.value("name", "") == name) return &pipeline;
+  }
+  return nullptr;
+}
+
+bool is_table(const ordered_json& value) {
+  return value.is_array() && value.size() > kLongestListed && value.front().is_number();
+}
+
+std::string value_text(const ordered_json& value) {
+  if (is_table(value)) {
+    return fmt::format("[{}, ..., {}] ({} numbers)", value.front().dump(), value.back().dump(),
+                       value.size());
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace simbench::scenarios
