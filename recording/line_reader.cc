@@ -1,14 +1,10 @@
 #include "recording/line_reader.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <cstring>
 #include <utility>
-
-#include "recording/recording_folder.h"
 
 namespace simbench {
 namespace {
@@ -16,21 +12,22 @@ namespace {
 constexpr std::size_t kBlock = 64U << 10U;
 constexpr std::size_t kLongestLine = 32U << 20U;  // clock errors of a million hosts fit
 
-[[noreturn]] void fail_to_read(const std::string& path, int reason) {
-  throw RecordingFolderError(fmt::format("{}: cannot be read: {}", path, std::strerror(reason)));
+[[noreturn]] void fail_to_read_lines(const std::string& path, const FileError& error) {
+  throw LineError(fmt::format("{}: cannot be read: {}", path, error.what()));
+}
+
+InputFile opened(const std::string& path) {
+  try {
+    return InputFile(path);
+  } catch (const FileError& error) {
+    fail_to_read_lines(path, error);
+  }
 }
 
 }  // namespace
 
-LineReader::LineReader(std::string path) : path_(std::move(path)), buffer_(kBlock, '\0') {
-  // Not O_RDONLY alone: opening a pipe in the place of the file would wait for its other end.
-  file_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file_ < 0) fail_to_read(path_, errno);
-}
-
-LineReader::~LineReader() {
-  if (file_ >= 0) close(file_);
-}
+LineReader::LineReader(std::string path)
+    : path_(std::move(path)), file_(opened(path_)), buffer_(kBlock, '\0') {}
 
 std::optional<std::string_view> LineReader::next() {
   std::size_t searched = begin_;
@@ -45,7 +42,7 @@ std::optional<std::string_view> LineReader::next() {
     const std::size_t length = end_ - begin_;
     if (length > kLongestLine) {
       ++line_;
-      throw RecordingFolderError(
+      throw LineError(
           fmt::format("{}: longer than {} bytes, no line of a recording", place(), kLongestLine));
     }
     if (at_end_ || !read_more()) return std::nullopt;
@@ -60,17 +57,21 @@ bool LineReader::read_more() {
     begin_ = 0;
   }
   if (end_ == buffer_.size()) buffer_.resize(buffer_.size() * 2);
-  ssize_t size = -1;
-  do {
-    size = read(file_, buffer_.data() + end_, buffer_.size() - end_);
-  } while (size < 0 && errno == EINTR);
-  if (size < 0) fail_to_read(path_, errno);
-  end_ += static_cast<std::size_t>(size);
+  std::size_t size = 0;
+  try {
+    size = file_.read(buffer_.data() + end_, buffer_.size() - end_);
+  } catch (const FileError& error) {
+    fail_to_read_lines(path_, error);
+  }
+  end_ += size;
+  bytes_read_ += size;
   at_end_ = size == 0;
   if (torn()) ++line_;
   return !at_end_;
 }
 
-std::string LineReader::place() const { return fmt::format("{}:{}", path_, line_); }
+std::string LineReader::place() const {
+  return fmt::format("{}:{}", path_, std::max<std::size_t>(line_, 1));
+}
 
 }  // namespace simbench

@@ -113,15 +113,29 @@ class CaptureReader {
   std::uint64_t expected_order_ = 0;
 };
 
+LineReader lines_of(const std::string& path) {
+  try {
+    return LineReader(path);
+  } catch (const LineError& error) {
+    throw RecordingFolderError(error.what());
+  }
+}
+
 CaptureFile::CaptureFile(const std::string& path, Kind kind, const RecordedCapture& capture)
-    : lines_(path), path_(path), kind_(kind), capture_(capture) {
+    : lines_(lines_of(path)), path_(path), kind_(kind), capture_(capture) {
   if (capture.complete) expected_ = kind == Kind::kFrames ? capture.frames : capture.other_events;
   if (kind_ == Kind::kFrames) read_header();
   if (state_ == State::kEvent) advance();
 }
 
 void CaptureFile::read_header() {
-  const auto header = lines_.next();
+  std::optional<std::string_view> header;
+  try {
+    header = lines_.next();
+  } catch (const LineError& error) {
+    set_damaged(error.what());
+    return;
+  }
   if (!header) {
     at_end();
   } else if (*header != fmt::format("order,{},{}", kFrameColumns, kFrameTruthColumns)) {
@@ -133,7 +147,7 @@ void CaptureFile::read_header() {
 void CaptureFile::advance() {
   try {
     read_line();
-  } catch (const RecordingFolderError& error) {
+  } catch (const LineError& error) {
     set_damaged(error.what());
   } catch (const TextFieldError& error) {
     set_damaged(fmt::format("{}: {}", lines_.place(), error.what()));

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -16,6 +14,7 @@
 #include "recording/append_file.h"
 #include "recording/text_fields.h"
 #include "recording/version.h"
+#include "scenarios/input_file.h"
 
 namespace simbench {
 namespace {
@@ -23,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kManifest = "/manifest.json";
-constexpr std::uintmax_t kLargestManifest = 256U << 20U;
+constexpr std::size_t kLargestManifest = 256U << 20U;
 
 Json json_of(const RecordedCapture& capture) {
   Json cameras = Json::array();
@@ -237,14 +236,11 @@ RecordingManifest read_manifest(const std::string& folder) {
     throw RecordingFolderError(fmt::format(
         "{}: is no recording, it has no manifest.json; `simbench record` makes one", folder));
   }
-  if (std::filesystem::file_size(path, error) > kLargestManifest) {
-    throw RecordingFolderError(fmt::format("{}: larger than {} bytes", path, kLargestManifest));
+  try {
+    return parse_manifest(file_content(path, kLargestManifest), path);
+  } catch (const FileError& failure) {
+    throw RecordingFolderError(fmt::format("{}: cannot be read: {}", path, failure.what()));
   }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw RecordingFolderError(fmt::format("{}: cannot be read", path));
-  return parse_manifest(text.str(), path);
 }
 
 std::string capture_folder(const std::string& folder, const std::string& pipeline,

@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <system_error>
 #include <utility>
 #include <vector>
+
+#include "scenarios/input_file.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -333,20 +330,13 @@ void fail_to_read(const std::string& prefix, std::string_view reason) {
 std::string read_input_file(const std::string& path, const std::string& prefix,
                             std::string_view thing) {
   constexpr std::size_t kMaximumBytes = std::size_t{4} << 20;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) fail_to_read(prefix, "it is a folder");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
-  std::string text(kMaximumBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) fail_to_read(prefix, std::strerror(errno == 0 ? EIO : errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaximumBytes) {
-    fail_to_read(prefix,
-                 fmt::format("found more than {} bytes, which no {} needs", kMaximumBytes, thing));
+  try {
+    return file_content(path, kMaximumBytes);
+  } catch (const FileTooLarge& error) {
+    fail_to_read(prefix, fmt::format("{}, which no {} needs", error.what(), thing));
+  } catch (const FileError& error) {
+    fail_to_read(prefix, error.what());
   }
-  return text;
 }
 
 PlacedDocument parse_placed(std::string_view text, const Place& file) {

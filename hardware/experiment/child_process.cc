@@ -13,12 +13,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <thread>
 #include <utility>
 
 #include "hardware/experiment/network_sandbox.h"
+#include "scenarios/input_file.h"
 
 namespace simbench::hardware {
 namespace {
@@ -72,8 +71,13 @@ struct Plan {
 }
 
 std::string last_lines(const std::string& file) {
-  std::ifstream in(file);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  constexpr std::size_t kLargestLog = std::size_t{16} << 20;
+  std::string text;
+  try {
+    text = file_content(file, kLargestLog);
+  } catch (const FileError& error) {
+    return fmt::format("{}: cannot be read: {}", file, error.what());
+  }
   while (!text.empty() && text.back() == '\n') text.pop_back();
   constexpr std::size_t kMost = 400;
   if (text.size() > kMost) text.erase(0, text.size() - kMost);

@@ -13,20 +13,21 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "scenarios/input_file.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reconstruction {
 namespace {
 
 using scenarios::InputError;
+
+constexpr std::size_t kLargestFile = std::size_t{1} << 30;
 
 // The bytes that `write` writes to a file of that extension. Open3D writes only to files.
 std::string written_bytes(const std::string& extension,
@@ -37,12 +38,16 @@ std::string written_bytes(const std::string& extension,
   }
   const std::string path = folder + "/file" + extension;
   const bool written = write(path);
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const bool whole = written && file.is_open() && !bytes.empty();
-  file.close();
+  std::string bytes;
+  if (written) {
+    try {
+      bytes = file_content(path, kLargestFile);
+    } catch (const FileError&) {  // no file, or not all of it
+      bytes.clear();
+    }
+  }
   std::filesystem::remove_all(folder);
-  if (!whole) throw std::runtime_error(path + ": cannot be written; is the disk full?");
+  if (bytes.empty()) throw std::runtime_error(path + ": cannot be written; is the disk full?");
   return bytes;
 }
 

@@ -1,4 +1,4 @@
-// The whole content of a file.
+// The whole content of a file of results.
 //
 //   const std::optional<std::string> text = content_of("sweep/runs.log");
 #ifndef SIMBENCH_REPORTS_TEXT_FILE_CONTENT_H_
@@ -10,7 +10,8 @@
 
 namespace simbench::reports {
 
-// Nothing if the file cannot be opened; errno has the reason.
+// Nothing if there is no such file; errno has the reason. Throws scenarios::InputError for a file
+// that cannot be read, and for one of more than 512 MiB.
 std::optional<std::string> content_of(const std::filesystem::path& path);
 
 }  // namespace simbench::reports
