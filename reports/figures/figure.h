@@ -19,7 +19,7 @@
 
 namespace simbench::reports {
 
-enum class Mark : std::uint8_t { kPoints, kLine, kSteps, kBars };
+enum class Mark : std::uint8_t { kPoints, kLine, kMarkedLine, kSteps, kBars };
 
 // One curve, cloud or row of bars of a panel.
 struct FigureSeries {
@@ -28,6 +28,9 @@ struct FigureSeries {
   std::vector<double> x;  // ascending except for kPoints; for kBars: 0, 1, ... (categories)
   std::vector<double> y;  // as long as x
   int colour = 0;         // the same number for the same thing throughout a figure
+  // The 5-95 % band about y on paper and in CSV, as long as x; empty: none.
+  std::vector<double> low{};
+  std::vector<double> high{};
 };
 
 // A line across the panel, such as a published value.
@@ -35,6 +38,7 @@ struct FigureLine {
   std::string label;
   bool vertical = false;
   double at = 0;
+  int colour = -1;  // of the series that it belongs to; -1: of none
 };
 
 // A shaded stretch of the x axis, such as a warm-up.
@@ -112,8 +116,8 @@ const FigureEntry& figure_named(std::string_view name);
 //
 // A gap has an empty y; on an axis of categories x is the category. A line such as a published
 // value is a series of one point without x (or y, if it is vertical), a shaded stretch one of two
-// points without y. Photographs: the pipeline is the panel, the camera the series, the reading x,
-// its share y.
+// points without y, a band two more series, "LABEL, 5 %" and "LABEL, 95 %". Photographs: the
+// pipeline is the panel, the camera the series, the reading x, its share y.
 std::string figure_csv(const Figure& figure);
 
 }  // namespace simbench::reports

@@ -15,16 +15,26 @@ std::string figure_line(std::string_view panel, std::string_view series, const s
   return fmt::format("{},{},{},{}\n", csv_cell(panel), csv_cell(series), x, csv_cell(y));
 }
 
+std::string curve_lines(const FigurePanel& panel, const FigureSeries& series,
+                        const std::string& label, const std::vector<double>& y) {
+  std::string text;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    const std::string x =
+        panel.categories.empty()
+            ? csv_cell(series.x[i])
+            : csv_cell(panel.categories.at(static_cast<std::size_t>(std::llround(series.x[i]))));
+    text += figure_line(panel.title, label, x, y[i]);
+  }
+  return text;
+}
+
 std::string panel_lines(const FigurePanel& panel) {
   std::string text;
   for (const FigureSeries& series : panel.series) {
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      const std::string x =
-          panel.categories.empty()
-              ? csv_cell(series.x[i])
-              : csv_cell(panel.categories.at(static_cast<std::size_t>(std::llround(series.x[i]))));
-      text += figure_line(panel.title, series.label, x, series.y[i]);
-    }
+    text += curve_lines(panel, series, series.label, series.y);
+    if (series.low.empty()) continue;
+    text += curve_lines(panel, series, series.label + ", 5 %", series.low);
+    text += curve_lines(panel, series, series.label + ", 95 %", series.high);
   }
   for (const FigureLine& drawn : panel.lines) {
     text += figure_line(panel.title, drawn.label, drawn.vertical ? csv_cell(drawn.at) : "",

@@ -54,6 +54,7 @@ double middle_of(std::vector<double> values) {
 FigureSeries thinned(FigureSeries series, std::size_t most) {
   SIMBENCH_ASSERT(most >= 8, "room for the ends, a bucket and gaps");
   SIMBENCH_ASSERT(series.x.size() == series.y.size(), "a y for every x");
+  SIMBENCH_ASSERT(series.low.empty() && series.high.empty(), "long series have no band");
   if (series.x.size() <= most) return series;
   // The first and the last point are additional to those of the buckets, each with a gap.
   const std::vector<std::size_t> kept =

@@ -120,7 +120,11 @@ std::string datablock(std::size_t number, const FigureSeries& series) {
   std::string text = fmt::format("$data{} << END\n", number);
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
-      fmt::format_to(std::back_inserter(text), "{} {}\n", series.x[i], series.y[i]);
+      fmt::format_to(std::back_inserter(text), "{} {}", series.x[i], series.y[i]);
+      if (!series.low.empty()) {
+        fmt::format_to(std::back_inserter(text), " {} {}", series.low[i], series.high[i]);
+      }
+      text += '\n';
     } else {
       text += '\n';  // breaks the line
     }
@@ -150,24 +154,45 @@ std::size_t number_of(const FigureSeries& series) {
   return static_cast<std::size_t>(std::max(series.colour, 0));
 }
 
-std::string colour_of(const FigureSeries& series) {
-  return kColours.at(number_of(series) % kColours.size());
+std::string colour_of(std::size_t number) { return kColours.at(number % kColours.size()); }
+
+// A bar's place beside those of the other series, and its width.
+std::string bar_columns(const FigurePanel& panel, const FigureSeries& bar) {
+  constexpr double kGroupWidth = 0.7;  // of the room of a category
+  std::size_t bars = 0;
+  std::size_t place = 0;
+  for (const FigureSeries& series : panel.series) {
+    if (&series == &bar) place = bars;
+    if (series.mark == Mark::kBars) ++bars;
+  }
+  const double width = kGroupWidth / static_cast<double>(bars);
+  const double shift = (static_cast<double>(place) + 0.5) * width - kGroupWidth / 2;
+  return fmt::format("($1+({:.4g})):2:({:.4g})", shift, width);
 }
 
-std::string series_style(const FigureSeries& series) {
-  const std::string colour = colour_of(series);
+// The columns of the data, and how they are drawn.
+std::string series_style(const FigurePanel& panel, const FigureSeries& series) {
+  const std::string colour = colour_of(number_of(series));
   const std::size_t turn = number_of(series) / kColours.size();
   const std::size_t dash = turn % 5 + 1;
+  const int point = kPointTypes.at(turn % kPointTypes.size());
   switch (series.mark) {
     case Mark::kPoints:
-      return fmt::format("with points pt {} ps 0.4 lc rgb '{}'",
-                         kPointTypes.at(turn % kPointTypes.size()), colour);
+      if (!series.low.empty()) {
+        return fmt::format("1:2:3:4 with yerrorbars pt {} ps 0.6 lw 1.4 lc rgb '{}'", point,
+                           colour);
+      }
+      return fmt::format("1:2 with points pt {} ps 0.4 lc rgb '{}'", point, colour);
     case Mark::kLine:
-      return fmt::format("with lines lw 1.4 dt {} lc rgb '{}'", dash, colour);
+      return fmt::format("1:2 with lines lw 1.4 dt {} lc rgb '{}'", dash, colour);
+    case Mark::kMarkedLine:
+      return fmt::format("1:2 with linespoints pt {} ps 0.5 lw 1.4 dt {} lc rgb '{}'", point, dash,
+                         colour);
     case Mark::kSteps:
-      return fmt::format("with steps lw 1.4 dt {} lc rgb '{}'", dash, colour);
+      return fmt::format("1:2 with steps lw 1.4 dt {} lc rgb '{}'", dash, colour);
     case Mark::kBars:
-      return fmt::format("with boxes lc rgb '{}' fs solid 0.75 noborder", colour);
+      return fmt::format("{} with boxes lc rgb '{}' fs solid 0.75 noborder",
+                         bar_columns(panel, series), colour);
   }
   return "";
 }
@@ -199,18 +224,14 @@ std::string spans(const FigurePanel& panel, const SpanColours& colours,
   return text;
 }
 
-// The colour of a line: that of the series in its name ("mine, published").
-std::string line_colour(const FigurePanel& panel, const FigureLine& line) {
-  for (const FigureSeries& series : panel.series) {
-    if (line.label.starts_with(series.label + ",")) return colour_of(series);
-  }
-  return "#555555";
+std::string line_colour(const FigureLine& line) {
+  return line.colour < 0 ? "#555555" : colour_of(static_cast<std::size_t>(line.colour));
 }
 
 std::string lines(const FigurePanel& panel, std::vector<std::string>& plots) {
   std::string text;
   for (const FigureLine& line : panel.lines) {
-    const std::string look = fmt::format("lw 1.2 dt 3 lc rgb '{}'", line_colour(panel, line));
+    const std::string look = fmt::format("lw 1.2 dt 3 lc rgb '{}'", line_colour(line));
     const std::string ends =
         line.vertical ? fmt::format("from {0}, graph 0 to {0}, graph 1", line.at)
                       : fmt::format("from graph 0, first {0} to graph 1, first {0}", line.at);
@@ -259,7 +280,9 @@ std::string y_range(const FigurePanel& panel) {
     if (!panel.log_y || y > 0) range.cover(y);
   };
   for (const FigureSeries& series : panel.series) {
-    for (const double y : series.y) cover(y);
+    for (const std::vector<double>* values : {&series.y, &series.low, &series.high}) {
+      for (const double y : *values) cover(y);
+    }
     if (series.mark == Mark::kBars) cover(0);
   }
   for (const FigureLine& line : panel.lines) {
@@ -282,9 +305,8 @@ std::string categories(const FigurePanel& panel) {
     fmt::format_to(std::back_inserter(tics), "{}{} {}", i == 0 ? "" : ", ",
                    in_quotes(panel.categories[i]), i);
   }
-  return fmt::format(
-      "set xtics ({}) rotate by -20\nset xrange [-0.6:{}]\nset boxwidth 0.7\nset xzeroaxis lt -1\n",
-      tics, static_cast<double>(panel.categories.size()) - 0.4);
+  return fmt::format("set xtics ({}) rotate by -20\nset xrange [-0.6:{}]\nset xzeroaxis lt -1\n",
+                     tics, static_cast<double>(panel.categories.size()) - 0.4);
 }
 
 bool has_legend(const FigurePanel& panel) {
@@ -307,8 +329,14 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
     const auto entry = legend.extract(series.colour);  // titles its first series alone
     const std::string title =
         entry.empty() || !has_legend(panel) ? "notitle" : "title " + in_quotes(entry.mapped());
+    if (series.mark == Mark::kMarkedLine && !series.low.empty()) {
+      plots.push_back(fmt::format(
+          "$data{} using 1:3:4 with filledcurves fs transparent solid 0.15 noborder lc rgb '{}' "
+          "notitle",
+          datablocks, colour_of(number_of(series))));
+    }
     plots.push_back(
-        fmt::format("$data{} using 1:2 {} {}", datablocks, series_style(series), title));
+        fmt::format("$data{} using {} {}", datablocks, series_style(panel, series), title));
     ++datablocks;
   }
   if (plots.empty()) plots.emplace_back("NaN notitle");

@@ -93,7 +93,8 @@ void add_published(const std::vector<RowRef>& rows, double Published::*metric, F
     panel.lines.push_back({.label = rows.size() == 1
                                         ? fmt::format("published: {}", number_text(value))
                                         : fmt::format("{}, published", ref.row->pipeline),
-                           .at = value});
+                           .at = value,
+                           .colour = ref.colour});
   }
 }
 
@@ -115,7 +116,7 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
   return made;
 }
 
-// A metric's values over seeds, ascending.
+// A metric's quantiles over seeds, as the tables have them (evaluation/statistics/statistics.h).
 FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Metric& metric) {
   FigurePanel made = panel(capitalised(metric.title), "share of seeds (%)",
                            fmt::format("{} ({})", metric.title, metric.unit));
@@ -124,10 +125,11 @@ FigurePanel quantile_panel(const std::vector<RowRef>& rows, const evaluation::Me
     std::erase_if(values, [](double value) { return std::isnan(value); });
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
-    FigureSeries curve = series(ref.row->pipeline, Mark::kSteps, ref.colour);
-    for (std::size_t i = 0; i <= values.size(); ++i) {  // a value holds to the next share
-      curve.x.push_back(100 * static_cast<double>(i) / static_cast<double>(values.size()));
-      curve.y.push_back(values[std::min(i, values.size() - 1)]);
+    FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
+    if (values.size() == 1) values.push_back(values.front());  // all quantiles of a single seed
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      curve.x.push_back(100 * static_cast<double>(i) / static_cast<double>(values.size() - 1));
+      curve.y.push_back(values[i]);
     }
     made.series.push_back(thinned(std::move(curve), kMostPoints));
   }
@@ -146,8 +148,8 @@ Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has any of these scores.");
   figure.caption = fmt::format(
-      "Scores of {} in ascending order: the curve at 50 % is the median. A line is a published "
-      "value, which is one recording.",
+      "Scores of {} in ascending order: the curve at 50 % is the median of the tables, at 5 and 95 "
+      "% the band. A line is a published value, which is one recording.",
       counted(results.seed_count, "seed"));
   if (std::any_of(figure.panels.begin(), figure.panels.end(),
                   [](const FigurePanel& made) { return made.log_y; })) {

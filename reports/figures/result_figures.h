@@ -21,8 +21,8 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed);
 // The same for all seeds of the archive, in order.
 std::vector<Figure> frame_errors(const Archive& archive);
 
-// The scores of all seeds in ascending order against the share of seeds with no larger score (the
-// quantile function), with the published values as lines: a panel for each metric whose band the
+// The scores of all seeds in ascending order over the share of seeds (the quantile function of the
+// tables), with the published values as lines: a panel for each metric whose band the
 // tables show. First one figure of up to 12 pipelines together, then one for each pipeline.
 std::vector<Figure> distributions(const Archive& archive);
 

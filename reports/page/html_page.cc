@@ -89,6 +89,7 @@ const char* mark_name(Mark mark) {
     case Mark::kPoints:
       return "points";
     case Mark::kLine:
+    case Mark::kMarkedLine:
       return "line";
     case Mark::kSteps:
       return "steps";
@@ -115,7 +116,10 @@ Json panel_json(const FigurePanel& panel, HtmlColumns& columns) {
     json["series"].push_back(figure_series_json(series, panel.log_y, columns));
   }
   for (const FigureLine& line : panel.lines) {
-    json["lines"].push_back({{"label", line.label}, {"vertical", line.vertical}, {"at", line.at}});
+    json["lines"].push_back({{"label", line.label},
+                             {"vertical", line.vertical},
+                             {"at", line.at},
+                             {"colour", line.colour}});
   }
   for (const FigureSpan& span : panel.spans) {
     json["spans"].push_back({{"label", span.label}, {"from", span.from}, {"to", span.to}});

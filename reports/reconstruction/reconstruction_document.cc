@@ -263,13 +263,14 @@ Block reconstruction_legend(const ReconstructionResults& results) {
 
 constexpr const char* kErrorAxis = "median mean error, cm";
 
-std::vector<FigureLine> published_lines(const ReconstructionResults& results) {
+std::vector<FigureLine> published_lines(const ReconstructionResults& results, int first_colour) {
   std::vector<FigureLine> lines;
   for (const reconstruction::ReprojectionRow& row : results.rows) {
     if (!row.published) continue;
     lines.push_back(
         {.label = fmt::format("published {}: {}", row.pipeline, cm_text(row.published->mean_cm)),
-         .at = row.published->mean_cm});
+         .at = row.published->mean_cm,
+         .colour = first_colour + static_cast<int>(lines.size())});
   }
   return lines;
 }
@@ -277,8 +278,7 @@ std::vector<FigureLine> published_lines(const ReconstructionResults& results) {
 FigurePanel desync_panel(const ReconstructionResults& results) {
   FigurePanel panel{.title = "Reprojection error over desynchronisation",
                     .x_label = "desynchronisation of the hosts, ms",
-                    .y_label = kErrorAxis,
-                    .lines = published_lines(results)};
+                    .y_label = kErrorAxis};
   for (const CurvePoint& point : results.curve) {
     const std::string label = speed_text(point.speed_m_per_s, point.speed_factor);
     if (panel.series.empty() || panel.series.back().label != label) {
@@ -289,6 +289,7 @@ FigurePanel desync_panel(const ReconstructionResults& results) {
     panel.series.back().x.push_back(point.desync_ms);
     panel.series.back().y.push_back(evaluation::median(point.mean_cm));
   }
+  panel.lines = published_lines(results, static_cast<int>(panel.series.size()));
   return panel;
 }
 

@@ -130,11 +130,14 @@ std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
 
 // A zero keeps the axis linear: it would be a gap in a response.
 void use_log_scale_if_wide(FigurePanel& panel) {
-  const bool has_zero =
-      std::any_of(panel.series.begin(), panel.series.end(), [](const FigureSeries& series) {
-        return std::find(series.y.begin(), series.y.end(), 0.0) != series.y.end();
+  const auto is_above_zero = [](const std::vector<double>& values) {
+    return std::none_of(values.begin(), values.end(), [](double value) { return value <= 0; });
+  };
+  const bool are_above_zero =
+      std::all_of(panel.series.begin(), panel.series.end(), [&](const FigureSeries& series) {
+        return is_above_zero(series.y) && is_above_zero(series.low);
       });
-  panel.log_y = !has_zero && is_wide(panel);
+  panel.log_y = are_above_zero && is_wide(panel);
 }
 
 // The next curve of the panel; null if it has the most curves already.
@@ -147,30 +150,48 @@ FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark)
 
 std::string axis_label(const Metric& metric) {
   if (metric.is_share()) return fmt::format("{}, %", metric.title);
-  return fmt::format("median {}, {}", metric.title, metric.unit);
+  return fmt::format("median {} [5-95 %], {}", metric.title, metric.unit);
+}
+
+// A point of a curve, with its band; shares are of all seeds together.
+void add_response(const ResponseRow& row, const Metric& metric, double at, FigureSeries& series) {
+  series.x.push_back(at);
+  series.y.push_back(shown_value(metric, row.value(metric)));
+  if (metric.is_share()) return;
+  series.low.push_back(shown_value(metric, row.of(metric.sweep).p05));
+  series.high.push_back(shown_value(metric, row.of(metric.sweep).p95));
+}
+
+// The points of several curves in one category, in order from the left.
+void set_side_by_side(FigurePanel& panel) {
+  constexpr double kShare = 0.7;  // of the room of a category
+  const double step = kShare / static_cast<double>(panel.series.size());
+  double shift = (step - kShare) / 2;
+  for (FigureSeries& series : panel.series) {
+    for (double& x : series.x) x += shift;
+    shift += step;
+  }
 }
 
 FigurePanel response_panel(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                            const XAxis& x, const Metric& metric) {
   std::vector<std::string> labels;  // in the order of the rows
-  std::map<std::string, std::map<double, double>> curves;
+  std::map<std::string, std::map<double, const ResponseRow*>> curves;
   for (const ResponseRow& row : rows) {
     const std::string label = curve_label(plan, row);
     if (!curves.contains(label)) labels.push_back(label);
-    curves[label][x.at[plan.steps(row.point).front()]] = shown_value(metric, row.value(metric));
+    curves[label][x.at[plan.steps(row.point).front()]] = &row;
   }
   FigurePanel panel = {
       .title = capitalised(metric.title), .x_label = x.label, .y_label = axis_label(metric)};
   panel.categories = x.categories;
   for (const std::string& label : labels) {
     FigureSeries* series =
-        add_curve(panel, label, x.categories.empty() ? Mark::kLine : Mark::kBars);
+        add_curve(panel, label, x.categories.empty() ? Mark::kMarkedLine : Mark::kPoints);
     if (series == nullptr) break;
-    for (const auto& [at, value] : curves[label]) {
-      series->x.push_back(at);
-      series->y.push_back(value);
-    }
+    for (const auto& [at, row] : curves[label]) add_response(*row, metric, at, *series);
   }
+  if (!x.categories.empty()) set_side_by_side(panel);
   return panel;
 }
 
@@ -342,17 +363,19 @@ Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& 
   Figure figure = new_figure(plan, "sweep_host_order", "clock error in the order of the sessions");
   FigurePanel panel = {.title = "Clock error of the slaves",
                        .x_label = "host, in the order of the sessions",
-                       .y_label = "median |mean clock error|, ms"};
+                       .y_label = "median |mean clock error| [5-95 %], ms"};
   for (const ResponseRow& row : rows) {
     std::string label = plan.pipelines[row.pipeline];
     for (const scenarios::Override& value : plan.overrides(row.point)) {
       label += fmt::format(", {}={}", last_key(value.pointer), value.value);
     }
-    FigureSeries* series = add_curve(panel, label, Mark::kLine);
+    FigureSeries* series = add_curve(panel, label, Mark::kMarkedLine);
     if (series == nullptr) break;
     for (std::size_t host = 1; host < row.hosts.size(); ++host) {
       series->x.push_back(static_cast<double>(host));
       series->y.push_back(row.hosts[host].median);
+      series->low.push_back(row.hosts[host].p05);
+      series->high.push_back(row.hosts[host].p95);
     }
   }
   use_log_scale_if_wide(panel);
@@ -366,7 +389,7 @@ Figure seeds_needed_figure(const SweepPlan& plan, const std::vector<ResponseRow>
                        .x_label = "seeds",
                        .y_label = "+-, % of the median"};
   for (const ResponseRow& row : rows) {
-    FigureSeries* series = add_curve(panel, curve_label(plan, row), Mark::kLine);
+    FigureSeries* series = add_curve(panel, curve_label(plan, row), Mark::kMarkedLine);
     if (series == nullptr) break;
     for (std::size_t seeds = 8; seeds <= plan.seeds; seeds += std::max<std::size_t>(1, seeds / 8)) {
       const auto interval =

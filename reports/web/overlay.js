@@ -64,7 +64,8 @@ function drawLines(chart, panel) {
   const row = 14 * uPlot.pxRatio;
   const lines = [...panel.lines].sort((a, b) => a.at - b.at).map((line) => ({
     ...line,
-    ...drawAcross(chart, line.vertical ? 'x' : 'y', line.at, themeColour('--line'), [6, 4]),
+    ...drawAcross(chart, line.vertical ? 'x' : 'y', line.at,
+        line.colour < 0 ? themeColour('--line') : seriesColour(line.colour), [6, 4]),
   }));
   let upright = 0, highest = Infinity;
   for (const line of lines.filter(({place}) => place != null)) {

@@ -40,7 +40,7 @@ Figure sample_figure() {
   panel.y_label = "ms";
   panel.series = {line_series("host 0, camera 0", {1, kNan, 2.5}, 0),
                   line_series("host 0, camera 1", {2, 3, 4}, 0), line_series("mine", {5, 6, 7}, 1)};
-  panel.lines = {{.label = "mine, published", .at = 5.5}, {"start", true, 1}};
+  panel.lines = {{.label = "mine, published", .at = 5.5, .colour = 1}, {"start", true, 1}};
   panel.spans = {{"warm-up", 0, 1}};
   Figure figure;
   figure.id = "sample";
@@ -81,6 +81,44 @@ TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
   const std::string script = gnuplot_script(sample_figure(), PlotFormat::kSvg, "x.svg");
   EXPECT_THAT(script, HasSubstr("title 'host 0'"));
   EXPECT_THAT(script, Not(HasSubstr("'host 0, camera 1'")));
+}
+
+TEST_F(GnuplotTest, ALineHasTheColourOfItsSeriesOrNone) {
+  const std::string script = gnuplot_script(sample_figure(), PlotFormat::kSvg, "x.svg");
+  EXPECT_THAT(script, HasSubstr("lw 1.2 dt 3 lc rgb '#D55E00' title 'mine, published'"));
+  EXPECT_THAT(script, HasSubstr("lw 1.2 dt 3 lc rgb '#555555' title 'start'"));
+}
+
+TEST_F(GnuplotTest, BandsAreDrawnAndWithinTheAxis) {
+  Figure figure = sample_figure();
+  figure.panels.pop_back();
+  FigureSeries& marked = figure.panels[0].series[2];
+  marked.mark = Mark::kMarkedLine;
+  marked.low = {4, 5, 6};
+  marked.high = {9, 9, 20};
+  const std::string script = gnuplot_script(figure, PlotFormat::kSvg, "x.svg");
+  EXPECT_THAT(script, HasSubstr("\n2 7 6 20\n"));
+  EXPECT_THAT(script, HasSubstr("using 1:3:4 with filledcurves"));
+  EXPECT_THAT(script, HasSubstr("with linespoints"));
+  EXPECT_THAT(script, HasSubstr("set yrange [-0.1"));  // 1 to 20 and some room
+  marked.mark = Mark::kPoints;
+  EXPECT_THAT(gnuplot_script(figure, PlotFormat::kSvg, "x.svg"),
+              HasSubstr("using 1:2:3:4 with yerrorbars"));
+  draw(figure, PlotFormat::kSvg, file("x.svg"));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(GnuplotTest, BarsOfOneCategoryStandSideBySide) {
+  Figure figure = sample_figure();
+  figure.panels.pop_back();
+  FigurePanel& panel = figure.panels[0];
+  panel.categories = {"a", "b", "c"};
+  panel.series.resize(2);
+  for (FigureSeries& bars : panel.series) bars.mark = Mark::kBars;
+  const std::string script = gnuplot_script(figure, PlotFormat::kSvg, "x.svg");
+  EXPECT_THAT(script, HasSubstr("$data0 using ($1+(-0.175)):2:(0.35) with boxes"));
+  EXPECT_THAT(script, HasSubstr("$data1 using ($1+(0.175)):2:(0.35) with boxes"));
+  draw(figure, PlotFormat::kSvg, file("x.svg"));
 }
 
 TEST_F(GnuplotTest, DrawsPhotographsAsPdf) {
@@ -156,6 +194,18 @@ TEST(FigureCsvTest, HasALineForEveryPoint) {
             "\"A, B\",start,1,\n"
             "\"A, B\",warm-up,0,\n"
             "\"A, B\",warm-up,1,\n");
+}
+
+TEST(FigureCsvTest, ABandIsTwoMoreSeries) {
+  Figure figure;
+  FigurePanel panel;
+  panel.title = "AMD";
+  panel.series = {line_series("mine", {2}, 0)};
+  panel.series[0].low = {1};
+  panel.series[0].high = {3};
+  figure.panels = {panel};
+  EXPECT_EQ(figure_csv(figure),
+            "panel,series,x,y\nAMD,mine,0,2\nAMD,\"mine, 5 %\",0,1\nAMD,\"mine, 95 %\",0,3\n");
 }
 
 TEST(FigureCsvTest, BarsHaveTheirCategoriesAndPhotographsTheirReadings) {

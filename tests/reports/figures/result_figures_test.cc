@@ -73,12 +73,44 @@ TEST(ResultFiguresTest, ADistributionIsTheSortedValuesWithThePublishedOne) {
   EXPECT_EQ(figures[0].pipeline, "");
   EXPECT_EQ(figures[1].pipeline, "mine");
   const FigurePanel& amd = figures[1].panels.at(0);
-  EXPECT_EQ(amd.series.at(0).mark, Mark::kSteps);
-  EXPECT_THAT(amd.series.at(0).y, ElementsAre(1, 2, 3, 3));
-  EXPECT_EQ(amd.series.at(0).x.front(), 0);
-  EXPECT_EQ(amd.series.at(0).x.back(), 100);
+  EXPECT_EQ(amd.series.at(0).mark, Mark::kLine);
+  EXPECT_THAT(amd.series.at(0).y, ElementsAre(1, 2, 3));
+  EXPECT_THAT(amd.series.at(0).x, ElementsAre(0, 50, 100));
   ASSERT_THAT(amd.lines, SizeIs(1));
   EXPECT_EQ(amd.lines[0].at, 2.5);
+}
+
+// The curve at x, between its points.
+double curve_at(const FigureSeries& curve, double x) {
+  std::size_t i = 1;
+  while (curve.x.at(i) < x) ++i;
+  const double share = (x - curve.x[i - 1]) / (curve.x[i] - curve.x[i - 1]);
+  return curve.y[i - 1] + share * (curve.y[i] - curve.y[i - 1]);
+}
+
+TEST(ResultFiguresTest, ADistributionHasTheMedianAndTheBandOfTheTables) {
+  for (const std::vector<double>& values :
+       std::vector<std::vector<double>>{{7}, {1, 2}, {8, 1, 2, 4}, {5, 1, 9, 2, 2, 7}}) {
+    const evaluation::Row mine = row("mine", values);
+    const std::vector<Figure> figures = distributions(archive_of({mine}));
+    const FigureSeries& curve = figures.at(0).panels.at(0).series.at(0);
+    EXPECT_DOUBLE_EQ(curve_at(curve, 50), mine.amd_ms.median);
+    EXPECT_NEAR(curve_at(curve, 5), mine.amd_ms.p05, 1e-12);
+    EXPECT_NEAR(curve_at(curve, 95), mine.amd_ms.p95, 1e-12);
+  }
+}
+
+TEST(ResultFiguresTest, APublishedLineHasTheColourOfItsPipeline) {
+  Archive results = archive_of({row("mine", {2, 4}), row("yours", {3, 5})});
+  results.results.rows[0].published.emplace().amd_ms = 2.5;
+  results.results.rows[1].published.emplace().amd_ms = 3.5;
+  const std::vector<Figure> figures = distributions(results);
+  const FigurePanel& together = figures.at(0).panels.at(0);
+  ASSERT_THAT(together.lines, SizeIs(2));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(together.lines[i].colour, together.series.at(i).colour);
+  }
+  EXPECT_NE(together.lines[0].colour, together.lines[1].colour);
 }
 
 TEST(ResultFiguresTest, HostOrderIsTheMedianByHost) {

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 namespace simbench::reports {
@@ -113,8 +115,8 @@ TEST(SweepFigure, ACurveForEachPipelineAndOtherStep) {
   ASSERT_EQ(figure.panels.size(), 4U);
   std::vector<std::string> axes;
   for (const FigurePanel& panel : figure.panels) axes.push_back(panel.y_label);
-  EXPECT_THAT(axes, ElementsAre("median AMD, ms", "median absolute error, ms", "recall, %",
-                                "median margin, ms"));
+  EXPECT_THAT(axes, ElementsAre("median AMD [5-95 %], ms", "median absolute error [5-95 %], ms",
+                                "recall, %", "median margin [5-95 %], ms"));
   const FigurePanel& amd = figure.panels[0];
   EXPECT_EQ(amd.x_label, "/hosts/count");
   ASSERT_EQ(amd.series.size(), 4U);
@@ -124,6 +126,10 @@ TEST(SweepFigure, ACurveForEachPipelineAndOtherStep) {
   EXPECT_EQ(amd.series[3].label, "slow, stamp_point=application");
   EXPECT_THAT(amd.series[3].y, ElementsAre(14.5, 6.5));
   EXPECT_THAT(figure.panels[2].series[1].y, ElementsAre(75, 75));
+  EXPECT_EQ(amd.series[0].mark, Mark::kMarkedLine);
+  EXPECT_THAT(amd.series[0].low, ElementsAre(8.05, 0.05));  // 8, 9 and 0, 1
+  EXPECT_THAT(amd.series[0].high, ElementsAre(8.95, 0.95));
+  EXPECT_TRUE(figure.panels[2].series[1].low.empty());
 }
 
 TEST(SweepFigure, WordsAreCategories) {
@@ -132,7 +138,18 @@ TEST(SweepFigure, WordsAreCategories) {
   const FigurePanel panel =
       response_figure(words, evaluation::response(words, scores())).panels.front();
   EXPECT_THAT(panel.categories, ElementsAre("kernel", "application"));
-  EXPECT_THAT(panel.series[0].x, ElementsAre(0, 1));
+  ASSERT_EQ(panel.series.size(), 4U);
+  std::set<double> places;
+  for (const FigureSeries& series : panel.series) {
+    EXPECT_EQ(series.mark, Mark::kPoints);
+    EXPECT_EQ(series.low.size(), 2U);
+    ASSERT_EQ(series.x.size(), 2U);
+    EXPECT_EQ(std::llround(series.x[0]), 0);
+    EXPECT_EQ(std::llround(series.x[1]), 1);
+    places.insert(series.x[0]);
+  }
+  EXPECT_EQ(places.size(), 4U);  // none over another
+  EXPECT_NEAR(*places.begin() + *places.rbegin(), 0, 1e-12);
 }
 
 TEST(SweepFigure, OnePointIsNoResponse) {
