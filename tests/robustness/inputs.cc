@@ -90,7 +90,7 @@ void Inputs::add_files() {
     if (!name.ends_with(".json") || name == "schema.json") continue;
     copy("scenarios/" + name, "scenario/" + name);
   }
-  add({"scenario", files_of("scenario"), {{"validate", "%"}, {"describe", "%"}}});
+  add({"scenario", 6, files_of("scenario"), {{"validate", "%"}, {"describe", "%"}}});
 
   copy("tests/data/ibl/_iblrig_bodyCamera.timestamps.ssv", "ibl/_iblrig_bodyCamera.timestamps.ssv");
   copy("tests/data/ibl/_iblrig_leftCamera.frameData.bin", "ibl/_iblrig_leftCamera.frameData.bin");
@@ -100,11 +100,12 @@ void Inputs::add_files() {
     const std::string text = content(path);
     put(path, file.ends_with(".bin") ? text.substr(0, 3200) : head(text, 100));
   }
-  add({"ibl", files_of("ibl"), {{"convert-ibl", "%"}}});
+  add({"ibl", 4, files_of("ibl"), {{"convert-ibl", "%"}}});
 
   fs::create_directories(fs::path(folder_) / kGood / "rig");
   put(folder_ + "/" + kGood + "/rig/rig.json", kRig);
   add({"rig",
+       1,
        files_of("rig"),
        {{"record", "--backend", "hardware", "--scenario", "3cam_1host_30fps", "--pipelines",
          "genlock", "--rig", "%", "--output", "@written/recording"}}});
@@ -121,6 +122,7 @@ void Inputs::add_archives() {
   };
   make(with_world({"record", "--output", "@/recording"}));
   add({"recording",
+       6,
        files_of("recording"),
        {{"replay", "@tried/recording", "--format", "json"},
         {"fit", "@tried/recording", "--output", "@written/fit.json"}}});
@@ -138,6 +140,7 @@ void Inputs::add_archives() {
   const std::string first = "@tried/csv/camera0.csv";
   const std::string second = "@tried/csv/camera1.csv";
   add({"csv",
+       8,
        files_of("csv"),
        {{"replay", first, second, "--format", "json"},
         {"replay", first, second},
@@ -146,6 +149,7 @@ void Inputs::add_archives() {
 
   make(with_world({"run", "--seeds", "2", "--jobs", "1", "--output", "@/archive"}));
   add({"archive",
+       4,
        files_of("archive"),
        {{"compare", "@tried/archive"},
         {"compare", "@tried/archive", "@good/archive", "--format", "json"},
@@ -154,6 +158,7 @@ void Inputs::add_archives() {
         {"figure", "distributions", "@tried/archive", "--output", "@written/figure.csv"}}});
   make({"gate", "@/archive", "--save-baseline", "@/baseline.json"});
   add({"baseline",
+       4,
        {"baseline.json"},
        {{"gate", "@good/archive", "--baseline", "%"},
         {"gate", "@good/archive", "--baseline", "%", "--mode", "statistical", "--format",
@@ -166,11 +171,12 @@ void Inputs::add_archives() {
   make(made);
   std::vector<std::string> continued = sweep;
   continued.insert(std::find(continued.begin(), continued.end(), "--output") + 1, "@tried/sweep");
-  add({"sweep", files_of("sweep"), {continued}});
+  add({"sweep", 1, files_of("sweep"), {continued}});
 }
 
 void Inputs::add_arguments() {
   add({"arguments",
+       4,
        {},
        {{"describe", "18cam_6host_45fps", "--set", "/trigger/rate_hz=30"},
         {"describe", "18cam_6host_45fps_lan", "--set", "/algorithms/ntp/min_poll=4"},
@@ -201,14 +207,23 @@ std::vector<std::string> Inputs::resolved(std::vector<std::string> command,
   return command;
 }
 
+const Inputs::Kind& Inputs::any_kind(Random& random) const {
+  std::size_t shares = 0;
+  for (const Kind& kind : kinds_) shares += kind.share;
+  std::size_t place = random.below(shares);
+  const Kind* chosen = kinds_.data();
+  while (place >= chosen->share) place -= (chosen++)->share;
+  return *chosen;
+}
+
 Attempt Inputs::undamaged(Random& random) const {
-  const Kind& kind = kinds_[random.below(kinds_.size())];
+  const Kind& kind = any_kind(random);
   const std::string file = kind.files.empty() ? "" : random.of(kind.files);
   return {kind.name, resolved(random.of(kind.commands), file), "", ""};
 }
 
 Attempt Inputs::next(Random& random) {
-  const Kind& kind = kinds_[random.below(kinds_.size())];
+  const Kind& kind = any_kind(random);
   Attempt attempt{.kind = kind.name, .arguments = {}, .file = {}, .input = {}};
   if (kind.files.empty()) {
     attempt.arguments = resolved(random.of(kind.commands), "");

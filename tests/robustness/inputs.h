@@ -42,11 +42,13 @@ class Inputs {
   // A kind without files has commands whose arguments are damaged.
   struct Kind {
     std::string name;
+    std::size_t share;  // of the attempts: small for commands that take long
     std::vector<std::string> files;
     std::vector<std::vector<std::string>> commands;
   };
 
   void add(Kind kind) { kinds_.push_back(std::move(kind)); }
+  const Kind& any_kind(Random& random) const;
   void copy(const std::string& from, const std::string& to) const;
   void make(const std::vector<std::string>& arguments) const;
   std::vector<std::string> files_of(const std::string& below) const;
