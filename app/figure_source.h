@@ -14,7 +14,7 @@
 // budget is 128 runs a seed. Progress counts runs.
 //
 // Errors: scenarios::InputError (an unknown seed, pipeline or figure; a scenario that this version
-// does not take), app::Interrupted, what the simulator throws.
+// does not take), RecordingCancelled, what the simulator throws.
 #ifndef SIMBENCH_APP_FIGURE_SOURCE_H_
 #define SIMBENCH_APP_FIGURE_SOURCE_H_
 

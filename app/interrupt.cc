@@ -14,7 +14,7 @@ std::atomic<bool> interrupt_flag{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not wait");
 
 void throw_if_interrupted() {
-  if (interrupt_flag.load(std::memory_order_relaxed)) throw Interrupted();
+  if (interrupt_flag.load(std::memory_order_relaxed)) throw RecordingCancelled();
 }
 
 // Hands everything on; polls the flag at frames and exchanges, which are frequent.
@@ -38,7 +38,9 @@ class InterruptibleSource : public RecordingSource {
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
     throw_if_interrupted();
     InterruptibleSink watched(sink);
-    return source_->record(request, watched);
+    RecordingRequest cancellable = request;
+    cancellable.cancel = &interrupt_flag;
+    return source_->record(cancellable, watched);
   }
 
  private:

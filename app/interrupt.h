@@ -1,5 +1,5 @@
-// Ctrl-C, which stops jobs at their next frame, and the simulator with it: the worlds that the
-// command line runs.
+// Ctrl-C, which stops jobs at their next frame or after some thousand events of their world, and
+// the simulator with it: the worlds that the command line runs.
 //
 //   InterruptHandler handler;                     // while it lives, SIGINT raises a flag
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
@@ -11,7 +11,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <exception>
 #include <memory>
 
 #include "evaluation/sweep/task_farm.h"
@@ -35,12 +34,7 @@ class InterruptHandler {
   struct sigaction previous_ = {};
 };
 
-class Interrupted : public std::exception {
- public:
-  const char* what() const noexcept override { return "interrupted"; }
-};
-
-// The same source, but record() throws Interrupted once the flag is raised.
+// The same source, but record() throws RecordingCancelled once the flag is raised.
 std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source);
 
 // The simulator, interruptible: an evaluation::WorldFactory. `scenario` outlives the result.

@@ -27,7 +27,7 @@ void record(const evaluation::PipelineChoice& choice, std::uint64_t seed, Record
   } catch (const RecordingFailed& failure) {
     writer.abandon({failure.what()});
     warn(failure.what());
-  } catch (const Interrupted&) {
+  } catch (const RecordingCancelled&) {
     writer.abandon({"interrupted"});
     throw;
   }

@@ -36,7 +36,7 @@ struct CapturesMade {
 };
 
 // Records every pipeline's capture of every seed. `made` is up to date also when this ends by an
-// exception. Throws Interrupted (app/interrupt.h), what the source throws except RecordingFailed,
+// exception. Throws RecordingCancelled, what the source throws except RecordingFailed,
 // and RecordingFolderError (a full disk). Progress counts captures.
 void record_captures(const std::vector<evaluation::PipelineChoice>& choices,
                      RecordingSource& source, const CapturePlan& plan, RecordingWriter& writer,

@@ -28,11 +28,13 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <ostream>
 #include <string>
 
 #include "app/interrupt.h"
+#include "cli/interrupt_deadline.h"
 #include "evaluation/run/evaluate.h"
 
 namespace simbench::cli {
@@ -91,6 +93,9 @@ struct Watch {
   std::string unit = "run";                    // what it counts, in the singular
   std::uint64_t total = 0;                     // how many; 0: unknown until it begins
   std::string kept = "no result was written";  // what an interruption leaves
+  // Whether an interruption waits until the work has ended in order, however long that takes: a
+  // rig's cameras and trigger must be switched off.
+  bool waits_for_end = false;
 };
 
 // Reports the first Ctrl-C.
@@ -98,8 +103,8 @@ void print_interruption(const Watch& watch, std::uint64_t done, std::uint64_t to
 
 // Runs the work of a long command, with progress, until its end or the first Ctrl-C.
 //
-// After Ctrl-C the work ends at its next run; a line reports how far it got, and there is no
-// result. With --json all messages are JSON lines.
+// After Ctrl-C the work ends soon (cli/interrupt_deadline.h); a line reports how far it got, and
+// there is no result. With --json all messages are JSON lines.
 //
 //   const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
 //     return evaluation::evaluate(scenario, make_source, options, progress);
@@ -112,21 +117,30 @@ template <class Result, class Work>
 std::optional<Result> watched(const Work& work, const Watch& watch = {}) {
   const app::InterruptHandler handler;
   Progress progress(std::cerr, progress_style(), watch.unit);
+  std::mutex mutex;  // guards what follows, and `progress`
   std::uint64_t finished = 0;
   std::uint64_t all = watch.total;
+  const auto report_interruption = [&] {
+    const std::lock_guard lock(mutex);
+    progress.interrupt();
+    print_interruption(watch, finished, all);
+  };
   try {
+    std::optional<InterruptDeadline> deadline;
+    if (!watch.waits_for_end) deadline.emplace(report_interruption);
     std::optional<Result> result = work([&](std::uint64_t done, std::uint64_t total) {
+      const std::lock_guard lock(mutex);
       finished = done;
       all = total;
       progress.update(done, total);
     });
+    deadline.reset();
     progress.finish();
     return result;
   } catch (const std::exception&) {
     if (!app::InterruptHandler::raised()) throw;
   }
-  progress.interrupt();
-  print_interruption(watch, finished, all);
+  report_interruption();
   return std::nullopt;
 }
 

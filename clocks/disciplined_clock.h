@@ -11,7 +11,9 @@
 //  - A slew ends by itself; a step or another slew before its end leaves the rest of it undone, a
 //    change of rate does not.
 //  - The observer is notified of each adjustment in order of time, also of the end of a slew, in
-//    time if settle() is called at settles_at().
+//    time if settle() is called at settles_at(), each time there is one. The end of a slew that
+//    takes more than a day depends on the oscillator's far future: it is planned when it is near,
+//    and until then settles_at() is an instant at which to look again.
 //  - Errors: ClockError for a rate that is not finite or not below 0.5, and for a slew without a
 //    positive rate; the clock is then as it was.
 //  - Used by one thread.
@@ -69,6 +71,8 @@ concept Oscillator = requires(const T& oscillator, typename T::Instant at) {
 
 // Counts and readings further away than this are never reached: 63 years.
 inline constexpr double kNeverNs = 2e18;
+// The end of a slew that is further away is planned later: a day.
+inline constexpr double kFarEndNs = 8.64e13;
 
 // The instant at which the oscillator has counted `local_ns` more than at `anchor`, to about 1 ns.
 template <Oscillator O>
@@ -84,13 +88,31 @@ typename O::Instant instant_after(const O& oscillator, typename O::Instant ancho
   return t;
 }
 
-// The first instant for which `reached` holds, starting from a good guess; `reached` is monotone.
+// The first instant for which `reached` holds, starting from a guess; `reached` is monotone. A good
+// guess costs two looks, a bad one the logarithm of its error. If nothing near kNeverNs differs
+// from the guess, that end is the answer.
 template <class Instant, class Predicate>
 Instant first_instant(Instant guess, Predicate reached) {
-  constexpr Nanoseconds kStep(1);
-  while (!reached(guess)) guess += kStep;
-  while (reached(guess - kStep)) guess -= kStep;
-  return guess;
+  constexpr Nanoseconds kFarthest(std::int64_t{1} << 60);
+  Nanoseconds step(1);
+  Instant before = guess;
+  Instant after = guess;
+  if (reached(guess)) {
+    for (before -= step; reached(before) && step < kFarthest; before -= step) {
+      after = before;
+      step *= 2;
+    }
+  } else {
+    for (after += step; !reached(after) && step < kFarthest; after += step) {
+      before = after;
+      step *= 2;
+    }
+  }
+  while (after - before > Nanoseconds(1)) {
+    const Instant middle = before + (after - before) / 2;
+    (reached(middle) ? after : before) = middle;
+  }
+  return after;
 }
 
 // The first instant at which the steady clock, which read `zero_reading` at `zero`, reads `at` or
@@ -153,7 +175,7 @@ class DisciplinedClock {
   // ends an unfinished slew, whatever the rate.
   void slew(Instant at, Nanoseconds offset, double max_rate_ppb);
 
-  // When the planned end of a slew will be reached, if there is one that was not yet reported.
+  // When settle() is due: the planned end of a slew, if there is one that was not yet reported.
   std::optional<Instant> settles_at() const;
   // Reports the end of a slew that was reached at or before `now`.
   void settle(Instant now);
@@ -221,14 +243,17 @@ class DisciplinedClock {
   Setting next_setting(Instant at);
   // Adds it and, if it slews, the planned end of that; reports it.
   void add(const Setting& setting);
+  // Plans the end of the last setting's slew, as far as it can be told at `now`.
+  void plan_end(Instant now);
   void report_next();
 
   std::uint32_t host_;
   O oscillator_;
   std::size_t history_;
   std::vector<Setting> settings_;
-  mutable std::size_t current_ = 0;  // where the last reading was found
-  std::size_t reported_ = 1;         // settings whose begin was reported
+  mutable std::size_t current_ = 0;    // where the last reading was found
+  std::size_t reported_ = 1;           // settings whose begin was reported
+  std::optional<Instant> look_again_;  // when the end of the last one's slew is planned
   Observer observer_;
 };
 
@@ -325,27 +350,39 @@ template <Oscillator O>
 void DisciplinedClock<O>::add(const Setting& setting) {
   settings_.push_back(setting);
   current_ = settings_.size() - 1;
-  const double duration_ns =
-      setting.slew_rate == 0 ? 0 : std::max(0.0, setting.slew_left_ns / setting.slew_rate);
-  if (setting.slew_rate != 0 && duration_ns <= kNeverNs) {
-    const Instant at =
-        instant_after(oscillator_, setting.anchor, setting.anchor_deviation_ns, duration_ns);
-    Setting end = continued(setting, std::max(setting.since, at));
-    end.slew_rate = end.slew_left_ns = 0;
-    settings_[current_].until = end.since;
-    settings_.push_back(end);
-  }
+  plan_end(setting.since);
   report_next();
 }
 
 template <Oscillator O>
+void DisciplinedClock<O>::plan_end(Instant now) {
+  look_again_.reset();
+  const Setting setting = settings_.back();
+  if (setting.slew_rate == 0) return;
+  const double duration_ns = std::max(0.0, setting.slew_left_ns / setting.slew_rate);
+  if (duration_ns > kNeverNs) return;
+  const double left_ns = duration_ns - counted_ns(setting, now);
+  if (left_ns > kFarEndNs) {
+    look_again_ = now + from_ns(left_ns / 2);
+    return;
+  }
+  const Instant at =
+      instant_after(oscillator_, setting.anchor, setting.anchor_deviation_ns, duration_ns);
+  Setting end = continued(setting, std::max(setting.since, at));
+  end.slew_rate = end.slew_left_ns = 0;
+  settings_.back().until = end.since;
+  settings_.push_back(end);
+}
+
+template <Oscillator O>
 std::optional<typename O::Instant> DisciplinedClock<O>::settles_at() const {
-  if (reported_ == settings_.size()) return std::nullopt;
+  if (reported_ == settings_.size()) return look_again_;
   return settings_.back().since;
 }
 
 template <Oscillator O>
 void DisciplinedClock<O>::settle(Instant now) {
+  if (look_again_ && *look_again_ <= now) plan_end(now);
   while (reported_ < settings_.size() && settings_[reported_].since <= now) report_next();
 }
 
@@ -354,10 +391,12 @@ void DisciplinedClock<O>::report_next() {
   const Setting setting = settings_[reported_];
   const HostTime before = reading(settings_[reported_ - 1], setting.since).whole;
   ++reported_;
-  if (reported_ > history_ + 1) {
-    settings_.erase(settings_.begin());
-    --reported_;
-    current_ -= std::min<std::size_t>(current_, 1);
+  // Many at a time where there are many.
+  const std::size_t old = reported_ > history_ + 1 ? reported_ - history_ - 1 : 0;
+  if (old > history_ / 128) {
+    settings_.erase(settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(old));
+    reported_ -= old;
+    current_ -= std::min(current_, old);
   }
   if (!observer_) return;
   observer_({.host = host_,

@@ -16,7 +16,9 @@
 #ifndef SIMBENCH_RECORDING_RECORDING_H_
 #define SIMBENCH_RECORDING_RECORDING_H_
 
+#include <atomic>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -116,6 +118,9 @@ struct RecordingRequest {
   // Notified of what only a simulated world can show (world_observer.h); outlives the call. Never
   // changes the recording.
   WorldObserver* observer = nullptr;
+  // Once true, a simulated world ends with RecordingCancelled; outlives the call. A signal handler
+  // may set it.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 // The cost of the recording; for the performance line.
@@ -135,8 +140,14 @@ class RecordingFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A backend. Errors: throws RecordingFailed, or what its own header documents; the sink may have
-// seen part of the capture.
+// A capture that RecordingRequest::cancel ended.
+class RecordingCancelled : public std::exception {
+ public:
+  const char* what() const noexcept override { return "cancelled"; }
+};
+
+// A backend. Errors: throws RecordingFailed, RecordingCancelled, or what its own header documents;
+// the sink may have seen part of the capture.
 class RecordingSource {
  public:
   virtual ~RecordingSource() = default;

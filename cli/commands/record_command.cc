@@ -99,7 +99,10 @@ int record(const RecordOptions& options) {
                              progress);
         return std::optional(true);
       },
-      {.unit = "capture", .total = wanted, .kept = options.output + " holds what was recorded"});
+      {.unit = "capture",
+       .total = wanted,
+       .kept = options.output + " holds what was recorded",
+       .waits_for_end = is_hardware(options.backend)});
   print_warnings(made.warnings);
   if (!finished) return kInterrupted;
   if (made.recorded == 0) {

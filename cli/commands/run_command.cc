@@ -48,10 +48,13 @@ struct RunOptions {
 
 std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
                                             const evaluation::SourceFactory& make_source,
-                                            const evaluation::EvaluationOptions& options) {
-  return watched<evaluation::Results>([&](const evaluation::Progress& progress) {
-    return evaluation::evaluate(scenario, make_source, options, progress);
-  });
+                                            const evaluation::EvaluationOptions& options,
+                                            const Watch& watch = {}) {
+  return watched<evaluation::Results>(
+      [&](const evaluation::Progress& progress) {
+        return evaluation::evaluate(scenario, make_source, options, progress);
+      },
+      watch);
 }
 
 std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,

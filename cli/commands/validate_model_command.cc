@@ -137,7 +137,7 @@ std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions
              .pipelines = options.pipelines},
             progress);
       },
-      {.unit = "repetition"});
+      {.unit = "repetition", .waits_for_end = true});
   if (!results) return std::nullopt;
   print_warnings(results->warnings);
   lateness.print();

@@ -6,8 +6,10 @@
 // the step's index alone: then values depend neither on the order of the queries nor on when the
 // world starts.
 //
-// Units: nanoseconds. Complexity: O(1) once the steps between true zero and the query are sampled;
-// 8 bytes each.
+// Units: nanoseconds. Complexity: O(1) once the steps between true zero and the query are sampled
+// and while the queries stay near each other. Steps are kept where the queries are, some 64 KiB in
+// each direction, and of all others the state at every 4096th, from which they are sampled anew:
+// service of many hours on a fine grid needs time, not memory.
 //
 //   GridWalk<double> walk(step_ns, frequency_at_zero);
 //   double ns = walk.phase_ns(t_ns, [&](double& frequency, std::int64_t index, double sign) {
@@ -16,6 +18,8 @@
 #ifndef SIMBENCH_SIM_CLOCK_GRID_WALK_H_
 #define SIMBENCH_SIM_CLOCK_GRID_WALK_H_
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,7 +32,7 @@ class GridWalk {
  public:
   GridWalk() = default;
   GridWalk(std::int64_t step_ns, const State& at_zero)
-      : step_ns_(step_ns), forward_{{0.0}, at_zero}, backward_{{0.0}, at_zero} {}
+      : step_ns_(step_ns), forward_(at_zero), backward_(at_zero) {}
 
   std::int64_t step_ns() const { return step_ns_; }
 
@@ -40,34 +44,71 @@ class GridWalk {
     const std::int64_t index = floor_div(since_zero_ns, step_ns_);
     const double part =
         static_cast<double>(since_zero_ns - index * step_ns_) / static_cast<double>(step_ns_);
-    const double before_ns = grid_phase_ns(index, step);
-    return before_ns + part * (grid_phase_ns(index + 1, step) - before_ns);
+    const bool forward = index >= 0;
+    Side& side = forward ? forward_ : backward_;
+    // The grid points around the query, by their distance from zero: `inner` and the next.
+    const auto inner = static_cast<std::size_t>(forward ? index : -index - 1);
+    std::size_t at = inner - side.first;
+    // Also where `inner` lies before the first one kept.
+    if (at >= side.phases_ns.size() - 1) at = reach(side, inner, forward, step);
+    const double inner_ns = side.phases_ns[at];
+    const double outer_ns = side.phases_ns[at + 1];
+    return forward ? inner_ns + part * (outer_ns - inner_ns)
+                   : outer_ns + part * (inner_ns - outer_ns);
   }
 
  private:
-  // One direction of time; phases_ns[i] belongs to grid point i or -i.
+  static constexpr std::size_t kBlock = 4096;
+
+  struct Point {
+    double phase_ns = 0;
+    State state{};
+  };
+  // One direction of time. phases_ns[i] belongs to the grid point at distance first + i.
   struct Side {
+    Side() = default;
+    explicit Side(const State& at_zero)
+        : phases_ns{0.0}, state(at_zero), saved{Point{0.0, at_zero}} {}
+    std::size_t first = 0;  // a multiple of kBlock
     std::vector<double> phases_ns;
-    State state;  // at the last of these points
+    State state{};             // at the last of these points
+    std::vector<Point> saved;  // every kBlock-th, as far as they were sampled
   };
 
+  // Samples the points at `inner` and the next; returns the place of `inner`. Out of the hot path.
   template <class Step>
-  double grid_phase_ns(std::int64_t index, const Step& step) const {
-    const bool forward = index >= 0;
-    const double sign = forward ? 1.0 : -1.0;
-    Side& side = forward ? forward_ : backward_;
-    const auto place = static_cast<std::size_t>(forward ? index : -index);
-    while (side.phases_ns.size() <= place) {
-      const auto last = static_cast<std::int64_t>(side.phases_ns.size()) - 1;
-      const double change_ns = step(side.state, forward ? last : -last - 1, sign);
-      side.phases_ns.push_back(side.phases_ns.back() + sign * change_ns);
+  [[gnu::noinline]] std::size_t reach(Side& side, std::size_t inner, bool forward,
+                                      const Step& step) const {
+    const std::size_t block = std::min(inner / kBlock, side.saved.size() - 1);
+    const bool is_kept = inner >= side.first;
+    if (!is_kept || block * kBlock > side.first + side.phases_ns.size()) {
+      side.first = block * kBlock;
+      side.phases_ns.assign(1, side.saved[block].phase_ns);
+      side.state = side.saved[block].state;
     }
-    return side.phases_ns[place];
+    while (side.first + side.phases_ns.size() <= inner + 1) extend(side, forward, step);
+    return inner - side.first;
+  }
+
+  template <class Step>
+  void extend(Side& side, bool forward, const Step& step) const {
+    if (side.phases_ns.size() == 2 * kBlock) {
+      side.phases_ns.erase(side.phases_ns.begin(), side.phases_ns.begin() + kBlock);
+      side.first += kBlock;
+    }
+    const auto last = static_cast<std::int64_t>(side.first + side.phases_ns.size() - 1);
+    const double sign = forward ? 1.0 : -1.0;
+    const double change_ns = step(side.state, forward ? last : -last - 1, sign);
+    side.phases_ns.push_back(side.phases_ns.back() + sign * change_ns);
+    const auto place = static_cast<std::size_t>(last) + 1;
+    if (place == side.saved.size() * kBlock) {
+      side.saved.push_back({side.phases_ns.back(), side.state});
+    }
   }
 
   std::int64_t step_ns_ = 0;
-  mutable Side forward_{};  // a cache: values are functions of the index alone
-  mutable Side backward_{};
+  mutable Side forward_;  // a cache: values are functions of the index alone
+  mutable Side backward_;
 };
 
 }  // namespace simbench::sim

@@ -66,6 +66,8 @@ double FlickerNoise::step(Frequencies& frequencies, std::int64_t index, double /
 namespace {
 
 constexpr double kPerPpmPerHour = 1e-6 / 3600;  // as a fraction per second
+constexpr double kMostFrequencyError = 0.05;    // of the walk, and of the ramp
+constexpr double kMostWalkPpb = kMostFrequencyError * 1e9;
 
 }  // namespace
 
@@ -110,8 +112,7 @@ double OscillatorModel::unsteady_ns(TrueTime t) const {
   }
   if (flicker_) ns += flicker_->phase_ns(since_zero_ns);
   if (ramp_per_s_ != 0 && since_zero_ns > 0) {
-    const double s = static_cast<double>(since_zero_ns) * 1e-9;
-    ns += ramp_per_s_ * s * s / 2 * 1e9;
+    ns += ramp_ns(static_cast<double>(since_zero_ns) * 1e-9);
   }
   if (heating_ != 0 && t > switched_on_) {
     const double s = static_cast<double>((t - switched_on_).count()) * 1e-9;
@@ -122,10 +123,17 @@ double OscillatorModel::unsteady_ns(TrueTime t) const {
   return ns;
 }
 
+double OscillatorModel::ramp_ns(double since_zero_s) const {
+  const double end_s = kMostFrequencyError / std::abs(ramp_per_s_);
+  const double s = std::min(since_zero_s, end_s);
+  return (ramp_per_s_ * s * s / 2 + ramp_per_s_ * s * (since_zero_s - s)) * 1e9;
+}
+
 double OscillatorModel::step(double& frequency_ppb, std::int64_t index, double sign) const {
   RandomStream draw(run_seed_, wander_key_, static_cast<std::uint64_t>(index));
   const double before_ppb = frequency_ppb;
-  frequency_ppb += sign * draw.normal(walk_sigma_ppb_);
+  frequency_ppb =
+      std::clamp(before_ppb + sign * draw.normal(walk_sigma_ppb_), -kMostWalkPpb, kMostWalkPpb);
   return (before_ppb + frequency_ppb) / 2 * step_s_ + draw.normal(phase_sigma_ns_);
 }
 

@@ -16,13 +16,16 @@
 // index, and the walks start at true zero in both directions: values depend neither on the order of
 // the queries nor on when the world starts.
 //
+// The walk and the ramp end at a frequency error of 5 %, further than any oscillator is off: a
+// clock runs forward in every world.
+//
 // The ramp R begins at true zero: R t^2 / 2. Self-heating of H with time constant T begins when the
 // device is switched on, s seconds before t: y = H (1 - exp(-s / T)).
 //
 // Units: nanoseconds; skew as a fraction. The phase is exact to well below 1 ns over days: a rate
 // of 1e-9 survives. Complexity: O(1) without noise; otherwise a look-up, after each step of the
-// grid between true zero and the query has once been sampled (8 bytes and some 20 ns each, some
-// 120 ns with flicker).
+// grid between true zero and the query has once been sampled (some 20 ns each, some 120 ns with
+// flicker; memory: grid_walk.h).
 // Source: docs/design.md sections 5 to 7; Riley, "Handbook of Frequency Stability Analysis", NIST
 // SP 1065.
 //
@@ -106,6 +109,7 @@ class OscillatorModel {
 
  private:
   double unsteady_ns(TrueTime t) const;
+  double ramp_ns(double since_zero_s) const;
   // White noise and random walk over one step of their grid, for GridWalk.
   double step(double& frequency_ppb, std::int64_t index, double sign) const;
 

@@ -3,10 +3,19 @@
 #include "algorithms/ports/assert.h"
 
 namespace simbench::sim {
+namespace {
+
+// More adjustments than there are in the longest way of a frame or a message, for which alone a
+// clock's past is read; a service of years makes millions.
+constexpr std::size_t kSettingsKept = 1 << 18;
+
+}  // namespace
 
 SystemClock::SystemClock(std::uint32_t host, OscillatorModel oscillator, Nanoseconds offset,
                          SteadyTime steady_epoch)
-    : host_(host), own_(host, {std::move(oscillator), steady_epoch}, TrueTime{}, HostTime(offset)) {
+    : host_(host),
+      own_(host, {std::move(oscillator), steady_epoch}, TrueTime{}, HostTime(offset),
+           kSettingsKept) {
   own_.observe([this](const ClockAdjustment& adjustment) { notify(adjustment); });
 }
 

@@ -2,8 +2,8 @@
 // of that, read at instants of true time.
 //
 // The system clock is a disciplined clock (clocks/disciplined_clock.h has its contract) that keeps
-// all its settings, so that it can be read at any instant, also a past one. Readings are exact,
-// rounded down to 1 ns; programs read it through sim/clock/clock_interface.h.
+// its last 262,144 settings, so that it can be read at any instant, also a past one. Readings are
+// exact, rounded down to 1 ns; programs read it through sim/clock/clock_interface.h.
 //
 // The clock of an oracle's slave follows the master's: both its clocks are the master's at every
 // instant, its own adjustments have no effect, and it reports the master's adjustments.

@@ -10,6 +10,9 @@ namespace {
 // Below this many cancelled callbacks the queue is not worth sweeping.
 constexpr std::size_t kFewCancelled = 64;
 
+// Few enough for a part of a second, also where an event takes long.
+constexpr std::uint64_t kEventsBetweenPolls = 1024;
+
 // Odd constants with about half of their bits set (golden ratio; first constant of splitmix64).
 constexpr std::uint64_t kHashPayload = 0x9E3779B97F4A7C15;
 constexpr std::uint64_t kHashChain = 0xBF58476D1CE4E5B9;
@@ -76,10 +79,16 @@ void Engine::execute_through(TrueTime last) {
   } const running(running_);
   stopped_ = false;
   QueueEntry entry;
-  while (events_ < limits_.max_events && queue_.pop_through(last, entry)) {
-    if (release_if_cancelled(entry)) continue;
-    execute(entry);
+  while (events_ < limits_.max_events) {
+    stopped_ = is_cancelled();
     if (stopped_) return;
+    const std::uint64_t next_poll = std::min(limits_.max_events, events_ + kEventsBetweenPolls);
+    while (events_ < next_poll) {
+      if (!queue_.pop_through(last, entry)) return;
+      if (release_if_cancelled(entry)) continue;
+      execute(entry);
+      if (stopped_) return;
+    }
   }
 }
 

@@ -35,6 +35,7 @@
 #ifndef SIMBENCH_SIM_ENGINE_ENGINE_H_
 #define SIMBENCH_SIM_ENGINE_ENGINE_H_
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -57,6 +58,8 @@ namespace simbench::sim {
 struct EngineLimits {
   std::uint64_t max_events = 10'000'000'000;
   TrueTime max_time = TrueTime(std::chrono::hours(24 * 365));  // events at max_time still happen
+  // Polled after some thousand events; once true, the run stops as by stop(). May be null.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 // The message has the limit, the virtual time, the events executed and pending, and what live
@@ -138,6 +141,9 @@ class Engine {
   static constexpr HandlerId kCallbackHandler = std::numeric_limits<HandlerId>::max();
 
   void execute_through(TrueTime last);
+  bool is_cancelled() const {
+    return limits_.cancel != nullptr && limits_.cancel->load(std::memory_order_relaxed);
+  }
   void execute(const QueueEntry& entry);
   bool release_if_cancelled(const QueueEntry& entry);
   bool has_event_through(TrueTime last);

@@ -77,8 +77,14 @@ ClockPort::Change ClockPort::begin_change() {
 void ClockPort::settle_in_time() {
   const std::optional<TrueTime> end = parts_.clock.settles_at();
   if (!end) return;
-  Engine& engine = parts_.context.engine();
-  engine.call_at(*end, [&engine, &clock = parts_.clock] { clock.settle(engine.now()); });
+  parts_.context.engine().call_at(*end, [this] { settle(); });
+}
+
+void ClockPort::settle() {
+  // An event of an older slew is none of the present one's.
+  const bool is_due = parts_.clock.settles_at() == true_now();
+  parts_.clock.settle(true_now());
+  if (is_due) settle_in_time();
 }
 
 NicClock::NicClock(SimHost& host)

@@ -92,6 +92,7 @@ class ClockPort final : public HostClock {
   Task<void> change(Apply apply);
   // Schedules the report of a slew's end.
   void settle_in_time();
+  void settle();
 
   Parts parts_;
   ClockInterface interface_;

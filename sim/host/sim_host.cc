@@ -10,6 +10,8 @@ namespace {
 
 // Beyond this a deadline is none: no run lasts so long, and instants further away may not exist.
 constexpr std::chrono::hours kFarAhead(24 * 365 * 10);
+// Longer sleeps look at the clock in between: nobody asks for noise that is days ahead.
+constexpr std::chrono::hours kLongSleep(24);
 // Noise is sampled as far as anyone asks: nobody asks further than this for a mere deadline.
 constexpr std::chrono::seconds kFarOff(10);
 
@@ -79,6 +81,11 @@ MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {
 
 Task<void> SimHost::sleep_for(Nanoseconds interval) {
   const SteadyTime deadline = steady_port_.now() + interval;
+  Nanoseconds left = interval;
+  while (left > kLongSleep) {
+    co_await sim::sleep_until(world_.context, part_way(left), sleep_label_);
+    left = deadline - steady_port_.now();
+  }
   co_await sim::sleep_until(world_.context, system_clock_.when(deadline), sleep_label_);
 }
 
@@ -86,10 +93,17 @@ Task<void> SimHost::sleep_until(HostTime at) {
   Sleeper sleeper(world_.context, sleep_label_);
   sleepers_.push_back(sleeper);
   for (;;) {
-    const TrueTime wake = system_clock_.when(at, true_now());
+    const HostTime reads = system_clock_.read(true_now());
+    const TrueTime wake = at > reads + kFarAhead    ? TrueTime::max()
+                          : at > reads + kLongSleep ? part_way(at - reads)
+                                                    : system_clock_.when(at, true_now());
     if (wake <= true_now()) break;
     co_await sleeper.adjusted.wait(wake);
   }
+}
+
+TrueTime SimHost::part_way(Nanoseconds left) const {
+  return left > kFarAhead ? TrueTime::max() : true_now() + left / 2;
 }
 
 void SimHost::on_adjustment(const ClockAdjustment& adjustment) {

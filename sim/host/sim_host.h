@@ -146,6 +146,9 @@ class SimHost final : public Host {
     WaitPoint adjusted;
   };
 
+  // When a clock that has `left` to go for certain has not got there yet; the end of time if that
+  // is years.
+  TrueTime part_way(Nanoseconds left) const;
   void on_adjustment(const ClockAdjustment& adjustment);
 
   HostWorld world_;

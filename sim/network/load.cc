@@ -12,6 +12,7 @@ std::string load_component(std::string_view what, std::string_view load_key) {
 }
 
 constexpr double kDurationsPerCell = 20;
+constexpr double kMostAtOnce = 50;
 
 constexpr ComponentKey kLoadBursts("host: bursts of load");
 
@@ -49,12 +50,14 @@ BurstProcess::BurstProcess(const scenarios::Burst& parameters, std::uint64_t run
       mean_gap_ms_(1e3 / parameters.rate_hz),
       mean_duration_ms_(parameters.duration_exponential_ms) {
   if (parameters.rate_hz == 0 || parameters.duration_exponential_ms == 0) return;
+  is_always_active_ = mean_duration_ms_ > kMostAtOnce * mean_gap_ms_;
+  if (is_always_active_) return;
   cell_ns_ = std::max<std::int64_t>(1, from_ms(kDurationsPerCell * mean_duration_ms_).count());
   cell_ms_ = to_ms(Nanoseconds(cell_ns_));
 }
 
 bool BurstProcess::active(TrueTime t) {
-  if (cell_ns_ == 0) return false;
+  if (cell_ns_ == 0) return is_always_active_;
   const std::int64_t since_zero_ns = t.time_since_epoch().count();
   const std::int64_t cell = floor_div(since_zero_ns, cell_ns_);
   if (!is_sampled_ || cell != cell_) {

@@ -26,7 +26,8 @@ class Run {
       : scenario_(scenario),
         host_sync_(request.host_sync),
         start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
-        engine_({}, start_),
+        cancel_(request.cancel),
+        engine_({.cancel = request.cancel}, start_),
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
@@ -51,6 +52,7 @@ class Run {
     start_host_sync();
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     engine_.run();
+    if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
     if (failure_) std::rethrow_exception(failure_);
     if (!captured_) throw SimulationError(standstill());
     if (sampling_) sampling_->finish();
@@ -113,6 +115,7 @@ class Run {
   const scenarios::Scenario& scenario_;
   HostSync* host_sync_;
   TrueTime start_;
+  const std::atomic<bool>* cancel_;
   Engine engine_;
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;

@@ -11,8 +11,8 @@
 // before zero and goes on during the capture.
 //
 // Errors: record() throws SimulationError when the synchronisation comes to a standstill before the
-// capture (with what every coroutine waits for), EngineLimitReached when it does not end, and the
-// exceptions of algorithms.
+// capture (with what every coroutine waits for), EngineLimitReached when it does not end,
+// RecordingCancelled, and the exceptions of algorithms.
 //
 //   const auto source = make_simulation(scenario);
 //   KeptRecording recording;

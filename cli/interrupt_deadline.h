@@ -1,0 +1,47 @@
+// The last resort of Ctrl-C: work that goes on after it is ended with its program.
+//
+// Work that polls app::InterruptHandler ends by itself and in order. What polls too rarely - a
+// world of a million hosts that is being built, an algorithm of a user's own - is not waited for:
+// somewhat less than a second after the signal a report is made, and the program ends with
+// ExitStatus::kInterrupted. That is as safe as a kill: results appear under their names only when
+// they are complete.
+//
+// While this lives, an InterruptHandler must.
+//
+//   const app::InterruptHandler handler;
+//   {
+//     const InterruptDeadline deadline([] { print_note("interrupted"); });
+//     work();
+//   }
+#ifndef SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
+#define SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace simbench::cli {
+
+class InterruptDeadline {
+ public:
+  // `report` is called on another thread, beside the work. Without a thread there is no deadline.
+  explicit InterruptDeadline(std::function<void()> report);
+  InterruptDeadline(const InterruptDeadline&) = delete;
+  InterruptDeadline& operator=(const InterruptDeadline&) = delete;
+  // The work is over. Does not return if the deadline has passed already.
+  ~InterruptDeadline() = default;
+
+ private:
+  void watch(const std::stop_token& over);
+
+  std::function<void()> report_;
+  std::mutex mutex_;  // only for the condition
+  std::condition_variable_any condition_;
+  std::jthread watcher_;  // last: uses the others
+};
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
