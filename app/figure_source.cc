@@ -31,6 +31,7 @@ using reports::Archive;
 using reports::Figure;
 using reports::FigureEntry;
 using reports::FigureScope;
+using reports::FigureSource;
 using reports::ReportedArchive;
 using scenarios::InputError;
 using scenarios::Scenario;
@@ -80,10 +81,14 @@ class FigureMaker {
   // The figures of what the archive holds.
   void add_result_figures() {
     if (archive_.results.rows.empty()) return;
-    if (wants("distributions")) add(reports::distributions(archive_));
-    if (wants("host_order")) add(reports::host_order(archive_));
+    FigureSource source = source_of_archive();
+    if (archive_.results.rows.size() == 1) source.pipeline = archive_.results.rows.front().pipeline;
+    if (wants("distributions")) add(reports::distributions(archive_), source);
+    if (wants("host_order")) add(reports::host_order(archive_), source);
     if (!wants("frame_errors")) return;
-    for (const std::uint64_t seed : options_.seeds) add({reports::frame_errors(archive_, seed)});
+    for (const std::uint64_t seed : options_.seeds) {
+      add({reports::frame_errors(archive_, seed)}, source);
+    }
   }
 
   // The figures that need the runs again.
@@ -97,8 +102,12 @@ class FigureMaker {
     for (const PipelineChoice& choice : choices) {
       const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
                                                    .seeds = options_.budget_seeds};
-      add({reports::budget_figure(
-          evaluation::error_budget(scenario, choice.pipeline, simulated_world, seeds, progress_))});
+      FigureSource source = source_of_repeated_run();
+      source.first_seed = seeds.first_seed;
+      source.seeds = seeds.seeds;
+      add({reports::budget_figure(evaluation::error_budget(scenario, choice.pipeline,
+                                                           simulated_world, seeds, progress_))},
+          source);
     }
   }
 
@@ -121,9 +130,34 @@ class FigureMaker {
     });
   }
 
-  void add(std::vector<Figure> figures) {
+  FigureSource source_of_archive() const {
+    const evaluation::Results& results = archive_.results;
+    return {.scenario = results.scenario,
+            .derivation = results.derivation,
+            .first_seed = results.first_seed,
+            .seeds = results.seed_count,
+            .version = archive_.version,
+            .commit = archive_.commit};
+  }
+
+  FigureSource source_of_repeated_run() const {
+    FigureSource source = source_of_archive();
+    source.version = version();
+    source.commit = commit();
+    return source;
+  }
+
+  // `source`: of all these figures, but for the pipeline and seed that a figure names itself.
+  void add(std::vector<Figure> figures, const FigureSource& source) {
     for (Figure& figure : figures) {
-      if (wants(figure.id)) made_.figures.push_back(std::move(figure));
+      if (!wants(figure.id)) continue;
+      figure.source = source;
+      if (!figure.pipeline.empty()) figure.source.pipeline = figure.pipeline;
+      if (figure.seed) {
+        figure.source.first_seed = *figure.seed;
+        figure.source.seeds = 1;
+      }
+      made_.figures.push_back(std::move(figure));
     }
   }
 
@@ -136,8 +170,9 @@ class FigureMaker {
       if (progress_) progress_(++runs_, options_.seeds.size() * choices.size());
       if (is_the_archives(run)) runs.push_back(std::move(run));
     }
-    for (const RunDetail& run : runs) add(reports::run_figures(run));
-    if (!runs.empty()) add(reports::seed_figures(runs));
+    const FigureSource source = source_of_repeated_run();
+    for (const RunDetail& run : runs) add(reports::run_figures(run), source);
+    if (!runs.empty()) add(reports::seed_figures(runs), source);
   }
 
   bool is_the_archives(const RunDetail& run) {
@@ -214,7 +249,10 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
   if (chosen.seeds.empty()) chosen.seeds = {1};
   Archive archive;
   archive.path = scenario.name;
+  archive.version = version();
+  archive.commit = commit();
   archive.results.scenario = scenario.name;
+  archive.results.derivation = scenario.derivation;
   FigureMaker maker(archive, chosen, progress);
   const bool over = maker.wants("distributions") || maker.wants("host_order");
   if (over || maker.wants("frame_errors")) {

@@ -36,7 +36,12 @@ std::string parameters_text(const scenarios::Scenario& scenario) {
   for (const scenarios::ParameterLine& line : scenarios::describe(scenario)) {
     table.add({line.pointer, shortened(line.value), line.unit, line.meaning, line.source});
   }
-  return reports::wrapped(scenario.name + ": " + scenario.summary) + "\n" + plain(table);
+  std::string head = reports::wrapped(scenarios::named(scenario.name, scenario.derivation) + ": " +
+                                      scenario.summary);
+  for (const std::string& line : scenarios::derivation_lines(scenario.derivation)) {
+    head += reports::wrapped(line);
+  }
+  return head + "\n" + plain(table);
 }
 
 int describe(const DescribeOptions& options) {

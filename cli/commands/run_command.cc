@@ -79,6 +79,7 @@ std::optional<evaluation::Results> measure_rig(const scenarios::Scenario& scenar
 
 // An error budget of every pipeline in place of the table.
 int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) {
+                                  .derivation = scenario.derivation,
   reports::BudgetReport report = {.scenario = scenario.name,
                                   .first_seed = options.evaluation.first_seed,
                                   .seeds = options.evaluation.seeds,

@@ -124,6 +124,7 @@ class Evaluation {
   Results results(double wall_seconds) {
     Results results;
     results.scenario = scenario_.name;
+    results.derivation = scenario_.derivation;
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.asymmetry_floor =

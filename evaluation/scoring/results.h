@@ -16,6 +16,7 @@
 #include "evaluation/scoring/asymmetry_floor.h"
 #include "evaluation/scoring/metrics.h"
 #include "recording/recording.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::evaluation {
 
@@ -102,6 +103,7 @@ inline const Row* find_row(std::span<const Row> rows, std::string_view pipeline)
 struct Results {
   std::string scenario;
   std::uint64_t first_seed = 1;
+  scenarios::Derivation derivation{};  // of that scenario
   std::uint64_t seed_count = 0;
   std::vector<Row> rows;
   std::vector<Claim> claims;

@@ -274,6 +274,7 @@ SweepPlan make_plan(const SweepRequest& request) {
   check_pointers(plan);
   const Scenario scenario = scenarios::load_scenario(request.scenario, request.overrides);
   plan.scenario = scenario.name;
+  plan.derivation = scenario.derivation;
   plan.scenario_json = scenario.resolved_json;
   for (const PipelineChoice& choice : choose_pipelines(scenario, request.pipelines)) {
     plan.pipelines.push_back(choice.pipeline.name);

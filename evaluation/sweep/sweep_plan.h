@@ -65,8 +65,9 @@ struct SweepRun {
 };
 
 struct SweepPlan {
-  std::string scenario;       // its name
-  std::string scenario_json;  // resolved, with the overrides for all points
+  std::string scenario;                // its name
+  scenarios::Derivation derivation{};  // of the scenario without the axes
+  std::string scenario_json;           // resolved, with the overrides for all points
   std::vector<SweepAxis> axes;
   std::vector<std::string> pipelines;
   std::uint64_t first_seed = 1;

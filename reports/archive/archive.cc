@@ -13,6 +13,7 @@
 #include "recording/line_reader.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
+#include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/text/json_node.h"
@@ -78,8 +79,9 @@ std::string manifest_json(const Provenance& provenance, const Json& more) {
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance) {
   Json more = {{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
-               {"pipelines", Json::array()},
-               {"scenario", Json::parse(scenario.resolved_json)}};
+               {"pipelines", Json::array()}};
+  state_derivation(results.derivation, more);
+  more["scenario"] = Json::parse(scenario.resolved_json);
   for (const evaluation::Row& row : results.rows) more["pipelines"].push_back(row.pipeline);
   output.file("manifest.json") << manifest_json(provenance, more);
   output.file("results.json") << json(results);
@@ -173,6 +175,7 @@ evaluation::Results read_results(const JsonNode& root) {
   results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
   for (const JsonNode& row : root["rows"].elements()) {
     results.rows.push_back(read_row(row, results.seed_count));
+  results.derivation = read_derivation(root);
   }
   for (const JsonNode& claim : root["claims"].elements())
     results.claims.push_back(read_claim(claim));

@@ -17,6 +17,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/derivation.h"
+
 namespace simbench::reports {
 
 enum class Mark : std::uint8_t { kPoints, kLine, kMarkedLine, kSteps, kBars };
@@ -77,6 +79,17 @@ struct PhotographRow {
   std::vector<Photograph> photographs;
 };
 
+// Where the numbers of a figure come from, for a reader who has the picture alone.
+struct FigureSource {
+  std::string scenario{};  // empty: unknown
+  scenarios::Derivation derivation{};
+  std::string pipeline{};  // empty: the figure itself names several
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 0;
+  std::string version{};
+  std::string commit{};
+};
+
 struct Figure {
   std::string id;  // "frame_errors", as in `simbench figure`
   std::string title;
@@ -87,6 +100,7 @@ struct Figure {
   std::vector<FigurePanel> panels{};
   std::vector<PhotographRow> photographs{};
   std::string absent{};  // the reason if there is nothing to draw; then there are no panels
+  FigureSource source{};
 };
 
 // The scope of a figure: a figure of kRun exists once for each pipeline and seed, one of kResults
@@ -101,6 +115,10 @@ struct FigureEntry {
   FigureScope scope = FigureScope::kRun;
 };
 
+// "18cam_6host_45fps (changed), yoon2021_both, 2 seeds (1-2), simbench 0.1.0 (1234567)", and the
+// first changes of the scenario, if there are any. Nothing if the source is unknown.
+std::vector<std::string> source_lines(const FigureSource& source);
+
 // All figures, in the order of a report.
 const std::vector<FigureEntry>& figure_catalogue();
 
@@ -113,6 +131,8 @@ const FigureEntry& figure_named(std::string_view name);
 //
 //   panel,series,x,y
 //   Sensor stamp,camera 0,225,22.222
+//
+// Of a scenario whose world is changed, a fifth column "changed" has its changes.
 //
 // A gap has an empty y; on an axis of categories x is the category. A line such as a published
 // value is a series of one point without x (or y, if it is vertical), a shaded stretch one of two

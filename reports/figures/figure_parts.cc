@@ -11,6 +11,7 @@
 
 #include "algorithms/ports/assert.h"
 #include "reports/figures/figure.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -88,6 +89,17 @@ Figure catalogued(std::string_view id) {
   figure.title = entry->title;
   figure.paper = entry->paper;
   return figure;
+}
+
+std::vector<std::string> source_lines(const FigureSource& source) {
+  constexpr std::size_t kMostChanges = 6;
+  if (source.scenario.empty()) return {};
+  std::string line = scenarios::named(source.scenario, source.derivation);
+  if (!source.pipeline.empty()) line += ", " + source.pipeline;
+  line += fmt::format(", {}, simbench {} ({})", counted_seeds(source.first_seed, source.seeds),
+                      source.version, source.commit);
+  const std::string changed = scenarios::changed_text(source.derivation, kMostChanges);
+  return changed.empty() ? std::vector{line} : std::vector{line, changed};
 }
 
 Figure of_run(std::string_view id, const RunDetail& run) {

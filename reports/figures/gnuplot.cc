@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,7 +21,9 @@
 #include <vector>
 
 #include "reports/text/file_content.h"
+#include "reports/text/html_text.h"
 #include "reports/text/output_file.h"
+#include "reports/text/plain_text.h"
 
 extern char** environ;
 
@@ -83,15 +86,54 @@ int photographs_height(const Figure& figure) {
   return kRowHeight * static_cast<int>(figure.photographs.size());
 }
 
-std::string photographs_script(const Figure& figure, const std::string& title) {
+constexpr int kSourceHeight = 14;            // of a line below the title
+constexpr std::size_t kSourceLetters = 150;  // in such a line
+
+// Below the title: the source of the numbers, in as many lines as it takes.
+std::vector<std::string> lines_of_source(const FigureSource& source) {
+  std::vector<std::string> lines;
+  for (const std::string& text : source_lines(source)) {
+    const std::vector<std::string> more = words_in_lines(text, kSourceLetters);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  return lines;
+}
+
+int head_height(const Figure& figure) {
+  constexpr int kTitleHeight = 40;
+  return kTitleHeight + kSourceHeight * static_cast<int>(lines_of_source(figure.source).size());
+}
+
+// Title and source at the top of a picture of that height.
+std::string head_script(const Figure& figure, int height) {
+  const std::string title = figure.paper.empty()
+                                ? figure.title
+                                : fmt::format("{} ({} of the paper)", figure.title, figure.paper);
+  constexpr int kTitleMiddle = 16;
+  int y = kTitleMiddle;
+  const auto line = [&y, height](const std::string& text, const std::string& look) {
+    const double place = 1 - static_cast<double>(y) / height;
+    y += kSourceHeight;
+    return fmt::format("set label {} at screen 0.5, screen {:.4f} center {}\n", in_quotes(text),
+                       place, look);
+  };
+  std::string script = line(title, "font ',14'");
+  y += 4;
+  for (const std::string& text : lines_of_source(figure.source)) {
+    script += line(text, "font ',9' tc rgb '#444444'");
+  }
+  return script;
+}
+
+std::string photographs_script(const Figure& figure, int height) {
   std::size_t columns = 1;
   for (const PhotographRow& row : figure.photographs) {
     columns = std::max(columns, row.photographs.size());
   }
   std::string script = fmt::format(
       "unset border\nunset tics\nunset key\nset lmargin 1\nset rmargin 1\nset bmargin 0\n"
-      "set title {} font ',14'\nset xrange [0:{}]\nset yrange [0:{}]\n",
-      title, columns, figure.photographs.size());
+      "set tmargin at screen {:.4f}\nset xrange [0:{}]\nset yrange [0:{}]\n",
+      1 - static_cast<double>(head_height(figure)) / height, columns, figure.photographs.size());
   for (std::size_t i = 0; i < figure.photographs.size(); ++i) {
     const PhotographRow& row = figure.photographs[i];
     const auto y = static_cast<double>(figure.photographs.size() - 1 - i);
@@ -112,7 +154,6 @@ constexpr int kWidth = 900;  // points of the picture; a PDF has 100 of them to 
 constexpr int kPanelHeight = 230;
 constexpr int kAxisHeight = 105;  // of a panel: its title and x axis
 constexpr int kEntryHeight = 15;  // of a legend
-constexpr int kTitleHeight = 40;
 constexpr double kPointsPerInch = 100;
 constexpr double kFewTics = 12;  // of whole numbers, none between them
 
@@ -182,7 +223,8 @@ std::string series_style(const FigurePanel& panel, const FigureSeries& series) {
         return fmt::format("1:2:3:4 with yerrorbars pt {} ps 0.6 lw 1.4 lc rgb '{}'", point,
                            colour);
       }
-      return fmt::format("1:2 with points pt {} ps 0.4 lc rgb '{}'", point, colour);
+      return fmt::format("1:2 with points pt {} ps {} lc rgb '{}'", point,
+                         panel.categories.empty() ? 0.4 : 0.6, colour);
     case Mark::kLine:
       return fmt::format("1:2 with lines lw 1.4 dt {} lc rgb '{}'", dash, colour);
     case Mark::kMarkedLine:
@@ -403,31 +445,50 @@ int run_gnuplot(const fs::path& script, const fs::path& log) {
 
 std::string gnuplot_script(const Figure& figure, PlotFormat format, const std::string& output) {
   const bool is_photographs = figure.panels.empty();
-  const int height =
-      kTitleHeight + (is_photographs ? photographs_height(figure) : panels_height(figure));
+  const int head = head_height(figure);
+  const int height = head + (is_photographs ? photographs_height(figure) : panels_height(figure));
   std::string script = "set encoding utf8\n" + terminal(format, height);
   fmt::format_to(std::back_inserter(script), "set output {}\n", in_quotes(output));
-  const std::string title = figure.paper.empty()
-                                ? figure.title
-                                : fmt::format("{} ({} of the paper)", figure.title, figure.paper);
-  if (is_photographs) return script + photographs_script(figure, in_quotes(title));
+  script += head_script(figure, height);
+  if (is_photographs) return script + photographs_script(figure, height);
   script +=
       "set key at screen 0.72, graph 1 left top vertical maxrows 99 Left reverse samplen 1.5 "
       "font ',10'\n"
-      "set border 3\nset tics nomirror out scale 0.5\nset grid ytics lc rgb '#DDDDDD' lt 1\n"
+      "set pointintervalbox 0\nset border 3\nset tics nomirror out scale 0.5\nset grid ytics lc "
+      "rgb '#DDDDDD' lt 1\n"
       "set xtics offset 0,0.3\n";
   fmt::format_to(std::back_inserter(script),
                  "set lmargin at screen 0.115\nset rmargin at screen {}\n",
                  has_legends(figure) ? 0.7 : 0.97);
-  fmt::format_to(std::back_inserter(script), "set multiplot layout {},1 title {} font ',14'\n",
-                 figure.panels.size(), in_quotes(title));
+  script += "set multiplot\n";
   std::size_t datablocks = 0;
   const SpanColours colours = span_colours(figure);
-  for (const FigurePanel& panel : figure.panels) {
-    script += panel_script(panel, colours, datablocks);
+  const double share = (1 - static_cast<double>(head) / height) /  // of the picture, for a panel
+                       static_cast<double>(figure.panels.size());
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    fmt::format_to(std::back_inserter(script), "set size 1,{:.6f}\nset origin 0,{:.6f}\n", share,
+                   share * static_cast<double>(figure.panels.size() - 1 - i));
+    script += panel_script(figure.panels[i], colours, datablocks) + "unset label\n";
   }
   return script + "unset multiplot\nset output\n";
 }
+
+namespace {
+
+// The SVG with the figure's own title and source, where gnuplot names all alike.
+std::string own_titled(const std::string& svg, const Figure& figure) {
+  constexpr std::string_view kEnd = "</desc>";
+  const std::size_t begin = svg.find("<title>");
+  const std::size_t end = svg.find(kEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return svg;
+  return svg.substr(0, begin) +
+         fmt::format(
+             "<title>{}</title>\n<desc>{}</desc>", html_escaped(figure.title),
+             html_escaped(fmt::format("{}", fmt::join(source_lines(figure.source), "; ")))) +
+         svg.substr(end + kEnd.size());
+}
+
+}  // namespace
 
 void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
   const OutputFile picture(output.string());
@@ -440,6 +501,9 @@ void draw(const Figure& figure, PlotFormat format, const fs::path& output) {
   if (!drawn) {
     throw OutputError(fmt::format("{}: gnuplot failed (status {}): {}", output.string(), status,
                                   content_of(log.path()).value_or("")));
+  }
+  if (format == PlotFormat::kSvg) {
+    picture.write(own_titled(content_of(picture.path()).value_or(""), figure));
   }
   picture.publish();
 }

@@ -85,12 +85,18 @@ std::vector<Block> blocks_of(const Archive& archive) {
 std::string archive_part(const ReportedArchive& reported, std::size_t number,
                          const ReportInput& input) {
   const Archive& archive = reported.archive;
+  const std::string heading =
+      scenarios::named(archive.results.scenario, archive.results.derivation);
+  std::string derivation;
+  for (const std::string& line : scenarios::derivation_lines(archive.results.derivation)) {
+    derivation += html_paragraph("provenance", line);
+  }
   return fmt::format(
       "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n{}{}{}{}"
       "<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n"
       "<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}{}</section>\n</article>\n",
-      number, html_escaped(archive.path), html_escaped(archive.results.scenario),
-      html_paragraph("summary", scenario_text(archive, "/summary")),
+      number, html_escaped(archive.path), html_escaped(heading),
+      html_paragraph("summary", scenario_text(archive, "/summary")) + derivation,
       html_paragraph("provenance", provenance_line(archive)),
       input.archives.size() > 1 ? html_paragraph("provenance", "Archive: " + archive.path) : "",
       html(blocks_of(archive)), html_notes(reported.notes), commands_of(reported, input),

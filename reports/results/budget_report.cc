@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recording/version.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -53,7 +54,8 @@ Table budget_table(const Budget& budget) {
 }
 
 std::string budget_heading(const BudgetReport& report, const Budget& budget) {
-  return fmt::format("Error budget of {} in {}, {}", budget.pipeline, report.scenario,
+  return fmt::format("Error budget of {} in {}, {}", budget.pipeline,
+                     scenarios::named(report.scenario, report.derivation),
                      counted_seeds(report.first_seed, report.seeds));
 }
 
@@ -88,7 +90,7 @@ Json error_json(const ErrorParts& error) {
 }  // namespace
 
 Document budget_document(const BudgetReport& report) {
-  Document document;
+  Document document{.head = scenarios::derivation_lines(report.derivation)};
   for (const Budget& budget : report.budgets) {
     document.blocks.push_back({.heading = budget_heading(report, budget),
                                .table = budget_table(budget),
@@ -101,9 +103,10 @@ std::string budget_json(const BudgetReport& report) {
   Json root = {{"schema_version", 1},
                {"version", version()},
                {"commit", commit()},
-               {"scenario", report.scenario},
-               {"seeds", {{"first", report.first_seed}, {"count", report.seeds}}},
-               {"budgets", Json::array()}};
+               {"scenario", report.scenario}};
+  state_derivation(report.derivation, root);
+  root["seeds"] = {{"first", report.first_seed}, {"count", report.seeds}};
+  root["budgets"] = Json::array();
   for (const Budget& budget : report.budgets) {
     root["budgets"].push_back({{"pipeline", budget.pipeline},
                                {"amd_of_sets", budget.amd_of_sets},

@@ -1,6 +1,7 @@
 // Error budgets as text, Markdown or JSON: the part of each stage in a pipeline's error.
 //
-// JSON: {"schema_version", "version", "commit", "scenario", "seeds", "budgets": [{"pipeline",
+// JSON: {"schema_version", "version", "commit", "scenario" and what it rests on
+// (reports/results/derivation_json.h), "seeds", "budgets": [{"pipeline",
 // "amd_of_sets", "amd_ms": {"total", "remainder", "stages": [{"stage", "mean", "p05", "p95",
 // "values"}]}, "absolute_error_ms", "physical_ms"}]}; what does not exist is null.
 #ifndef SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
@@ -12,11 +13,13 @@
 
 #include "evaluation/budget/budget.h"
 #include "reports/text/block.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::reports {
 
 struct BudgetReport {
   std::string scenario;
+  scenarios::Derivation derivation{};  // of that scenario
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 0;
   std::vector<evaluation::Budget> budgets;

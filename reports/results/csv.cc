@@ -97,6 +97,8 @@ std::string csv(const evaluation::Results& results) {
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   std::string out = csv_line(names);
   for (const Row& row : results.rows) {
+  const std::string changed = scenarios::changed_text(results.derivation);
+  if (!changed.empty()) names.emplace_back("changed");
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                       csv_cell(row.device_time), csv_cell(row.gathering)};
     add_cells(CsvColumns::kBand, row, cells);
@@ -112,6 +114,7 @@ std::string csv(const evaluation::Results& results) {
     out += csv_line(cells);
   }
   return out;
+    if (!changed.empty()) cells.push_back(csv_cell(changed));
 }
 
 void write_frames_csv(const evaluation::Results& results, std::ostream& out) {

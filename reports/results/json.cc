@@ -2,6 +2,7 @@
 
 #include "recording/version.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -72,12 +73,13 @@ std::string json(const evaluation::Results& results) {
   Json root = {{"schema_version", kArchiveSchemaVersion},
                {"version", version()},
                {"commit", commit()},
-               {"scenario", results.scenario},
-               {"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
+               {"scenario", results.scenario}};
+  state_derivation(results.derivation, root);
+  root.update({{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
                {"rows", Json::array()},
                {"claims", Json::array()},
                {"asymmetry_floor", floor_json(results.asymmetry_floor)},
-               {"warnings", results.warnings}};
+               {"warnings", results.warnings}});
   for (const evaluation::Row& row : results.rows) root["rows"].push_back(row_json(row));
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
   const evaluation::Performance& cost = results.performance;

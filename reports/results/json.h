@@ -6,6 +6,7 @@
 // differs between runs.
 //
 //   {"schema_version": 1, "version": ..., "commit": ..., "scenario": ...,
+//    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
 //              "offline": whether device_time needs the whole recording,

@@ -123,8 +123,8 @@ std::vector<Block> board_blocks(const Results& results) {
 }
 
 Document leaderboard_document(const Results& results, const std::string& summary) {
-  Document document{.title = fmt::format("{}: {}", results.scenario,
-                                         counted_seeds(results.first_seed, results.seed_count)),
+  Document document{.title = results_title(results),
+                    .head = results_head(results, summary),
                     .blocks = board_blocks(results)};
   if (!summary.empty()) document.head.push_back(summary);
   if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {

@@ -224,6 +224,27 @@ std::vector<std::string> sets_legend(const Results& results) {
 }
 
 std::string asymmetry_line(const Results& results) {
+std::string results_title(const Results& results) {
+  return fmt::format("{}: {}", scenarios::named(results.scenario, results.derivation),
+                     counted_seeds(results.first_seed, results.seed_count));
+}
+
+std::vector<std::string> results_head(const Results& results, const std::string& summary) {
+  std::vector<std::string> head = scenarios::derivation_lines(results.derivation);
+  if (!summary.empty()) head.insert(head.begin(), summary);
+  return head;
+}
+
+RowFields scored_seeds_field(const std::vector<const Row*>& rows,
+                             const std::vector<const Metric*>& metrics) {
+  const auto lacks_seeds = [&metrics](const Row* row) {
+    return scored_seeds_of(*row, metrics).lack();
+  };
+  if (std::none_of(rows.begin(), rows.end(), lacks_seeds)) return {};
+  return {{{"seeds", Align::kRight, kScoredSeedsLegend},
+           [metrics](const Row& row) { return scored_seeds_text(scored_seeds_of(row, metrics)); }}};
+}
+
   if (!results.asymmetry_floor) return "";
   const evaluation::AsymmetryFloor& floor = *results.asymmetry_floor;
   return fmt::format(
@@ -234,9 +255,7 @@ std::string asymmetry_line(const Results& results) {
 }
 
 Document results_document(const Results& results, const std::string& summary) {
-  Document document{.title = fmt::format("{}: {}", results.scenario,
-                                         counted_seeds(results.first_seed, results.seed_count))};
-  if (!summary.empty()) document.head.push_back(summary);
+  Document document{.title = results_title(results), .head = results_head(results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
   blocks.push_back({.heading = "Metrics that need true time", .table = truth_table(results)});

@@ -24,6 +24,11 @@ namespace simbench::reports {
 // `summary`: the scenario's own description, which states whether it is a fit.
 Document results_document(const evaluation::Results& results, const std::string& summary);
 
+// The title and the head of documents about results: what the scenario rests on, how it is changed.
+std::string results_title(const evaluation::Results& results);
+std::vector<std::string> results_head(const evaluation::Results& results,
+                                      const std::string& summary);
+
 // The columns of a metric in a table of rows: its value and, if it has a heading, its band.
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 
