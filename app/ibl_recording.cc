@@ -8,14 +8,14 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "algorithms/device_time/unwrap.h"
+#include "recording/line_reader.h"
 #include "recording/text_fields.h"
+#include "scenarios/input_file.h"
 
 namespace simbench::app {
 namespace {
@@ -98,32 +98,53 @@ std::optional<std::uint64_t> whole_float(double value, double largest) {
 
 }  // namespace
 
-std::vector<StampedFrame> parse_ibl_timestamps(std::string_view text, const std::string& path) {
-  std::vector<StampedFrame> frames;
-  CycleClock clock;
-  std::size_t line_number = 0;
-  while (!text.empty()) {
-    ++line_number;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+namespace {
+
+// The lines of a *.timestamps.ssv.
+class IblTimestamps {
+ public:
+  void add(std::string_view line, const std::string& place) {
     line = line.substr(0, line.find_last_not_of(" \r") + 1);
-    if (line.empty()) continue;
+    if (line.empty()) return;
     const std::size_t blank = std::min(line.find(' '), line.size());
     const auto arrival = iso_time(line.substr(0, blank));
     const auto reading = whole<std::uint32_t>(line.substr(std::min(blank + 1, line.size())));
-    const auto sensor = reading ? clock.stamp(*reading) : std::nullopt;
+    const auto sensor = reading ? clock_.stamp(*reading) : std::nullopt;
     if (!arrival || !sensor) {
       throw CsvError(fmt::format(
-          "{}:{}: allowed: a time as 2020-08-19T12:42:57.7903616-04:00, a blank, a cycle clock",
-          path, line_number));
+          "{}: allowed: a time as 2020-08-19T12:42:57.7903616-04:00, a blank, a cycle clock",
+          place));
     }
-    frames.push_back({.counter = frames.size(), .sensor = *sensor, .arrival = *arrival});
+    frames_.push_back({.counter = frames_.size(), .sensor = *sensor, .arrival = *arrival});
   }
-  if (frames.empty()) throw CsvError(path + ":1: the file has no frame");
-  count_from_first_arrival(frames);
-  return frames;
+
+  std::vector<StampedFrame> take(const LineReader& lines, const std::string& path) {
+    if (lines.torn()) {
+      throw CsvError(fmt::format(
+          "{}: found no line end, so the line may be cut; remove it or end it", lines.place()));
+    }
+    if (frames_.empty()) throw CsvError(path + ":1: the file has no frame");
+    count_from_first_arrival(frames_);
+    return std::move(frames_);
+  }
+
+ private:
+  std::vector<StampedFrame> frames_;
+  CycleClock clock_;
+};
+
+std::vector<StampedFrame> read_ibl_timestamps(const std::string& path) {
+  try {
+    LineReader lines(path);
+    IblTimestamps timestamps;
+    while (const auto line = lines.next()) timestamps.add(*line, lines.place());
+    return timestamps.take(lines, path);
+  } catch (const LineError& error) {
+    throw CsvError(error.what());
+  }
 }
+
+}  // namespace
 
 std::vector<StampedFrame> parse_ibl_frame_data(std::string_view bytes, const std::string& path) {
   static_assert(std::endian::native == std::endian::little, "the file is little-endian");
@@ -159,12 +180,13 @@ std::vector<StampedFrame> read_ibl_recording(const std::string& path) {
   if (!timestamps && !path.ends_with(".bin")) {
     throw CsvError(path + ": allowed: a file named *.timestamps.ssv or *.frameData.bin");
   }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  if (file) content << file.rdbuf();
-  if (!file) throw CsvError(path + ": cannot be read");
-  return timestamps ? parse_ibl_timestamps(content.view(), path)
-                    : parse_ibl_frame_data(content.view(), path);
+  if (timestamps) return read_ibl_timestamps(path);
+  constexpr std::size_t kLargest = std::size_t{512} << 20;
+  try {
+    return parse_ibl_frame_data(file_content(path, kLargest), path);
+  } catch (const FileError& error) {
+    throw CsvError(fmt::format("{}: cannot be read: {}", path, error.what()));
+  }
 }
 
 std::string rs_csv_text(const std::vector<StampedFrame>& frames) {

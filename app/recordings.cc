@@ -4,8 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "app/interrupt.h"
+#include "recording/counted.h"
+#include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
 
 namespace simbench::app {
@@ -38,6 +42,48 @@ constexpr std::uint64_t kMostSeeds = 1'000'000;
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
+
+class PollCounter final : public ForwardingSink {
+ public:
+  using ForwardingSink::ForwardingSink;
+  void on_poll(const DevicePoll& poll) override {
+    ++polls_;
+    sink().on_poll(poll);
+  }
+  std::uint64_t polls() const { return polls_; }
+
+ private:
+  std::uint64_t polls_ = 0;
+};
+
+// The recorded captures. Refuses one without polls to a pipeline that needs them: its stamps would
+// be bare arrivals.
+class PollCheck final : public RecordingSource {
+ public:
+  // `choices` outlive it.
+  PollCheck(std::unique_ptr<RecordingSource> source,
+            const std::vector<evaluation::PipelineChoice>& choices)
+      : source_(std::move(source)), choices_(choices) {}
+
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    PollCounter counter(sink);
+    RecordingCost cost = source_->record(request, counter);
+    if (counter.polls() > 0) return cost;
+    for (const evaluation::PipelineChoice& choice : choices_) {
+      const std::vector<Need>& needs = choice.device_time.info.needs;
+      if (choice.pipeline.name != request.pipeline) continue;
+      if (std::find(needs.begin(), needs.end(), Need::kPolls) == needs.end()) continue;
+      throw RecordingFailed(
+          fmt::format("{} needs polls of the cameras' clocks, and none was recorded",
+                      choice.device_time.info.name));
+    }
+    return cost;
+  }
+
+ private:
+  std::unique_ptr<RecordingSource> source_;
+  const std::vector<evaluation::PipelineChoice>& choices_;
+};
 
 scenarios::Scenario recorded_scenario(const RecordingFolder& recorded, const std::string& folder) {
   const std::string& text = recorded.description().scenario_json;
@@ -79,6 +125,20 @@ RecordedRun::RecordedRun(const std::string& folder) : path_(folder), folder_(fol
   seeds_ = last->seed - first->seed + 1;
 }
 
+std::vector<std::string> RecordedRun::missing() const {
+  const PlannedCaptures& planned = folder_.description().planned;
+  std::vector<std::string> notes;
+  for (const std::string& pipeline : planned.pipelines) {
+    const auto begun = static_cast<std::uint64_t>(std::count_if(
+        folder_.captures().begin(), folder_.captures().end(),
+        [&](const RecordedCapture& capture) { return capture.pipeline == pipeline; }));
+    if (begun >= planned.seeds) continue;
+    notes.push_back(fmt::format("pipeline {}: {} of {} not recorded", pipeline,
+                                planned.seeds - begun, counted(planned.seeds, "capture")));
+  }
+  return notes;
+}
+
 std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pipelines) const {
   std::vector<std::string> known;
   for (const RecordedCapture& capture : folder_.captures()) {
@@ -95,8 +155,13 @@ std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pip
 evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipelines,
                                           bool keep_pulses,
                                           const evaluation::Progress& progress) const {
+  const std::vector<evaluation::PipelineChoice> choices =
+      evaluation::choose_pipelines(scenario_, pipelines);
   return evaluation::evaluate(
-      scenario_, [this] { return interruptible(make_recorded_source(folder_)); },
+      scenario_,
+      [this, &choices] {
+        return interruptible(std::make_unique<PollCheck>(make_recorded_source(folder_), choices));
+      },
       {.first_seed = first_seed_,
        .seeds = seeds_,
        .pipelines = pipelines,

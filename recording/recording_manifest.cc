@@ -80,6 +80,7 @@ class Value {
     }
     return {*member, fmt::format("{}/{}", pointer_, key), path_};
   }
+  bool has(const char* key) const { return json_.is_object() && json_.contains(key); }
   Value at(std::size_t index) const {
     return {json_[index], fmt::format("{}/{}", pointer_, index), path_};
   }
@@ -139,6 +140,12 @@ class Value {
   const std::string& path_;
 };
 
+std::vector<std::string> names_of(const Value& value, std::size_t most) {
+  std::vector<std::string> names = value.texts(most);
+  for (std::string& name : names) name = printable_name(name);
+  return names;
+}
+
 RigLayout layout_of(const Value& value) {
   RigLayout layout;
   layout.hosts = value.at("hosts").whole<std::uint32_t>(1, kMostHosts);
@@ -153,6 +160,13 @@ RigLayout layout_of(const Value& value) {
   layout.first_pulse = value.at("first_pulse").whole(-kMostPulses, kMostPulses);
   layout.pulses = value.at("pulses").whole<std::int64_t>(0, kMostPulses);
   return layout;
+}
+
+PlannedCaptures planned_of(const Value& value) {
+  constexpr std::uint64_t kMost = 1'000'000'000'000;
+  return {.pipelines = value.at("pipelines").texts(100'000),
+          .first_seed = value.at("first_seed").whole<std::uint64_t>(0, kMost),
+          .seeds = value.at("seeds").whole<std::uint64_t>(0, kMost)};
 }
 
 RecordedCapture capture_of(const Value& value) {
@@ -199,6 +213,10 @@ std::string manifest_text(const RecordingManifest& manifest) {
                {"backend", description.backend},
                {"hosts", description.hosts},
                {"cameras", description.cameras},
+               {"planned",
+                {{"pipelines", description.planned.pipelines},
+                 {"first_seed", description.planned.first_seed},
+                 {"seeds", description.planned.seeds}}},
                {"captures", Json::array()},
                {"scenario", nullptr}};
   for (const RecordedCapture& capture : manifest.captures) {
@@ -257,8 +275,10 @@ RecordingManifest parse_manifest(const std::string& text, const std::string& pat
   root.at("format_version").whole(kRecordingFormatVersion, kRecordingFormatVersion);
   RecordingManifest manifest;
   manifest.description.backend = root.at("backend").text();
-  manifest.description.hosts = root.at("hosts").texts(kMostHosts);
-  manifest.description.cameras = root.at("cameras").texts(kMostCameras);
+  manifest.description.hosts = names_of(root.at("hosts"), kMostHosts);
+  manifest.description.cameras = names_of(root.at("cameras"), kMostCameras);
+  // Earlier recordings lack it.
+  if (root.has("planned")) manifest.description.planned = planned_of(root.at("planned"));
   const Value scenario = root.at("scenario");
   if (!scenario.json().is_null()) {
     if (!scenario.json().is_object()) scenario.fail("an object, null");

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <map>
 #include <optional>
-#include <sstream>
+#include <system_error>
 #include <utility>
 
+#include "recording/line_reader.h"
 #include "recording/text_fields.h"
 
 namespace simbench {
@@ -26,6 +25,7 @@ constexpr std::size_t kRequiredColumns = 5;
 
 struct Header {
   std::array<std::size_t, kColumns.size()> position = {};
+  std::size_t cells = 0;         // of the header itself; a line with more has decimal commas
   std::size_t cells_needed = 0;  // a line with fewer is truncated
 };
 
@@ -65,19 +65,25 @@ std::string plain_name(std::string_view cell) {
   return name;
 }
 
-std::optional<Header> parse_header(const std::vector<std::string_view>& cells) {
+// Nothing if it is no header.
+std::optional<Header> parse_header(const std::vector<std::string_view>& cells, const Place& place) {
   Header header;
+  header.cells = cells.size();
   header.position.fill(kAbsent);
+  std::optional<std::size_t> repeated;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto* column = std::find(kColumns.begin(), kColumns.end(), plain_name(cells[i]));
     if (column == kColumns.end()) continue;
-    header.position[static_cast<std::size_t>(column - kColumns.begin())] = i;
+    std::size_t& position = header.position[static_cast<std::size_t>(column - kColumns.begin())];
+    if (position != kAbsent) repeated = i;
+    position = i;
     header.cells_needed = i + 1;
   }
   const auto required_end = header.position.begin() + kRequiredColumns;
   if (std::find(header.position.begin(), required_end, kAbsent) != required_end) {
     return std::nullopt;
   }
+  if (repeated) place.fail("found the column " + quoted_bytes(cells[*repeated]) + " twice");
   return header;
 }
 
@@ -122,89 +128,232 @@ StampedFrame frame_of(const std::vector<std::string_view>& cells, const Header& 
 
 }  // namespace
 
-CameraStream& CsvRecordingReader::stream_of(std::string_view camera, std::string_view host,
-                                            std::string_view stream) {
-  key_.assign(camera).append(",").append(stream);
-  const auto [entry, is_new] = index_.try_emplace(key_, streams_.size());
-  if (is_new) {
-    streams_.push_back({std::string(camera), std::string(host), std::string(stream), {}});
+// One file as it is read, line by line.
+class CsvRecordingReader::File {
+ public:
+  File(CsvRecordingReader& reader, const std::string& path, std::string name)
+      : reader_(reader), place_{.path = path}, name_(std::move(name)) {
+    if (name_.empty()) name_ = std::filesystem::path(path).stem().string();
   }
-  return streams_[entry->second];
+
+  void read_line(std::string_view line);
+  // After the last line; `torn`: bytes without a line end follow.
+  void end(bool torn);
+
+ private:
+  bool take_header(std::string_view line);
+  void check_cells() const;
+  CameraStream& stream_of(std::string_view camera, std::string_view host);
+  const Naming& naming_of(std::string_view camera, std::string_view host);
+  void check_naming(const Naming& naming, std::string_view camera, std::string_view host) const;
+
+  bool has(ColumnId id) const { return header_->position[id] != kAbsent; }
+  std::string_view cell(ColumnId id) const { return cells_[header_->position[id]]; }
+
+  CsvRecordingReader& reader_;
+  Place place_;
+  std::string name_;
+  std::optional<Header> header_;
+  bool preamble_ = false;
+  bool any_frame_ = false;
+  std::vector<std::string_view> cells_;
+  std::string key_;
+};
+
+void CsvRecordingReader::File::read_line(std::string_view line) {
+  if (++place_.line == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+  line = trimmed(line);
+  if (line.empty()) return;
+  split(line, cells_);
+  if ((!header_ || is_header_again(cells_)) && take_header(line)) return;
+  check_cells();
+  if (is_motion(cell(kStream))) return;
+  const std::string_view camera = has(kCamera) ? cell(kCamera) : name_;
+  const std::string_view host = has(kHost) ? cell(kHost) : name_;
+  if (camera.empty() || host.empty() || cell(kStream).empty()) {
+    place_.fail("found an empty cell, allowed: the name of a stream, camera or host");
+  }
+  stream_of(camera, host).frames.push_back(frame_of(cells_, *header_, place_));
+  any_frame_ = true;
 }
 
-void CsvRecordingReader::read_file(const std::string& path) {
-  std::error_code no_folder;
-  if (std::filesystem::is_directory(path, no_folder)) {
-    throw CsvError(path + ": is a folder, not a CSV file");
+void CsvRecordingReader::File::end(bool torn) {
+  if (torn) {
+    ++place_.line;
+    reader_.notes_.push_back(place_.path + ":" + std::to_string(place_.line) +
+                             ": the last line has no line end and may be cut; it was left out");
   }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  if (file) content << file.rdbuf();
-  if (!file || file.bad()) {
-    throw CsvError(path + ": cannot be read: " + std::strerror(errno ? errno : EIO));
+  if (place_.line == 0) {
+    throw CsvError(place_.path + ":1: the file is empty, allowed: the header " + kHeader);
   }
-  read_text(content.view(), path);
+  if (!any_frame_) place_.fail("the file ends without a frame");
+}
+
+// False for a line that is neither a header nor before one.
+bool CsvRecordingReader::File::take_header(std::string_view line) {
+  header_ = parse_header(cells_, place_);
+  preamble_ = !header_ && (preamble_ || line.starts_with("Configuration"));
+  if (header_ || preamble_) return true;
+  place_.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader);
+}
+
+void CsvRecordingReader::File::check_cells() const {
+  if (cells_.size() < header_->cells_needed) {
+    place_.fail("found " + std::to_string(cells_.size()) + " cells, allowed: at least " +
+                std::to_string(header_->cells_needed) + "; is the line complete?");
+  }
+  // Motion has more values than older versions of the tool have columns.
+  if (cells_.size() > header_->cells && !is_motion(cell(kStream))) {
+    place_.fail("found " + std::to_string(cells_.size()) +
+                " cells, allowed: " + std::to_string(header_->cells) +
+                ", as in the header; do the numbers have decimal commas?");
+  }
+}
+
+CameraStream& CsvRecordingReader::File::stream_of(std::string_view camera, std::string_view host) {
+  key_.assign(camera).append(",").append(cell(kStream)).append(" ").append(cell(kIndex));
+  auto known = reader_.index_.find(key_);
+  if (known == reader_.index_.end()) {
+    const Naming& naming = naming_of(camera, host);
+    const std::size_t number = reader_.streams_.size();
+    known = reader_.index_.emplace(key_, Known{number, &naming}).first;
+    reader_.streams_.push_back(
+        {printable_name(camera),
+         printable_name(naming.host),
+         printable_name(std::string(cell(kStream)).append(" ").append(cell(kIndex))),
+         {}});
+  }
+  check_naming(*known->second.camera, camera, host);
+  return reader_.streams_[known->second.stream];
+}
+
+const CsvRecordingReader::Naming& CsvRecordingReader::File::naming_of(std::string_view camera,
+                                                                      std::string_view host) {
+  return reader_.cameras_
+      .try_emplace(std::string(camera), Naming{.path = place_.path,
+                                               .by_column = has(kCamera),
+                                               .with_host = has(kHost),
+                                               .host = std::string(host)})
+      .first->second;
+}
+
+void CsvRecordingReader::File::check_naming(const Naming& naming, std::string_view camera,
+                                            std::string_view host) const {
+  const bool goes_on = naming.by_column && has(kCamera);
+  if (!goes_on && naming.path != place_.path) {
+    place_.fail("camera " + quoted_bytes(camera) + " is in " + naming.path +
+                " too, allowed: files of different names, or a column `camera` in each");
+  }
+  if (naming.with_host && has(kHost) && naming.host != host) {
+    place_.fail("camera " + quoted_bytes(camera) + ": found host " + quoted_bytes(host) +
+                ", allowed: " + quoted_bytes(naming.host) +
+                " as before; cameras need names of "
+                "their own");
+  }
+}
+
+void CsvRecordingReader::read_file(const std::string& path, const std::string& name,
+                                   const ReadProgress& progress) {
+  constexpr std::uint64_t kProgressBytes = std::uint64_t{16} << 20;
+  try {
+    LineReader lines(path);
+    File file(*this, path, name);
+    std::uint64_t reported = 0;
+    while (const auto line = lines.next()) {
+      file.read_line(*line);
+      if (!progress || lines.bytes_read() - reported < kProgressBytes) continue;
+      reported = lines.bytes_read();
+      progress(reported, lines.size());
+    }
+    file.end(lines.torn());
+  } catch (const LineError& error) {
+    throw CsvError(error.what());
+  }
 }
 
 void CsvRecordingReader::read_text(std::string_view text, const std::string& path) {
-  Place place{.path = path};
-  const std::string name = std::filesystem::path(path).stem().string();
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  std::optional<Header> header;
-  bool preamble = false;
-  bool any_frame = false;
-  std::vector<std::string_view> cells;
-  std::string stream_name;
-  while (!text.empty()) {
-    ++place.line;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty()) continue;
-    split(line, cells);
-    if (!header || is_header_again(cells)) {
-      header = parse_header(cells);
-      if (header) {
-        preamble = false;
-        continue;
-      }
-      preamble = preamble || line.starts_with("Configuration");
-      if (preamble) continue;
-      place.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader);
-    }
-    if (cells.size() < header->cells_needed) {
-      place.fail("found " + std::to_string(cells.size()) + " cells, allowed: at least " +
-                 std::to_string(header->cells_needed) + "; is the line complete?");
-    }
-    const auto cell = [&](ColumnId id) { return cells[header->position[id]]; };
-    if (is_motion(cell(kStream))) continue;
-    const std::string_view camera = header->position[kCamera] == kAbsent ? name : cell(kCamera);
-    const std::string_view host = header->position[kHost] == kAbsent ? name : cell(kHost);
-    if (camera.empty() || host.empty() || cell(kStream).empty()) {
-      place.fail("found an empty cell, allowed: the name of a stream, camera or host");
-    }
-    stream_name.assign(cell(kStream)).append(" ").append(cell(kIndex));
-    stream_of(camera, host, stream_name).frames.push_back(frame_of(cells, *header, place));
-    any_frame = true;
+  File file(*this, path, {});
+  std::size_t end = 0;
+  while ((end = text.find('\n')) != std::string_view::npos) {
+    file.read_line(text.substr(0, end));
+    text.remove_prefix(end + 1);
   }
-  if (place.line == 0)
-    throw CsvError(path + ":1: the file is empty, allowed: the header " + kHeader);
-  if (!any_frame) place.fail("the file ends without a frame");
+  file.end(!text.empty());
 }
 
 std::vector<CameraStream> CsvRecordingReader::take() {
   index_.clear();
+  cameras_.clear();
   return std::exchange(streams_, {});
 }
 
-std::vector<CameraStream> read_recordings(const std::vector<std::string>& files) {
-  CsvRecordingReader reader;
-  for (auto file = files.begin(); file != files.end(); ++file) {
-    if (std::find(files.begin(), file, *file) != file) throw CsvError(*file + ": given twice");
-    reader.read_file(*file);
+namespace {
+
+namespace fs = std::filesystem;
+
+// The last `count` parts of a path, without its extension.
+std::string last_parts(const fs::path& path, std::size_t count) {
+  const fs::path plain = fs::path(path).replace_extension().lexically_normal();
+  std::vector<fs::path> parts(plain.begin(), plain.end());
+  if (parts.size() > count) {
+    parts.erase(parts.begin(), parts.end() - static_cast<std::ptrdiff_t>(count));
   }
-  return reader.take();
+  fs::path name;
+  for (const fs::path& part : parts) name /= part;
+  return name.generic_string();
+}
+
+void check_given_once(const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code none;
+      if (files[i] != files[j] && !fs::equivalent(files[i], files[j], none)) continue;
+      throw CsvError(files[i] + ": given twice" +
+                     (files[i] == files[j] ? "" : ", also as " + files[j]));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> camera_names(const std::vector<std::string>& files) {
+  std::vector<std::string> names(files.size());
+  std::vector<std::size_t> unnamed(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) unnamed[i] = i;
+  constexpr std::size_t kMostParts = 64;
+  for (std::size_t parts = 1; !unnamed.empty() && parts <= kMostParts; ++parts) {
+    std::map<std::string, std::size_t> count;
+    for (const std::size_t file : unnamed) {
+      names[file] = last_parts(files[file], parts);
+      ++count[names[file]];
+    }
+    std::erase_if(unnamed, [&](std::size_t file) { return count[names[file]] == 1; });
+  }
+  // They differ by their extension, if at all.
+  for (const std::size_t file : unnamed) names[file] = files[file];
+  return names;
+}
+
+CsvRecordings read_recordings(const std::vector<std::string>& files, const ReadProgress& progress) {
+  check_given_once(files);
+  const std::vector<std::string> names = camera_names(files);
+  std::uint64_t total = 0;
+  for (const std::string& file : files) {
+    std::error_code none;
+    const std::uintmax_t size = fs::file_size(file, none);
+    if (!none) total += size;
+  }
+  CsvRecordingReader reader;
+  std::uint64_t before = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::uint64_t done = 0;
+    reader.read_file(files[i], names[i], [&](std::uint64_t bytes, std::uint64_t) {
+      done = bytes;
+      if (progress) progress(std::min(before + done, total), total);
+    });
+    before += done;
+  }
+  return {reader.take(), reader.notes()};
 }
 
 }  // namespace simbench

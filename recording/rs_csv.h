@@ -9,12 +9,18 @@
 // order, and unknown ones are ignored. Gyro, Accel and Pose lines are no frames and are skipped.
 //
 // Two more columns allow several cameras in one file: `camera` and `host` (names or numbers).
-// Without `camera`, a file is one camera with the name of the file; without `host`, the host has
-// that name. A camera in several files continues in the order of the files. Stamps of several
-// cameras must count from one zero per host, and, for a meaningful spread, from one for all hosts.
+// Without `camera`, a file is one camera with the name of the file, and of the folders that tell it
+// from the other files ("front/cam", "back/cam"); without `host`, the host has that name. A camera
+// that files name in a column continues in the order of the files. Stamps of several cameras must
+// count from one zero per host, and, for a meaningful spread, from one for all hosts.
+//
+// What may be wrong is refused, with its line: more or fewer cells than the header has (a decimal
+// comma), a column that stands twice, a camera on two hosts. A last line without its line end may
+// be cut in mid-number: it is left out, with a note. Names have control characters as \xHH.
 //
 // Stamps are kept to the nanosecond, as written: a wrapped register is not unwrapped here.
-// Complexity: linear in the text. Source: docs/reference/d455.md section 8.
+// Complexity: linear in the text; memory: that of the frames. Source: docs/reference/d455.md
+// section 8.
 //
 //   CsvRecordingReader reader;
 //   reader.read_file("front.csv");
@@ -25,6 +31,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -58,26 +65,56 @@ class CsvError : public std::runtime_error {
 // Largest stamp, in milliseconds either way: 126 years.
 inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
 
+// How much is read: bytes, and how many there are (0: unknown). May throw, which ends the reading.
+using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
 class CsvRecordingReader {
  public:
-  // Throws CsvError: unreadable, without a header or a frame, a line that is damaged.
-  void read_file(const std::string& path);
+  // `name`: of the camera, if the file names none; empty: that of the file. Throws CsvError:
+  // unreadable, without a header or a frame, a line that is damaged.
+  void read_file(const std::string& path, const std::string& name = {},
+                 const ReadProgress& progress = {});
   // The same from text, as if it were the content of `path`.
   void read_text(std::string_view text, const std::string& path);
 
   // In order of first occurrence. The reader is empty afterwards.
   std::vector<CameraStream> take();
+  // What was left out, a line each.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  CameraStream& stream_of(std::string_view camera, std::string_view host, std::string_view stream);
+  class File;
+
+  // Who named a camera.
+  struct Naming {
+    std::string path;        // of the file that did so first
+    bool by_column = false;  // else the file is the camera
+    bool with_host = false;  // a column names its host
+    std::string host{};
+  };
+  struct Known {
+    std::size_t stream;
+    const Naming* camera;
+  };
 
   std::vector<CameraStream> streams_;
-  std::unordered_map<std::string, std::size_t> index_;
-  std::string key_;
+  std::unordered_map<std::string, Known> index_;  // by camera and stream
+  std::unordered_map<std::string, Naming> cameras_;
+  std::vector<std::string> notes_;
+};
+
+struct CsvRecordings {
+  std::vector<CameraStream> streams;
+  std::vector<std::string> notes;  // what was left out
 };
 
 // The streams of all files, in order. Throws CsvError, also for a file that is given twice.
-std::vector<CameraStream> read_recordings(const std::vector<std::string>& files);
+CsvRecordings read_recordings(const std::vector<std::string>& files,
+                              const ReadProgress& progress = {});
+
+// The name of each file as a camera: its last parts, without the extension, as few as tell it from
+// all others.
+std::vector<std::string> camera_names(const std::vector<std::string>& files);
 
 }  // namespace simbench
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +20,41 @@ std::string quoted_bytes(std::string_view bytes) {
     }
   }
   return text += bytes.size() > kLongest ? "...'" : "'";
+}
+
+namespace {
+
+// The length of the UTF-8 character at the begin of `text` that is no control character; else 0.
+std::size_t printable_length(std::string_view text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80U) return 0;
+  }
+  const unsigned second = byte(1);
+  const bool control = first == 0xc2 && second < 0xa0;  // C1
+  const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+  const bool no_character = (first == 0xed && second >= 0xa0) || (first == 0xf4 && second >= 0x90);
+  return control || overlong || no_character ? 0 : length;
+}
+
+}  // namespace
+
+std::string printable_name(std::string_view name) {
+  std::string text;
+  while (!name.empty()) {
+    const std::size_t length = printable_length(name);
+    if (length == 0) {
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(name.front()));
+    } else {
+      text += name.substr(0, length);
+    }
+    name.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return text;
 }
 
 void append_number(std::string& line, double value) {

@@ -33,6 +33,9 @@ class TextFieldError : public std::runtime_error {
 
 // For a message: in quotes, cut after 40 bytes, what is no printable ASCII as \xHH.
 std::string quoted_bytes(std::string_view bytes);
+// A name that a terminal shows and does not obey: control characters, and what is no UTF-8, as
+// \xHH; the rest as it is.
+std::string printable_name(std::string_view name);
 
 template <std::integral Number>
 void append_number(std::string& line, Number value) {

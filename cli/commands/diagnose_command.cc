@@ -32,8 +32,10 @@ struct DiagnoseOptions {
 };
 
 int run_diagnose(const DiagnoseOptions& options) {
+  const CsvRecordings recordings = read_recordings(options.files);
+  for (const std::string& note : recordings.notes) print_note(note);
   const evaluation::Diagnosis diagnosis = evaluation::diagnose(
-      read_recordings(options.files), {.rate_hz = options.rate_hz, .one_host = options.one_host});
+      recordings.streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : reports::diagnose_table(diagnosis));
   return kOk;

@@ -117,7 +117,9 @@ FitTask task_of_files(const FitOptions& options) {
     throw evaluation::FitError("--pipeline and --seed choose a capture of a recording folder");
   }
   FitTask task;
-  task.input = evaluation::fit_input(read_recordings(options.inputs), options.one_host);
+  const CsvRecordings recordings = read_recordings(options.inputs);
+  for (const std::string& note : recordings.notes) print_note(note);
+  task.input = evaluation::fit_input(recordings.streams, options.one_host);
   task.base =
       options.base.empty() ? evaluation::default_base(task.input) : stated_base(options.base);
   return task;

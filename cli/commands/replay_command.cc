@@ -5,13 +5,16 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "app/interrupt.h"
 #include "app/recordings.h"
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/replay/replay.h"
+#include "recording/recording.h"
 #include "reports/archive/archive.h"
 #include "reports/rigs/replay_report.h"
 
@@ -35,7 +38,7 @@ Examples:
   simbench replay front.csv back.csv --format json > replay.json
   simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted (a folder only).)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
 struct ReplayOptions {
   std::vector<std::string> files;
@@ -62,15 +65,44 @@ void check_options_for_files(const ReplayOptions& options) {
   }
 }
 
+// The same progress, which ends the work after Ctrl-C.
+evaluation::Progress interruptible(const evaluation::Progress& progress) {
+  return [&progress](std::uint64_t done, std::uint64_t total) {
+    progress(done, total);
+    if (app::InterruptHandler::raised()) throw RecordingCancelled();
+  };
+}
+
+// Nothing after Ctrl-C.
+std::optional<CsvRecordings> read_files(const std::vector<std::string>& files) {
+  constexpr unsigned kMegabyte = 20;
+  return watched<CsvRecordings>(
+      [&](const evaluation::Progress& progress) {
+        const evaluation::Progress watching = interruptible(progress);
+        return read_recordings(files, [&](std::uint64_t done, std::uint64_t total) {
+          watching(done >> kMegabyte, total >> kMegabyte);
+        });
+      },
+      {.unit = "megabyte"});
+}
+
 int run_files(const ReplayOptions& options) {
   check_options_for_files(options);
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
-  std::vector<CameraStream> streams = read_recordings(options.files);
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-  const evaluation::Replay replay = evaluation::run_replay(std::move(streams));
+  std::optional<CsvRecordings> recordings = read_files(options.files);
+  if (!recordings) return kInterrupted;
+  for (const std::string& note : recordings->notes) print_note(note);
+  const auto replayed = watched<evaluation::Replay>(
+      [&](const evaluation::Progress& progress) {
+        return evaluation::run_replay(std::move(recordings->streams), interruptible(progress));
+      },
+      {.unit = "stamp"});
+  if (!replayed) return kInterrupted;
+  const evaluation::Replay& replay = *replayed;
   print_warnings(replay.warnings);
   print_note("host_sync cannot be replayed; only device_time and gathering were run");
   provenance.finished = std::chrono::system_clock::now();
@@ -89,6 +121,7 @@ int run_folder(const std::string& folder, const ReplayOptions& options) {
   app::RunArchive archive(options.command);
   const app::RecordedRun run(folder);
   const std::vector<std::string> pipelines = run.chosen(options.pipelines);
+  for (const std::string& note : run.missing()) print_note(note);
   archive.open(options.output);
   const auto results = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
     return run.evaluate(pipelines, !options.output.empty(), progress);

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "evaluation/replay/replay.h"
 #include "recording/counted.h"
 
 namespace simbench::evaluation {
@@ -38,6 +39,7 @@ class Findings {
       }
       add_standing();
       add_lost();
+      add_clock();
       add_stamps();
       add_presence();
     }
@@ -173,6 +175,27 @@ class Findings {
           fmt::format("its frame counter stood still or went back {}: the camera was restarted, or "
                       "frames arrived twice",
                       times(facts.counter_restarts)));
+    }
+    if (facts.counter_jumps > 0) {
+      add("counter_jumps",
+          fmt::format("its frame counter jumps {} by more frames than the time between two allows; "
+                      "these are not counted as lost",
+                      times(facts.counter_jumps)));
+    }
+  }
+
+  void add_clock() {
+    const StreamFacts& facts = camera_->facts;
+    if (facts.global_time) {
+      add("global_time",
+          "its stamps count from 1970, as a computer's clock does and no camera's: with "
+          "librealsense's global time they are the host's own estimate. Record with global time "
+          "off");
+    } else if (is_doubtful_drift(facts.drift_ppm)) {
+      add("doubtful_rate",
+          fmt::format("its clock and its host's differ by {:.0f} ppm, where some tens are usual: "
+                      "are both stamps milliseconds of one camera?",
+                      facts.drift_ppm));
     }
   }
 

@@ -22,7 +22,7 @@
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
 //
-//   Diagnosis d = diagnose(reader.take(), {.rate_hz = 30});
+//   Diagnosis d = diagnose(streams, {.rate_hz = 30});
 //   print(d.verdict.status, d.verdict.reason);
 #ifndef SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 #define SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
@@ -57,6 +57,7 @@ struct StreamFacts {
   double period_ms = kNan;           // of a frame
   double interval_jitter_ms = kNan;  // standard deviation from whole periods
   double on_grid_share = kNan;       // of intervals within a tenth of whole periods
+  double drift_ppm = kNan;           // (host rate / device rate - 1) 1e6, from first to last frame
   // On the host's clock.
   double host_period_ms = kNan;
   double host_period_sd_ppm = kNan;  // standard deviation of that, relative
@@ -64,11 +65,13 @@ struct StreamFacts {
   std::int64_t lost_frames = 0;       // counted by the camera, but never arrived
   std::int64_t skipped_pulses = 0;    // periods that the counter did not count
   std::int64_t counter_restarts = 0;  // the counter stood still or went back
+  std::int64_t counter_jumps = 0;     // it went up by more frames than the time allows
   std::int64_t backward_stamps = 0;
   std::int64_t backward_arrivals = 0;
   std::int64_t future_stamps = 0;  // frames that arrived earlier than their stamp allows
   double future_ms = 0;            // by how much, at most
   std::int64_t wraps = 0;          // of the 32-bit microsecond register
+  bool global_time = false;        // stamps count from 1970: they are no camera's
   std::vector<StampJump> jumps;
   // Arrivals with jumps taken out, and the period each belongs to; for comparisons of phase.
   std::vector<double> arrivals_ms;

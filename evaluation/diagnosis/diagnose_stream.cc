@@ -67,12 +67,17 @@ void note_arrivals(std::span<const StampedFrame> frames, StreamFacts& facts) {
 
 // Two successive frames, `periods` apart: counts frames that only the counter has, and periods that
 // it lacks.
-void note_counter(std::uint64_t before, std::uint64_t now, double periods, StreamFacts& facts) {
-  if (now <= before || now - before > (std::uint64_t{1} << 32)) {
+void note_counter(const StampedFrame& before, const StampedFrame& now, double periods,
+                  StreamFacts& facts) {
+  if (now.counter <= before.counter) {
     ++facts.counter_restarts;
     return;
   }
-  const auto counted = static_cast<std::int64_t>(now - before);
+  if (!is_counter_gap(now.counter - before.counter, before, now, facts.period_ms)) {
+    ++facts.counter_jumps;
+    return;
+  }
+  const auto counted = static_cast<std::int64_t>(now.counter - before.counter);
   facts.lost_frames += counted - 1;
   if (periods > kMostPeriods) return;  // a clock was set, or a pause
   facts.skipped_pulses += std::max<std::int64_t>(0, std::llround(periods) - counted);
@@ -102,6 +107,17 @@ std::optional<double> stream_period(std::span<const StampedFrame> frames) {
   return means.empty() ? interval : median(std::move(means));
 }
 
+// From the ends, which are enough to find stamps of another unit.
+void note_drift(std::span<const StampedFrame> frames, StreamFacts& facts) {
+  constexpr std::size_t kFramesForDrift = 30;
+  const StampedFrame& first = frames.front();
+  const StampedFrame& last = frames.back();
+  const double device_ms = difference_ms(last.sensor.count(), first.sensor.count());
+  if (frames.size() < kFramesForDrift || !(device_ms > 0)) return;
+  const double host_ms = difference_ms(last.arrival.count(), first.arrival.count());
+  facts.drift_ppm = (host_ms / device_ms - 1) * 1e6;
+}
+
 // Counts the missing periods of the intervals, and their deviations from whole periods.
 void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
   facts.periods.assign(1, 0);
@@ -115,7 +131,7 @@ void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
     deviations.push_back(deviation);
     if (interval < 0) ++facts.backward_stamps;
     if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
-    note_counter(frames[i - 1].counter, frames[i].counter, whole, facts);
+    note_counter(frames[i - 1], frames[i], whole, facts);
   }
   facts.interval_jitter_ms = standard_deviation(deviations);
   facts.on_grid_share = static_cast<double>(on_grid) / static_cast<double>(deviations.size());
@@ -262,12 +278,14 @@ StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
   facts.frames = static_cast<std::int64_t>(recorded.size());
   if (recorded.empty()) return facts;
   facts.wraps = count_wraps(recorded);
+  facts.global_time = counts_from_1970(recorded);
   note_arrivals(recorded, facts);
   const std::vector<StampedFrame> all = unwrapped(recorded);
   const std::span<const StampedFrame> frames = without_warm_up(all);
   const std::optional<double> period_ms = stream_period(frames);
   if (!period_ms) return facts;
   facts.period_ms = *period_ms;
+  note_drift(frames, facts);
   note_intervals(frames, facts);
 
   std::vector<double> offsets;

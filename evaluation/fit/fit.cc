@@ -195,6 +195,13 @@ StreamFit fit_stream(const std::string& camera, const FitStream& stream) {
   fit.span_s = statistics.span_s;
   fit.skew_ppm = skew_of_slope_ppm(line.slope);
   fit.skew_error_ppm = skew_error_ppm(points);
+  if (is_doubtful_drift(fit.skew_ppm)) {
+    throw FitError(
+        fmt::format("camera {}, {}: found a drift of {:.0f} ppm, allowed that of a camera's clock, "
+                    "some tens of "
+                    "ppm; are both stamps milliseconds of one camera?",
+                    camera, stream.kind, fit.skew_ppm));
+  }
   fit.least_squares_ppm = skew_of_slope_ppm(statistics.drift_ppm * 1e-6);
   fit.excess_ms = excess_of(points, fit.span_s);
   fit.rise_ms = rise_ms(points, line);

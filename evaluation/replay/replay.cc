@@ -1,17 +1,20 @@
 #include "evaluation/replay/replay.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <map>
-#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <thread>
 #include <tuple>
 #include <utility>
 
 #include "algorithms/gathering/genlock_order.h"
 #include "algorithms/registry.h"
+#include "evaluation/run/jobs.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
@@ -26,7 +29,7 @@ constexpr std::int64_t kIntervalsPerPeriod = 2;
 // A frame: the place of its camera in the rig and its place in the camera's recording.
 struct FrameId {
   std::uint32_t source = 0;
-  std::size_t frame = 0;
+  std::uint32_t frame = 0;
 };
 
 using Members = std::vector<const CameraReplay*>;
@@ -73,7 +76,7 @@ std::vector<FrameId> complete_pulses(const Members& members, Nanoseconds period)
   for (std::uint32_t source = 0; source < members.size(); ++source) {
     GenlockOrder order(period, GenlockOrder::Variant::kReanchored);
     const std::vector<StampedFrame>& frames = members[source]->frames;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (std::uint32_t i = 0; i < frames.size(); ++i) {
       all.push_back({order.next(device_time_of(frames[i])), {source, i}});
     }
   }
@@ -105,7 +108,7 @@ std::vector<FrameId> order_of_arrival(const Members& members) {
   for (std::uint32_t source = 0; source < members.size(); ++source) {
     Nanoseconds latest = Nanoseconds::min();
     const std::vector<StampedFrame>& frames = members[source]->frames;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (std::uint32_t i = 0; i < frames.size(); ++i) {
       latest = std::max(latest, frames[i].arrival);
       all.push_back({latest, {source, i}});
     }
@@ -134,19 +137,29 @@ class ScoringSink : public FrameSetSink {
   SetScore score_;
 };
 
-GatheringReplay replay_gatherer(const GatheringEntry& entry, const Members& members,
-                                std::size_t row, Nanoseconds period,
-                                const std::vector<FrameId>& order) {
-  const GatheringSetup setup = {.sources = static_cast<std::uint32_t>(members.size()),
-                                .period = period,
-                                .interval = period / kIntervalsPerPeriod};
+// What the estimators' stamps of one kind of stream are scored by.
+struct Rig {
+  Members members;
+  std::vector<std::size_t> cameras;  // their indices
+  Nanoseconds period{};
+  std::vector<FrameId> complete;  // frames of complete pulses
+  std::vector<FrameId> order;     // of arrival
+};
+
+// One estimator's stamps of every frame, by camera; none of a camera that is in no rig.
+using AllStamps = std::vector<std::vector<GlobalTime>>;
+
+GatheringReplay replay_gatherer(const GatheringEntry& entry, const Rig& rig,
+                                const AllStamps& stamps) {
+  const GatheringSetup setup = {.sources = static_cast<std::uint32_t>(rig.members.size()),
+                                .period = rig.period,
+                                .interval = rig.period / kIntervalsPerPeriod};
   const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
   ScoringSink sink;
-  for (const FrameId& id : order) {
-    const CameraReplay& camera = *members[id.source];
+  for (const FrameId& id : rig.order) {
     gatherer->push({.source = id.source,
-                    .stamp = camera.rows[row].stamps[id.frame],
-                    .sensor = device_time_of(camera.frames[id.frame]),
+                    .stamp = stamps[rig.cameras[id.source]][id.frame],
+                    .sensor = device_time_of(rig.members[id.source]->frames[id.frame]),
                     .tag = static_cast<std::int64_t>(id.frame)},
                    sink);
   }
@@ -157,17 +170,29 @@ GatheringReplay replay_gatherer(const GatheringEntry& entry, const Members& memb
           .rmdv_ms = sink.score().rmdv_ms()};
 }
 
-SetScore genlock_score(const Members& members, std::size_t row,
-                       const std::vector<FrameId>& complete) {
+SetScore genlock_score(const Rig& rig, const AllStamps& all) {
   SetScore score;
   std::vector<std::int64_t> stamps;
-  for (const FrameId& id : complete) {
-    stamps.push_back(nanoseconds_of(members[id.source]->rows[row].stamps[id.frame]));
-    if (stamps.size() < members.size()) continue;
+  for (const FrameId& id : rig.complete) {
+    stamps.push_back(nanoseconds_of(all[rig.cameras[id.source]][id.frame]));
+    if (stamps.size() < rig.members.size()) continue;
     score.add(stamps);
     stamps.clear();
   }
   return score;
+}
+
+RigRow rig_row(const std::string& device_time, const Rig& rig, const AllStamps& stamps) {
+  const SetScore score = genlock_score(rig, stamps);
+  RigRow row;
+  row.device_time = device_time;
+  row.amd_ms = score.amd_ms();
+  row.rmdv_ms = score.rmdv_ms();
+  for (const GatheringEntry& entry : gathering_algorithms()) {
+    if (std::ranges::count(entry.info.needs, Need::kTruth) > 0) continue;
+    row.gatherings.push_back(replay_gatherer(entry, rig, stamps));
+  }
+  return row;
 }
 
 Nanoseconds first_arrival_range(const Members& members) {
@@ -178,74 +203,69 @@ Nanoseconds first_arrival_range(const Members& members) {
   return (*last)->frames.front().arrival - (*first)->frames.front().arrival;
 }
 
-// `members`: the cameras (two or more) that have `stream`; their rows are complete. Returns nothing
-// if no camera has a frame period (of at least a microsecond) to match frames by.
-std::optional<RigReplay> replay_rig(const std::vector<CameraReplay>& cameras,
-                                    const std::string& stream,
-                                    const std::vector<std::size_t>& members) {
-  Members sources;
-  for (const std::size_t index : members) sources.push_back(&cameras[index]);
-  const std::optional<Nanoseconds> known_period = rig_period(sources);
-  if (!known_period) return std::nullopt;
-  const Nanoseconds period = *known_period;
-  const Nanoseconds range = first_arrival_range(sources);
-  const std::vector<FrameId> complete = complete_pulses(sources, period);
-  const std::vector<FrameId> order = order_of_arrival(sources);
-
-  RigReplay rig;
-  rig.stream = stream;
-  rig.cameras = members;
-  rig.period_ms = to_ms(period);
-  rig.complete_pulses = static_cast<std::int64_t>(complete.size() / sources.size());
-  rig.first_arrival_range_ms = to_ms(range);
-  rig.common_start_plausible = range < period / 2;
-  for (std::size_t row = 0; row < sources.front()->rows.size(); ++row) {
-    const SetScore score = genlock_score(sources, row, complete);
-    RigRow result;
-    result.device_time = sources.front()->rows[row].device_time;
-    result.amd_ms = score.amd_ms();
-    result.rmdv_ms = score.rmdv_ms();
-    for (const GatheringEntry& entry : gathering_algorithms()) {
-      if (std::ranges::count(entry.info.needs, Need::kTruth) > 0) continue;
-      result.gatherings.push_back(replay_gatherer(entry, sources, row, period, order));
-    }
-    rig.rows.push_back(std::move(result));
-  }
+// `cameras`: indices of those (two or more) that have one kind of stream. Returns nothing if none
+// has a frame period (of at least a microsecond) to match frames by.
+std::optional<Rig> rig_of(const std::vector<CameraReplay>& all,
+                          const std::vector<std::size_t>& cameras) {
+  Rig rig;
+  rig.cameras = cameras;
+  for (const std::size_t index : cameras) rig.members.push_back(&all[index]);
+  const std::optional<Nanoseconds> period = rig_period(rig.members);
+  if (!period) return std::nullopt;
+  rig.period = *period;
+  rig.complete = complete_pulses(rig.members, rig.period);
+  rig.order = order_of_arrival(rig.members);
   return rig;
 }
 
-std::vector<DeviceSample> samples_of(const std::vector<StampedFrame>& frames) {
-  std::vector<DeviceSample> samples;
-  samples.reserve(frames.size());
-  for (const StampedFrame& frame : frames) {
-    samples.push_back({.sensor = device_time_of(frame),
-                       .arrival = HostTime(frame.arrival),
-                       .arrival_steady = SteadyTime(frame.arrival),
-                       .exposure_us = 0});
-  }
-  return samples;
+RigReplay rig_replay(const std::string& stream, const Rig& rig) {
+  const Nanoseconds range = first_arrival_range(rig.members);
+  RigReplay replay;
+  replay.stream = stream;
+  replay.cameras = rig.cameras;
+  replay.period_ms = to_ms(rig.period);
+  replay.complete_pulses = static_cast<std::int64_t>(rig.complete.size() / rig.members.size());
+  replay.first_arrival_range_ms = to_ms(range);
+  replay.common_start_plausible = range < rig.period / 2;
+  return replay;
 }
 
-void score(const std::vector<StampedFrame>& frames, bool relative, DeviceTimeReplay& row) {
-  std::vector<double> sensor(frames.size());
+DeviceSample sample_of(const StampedFrame& frame) {
+  return {.sensor = device_time_of(frame),
+          .arrival = HostTime(frame.arrival),
+          .arrival_steady = SteadyTime(frame.arrival),
+          .exposure_us = 0};
+}
+
+DeviceTimeReplay without_values(const std::string& device_time) {
+  DeviceTimeReplay row;
+  row.device_time = device_time;
+  row.jitter_ms = row.drift_ppm = kNan;
+  row.residual = {kNan, kNan, kNan, kNan};
+  return row;
+}
+
+DeviceTimeReplay scored(const std::string& device_time, const std::vector<StampedFrame>& frames,
+                        const std::vector<GlobalTime>& stamps, bool relative) {
+  DeviceTimeReplay row = without_values(device_time);
   std::vector<double> offset(frames.size());
-  std::vector<double> residual(frames.size());
-  std::vector<double> jitter;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const std::int64_t global = nanoseconds_of(row.stamps[i]);
-    sensor[i] = difference_ms(frames[i].sensor.count(), frames[0].sensor.count());
-    offset[i] = difference_ms(global, nanoseconds_of(row.stamps[0])) - sensor[i];
-    residual[i] = difference_ms(frames[i].arrival.count(), global);
-    if (i > 0) jitter.push_back(offset[i] - offset[i - 1]);
+  {
+    std::vector<double> sensor(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      sensor[i] = difference_ms(frames[i].sensor.count(), frames[0].sensor.count());
+      offset[i] = difference_ms(nanoseconds_of(stamps[i]), nanoseconds_of(stamps[0])) - sensor[i];
+    }
+    if (!relative) row.drift_ppm = fit_line(sensor, offset).slope * 1e6;
   }
-  row.jitter_ms = standard_deviation(jitter);
-  if (relative) {
-    row.residual = {kNan, kNan, kNan, kNan};
-    row.drift_ppm = kNan;
-    return;
+  for (std::size_t i = frames.size(); i-- > 1;) offset[i] -= offset[i - 1];
+  row.jitter_ms = standard_deviation(std::span(offset).subspan(1));
+  if (relative) return row;
+  std::vector<double> residual = std::move(offset);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    residual[i] = difference_ms(frames[i].arrival.count(), nanoseconds_of(stamps[i]));
   }
   row.residual = residual_statistics(std::move(residual));
-  row.drift_ppm = fit_line(sensor, offset).slope * 1e6;
+  return row;
 }
 
 // An estimator may extrapolate damaged stamps without limit; differences must not overflow.
@@ -253,21 +273,6 @@ GlobalTime limited(GlobalTime stamp) {
   constexpr GlobalTime kLargest{Nanoseconds((std::int64_t{1} << 62) - 1)};
   constexpr GlobalTime kSmallest{-kLargest.time_since_epoch()};
   return std::clamp(stamp, kSmallest, kLargest);
-}
-
-DeviceTimeReplay replay_estimator(const DeviceTimeEntry& entry, const CameraReplay& camera,
-                                  const std::vector<DeviceSample>& samples, Nanoseconds anchor) {
-  DeviceTimeReplay row;
-  row.device_time = entry.info.name;
-  const auto estimator = entry.make(check_parameters(entry.info.parameters, {}));
-  if (estimator->offline()) estimator->learn(samples);
-  const Nanoseconds shift = estimator->relative() ? anchor : Nanoseconds::zero();
-  row.stamps.reserve(samples.size());
-  for (const DeviceSample& sample : samples) {
-    row.stamps.push_back(limited(estimator->stamp(sample) + shift));
-  }
-  score(camera.frames, estimator->relative(), row);
-  return row;
 }
 
 // The earliest first arrival of the cameras of each kind of stream.
@@ -283,52 +288,188 @@ std::map<std::string, Nanoseconds> anchors_of(const std::vector<CameraReplay>& c
 
 void warn(const CameraReplay& camera, std::vector<std::string>& warnings) {
   const CameraStatistics& found = camera.statistics;
-  const std::string name = camera.camera + " " + camera.stream + ": ";
+  const auto add = [&](const std::string& text) {
+    warnings.push_back(fmt::format("{} {}: {}", camera.camera, camera.stream, text));
+  };
   if (found.backward_steps > 0) {
-    warnings.push_back(name + "sensor stamps go back " + times(found.backward_steps) +
-                       ": frames were reordered, or the camera was restarted");
+    add(fmt::format("sensor stamps go back {}: frames were reordered, or the camera was restarted",
+                    times(found.backward_steps)));
   }
-  if (found.frames < 2) {
-    warnings.push_back(name + "has one frame: too few for a drift or a jitter");
+  if (found.backward_arrivals > 0) {
+    add(
+        fmt::format("arrivals go back {}: the host's clock was set back, or the file was put "
+                    "together from several; drift, periods and delays may be wrong",
+                    times(found.backward_arrivals)));
   }
+  if (found.counter_jumps > 0) {
+    add(
+        fmt::format("the frame counter jumps {} by more frames than the time between two allows "
+                    "(by {} at most); these are not counted as missing",
+                    times(found.counter_jumps), found.largest_jump));
+  }
+  if (found.counter_restarts > 0 && found.backward_steps == 0) {
+    add(
+        fmt::format("the frame counter stands still or goes back {}: the camera was restarted, or "
+                    "frames arrived twice; missing frames may be more",
+                    times(found.counter_restarts)));
+  }
+  if (counts_from_1970(camera.frames)) {
+    add("sensor stamps count from 1970, as a computer's clock does and no camera's: with "
+        "librealsense's global time they are the host's own estimate, and drift, jitter and "
+        "residual are those of the estimate. Record with global time off");
+  } else if (is_doubtful_drift(found.drift_ppm)) {
+    add(
+        fmt::format("a drift of {:.0f} ppm is no camera's, whose clock is right to some tens of "
+                    "ppm: are both stamps milliseconds of one camera, and are {} enough?",
+                    found.drift_ppm, counted(static_cast<std::uint64_t>(found.frames), "frame")));
+  }
+  if (found.frames < 2) add("has one frame: too few for a drift or a jitter");
 }
 
-}  // namespace
+bool needs_polls(const DeviceTimeEntry& entry) {
+  return std::ranges::count(entry.info.needs, Need::kPolls) > 0;
+}
 
-Replay run_replay(std::vector<CameraStream> streams) {
-  Replay replay;
-  for (CameraStream& stream : streams) {
-    CameraReplay camera;
-    camera.camera = std::move(stream.camera);
-    camera.host = std::move(stream.host);
-    camera.stream = std::move(stream.stream);
-    camera.frames = unwrapped(stream.frames);
-    stream.frames = {};
-    camera.statistics = camera_statistics(camera.frames);
-    warn(camera, replay.warnings);
-    replay.cameras.push_back(std::move(camera));
+// Those of the rows, in their order.
+std::vector<const DeviceTimeEntry*> replayed_estimators() {
+  std::vector<const DeviceTimeEntry*> entries;
+  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+    if (entry.make) entries.push_back(&entry);  // else it needs the truth
   }
-  const std::map<std::string, Nanoseconds> anchors = anchors_of(replay.cameras);
-  for (CameraReplay& camera : replay.cameras) {
-    const std::vector<DeviceSample> samples = samples_of(camera.frames);
-    for (const DeviceTimeEntry& entry : device_time_algorithms()) {
-      if (!entry.make) continue;  // needs the truth
-      camera.rows.push_back(replay_estimator(entry, camera, samples, anchors.at(camera.stream)));
+  return entries;
+}
+
+// Counts the stamps of all estimators.
+class StampProgress {
+ public:
+  StampProgress(const Progress& progress, std::uint64_t total)
+      : progress_(total >= kFewStamps ? progress : Progress()), total_(total) {}
+
+  void add(std::uint64_t stamps) {
+    if (!progress_) return;
+    const std::lock_guard lock(mutex_);
+    progress_(done_ += stamps, total_);
+  }
+
+  static constexpr std::uint64_t kStep = std::uint64_t{1} << 17;
+
+ private:
+  static constexpr std::uint64_t kFewStamps = 4'000'000;  // a second's work
+  const Progress progress_;
+  const std::uint64_t total_;
+  std::mutex mutex_;  // guards what follows
+  std::uint64_t done_ = 0;
+};
+
+// Runs the estimators, each on all cameras, a job each.
+class EstimatorJobs {
+ public:
+  EstimatorJobs(Replay& replay, const std::vector<Rig>& rigs, const Progress& progress)
+      : replay_(replay), rigs_(rigs), entries_(replayed_estimators()), in_rig_(cameras_in_rigs()) {
+    std::uint64_t frames = 0;
+    for (CameraReplay& camera : replay.cameras) {
+      frames += camera.frames.size();
+      camera.rows.resize(entries_.size());
+    }
+    for (RigReplay& rig : replay.rigs) rig.rows.resize(entries_.size());
+    const auto running = std::ranges::count_if(
+        entries_, [](const DeviceTimeEntry* entry) { return !needs_polls(*entry); });
+    progress_.emplace(progress, frames * static_cast<std::uint64_t>(running));
+    const std::uint64_t fit = kMostFramesAtOnce / std::max<std::uint64_t>(frames, 1);
+    const std::uint64_t cores = std::max(1U, std::thread::hardware_concurrency());
+    threads_ = static_cast<unsigned>(std::clamp<std::uint64_t>(fit, 1, cores));
+  }
+
+  void run() {
+    run_jobs(entries_.size(), {.threads = threads_}, [this](std::size_t job) {
+      if (needs_polls(*entries_[job])) {
+        leave_out(job);
+      } else {
+        replay_entry(job);
+      }
+    });
+  }
+
+ private:
+  static constexpr std::uint64_t kMostFramesAtOnce = 20'000'000;  // half a gigabyte
+
+  std::vector<bool> cameras_in_rigs() const {
+    std::vector<bool> in_rig(replay_.cameras.size(), false);
+    for (const Rig& rig : rigs_) {
+      for (const std::size_t camera : rig.cameras) in_rig[camera] = true;
+    }
+    return in_rig;
+  }
+
+  void leave_out(std::size_t row) {
+    const std::string& name = entries_[row]->info.name;
+    for (CameraReplay& camera : replay_.cameras) {
+      camera.rows[row] = without_values(name);
+      camera.rows[row].needs_polls = true;
+    }
+    for (RigReplay& rig : replay_.rigs) {
+      rig.rows[row] = {name, true, kNan, kNan, {}};
     }
   }
+
+  void replay_entry(std::size_t row) {
+    const std::string& name = entries_[row]->info.name;
+    AllStamps all(replay_.cameras.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      CameraReplay& camera = replay_.cameras[i];
+      CameraEstimator estimator = estimator_for(*entries_[row], camera);
+      std::vector<GlobalTime> stamps = stamps_of(camera, estimator);
+      camera.rows[row] = scored(name, camera.frames, stamps, estimator.relative());
+      if (in_rig_[i]) all[i] = std::move(stamps);
+    }
+    for (std::size_t i = 0; i < rigs_.size(); ++i) {
+      replay_.rigs[i].rows[row] = rig_row(name, rigs_[i], all);
+    }
+  }
+
+  // One at a time: learning takes the most memory.
+  CameraEstimator estimator_for(const DeviceTimeEntry& entry, const CameraReplay& camera) {
+    const std::lock_guard lock(learning_);
+    return {entry, camera};
+  }
+
+  std::vector<GlobalTime> stamps_of(const CameraReplay& camera, CameraEstimator& estimator) {
+    std::vector<GlobalTime> stamps;
+    stamps.reserve(camera.frames.size());
+    for (const StampedFrame& frame : camera.frames) {
+      stamps.push_back(estimator.stamp(frame));
+      if (stamps.size() % StampProgress::kStep == 0) progress_->add(StampProgress::kStep);
+    }
+    progress_->add(stamps.size() % StampProgress::kStep);
+    return stamps;
+  }
+
+  Replay& replay_;
+  const std::vector<Rig>& rigs_;
+  const std::vector<const DeviceTimeEntry*> entries_;
+  const std::vector<bool> in_rig_;
+  std::optional<StampProgress> progress_;
+  std::mutex learning_;
+  unsigned threads_ = 1;
+};
+
+// Fills in Replay::rigs but for their rows, and what they are scored by.
+std::vector<Rig> find_rigs(const std::map<std::string, Nanoseconds>& anchors, Replay& replay) {
+  std::vector<Rig> rigs;
   for (const auto& [stream, anchor] : anchors) {
     std::vector<std::size_t> members;
     for (std::size_t i = 0; i < replay.cameras.size(); ++i) {
       if (replay.cameras[i].stream == stream) members.push_back(i);
     }
     if (members.size() < 2) continue;
-    std::optional<RigReplay> rig = replay_rig(replay.cameras, stream, members);
+    std::optional<Rig> rig = rig_of(replay.cameras, members);
     if (!rig) {
       replay.warnings.push_back(stream +
                                 ": no camera has a frame period, so the cameras are not compared");
       continue;
     }
-    replay.rigs.push_back(std::move(*rig));
+    replay.rigs.push_back(rig_replay(stream, *rig));
+    rigs.push_back(std::move(*rig));
     if (!replay.rigs.back().common_start_plausible) {
       replay.warnings.push_back(
           stream +
@@ -336,6 +477,58 @@ Replay run_replay(std::vector<CameraStream> streams) {
           "start, AMD and RMDV by GenLock order are meaningless");
     }
   }
+  return rigs;
+}
+
+}  // namespace
+
+CameraEstimator::CameraEstimator(const DeviceTimeEntry& entry, const CameraReplay& camera)
+    : estimator_(entry.make(check_parameters(entry.info.parameters, {}))) {
+  if (estimator_->relative()) shift_ = camera.anchor;
+  if (!estimator_->offline()) return;
+  std::vector<DeviceSample> samples;
+  samples.reserve(camera.frames.size());
+  for (const StampedFrame& frame : camera.frames) samples.push_back(sample_of(frame));
+  estimator_->learn(samples);
+}
+
+GlobalTime CameraEstimator::stamp(const StampedFrame& frame) {
+  return limited(estimator_->stamp(sample_of(frame)) + shift_);
+}
+
+GlobalStamps::GlobalStamps(const CameraReplay& camera) : camera_(camera) {
+  for (const DeviceTimeEntry* entry : replayed_estimators()) {
+    estimators_.emplace_back();
+    if (!needs_polls(*entry)) estimators_.back().emplace(*entry, camera);
+  }
+  stamps_.resize(estimators_.size());
+}
+
+const std::vector<std::optional<GlobalTime>>& GlobalStamps::next() {
+  const StampedFrame& frame = camera_.frames[frame_++];
+  for (std::size_t i = 0; i < estimators_.size(); ++i) {
+    if (estimators_[i]) stamps_[i] = estimators_[i]->stamp(frame);
+  }
+  return stamps_;
+}
+
+Replay run_replay(std::vector<CameraStream> streams, const Progress& progress) {
+  Replay replay;
+  for (CameraStream& stream : streams) {
+    CameraReplay camera;
+    camera.camera = std::move(stream.camera);
+    camera.host = std::move(stream.host);
+    camera.stream = std::move(stream.stream);
+    camera.frames = std::move(stream.frames);
+    unwrap(camera.frames);
+    camera.statistics = camera_statistics(camera.frames);
+    warn(camera, replay.warnings);
+    replay.cameras.push_back(std::move(camera));
+  }
+  const std::map<std::string, Nanoseconds> anchors = anchors_of(replay.cameras);
+  for (CameraReplay& camera : replay.cameras) camera.anchor = anchors.at(camera.stream);
+  const std::vector<Rig> rigs = find_rigs(anchors, replay);
+  EstimatorJobs(replay, rigs, progress).run();
   return replay;
 }
 

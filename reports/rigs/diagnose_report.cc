@@ -163,6 +163,8 @@ Json camera_json(const CameraDiagnosis& camera) {
           {"lost_frames", facts.lost_frames},
           {"skipped_pulses", facts.skipped_pulses},
           {"counter_restarts", facts.counter_restarts},
+          {"counter_jumps", facts.counter_jumps},
+          {"global_time", facts.global_time},
           {"backward_stamps", facts.backward_stamps},
           {"backward_arrivals", facts.backward_arrivals},
           {"future_stamps", facts.future_stamps},

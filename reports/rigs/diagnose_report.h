@@ -9,8 +9,9 @@
 //                 "follows": "trigger" | "own_clock" | "other_rate" | "host_or_own" | "unknown",
 //                 "period_multiple", "rate_ppm", "rate_sd_ppm", "moves_ms_per_minute", "phase_ms",
 //                 "interval_jitter_ms", "on_grid_share", "lost_frames", "skipped_pulses",
-//                 "counter_restarts", "backward_stamps", "backward_arrivals", "future_stamps",
-//                 "wraps", "longest_gap_s", "jumps": [{"at_s", "step_ms", "periods"}]}],
+//                 "counter_restarts", "counter_jumps", "global_time", "backward_stamps",
+//                 "backward_arrivals", "future_stamps", "wraps", "longest_gap_s",
+//                 "jumps": [{"at_s", "step_ms", "periods"}]}],
 //    "pairs": [{"camera", "stream", "against", "offset_ms", "spread_ms", "moves_ms_per_minute",
 //               "runs_free"}],
 //    "findings": [{"camera", "stream", "kind", "text"}], "cannot_know": [...]}

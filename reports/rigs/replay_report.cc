@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "recording/text_fields.h"
 #include "recording/version.h"
@@ -24,6 +26,8 @@ using evaluation::Replay;
 using evaluation::RigReplay;
 using evaluation::RigRow;
 
+constexpr const char* kNeedsPolls = "needs polls";
+
 bool has_other_streams(const Replay& replay, const CameraReplay& camera) {
   return std::any_of(replay.cameras.begin(), replay.cameras.end(), [&](const CameraReplay& other) {
     return other.camera == camera.camera && other.stream != camera.stream;
@@ -33,6 +37,11 @@ bool has_other_streams(const Replay& replay, const CameraReplay& camera) {
 std::string camera_name(const Replay& replay, const CameraReplay& camera) {
   if (!has_other_streams(replay, camera)) return camera.camera;
   return camera.camera + "/" + camera.stream;
+}
+
+// With so many decimals; "-" for NaN.
+std::string decimals_text(double value, int decimals) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
 }
 
 std::string clocks_text(const Replay& replay) {
@@ -55,9 +64,9 @@ std::string clocks_text(const Replay& replay) {
     const CameraStatistics& s = camera.statistics;
     table.add({camera_name(replay, camera), camera.host, count_text(s.frames),
                count_text(s.missing_frames), number_text(s.span_s),
-               number_text(s.sensor_period.mean_ms), fmt::format("{:.4f}", s.sensor_period.sd_ms),
+               number_text(s.sensor_period.mean_ms), decimals_text(s.sensor_period.sd_ms, 4),
                number_text(s.arrival_period.mean_ms), number_text(s.arrival_period.sd_ms),
-               fmt::format("{:.3f}", s.drift_ppm), fmt::format("{:.3f}", s.envelope_drift_ppm),
+               decimals_text(s.drift_ppm, 3), decimals_text(s.envelope_drift_ppm, 3),
                number_text(s.excess.p50_ms), number_text(s.excess.p95_ms),
                number_text(s.excess.p99_ms), number_text(s.excess.max_ms)});
   }
@@ -76,7 +85,8 @@ std::string rows_text(const Replay& replay) {
               2);
   for (const CameraReplay& camera : replay.cameras) {
     for (const DeviceTimeReplay& row : camera.rows) {
-      table.add({camera_name(replay, camera), row.device_time, number_text(row.jitter_ms),
+      table.add({camera_name(replay, camera), row.device_time,
+                 row.needs_polls ? kNeedsPolls : number_text(row.jitter_ms),
                  number_text(row.residual.sd_ms), number_text(row.residual.p95_ms),
                  number_text(row.residual.p99_ms), number_text(row.residual.max_ms),
                  number_text(row.drift_ppm)});
@@ -103,6 +113,10 @@ std::string rig_text(const RigReplay& rig) {
                {"RMDV\nms"}},
               2);
   for (const RigRow& row : rig.rows) {
+    if (row.needs_polls) {
+      table.add({row.device_time, kNeedsPolls, "-", "-", "-", "-"});
+      continue;
+    }
     table.add({row.device_time, "GenLock order", count_text(rig.complete_pulses), "-",
                number_text(row.amd_ms), number_text(row.rmdv_ms)});
     for (const GatheringReplay& found : row.gatherings) {
@@ -120,6 +134,7 @@ How to read it
   excess: delay of the arrivals over the earliest frames. missing: by the frame counter.
   jitter: standard deviation of (interval of global stamps - interval of sensor stamps).
   residual: arrival minus global stamp, less its mean: the delay by the estimator.
+  needs polls: of the cameras' clocks, which these files do not have.
 )";
 
 void append_ms(fmt::memory_buffer& text, Nanoseconds time) {
@@ -163,11 +178,9 @@ Json replayed_camera_json(const evaluation::CameraReplay& camera) {
 
 Json replayed_row_json(const evaluation::CameraReplay& camera,
                        const evaluation::DeviceTimeReplay& row) {
-  return {{"camera", camera.camera},
-          {"stream", camera.stream},
-          {"device_time", row.device_time},
-          {"jitter_ms", row.jitter_ms},
-          {"residual_ms", residual_json(row.residual)},
+  return {{"camera", camera.camera},        {"stream", camera.stream},
+          {"device_time", row.device_time}, {"needs_polls", row.needs_polls},
+          {"jitter_ms", row.jitter_ms},     {"residual_ms", residual_json(row.residual)},
           {"drift_ppm", row.drift_ppm}};
 }
 
@@ -181,6 +194,7 @@ Json rig_row_json(const evaluation::RigRow& row) {
                           {"rmdv_ms", found.rmdv_ms}});
   }
   return {{"device_time", row.device_time},
+          {"needs_polls", row.needs_polls},
           {"amd_ms", row.amd_ms},
           {"rmdv_ms", row.rmdv_ms},
           {"gathering", gatherings}};
@@ -237,13 +251,18 @@ void write_replay_frames(const Replay& replay, std::ostream& out) {
   fmt::memory_buffer text;
   for (const CameraReplay& camera : replay.cameras) {
     const std::string name = csv_cell(camera_name(replay, camera));
-    for (std::size_t i = 0; i < camera.frames.size(); ++i) {
+    evaluation::GlobalStamps stamps(camera);
+    for (const StampedFrame& frame : camera.frames) {
       text.clear();
-      fmt::format_to(std::back_inserter(text), "{},{}", name, camera.frames[i].counter);
-      append_ms(text, camera.frames[i].sensor);
-      append_ms(text, camera.frames[i].arrival);
-      for (const DeviceTimeReplay& row : camera.rows) {
-        append_ms(text, row.stamps[i].time_since_epoch());
+      fmt::format_to(std::back_inserter(text), "{},{}", name, frame.counter);
+      append_ms(text, frame.sensor);
+      append_ms(text, frame.arrival);
+      for (const std::optional<GlobalTime>& stamp : stamps.next()) {
+        if (stamp) {
+          append_ms(text, stamp->time_since_epoch());
+        } else {
+          text.push_back(',');
+        }
       }
       text.push_back('\n');
       out.write(text.data(), static_cast<std::streamsize>(text.size()));

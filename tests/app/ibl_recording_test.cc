@@ -10,6 +10,8 @@
 
 #include "evaluation/replay/replay.h"
 #include "tests/data/test_data.h"
+#include "tests/read_fault.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench::app {
 namespace {
@@ -34,7 +36,8 @@ TEST(IblRecording, TextIsDecodedAndItsClockGoesOn) {
   const std::string text =
       "2020-08-19T23:59:59.9000000-04:00 " + std::to_string(cycle_clock(127, 7999, 3071)) +
       " \n2020-08-20T00:00:00.1234567-04:00 " + std::to_string(cycle_clock(0, 4000, 1536)) + "\n";
-  const auto frames = parse_ibl_timestamps(text, "x.ssv");
+  const ScratchFolder folder;
+  const auto frames = read_ibl_recording(folder.write("x.ssv", text));
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_EQ(frames[0].arrival, Nanoseconds(0));
   EXPECT_EQ(frames[1].arrival, Nanoseconds(223'456'700));
@@ -55,19 +58,22 @@ TEST(IblRecording, FrameDataIsDecoded) {
 }
 
 TEST(IblRecording, DamagedFilesAreRefused) {
+  const ScratchFolder folder;
   const std::string good = "2020-08-19T12:42:57.7903616-04:00 2330554981 \n";
   for (const char* line :
        {"hello", "2020-08-19T12:42:57.7903616-04:00", "2020-13-19T12:42:57.7903616-04:00 1",
         "2020-08-19T12:42:57.7903616-04:00 99999999999", "2020-08-19T12:42:57.7903616-04:00 4095",
         "2020-08-19T12:42:57 2330554981"}) {
     try {
-      parse_ibl_timestamps(good + line + "\n", "x.ssv");
+      read_ibl_recording(folder.write("x.ssv", good + line + "\n"));
       ADD_FAILURE() << "accepted: " << line;
     } catch (const CsvError& error) {
       EXPECT_THAT(error.what(), HasSubstr("x.ssv:2: allowed: a time")) << line;
     }
   }
-  EXPECT_THROW(parse_ibl_timestamps("", "x.ssv"), CsvError);
+  EXPECT_THROW(read_ibl_recording(folder.write("x.ssv", "")), CsvError);
+  // The clock may be cut in mid-number.
+  EXPECT_THROW(read_ibl_recording(folder.write("x.ssv", good + good.substr(0, 40))), CsvError);
   EXPECT_THROW(parse_ibl_frame_data("", "x.bin"), CsvError);
   EXPECT_THROW(parse_ibl_frame_data("short", "x.bin"), CsvError);
   EXPECT_THROW(parse_ibl_frame_data(row(1, 4096, -1), "x.bin"), CsvError);
@@ -76,6 +82,21 @@ TEST(IblRecording, DamagedFilesAreRefused) {
   EXPECT_THROW(parse_ibl_frame_data(row(1, 4096, 1) + row(0x1p62, 4096, 1), "x.bin"), CsvError);
   EXPECT_THROW(read_ibl_recording("frames.txt"), CsvError);
   EXPECT_THROW(read_ibl_recording("/no/such.bin"), CsvError);
+}
+
+TEST(IblRecording, AReadErrorAtAnyByteIsAnError) {
+  const ScratchFolder folder;
+  const std::string text = "2020-08-19T12:42:57.7903616-04:00 2330554981 \n";
+  const std::string lines = folder.write("x.ssv", text + text);
+  const std::string rows = folder.write("x.bin", row(1, 4096, 1) + row(2, 8192, 2));
+  for (const std::string& path : {lines, rows}) {
+    const std::size_t size = content(path).size();
+    EXPECT_EQ(read_ibl_recording(path).size(), 2U);
+    for (std::size_t byte = 0; byte <= size; ++byte) {
+      const ReadFault fault(byte);
+      EXPECT_THROW(read_ibl_recording(path), CsvError) << path << " " << byte;
+    }
+  }
 }
 
 std::vector<CameraStream> through_csv(const std::string& path) {

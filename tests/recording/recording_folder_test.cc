@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "recording/event.h"
+#include "tests/read_fault.h"
 #include "tests/recording/random_events.h"
 #include "tests/scratch_folder.h"
 
@@ -284,6 +286,30 @@ TEST_F(RecordingFolderTest, AnEndlessLineIsRefused) {
   write_events(path("r"), {SyncOutcome{}});
   put(path("r/p/1/events.csv"), std::string(40U << 20U, 'x'));
   EXPECT_THAT(play_error(path("r")), HasSubstr("events.csv:1: longer than "));
+}
+
+// What was played before the error is a beginning of the whole.
+TEST_F(RecordingFolderTest, AReadErrorAtAnyByteIsAnError) {
+  const std::string folder = path("r");
+  std::mt19937_64 random(7);
+  const std::vector<RecordingEvent> events = some_events(random, 40);
+  write_events(folder, events);
+  std::size_t size = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) size += entry.file_size();
+  }
+  std::size_t played = 0;
+  for (std::size_t byte = 0; byte < size; ++byte) {
+    const ReadFault fault(byte);
+    KeptRecording kept;
+    EXPECT_THROW(RecordingFolder(folder).play(0, kept), RecordingFolderError) << byte;
+    ASSERT_LE(kept.events().size(), events.size());
+    for (std::size_t i = 0; i < kept.events().size(); ++i) {
+      ASSERT_TRUE(same(kept.events()[i], events[i])) << byte;
+    }
+    played = std::max(played, kept.events().size());
+  }
+  EXPECT_GT(played, 0U);
 }
 
 }  // namespace

@@ -4,10 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
+
+#include "tests/read_fault.h"
+#include "tests/scratch_folder.h"
 
 namespace simbench {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -83,7 +88,7 @@ TEST(RsCsv, TakesLineEndsAndBlanksOfAllKinds) {
   const std::string text =
       "\xef\xbb\xbf"
       "stream type, Index ,f#,HW Timestamp(ms),Host Timestamp (ms)\r\n"
-      "\r\n Depth , 0 , 1 , 10 , 100 \r\nDepth,0,2,43,133";
+      "\r\n Depth , 0 , 1 , 10 , 100 \r\nDepth,0,2,43,133\n";
   const auto streams = read(text);
   ASSERT_EQ(streams.size(), 1U);
   EXPECT_EQ(streams[0].frames.size(), 2U);
@@ -101,7 +106,7 @@ TEST(RsCsv, RefusesWhatIsNoRecording) {
   EXPECT_THAT(refusal("Configuration:\nDepth,Depth,Z16\n"), HasSubstr(":2: the file ends"));
   EXPECT_THAT(refusal(kHeader), HasSubstr(":1: the file ends without a frame"));
   EXPECT_THAT(refusal(kHeader + "Gyro,0,1,10,100\n"), HasSubstr("without a frame"));
-  EXPECT_THAT(refusal(std::string("\0\1\2\3", 4)), HasSubstr(":1: found '\\x00\\x01\\x02\\x03'"));
+  EXPECT_THAT(refusal(std::string("\0\1\2\3", 4)), HasSubstr(":1: the file ends"));
 }
 
 TEST(RsCsv, NamesTheDamagedLine) {
@@ -118,10 +123,115 @@ TEST(RsCsv, NamesTheDamagedLine) {
   EXPECT_LT(refusal(good + "Depth,0,2," + endless + ",1\n").size(), 200U);
 }
 
+TEST(RsCsv, RefusesDecimalCommas) {
+  EXPECT_THAT(refusal(kHeader + "Depth,0,1,10,5,100\n"),
+              StartsWith("dir/front.csv:2: found 6 cells, allowed: 5, as in the header"));
+  EXPECT_THAT(refusal("remark," + kHeader + "x,Depth,0,1,1000,000,12,345\n"),
+              HasSubstr(":2: found 8 cells, allowed: 6"));
+}
+
+TEST(RsCsv, RefusesAColumnThatStandsTwice) {
+  EXPECT_THAT(refusal("F#," + kHeader + "1,Depth,0,1,10,100\n"),
+              HasSubstr(":1: found the column 'F#' twice"));
+  EXPECT_EQ(read("remark,remark," + kHeader + ",,Depth,0,1,10,100\n").size(), 1U);
+}
+
+TEST(RsCsv, RefusesACameraOnTwoHosts) {
+  EXPECT_THAT(refusal("host,camera," + kHeader + "a,0,Depth,0,1,10,100\nb,0,Depth,0,1,10,100\n"),
+              HasSubstr(":3: camera '0': found host 'b', allowed: 'a' as before"));
+}
+
+// A prefix of a file has fewer frames, and none that the file does not have.
+TEST(RsCsv, ACutFileHasNoOtherFrames) {
+  const std::string text = kHeader + "Depth,0,7,1000.001,12.5\nDepth,0,8,1033.334,45.75\n" +
+                           "Depth,0,9,1066.667,79.125\n";
+  const auto whole = read(text)[0].frames;
+  std::size_t accepted = 0;
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    CsvRecordingReader reader;
+    try {
+      reader.read_text(text.substr(0, size), "cut.csv");
+    } catch (const CsvError&) {
+      continue;
+    }
+    ++accepted;
+    EXPECT_EQ(reader.notes().size(), text[size - 1] == '\n' ? 0U : 1U) << size;
+    const auto frames = reader.take()[0].frames;
+    ASSERT_LT(frames.size(), whole.size()) << size;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      EXPECT_EQ(frames[i].counter, whole[i].counter);
+      EXPECT_EQ(frames[i].sensor, whole[i].sensor);
+      EXPECT_EQ(frames[i].arrival, whole[i].arrival);
+    }
+  }
+  EXPECT_GT(accepted, 40U);
+}
+
+TEST(RsCsv, ALastLineWithoutItsEndIsLeftOutWithANote) {
+  CsvRecordingReader reader;
+  reader.read_text(kHeader + "Depth,0,1,10,100\nDepth,0,2,43,13", "cut.csv");
+  EXPECT_EQ(reader.take()[0].frames.size(), 1U);
+  EXPECT_THAT(
+      reader.notes(),
+      ElementsAre("cut.csv:3: the last line has no line end and may be cut; it was left out"));
+}
+
+TEST(RsCsv, FilesAreNamedByWhatTellsThemApart) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(camera_names({"a/front/cam.csv", "a/back/cam.csv", "top.csv"}),
+            (Names{"front/cam", "back/cam", "top"}));
+  EXPECT_EQ(camera_names({"cam.csv", "rig/cam.csv", "./b/rig/cam.csv"}),
+            (Names{"cam", "rig/cam", "b/rig/cam"}));
+  EXPECT_EQ(camera_names({"cam.csv", "cam.txt"}), (Names{"cam.csv", "cam.txt"}));
+  EXPECT_EQ(camera_names({"x/a.csv", "y/b.csv"}), (Names{"a", "b"}));
+}
+
+TEST(RsCsv, RecordingsOfOneNameAreTwoCameras) {
+  const ScratchFolder folder;
+  const std::string front = folder.write("front/cam.csv", kHeader + "Depth,0,1,10,100\n");
+  const std::string back = folder.write("back/cam.csv", kHeader + "Depth,0,1,20,101\n");
+  const auto streams = read_recordings({front, back}).streams;
+  ASSERT_EQ(streams.size(), 2U);
+  EXPECT_EQ(streams[0].camera, "front/cam");
+  EXPECT_EQ(streams[0].host, "front/cam");
+  EXPECT_EQ(streams[1].camera, "back/cam");
+  // A column may not name the camera that another file is.
+  const std::string rig = folder.write("rig.csv", "camera," + kHeader + "cam,Depth,0,2,43,133\n");
+  try {
+    read_recordings({front, rig});
+    ADD_FAILURE() << "accepted";
+  } catch (const CsvError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("rig.csv:2: camera 'cam' is in "));
+  }
+  EXPECT_THROW(read_recordings({front, folder / "back/../front/cam.csv"}), CsvError);
+}
+
+TEST(RsCsv, NamesAreShownAndNotObeyed) {
+  const auto streams =
+      read("camera,host," + kHeader +
+           "\x1b[2Jred,h\x7f,Depth,0,1,10,100\n\xc3\xa4\xc2\x9b,h\xff,Depth,0,1,10,1\n");
+  EXPECT_EQ(streams[0].camera, "\\x1b[2Jred");
+  EXPECT_EQ(streams[0].host, "h\\x7f");
+  EXPECT_EQ(streams[1].camera, "\xc3\xa4\\xc2\\x9b");
+  EXPECT_EQ(streams[1].host, "h\\xff");
+}
+
+TEST(RsCsv, AReadErrorAtAnyByteIsAnError) {
+  const ScratchFolder folder;
+  const std::string text = kHeader + "Depth,0,1,10,100\nDepth,0,2,43,133\n";
+  const std::string path = folder.write("cam.csv", text);
+  for (std::size_t byte = 0; byte <= text.size(); ++byte) {
+    const ReadFault fault(byte);
+    EXPECT_THROW(read_recordings({path}), CsvError) << byte;
+  }
+}
+
 TEST(RsCsv, RefusesFilesThatCannotBeRead) {
   CsvRecordingReader reader;
   EXPECT_THROW(reader.read_file("/no/such/file.csv"), CsvError);
   EXPECT_THROW(reader.read_file("/"), CsvError);
+  EXPECT_THROW(reader.read_file("/dev/zero"), CsvError);
+  EXPECT_THROW(reader.read_file("/proc/self/mem"), CsvError);
 }
 
 }  // namespace

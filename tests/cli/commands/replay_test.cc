@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/cli/commands/rs_csv_files.h"
 #include "tests/cli/program.h"
@@ -16,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class ReplayCommand : public ProgramTest {
@@ -85,6 +87,98 @@ TEST_F(ReplayCommand, WhatOnlyAFolderTakesIsRefusedForFiles) {
   const ProgramResult pipelines = run({"replay", name, "--pipelines", "oracle"});
   EXPECT_EQ(pipelines.status, 2);
   EXPECT_THAT(pipelines.err, HasSubstr("--pipelines: only a recording folder has pipelines"));
+}
+
+TEST_F(ReplayCommand, RecordingsOfOneNameAreTwoCameras) {
+  file("front/cam.csv", recording(0));
+  file("back/cam.csv", recording(2));
+  const ProgramResult result = run({"replay", "front/cam.csv", "back/cam.csv", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  ASSERT_EQ(root["cameras"].size(), 2U);
+  EXPECT_EQ(root["cameras"][0]["camera"], "front/cam");
+  EXPECT_EQ(root["cameras"][1]["camera"], "back/cam");
+}
+
+TEST_F(ReplayCommand, WhatNeedsPollsSaysSo) {
+  const ProgramResult result = run({"replay", file("a.csv", recording(0)), "--output", "results"});
+  EXPECT_THAT(result.out, testing::ContainsRegex("two_way_poll +needs polls +- +- +- +- +-"));
+  EXPECT_THAT(result.out, testing::ContainsRegex("librealsense_global +needs polls +-"));
+  std::istringstream frames(content("results/frames.csv"));
+  std::string header;
+  std::string line;
+  std::getline(frames, header);
+  std::getline(frames, line);
+  std::istringstream names(header);
+  std::istringstream cells(line + ",");
+  std::string name;
+  std::string cell;
+  while (std::getline(names, name, ',')) {
+    std::getline(cells, cell, ',');
+    const bool polls = name == "global_ms_two_way_poll" || name == "global_ms_librealsense_global";
+    EXPECT_EQ(cell.empty(), polls) << name;
+  }
+}
+
+TEST_F(ReplayCommand, OneOrTwoFramesHaveNoNan) {
+  file("one.csv", kHeader + "Depth,0,1,10,100\n");
+  file("two.csv", kHeader + "Depth,0,1,10,100\nDepth,0,2,43,133\n");
+  for (const std::vector<std::string>& files :
+       {std::vector<std::string>{"one.csv"}, {"two.csv"}, {"one.csv", "two.csv"}}) {
+    for (const char* format : {"table", "json", "csv"}) {
+      std::vector<std::string> arguments = {"replay", "--format", format};
+      arguments.insert(arguments.end(), files.begin(), files.end());
+      const ProgramResult result = run(arguments);
+      EXPECT_EQ(result.status, 0) << result.err;
+      EXPECT_THAT(result.out, Not(testing::ContainsRegex("(nan|inf)\\b"))) << files[0] << format;
+    }
+  }
+}
+
+TEST_F(ReplayCommand, DoubtfulNumbersHaveAWarning) {
+  std::string microseconds = kHeader;
+  for (int i = 0; i < 100; ++i)
+    microseconds += fmt::format("Depth,0,{},{},{}\n", i, i * 33000, i * 33);
+  const ProgramResult result = run({"replay", file("us.csv", microseconds)});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("warning: us Depth 0: a drift of -999000 ppm is no camera's"));
+  const ProgramResult cut = run({"replay", file("cut.csv", recording(0) + "Depth,0,9,12")});
+  EXPECT_EQ(cut.status, 0);
+  EXPECT_THAT(cut.err, HasSubstr("note: cut.csv:202: the last line has no line end"));
+}
+
+TEST_F(ReplayCommand, WhatIsNoRecordingIsOneLineAtOnce) {
+  for (const char* name : {"/dev/zero", "/dev/full", "/proc/self/mem"}) {
+    for (const char* command : {"replay", "diagnose"}) {
+      const ProgramResult result = run({command, name});
+      EXPECT_EQ(result.status, 2) << name;
+      EXPECT_THAT(result.err, StartsWith(fmt::format("error: {}: cannot be read: ", name)));
+    }
+  }
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"compare", "/dev/zero", "/dev/zero"},
+        {"gate", "/dev/zero", "--baseline", "/dev/zero"},
+        {"report", "/dev/zero", "-o", "page.html"}}) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2) << arguments[0];
+    EXPECT_THAT(result.err, HasSubstr("/dev/zero")) << arguments[0];
+  }
+}
+
+TEST_F(ReplayCommand, EscapesInNamesAreShown) {
+  const std::string text = "camera,host," + kHeader +
+                           "\x1b[31mred,\x1b]0;h\x07,Depth,0,1,10,100\n"
+                           "\x1b[31mred,\x1b]0;h\x07,Depth,0,2,43,133\n";
+  file("esc.csv", text);
+  file("\x1b[2J.csv", kHeader + "Depth,0,1,10,100\n");
+  for (const char* command : {"replay", "diagnose"}) {
+    const ProgramResult result = run({command, "esc.csv", "\x1b[2J.csv"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_THAT(result.out, HasSubstr("\\x1b[31mred"));
+    EXPECT_THAT(result.out + result.err, Not(HasSubstr("\x1b")));
+    EXPECT_THAT(result.out, Not(HasSubstr("\x07")));
+  }
+  EXPECT_THAT(run({"replay", "\x1b[2Jnone.csv"}).err, Not(HasSubstr("\x1b")));
 }
 
 TEST_F(ReplayCommand, ARealRecordingIsConvertedAndReplayed) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -22,6 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsNan;
+using ::testing::Not;
 
 constexpr double kPeriodMs = 1000.0 / 30;
 
@@ -289,6 +291,21 @@ TEST(Diagnose, OneCameraAloneCannotShowATrigger) {
   const Diagnosis found = diagnose({record({.name = "a"})}, {});
   EXPECT_EQ(found.verdict.status, SyncStatus::kCannotBeTold);
   EXPECT_THAT(found.verdict.reason, HasSubstr("one camera alone"));
+}
+
+TEST(Diagnose, DoubtfulStampsAreSaid) {
+  std::vector<CameraStream> streams = rig();
+  EXPECT_THAT(kinds(diagnose(streams, {})), Not(Contains(HasSubstr("global_time"))));
+  for (StampedFrame& frame : streams[0].frames) frame.sensor += std::chrono::seconds(1'700'000'000);
+  for (StampedFrame& frame : streams[1].frames) frame.sensor /= 1000;  // seconds, not milliseconds
+  for (std::size_t i = 400; i < streams[2].frames.size(); ++i) {
+    streams[2].frames[i].counter += std::uint64_t{1} << 32;
+  }
+  const Diagnosis found = diagnose(streams, {});
+  EXPECT_THAT(kinds(found), Contains("a global_time"));
+  EXPECT_THAT(kinds(found), Contains("b doubtful_rate"));
+  EXPECT_THAT(kinds(found), Contains("c counter_jumps"));
+  EXPECT_EQ(found.cameras[2].facts.lost_frames, 0);
 }
 
 TEST(Diagnose, TooFewOrDamagedFramesAreSaid) {

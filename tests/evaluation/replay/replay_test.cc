@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/nonempty.h"
@@ -31,6 +34,12 @@ CameraStream camera(const std::string& name, int frames, double drift_ppm, const
 }
 
 double no_latency(int) { return 0; }
+
+std::string warnings_of(CameraStream stream) {
+  std::string all;
+  for (const std::string& warning : run_replay({std::move(stream)}).warnings) all += warning + "\n";
+  return all;
+}
 
 const DeviceTimeReplay& replay_row(const CameraReplay& camera, const std::string& device_time) {
   const auto found = std::find_if(camera.rows.begin(), camera.rows.end(),
@@ -100,7 +109,9 @@ TEST(Replay, RelativeStampsHaveNoDriftAndTheCommonAnchor) {
   const DeviceTimeReplay& found = replay_row(replay.cameras[0], "sensor_normalised");
   EXPECT_TRUE(std::isnan(found.drift_ppm));
   EXPECT_TRUE(std::isnan(found.residual.sd_ms));
-  EXPECT_EQ(found.stamps[0], GlobalTime(from_ms(100)));
+  const auto stamps = GlobalStamps(replay.cameras[0]).next();
+  const std::size_t place = static_cast<std::size_t>(&found - replay.cameras[0].rows.data());
+  EXPECT_EQ(stamps[place], GlobalTime(from_ms(100)));
 }
 
 TEST(Replay, TheRegisterWraps) {
@@ -113,8 +124,9 @@ TEST(Replay, TheRegisterWraps) {
   const Replay replay = run_replay({stream});
   EXPECT_EQ(replay.cameras[0].frames[399].sensor, going_on[399].sensor);
   EXPECT_EQ(replay.cameras[0].statistics.backward_steps, 1);
-  ASSERT_EQ(replay.warnings.size(), 1U);
+  ASSERT_EQ(replay.warnings.size(), 2U);
   EXPECT_NE(replay.warnings[0].find("go back once"), std::string::npos);
+  EXPECT_NE(replay.warnings[1].find("arrivals go back once"), std::string::npos);
 }
 
 TEST(Replay, LostFramesAreCountedByTheCounter) {
@@ -179,6 +191,73 @@ TEST(Replay, WithoutAPeriodCamerasAreNotCompared) {
   EXPECT_NE(replay.warnings[2].find("no camera has a frame period"), std::string::npos);
 }
 
+TEST(Replay, EstimatorsThatNeedPollsHaveNoNumbers) {
+  const Replay replay =
+      run_replay({camera("a", 300, 0, no_latency), camera("b", 300, 0, no_latency)});
+  for (const std::string name : {"two_way_poll", "librealsense_global"}) {
+    for (const CameraReplay& each : nonempty(replay.cameras)) {
+      const DeviceTimeReplay& found = replay_row(each, name);
+      EXPECT_TRUE(found.needs_polls);
+      EXPECT_TRUE(std::isnan(found.jitter_ms) && std::isnan(found.drift_ppm));
+      EXPECT_TRUE(std::isnan(found.residual.max_ms));
+      const std::size_t place = static_cast<std::size_t>(&found - each.rows.data());
+      EXPECT_FALSE(GlobalStamps(each).next()[place].has_value());
+    }
+    EXPECT_TRUE(replay_row(replay.rigs[0], name).needs_polls);
+    EXPECT_TRUE(std::isnan(replay_row(replay.rigs[0], name).amd_ms));
+    EXPECT_TRUE(replay_row(replay.rigs[0], name).gatherings.empty());
+  }
+  EXPECT_FALSE(replay_row(replay.cameras[0], "raw_arrival").needs_polls);
+}
+
+TEST(Replay, DoubtfulNumbersHaveAWarning) {
+  EXPECT_EQ(warnings_of(camera("a", 100, 9000, no_latency)), "");
+  EXPECT_NE(warnings_of(camera("a", 100, -990'000, no_latency)).find("is no camera's"),
+            std::string::npos);
+
+  CameraStream back = camera("a", 100, 0, no_latency);
+  for (std::size_t i = 50; i < 100; ++i) back.frames[i].arrival -= std::chrono::seconds(1);
+  EXPECT_NE(warnings_of(back).find("arrivals go back once"), std::string::npos);
+
+  CameraStream global = camera("a", 100, 0, no_latency, 1.7e12);
+  EXPECT_NE(warnings_of(global).find("count from 1970"), std::string::npos);
+
+  CameraStream restarted = camera("a", 100, 0, no_latency);
+  for (std::size_t i = 50; i < 100; ++i) restarted.frames[i].counter -= 50;
+  EXPECT_NE(warnings_of(restarted).find("stands still or goes back once"), std::string::npos);
+}
+
+TEST(Replay, AJumpOfTheCounterIsNoLoss) {
+  for (const std::uint64_t jump :
+       {std::uint64_t{1000}, std::uint64_t{1} << 32, (std::uint64_t{1} << 32) - 1}) {
+    CameraStream stream = camera("a", 100, 0, no_latency);
+    for (std::size_t i = 50; i < 100; ++i) stream.frames[i].counter += jump;
+    EXPECT_NE(warnings_of(stream).find("counter jumps once"), std::string::npos) << jump;
+    const Replay replay = run_replay({stream});
+    EXPECT_EQ(replay.cameras[0].statistics.missing_frames, 0) << jump;
+  }
+  // A pause in which the camera went on counting is a loss.
+  CameraStream paused = camera("a", 3000, 0, no_latency);
+  paused.frames.erase(paused.frames.begin() + 500, paused.frames.begin() + 2500);
+  EXPECT_EQ(warnings_of(paused), "");
+  EXPECT_EQ(run_replay({paused}).cameras[0].statistics.missing_frames, 2000);
+}
+
+TEST(Replay, LongWorkReportsProgressAndEndsByWhatThatThrows) {
+  const CameraStream stream = camera("a", 300'000, 0, no_latency);
+  std::uint64_t last = 0;
+  std::uint64_t all = 0;
+  run_replay({stream}, [&](std::uint64_t done, std::uint64_t total) {
+    EXPECT_GT(done, last);
+    last = done;
+    all = total;
+  });
+  EXPECT_GT(all, 4'000'000U);
+  EXPECT_EQ(last, all);
+  struct Stop {};
+  EXPECT_THROW(run_replay({stream}, [](std::uint64_t, std::uint64_t) { throw Stop(); }), Stop);
+}
+
 TEST(Replay, StreamsOfDifferentKindsAreNotCompared) {
   CameraStream colour = camera("a", 30, 0, no_latency);
   colour.stream = "Color 0";
@@ -207,7 +286,9 @@ TEST(Replay, DamagedStampsGiveNoUndefinedNumbers) {
     for (const CameraReplay& found : nonempty(replay.cameras)) {
       EXPECT_GE(found.statistics.missing_frames, 0);
       EXPECT_TRUE(std::isfinite(found.statistics.drift_ppm));
-      for (const DeviceTimeReplay& r : found.rows) EXPECT_EQ(r.stamps.size(), 60U);
+      for (const DeviceTimeReplay& r : found.rows) {
+        EXPECT_EQ(std::isnan(r.jitter_ms), r.needs_polls) << r.device_time;
+      }
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "reports/archive/archive.h"
 #include "reports/results/json.h"
 #include "scenarios/loader.h"
+#include "tests/read_fault.h"
 #include "tests/reports/sample_results.h"
 #include "tests/scratch_folder.h"
 
@@ -95,6 +96,32 @@ TEST_F(ArchiveReader, AResultAloneHasNoManifest) {
   const Archive archive = read_archive(path("results.json"));
   EXPECT_EQ(archive.results.rows.size(), 2);
   EXPECT_EQ(archive.scenario_json, "");
+}
+
+TEST_F(ArchiveReader, AReadErrorAtAnyByteIsAnError) {
+  const auto read_all = [&] {
+    Archive archive = read_archive(folder_.path().string());
+    read_seed_details(archive);
+  };
+  std::size_t size = 0;
+  for (const std::string& name : folder_.names()) size += content(path(name)).size();
+  read_all();
+  for (std::size_t byte = 0; byte <= size; ++byte) {
+    const ReadFault fault(byte);
+    EXPECT_THROW(read_all(), scenarios::InputError) << byte;
+  }
+}
+
+TEST_F(ArchiveReader, WhatIsNoFileIsRefusedAtOnce) {
+  EXPECT_THROW(read_archive("/dev/zero"), scenarios::InputError);
+  EXPECT_THROW(read_archive("/proc/self/mem"), scenarios::InputError);
+}
+
+TEST_F(ArchiveReader, ACutSeedFileIsRefused) {
+  const std::string whole = content(path("frames.csv"));
+  put(path("frames.csv"), whole.substr(0, whole.size() - 2));  // in mid-number
+  Archive archive = read_archive(folder_.path().string());
+  EXPECT_THROW(read_seed_details(archive), scenarios::InputError);
 }
 
 TEST_F(ArchiveReader, SeedsHaveTheirPulsesAndHosts) {
