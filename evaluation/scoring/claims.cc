@@ -149,7 +149,8 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
   Claim claim = {.id = statement.id,
                  .text = statement.text,
                  .holds_fraction = std::nullopt,
-                 .needs = missing(statement, rows, trigger_rate_hz)};
+                 .needs = missing(statement, rows, trigger_rate_hz),
+                 .decided_seeds = 0};
   if (!claim.needs.empty()) return claim;
 
   std::vector<const Row*> paired;
@@ -171,6 +172,7 @@ Claim check(const Statement& statement, const std::vector<Row>& rows, double tri
     ++decided;
     if (*found) ++holds;
   }
+  claim.decided_seeds = static_cast<std::uint64_t>(decided);
   if (decided > 0) {
     claim.holds_fraction = static_cast<double>(holds) / static_cast<double>(decided);
   } else {

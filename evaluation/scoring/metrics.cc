@@ -44,6 +44,16 @@ double& Metric::number(Row& row) const { return row.*std::get<double PooledValue
 std::int64_t Metric::count(const Row& row) const { return count_in(row, place); }
 std::int64_t& Metric::count(Row& row) const { return count_in(row, place); }
 
+bool Metric::can_be(double value) const {
+  if (is_share()) return !(value < 0 || value > 1);
+  return !judged || !(value < 0);
+}
+
+const char* Metric::allowed() const {
+  if (is_share()) return "a share from 0 to 1, or null";
+  return judged ? "a number from 0, or null" : "a number or null";
+}
+
 bool Metric::is_known(const Row& row) const {
   return !is_count() || needs == Needs::kNothing || row.verified();
 }

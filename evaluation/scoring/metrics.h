@@ -170,6 +170,11 @@ struct Metric {
   bool is_share() const { return std::string_view(unit) == "share"; }
   const char* member() const { return json_name != nullptr ? json_name : id; }  // in JSON
 
+  // Whether a value can be the metric's: a share is from 0 to 1, what is judged is not below 0. NaN
+  // (no value) can. allowed(): that in words.
+  bool can_be(double value) const;
+  const char* allowed() const;
+
   // Access to the value in the metric's form; another form is a programming error.
   double of_seed(const MetricValues<double>& seed) const;
   double& of_seed(MetricValues<double>& seed) const;

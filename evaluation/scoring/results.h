@@ -81,6 +81,7 @@ struct Claim {
   std::string text;                      // with its threshold
   std::optional<double> holds_fraction;  // of seeds; nothing if it needs another scenario
   std::string needs;                     // then: which
+  std::uint64_t decided_seeds = 0;       // those that have all its quantities
 };
 
 struct Performance {
@@ -102,8 +103,8 @@ inline const Row* find_row(std::span<const Row> rows, std::string_view pipeline)
 
 struct Results {
   std::string scenario;
-  std::uint64_t first_seed = 1;
   scenarios::Derivation derivation{};  // of that scenario
+  std::uint64_t first_seed = 1;
   std::uint64_t seed_count = 0;
   std::vector<Row> rows;
   std::vector<Claim> claims;

@@ -125,6 +125,19 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   return row;
 }
 
+std::size_t scored_seeds(const Row& row, const Metric& metric) {
+  return count_of_existing(metric.series(row).values);
+}
+
+std::size_t scored_seeds(const Row& row) {
+  std::size_t most = count_of_existing(row.amd_ms.values);
+  if (most > 0) return most;
+  for (const Metric& metric : metrics()) {
+    if (metric.is_series()) most = std::max(most, scored_seeds(row, metric));
+  }
+  return most;
+}
+
 PublishedComparison compare(const scenarios::Published& published, const Row& row,
                             const RowSetting& setting) {
   const double bound = rmdv_bound(setting.sources, setting.median);

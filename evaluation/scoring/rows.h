@@ -33,6 +33,11 @@ SeedScore missing_score(std::uint64_t seed, const std::string& reason);
 Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
              const RowSetting& setting);
 
+// Returns over how many seeds the row's median of a metric is: those that have a value.
+std::size_t scored_seeds(const Row& row, const Metric& metric);
+// Of AMD; where no seed has one, of the metric with the most.
+std::size_t scored_seeds(const Row& row);
+
 // Compares a published result with the seeds of a row.
 PublishedComparison compare(const scenarios::Published& published, const Row& row,
                             const RowSetting& setting);

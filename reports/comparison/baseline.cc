@@ -69,7 +69,7 @@ evaluation::GateMargin read_margin(const JsonNode& node) {
 BaselinePipeline read_pipeline(const JsonNode& node, std::size_t seeds) {
   BaselinePipeline pipeline{.name = node["pipeline"].text(), .values = {}};
   for (const evaluation::Metric* metric : judged_metrics()) {
-    pipeline.values.push_back(node[metric->id].numbers(seeds));
+    pipeline.values.push_back(node[metric->id].values_of(*metric, seeds));
   }
   return pipeline;
 }

@@ -5,6 +5,7 @@
 #include "recording/version.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/csv.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 #include "scenarios/loader.h"
 
@@ -44,6 +45,7 @@ Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairi
                     const ComparisonOptions& options) {
   Comparison comparison;
   comparison.scenario = a.results.scenario;
+  comparison.derivation = a.results.derivation;
   comparison.by_index = options.by_index;
   comparison.first_seed_a = a.results.first_seed + pairing.skip_a;
   comparison.first_seed_b = b.results.first_seed + pairing.skip_b;
@@ -223,8 +225,9 @@ std::string comparison_json(const Comparison& comparison) {
   Json root = {{"schema_version", 1},
                {"version", version()},
                {"commit", commit()},
-               {"scenario", comparison.scenario},
-               {"a", comparison.a},
+               {"scenario", comparison.scenario}};
+  state_derivation(comparison.derivation, root);
+  root.update({{"a", comparison.a},
                {"b", comparison.b},
                {"seeds",
                 {{"first_a", comparison.first_seed_a},
@@ -233,7 +236,7 @@ std::string comparison_json(const Comparison& comparison) {
                  {"paired_by", comparison.by_index ? "index" : "seed"}}},
                {"smallest_effect", comparison.smallest_effect},
                {"pipelines", Json::array()},
-               {"notes", comparison.notes}};
+               {"notes", comparison.notes}});
   const auto judged = evaluation::judged_metrics();
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     Json row = {{"a", pipeline.pipeline_a}, {"b", pipeline.pipeline_b}};

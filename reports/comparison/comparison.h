@@ -39,6 +39,7 @@ struct ComparedPipeline {
 
 struct Comparison {
   std::string scenario;
+  scenarios::Derivation derivation{};  // of A's scenario
   std::string a;  // in words: "monday (simbench 0.1.0, commit 1234567)", "pipeline ntp of monday"
   std::string b;
   bool by_index = false;

@@ -189,8 +189,13 @@ std::string comparison_legend(const Comparison& comparison) {
 }  // namespace
 
 Document comparison_document(const Comparison& comparison) {
-  Document document{.head = {fmt::format("A: {}", comparison.a), fmt::format("B: {}", comparison.b),
-                             fmt::format("{}: {}", comparison.scenario, pairing_text(comparison))}};
+  Document document{
+      .head = {fmt::format("A: {}", comparison.a), fmt::format("B: {}", comparison.b),
+               fmt::format("{}: {}", scenarios::named(comparison.scenario, comparison.derivation),
+                           pairing_text(comparison))}};
+  if (!comparison.derivation.changes.empty()) {
+    document.head.push_back(scenarios::changed_text(comparison.derivation));
+  }
   document.blocks.push_back({.table = comparison_table(comparison)});
   if (comparison.with_baseline) document.blocks.push_back(words(comparison));
   if (!comparison.notes.empty()) {

@@ -87,8 +87,9 @@ double worse_by(const Metric& metric, double difference) {
   return metric.higher_is_better() ? -difference : difference;
 }
 
-bool has_none(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+// Whether fewer than half as many seeds have a value now, seeds that are not those of the baseline.
+bool are_mostly_lost(const std::vector<double>& before, const std::vector<double>& now) {
+  return 2 * evaluation::count_of_existing(now) < evaluation::count_of_existing(before);
 }
 
 void count_changes(const std::vector<double>& before, const std::vector<double>& now,
@@ -121,9 +122,8 @@ struct OpenCheck {
 
 OpenCheck begin_statistically(const std::vector<double>& before, const std::vector<double>& now,
                               bool by_index, GateCheck& check) {
-  const OpenCheck open{
-      .t = evaluation::paired_t(evaluation::pair_up(before, now)),
-      .vanished = by_index ? has_none(now) && !has_none(before) : check.lost_seeds > 0};
+  const OpenCheck open{.t = evaluation::paired_t(evaluation::pair_up(before, now)),
+                       .vanished = by_index ? are_mostly_lost(before, now) : check.lost_seeds > 0};
   if (open.t.pairs > 0) {
     check.baseline = open.t.mean_a;
     check.value = open.t.mean_a + open.t.mean;
@@ -238,6 +238,7 @@ GateReport gate(const Archive& result, const Baseline& baseline, GateMode mode) 
   GateReport report;
   report.mode = mode;
   report.scenario = baseline.scenario;
+  report.derivation = result.results.derivation;
   report.result_path = result.path;
   report.baseline_path = baseline.path;
   report.baseline_version = baseline.version;

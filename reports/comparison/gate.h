@@ -9,7 +9,7 @@
 // seeds, else by index, as independent runs. A check fails only if the mean is worse by more than
 // the margin and its Student's t interval excludes zero after Holm's correction over all checks of
 // the gate (evaluation/statistics/paired.h): fewer than one of twenty gates raises a false alarm.
-// Lost values fail here too if the seeds are the same, or if none is left.
+// Lost values fail here too if the seeds are the same, else if more than half are lost.
 //
 // In both modes a pipeline of the baseline that is missing in the result fails; an additional one
 // is noted, and so are differences of the algorithms. The speed of the run does not matter.
@@ -69,6 +69,7 @@ struct GateCheck {
 struct GateReport {
   GateMode mode = GateMode::kExact;
   std::string scenario;
+  scenarios::Derivation derivation{};  // of the result
   std::string result_path;
   std::string baseline_path;
   std::string baseline_version;

@@ -6,6 +6,7 @@
 #include "recording/version.h"
 #include "reports/comparison/comparison.h"
 #include "reports/comparison/gate.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -19,7 +20,8 @@ const char* unit_of(const GateCheck& check) {
   return check.metric->is_share() ? "%" : check.metric->unit;
 }
 
-std::string value_text(const GateCheck& check, double value) {
+std::string gate_value(const GateCheck& check, double value) {
+  if (!std::isfinite(value)) return "none";
   return fmt::format("{} {}", number_text(shown_value(*check.metric, value)), unit_of(check));
 }
 
@@ -35,10 +37,15 @@ std::string seeds_words(const GateReport& report) {
 }
 
 std::string change_text(const GateCheck& check) {
+  if (std::isnan(check.value) || std::isnan(check.baseline)) {
+    if (std::isnan(check.value) && std::isnan(check.baseline)) return "neither exists";
+    return std::isnan(check.value) ? "no longer exists" : "did not exist";
+  }
   const double change = check.value - check.baseline;
-  std::string text = fmt::format("{}{}", change > 0 ? "+" : "", value_text(check, change));
-  if (check.baseline != 0 && !check.metric->is_share()) {
-    text += fmt::format(" ({:+.3g} %)", 100 * change / std::abs(check.baseline));
+  std::string text = fmt::format("{}{}", change > 0 ? "+" : "", gate_value(check, change));
+  const double percent = 100 * change / std::abs(check.baseline);
+  if (std::isfinite(percent) && !check.metric->is_share()) {
+    text += fmt::format(" ({:+.3g} %)", percent);
   }
   return text;
 }
@@ -76,9 +83,11 @@ std::string gate_head(const GateReport& report) {
                         counted(report.checks.size() + report.vanished_pipelines.size(), "check"));
   return wrapped(fmt::format("{} ({}). {}, {}: {} against the baseline {} (simbench {}, commit {})",
                              verdict, report.mode == GateMode::kExact ? "exact" : "statistical",
-                             report.scenario, seeds_words(report), report.result_path,
-                             report.baseline_path, report.baseline_version,
-                             report.baseline_commit));
+                             scenarios::named(report.scenario, report.derivation),
+                             seeds_words(report), report.result_path, report.baseline_path,
+                             report.baseline_version, report.baseline_commit)) +
+         (report.derivation.changes.empty() ? ""
+                                            : wrapped(scenarios::changed_text(report.derivation)));
 }
 
 std::string failures(const GateReport& report) {
@@ -114,8 +123,8 @@ std::string changes(const GateReport& report) {
   for (const GateCheck& check : report.checks) {
     if (!is_shown(report, check)) continue;
     is_empty = false;
-    table.add({check.pipeline, check.metric->title, value_text(check, check.baseline),
-               value_text(check, check.value), change_text(check), value_text(check, check.margin),
+    table.add({check.pipeline, check.metric->title, gate_value(check, check.baseline),
+               gate_value(check, check.value), change_text(check), gate_value(check, check.margin),
                fmt::format("{}", check.changed_seeds), outcome_text(check.outcome)});
   }
   return is_empty ? "" : "\nWhat changed\n\n" + plain(table);
@@ -149,9 +158,9 @@ const char* outcome_name(GateOutcome outcome) {
 std::string check_text(const GateReport& report, const GateCheck& check) {
   return fmt::format("{} of {} in {}, {}: {} {}, was {}: {}, allowed {}{}", check.metric->title,
                      check.pipeline, report.scenario, seeds_words(report),
-                     statistic_name(report, check), value_text(check, check.value),
-                     value_text(check, check.baseline), change_text(check),
-                     value_text(check, check.margin), evidence_text(report, check));
+                     statistic_name(report, check), gate_value(check, check.value),
+                     gate_value(check, check.baseline), change_text(check),
+                     gate_value(check, check.margin), evidence_text(report, check));
 }
 
 std::string gate_text(const GateReport& report) {
@@ -194,8 +203,9 @@ std::string gate_json(const GateReport& report) {
                {"commit", commit()},
                {"passed", report.passed()},
                {"mode", report.mode == GateMode::kExact ? "exact" : "statistical"},
-               {"scenario", report.scenario},
-               {"result", report.result_path},
+               {"scenario", report.scenario}};
+  state_derivation(report.derivation, root);
+  root.update({{"result", report.result_path},
                {"baseline",
                 {{"path", report.baseline_path},
                  {"version", report.baseline_version},
@@ -206,7 +216,7 @@ std::string gate_json(const GateReport& report) {
                {"checks", Json::array()},
                {"vanished_pipelines", report.vanished_pipelines},
                {"notes", report.notes},
-               {"reproduce", report.reproduce}};
+               {"reproduce", report.reproduce}});
   for (const GateCheck& check : report.checks) root["checks"].push_back(check_json(report, check));
   return file_text(root);
 }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 
 namespace simbench::reports {
@@ -52,6 +53,7 @@ std::vector<std::string> header() {
                {"published_amd_ms", "published_amd_inside", "published_amd_percentile",
                 "published_rmdv_ms", "published_rmdv_inside", "published_rmdv_attainable"});
   add_names(CsvColumns::kValueAtEnd, names);
+  names.emplace_back("scored_seeds");
   return names;
 }
 
@@ -89,16 +91,16 @@ std::string csv_cell(std::string_view text) {
   return quoted + '"';
 }
 
-std::string csv_cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results);
   std::vector<std::string> names = header();
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
-  std::string out = csv_line(names);
-  for (const Row& row : results.rows) {
   const std::string changed = scenarios::changed_text(results.derivation);
   if (!changed.empty()) names.emplace_back("changed");
+  std::string out = csv_line(names);
+  for (const Row& row : results.rows) {
     std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
                                       csv_cell(row.device_time), csv_cell(row.gathering)};
     add_cells(CsvColumns::kBand, row, cells);
@@ -106,15 +108,16 @@ std::string csv(const evaluation::Results& results) {
     const std::vector<std::string> published = published_cells(row);
     cells.insert(cells.end(), published.begin(), published.end());
     add_cells(CsvColumns::kValueAtEnd, row, cells);
+    cells.push_back(std::to_string(evaluation::scored_seeds(row)));
     if (real) {
       cells.insert(cells.end(),
                    {ground_truth_name(row.ground_truth), row.verified() ? "verified" : "unverified",
                     csv_cell(fmt::format("{}", fmt::join(row.notes, "; ")))});
     }
+    if (!changed.empty()) cells.push_back(csv_cell(changed));
     out += csv_line(cells);
   }
   return out;
-    if (!changed.empty()) cells.push_back(csv_cell(changed));
 }
 
 void write_frames_csv(const evaluation::Results& results, std::ostream& out) {

@@ -12,9 +12,10 @@
 namespace simbench::reports {
 
 // One line per pipeline: the metrics in the columns of evaluation/scoring/metrics.h, with the
-// published values before those of CsvColumns::kValueAtEnd. If a row is not of a simulation, three
-// more columns: ground_truth (as in reports/results/json.h), verified ("verified" or "unverified")
-// and notes.
+// published values before those of CsvColumns::kValueAtEnd, and scored_seeds as in json.h. If a row
+// is not of a simulation, three more columns: ground_truth (as in reports/results/json.h), verified
+// ("verified" or "unverified") and notes. If the scenario's world is a changed one, a last column:
+// changed, the same text in each line ("changed: /trigger/rate_hz 45 → 30").
 std::string csv(const evaluation::Results& results);
 
 // frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.
@@ -23,7 +24,7 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 // hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0).
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
-// A cell, quoted where necessary (RFC 4180); NaN is empty.
+// A cell, quoted where necessary (RFC 4180); what is not finite is empty.
 std::string csv_cell(std::string_view text);
 std::string csv_cell(double value);
 

@@ -1,8 +1,9 @@
 #include "reports/results/json.h"
 
+#include "evaluation/scoring/rows.h"
 #include "recording/version.h"
-#include "reports/results/ground_truth_text.h"
 #include "reports/results/derivation_json.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -46,6 +47,7 @@ Json row_json(const evaluation::Row& row) {
     Json& object = *metric.json_in == '\0' ? all : all[metric.json_in];
     object[metric.member()] = metric_json(metric, row);
   }
+  all["scored_seeds"] = evaluation::scored_seeds(row);
   all["ground_truth"] = ground_truth_name(row.ground_truth);
   all["verified"] = row.verified();
   all["notes"] = row.notes;
@@ -64,7 +66,8 @@ Json claim_json(const evaluation::Claim& claim) {
   return {{"id", claim.id},
           {"holds_fraction", claim.holds_fraction ? Json(*claim.holds_fraction) : Json()},
           {"text", claim.text},
-          {"needs", claim.needs.empty() ? Json() : Json(claim.needs)}};
+          {"needs", claim.needs.empty() ? Json() : Json(claim.needs)},
+          {"decided_seeds", claim.decided_seeds}};
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 //              each metric under the id and in the object of evaluation/scoring/metrics.h,
 //              {"median", "p05", "p95", "values": [in seed order]}, a number or a count: "amd_ms",
 //              ..., "gathering_score": {"precision", ...}, "frames": {"expected", ...}, ...,
+//              "scored_seeds": over how many seeds AMD's median is; a metric has null in its values
+//                where a seed has none,
 //              "ground_truth": "simulation", "genlock_order" or "none", "verified": whether it is
 //                known which frames belong together (else "evaluated_pulses" counts sets; what
 //                needs pulses is null), "notes": [failures, "repetition 3: ..."],
@@ -20,7 +22,7 @@
 //                few seeds to tell),
 //                "rmdv_attainable", "amd_percentile", "amd_percentile_interval": [low, high],
 //                rmdv_percentile likewise}}],
-//    "claims": [{"id", "holds_fraction", "text", "needs"}],
+//    "claims": [{"id", "holds_fraction", "text", "needs", "decided_seeds"}],
 //    "asymmetry_floor": null or {"sigma_ms", "host_error_ms", "amd_ms"}
 //      (evaluation/scoring/asymmetry_floor.h), "warnings": [...],
 //    "performance": {"events", "events_per_second", "simulated_seconds_per_second", ...}}

@@ -21,6 +21,12 @@ using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
 
+// Those of a board whose values are medians over the seeds.
+std::vector<const evaluation::Metric*> board_metrics() {
+  return {&evaluation::metric("absolute_error_ms"), &evaluation::metric("amd_ms"),
+          &evaluation::metric("host_error_ms")};
+}
+
 Table error_table(const Board& board) {
   const auto name = [&board](const Rank& rank) {
     const std::string& pipeline = rank.row->pipeline;
@@ -28,6 +34,8 @@ Table error_table(const Board& board) {
     return (board.name.empty() ? pipeline : pipeline.substr(board.name.size() + 1)) +
            (unverified ? " (unverified)" : "");
   };
+  std::vector<Rank> ranks = board.online;
+  ranks.insert(ranks.end(), board.offline.begin(), board.offline.end());
   const auto stamps = [](const Rank& rank) {
     return std::string(rank.row->offline ? "offline" : "online");
   };
@@ -38,6 +46,11 @@ Table error_table(const Board& board) {
   std::vector<Field<Rank>> fields = {
       {{board.name.empty() ? "reference" : board.name, Align::kLeft}, name},
       {{"stamps", Align::kLeft}, stamps}};
+  std::vector<const Row*> rows;
+  for (const Rank& rank : ranks) rows.push_back(rank.row);
+  for (const Field<Row>& field : scored_seeds_field(rows, board_metrics())) {
+    fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});
+  }
   const auto add = [&fields](const char* id, bool with_band) {
     for (const Field<Row>& field : metric_fields(evaluation::metric(id))) {
       fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});
@@ -53,8 +66,6 @@ Table error_table(const Board& board) {
   add("host_error_ms", false);
   add("precision", false);
   add("recall", false);
-  std::vector<Rank> ranks = board.online;
-  ranks.insert(ranks.end(), board.offline.begin(), board.offline.end());
   return table_of(fields, ranks);
 }
 
@@ -108,6 +119,11 @@ Json ranks_json(const std::vector<Rank>& ranks) {
 std::vector<Block> board_blocks(const Results& results) {
   std::vector<Block> blocks;
   Block legend{.prose = {order_legend(results)}};
+  std::vector<const Row*> all_rows;
+  for (const Row& row : results.rows) all_rows.push_back(&row);
+  if (!scored_seeds_field(all_rows, board_metrics()).empty()) {
+    legend.items.emplace_back(kScoredSeedsLegend);
+  }
   for (const Board& board : evaluation::leaderboard(results)) {
     const std::string heading =
         board.name.empty() ? "references" : fmt::format("{}: {}", board.name, composition(board));
@@ -126,7 +142,6 @@ Document leaderboard_document(const Results& results, const std::string& summary
   Document document{.title = results_title(results),
                     .head = results_head(results, summary),
                     .blocks = board_blocks(results)};
-  if (!summary.empty()) document.head.push_back(summary);
   if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
     document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
   }

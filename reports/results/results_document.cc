@@ -6,6 +6,7 @@
 #include <functional>
 #include <string_view>
 
+#include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/text/number_text.h"
 
@@ -36,6 +37,15 @@ Field<Row> published_field(Column column, std::string (*cell)(const PublishedCom
           [cell](const Row& row) { return row.published ? cell(*row.published) : "-"; }};
 }
 
+ScoredSeeds scored_seeds_of(const Row& row, const std::vector<const Metric*>& metrics) {
+  ScoredSeeds found{.all = row.amd_ms.values.size()};
+  for (const Metric* metric : metrics) {
+    if (metric->is_series()) found.add(evaluation::scored_seeds(row, *metric));
+  }
+  if (found.most == 0) found.add(evaluation::scored_seeds(row));
+  return found;
+}
+
 void append(RowFields& fields, const RowFields& more) {
   fields.insert(fields.end(), more.begin(), more.end());
 }
@@ -57,6 +67,13 @@ RowFields published_rmdv_fields() {
           })};
 }
 
+std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
+  std::vector<const Row*> pointers;
+  pointers.reserve(rows.size());
+  for (const Row& row : rows) pointers.push_back(&row);
+  return pointers;
+}
+
 // The paper's two metrics beside the published values.
 Table paper_table(const Results& results) {
   const bool published = any_published(results);
@@ -64,6 +81,8 @@ Table paper_table(const Results& results) {
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
+  append(fields, scored_seeds_field(pointers_to(results.rows),
+                                    evaluation::table_metrics(&TablePlaces::paper)));
   for (const Metric* metric : evaluation::table_metrics(&TablePlaces::paper)) {
     append(fields, metric_fields(*metric));
     if (published && metric->id == std::string_view("amd_ms")) {
@@ -79,6 +98,8 @@ Table paper_table(const Results& results) {
 // Metrics that a real rig cannot measure.
 Table truth_table(const Results& results) {
   RowFields fields = {pipeline_field<Row>()};
+  append(fields, scored_seeds_field(pointers_to(results.rows),
+                                    evaluation::table_metrics(&TablePlaces::truth)));
   for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
     append(fields, metric_fields(*metric));
   }
@@ -98,13 +119,6 @@ void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
   }
 }
 
-std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
-  std::vector<const Row*> pointers;
-  pointers.reserve(rows.size());
-  for (const Row& row : rows) pointers.push_back(&row);
-  return pointers;
-}
-
 bool gatherings_differ(const Results& results) {
   return std::any_of(results.rows.begin(), results.rows.end(), [&](const Row& row) {
     return row.gathering != results.rows.front().gathering;
@@ -119,6 +133,13 @@ std::vector<std::string> results_legend(const Results& results) {
             "the repetitions, [a, b] their band from 5 to 95 %."
           : "Every pipeline meets the same worlds, one per seed. A value is the median over the "
             "seeds, [a, b] their band from 5 to 95 %."};
+  const auto lacks_seeds = [&results](int TablePlaces::*table) {
+    return !scored_seeds_field(pointers_to(results.rows), evaluation::table_metrics(table)).empty();
+  };
+  if (lacks_seeds(&TablePlaces::paper) || lacks_seeds(&TablePlaces::truth) ||
+      (gatherings_differ(results) && lacks_seeds(&TablePlaces::sets))) {
+    lines.emplace_back(kScoredSeedsLegend);
+  }
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
   if (const std::string unverified = unverified_legend(results); !unverified.empty()) {
@@ -145,8 +166,11 @@ Table claims_table(const Results& results) {
   const std::vector<Field<Claim>> fields = {
       {{"claim", Align::kLeft}, [](const Claim& claim) { return claim.id; }},
       {{"holds in"},
-       [](const Claim& claim) {
-         return claim.holds_fraction ? share_text(*claim.holds_fraction) : "-";
+       [&results](const Claim& claim) {
+         if (!claim.holds_fraction) return std::string("-");
+         const std::string share = share_text(*claim.holds_fraction);
+         if (claim.decided_seeds >= results.seed_count) return share;
+         return fmt::format("{} of {}", share, counted(claim.decided_seeds, "seed"));
        }},
       {{"of the paper", Align::kLeft}, [](const Claim& claim) {
          return claim.text + (claim.needs.empty() ? "" : fmt::format(" (needs {})", claim.needs));
@@ -200,30 +224,6 @@ std::vector<Field<Row>> metric_fields(const Metric& metric) {
   return fields;
 }
 
-Table sets_table(const std::vector<const Row*>& rows) {
-  RowFields fields = {pipeline_field<Row>(),
-                      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
-    append(fields, metric_fields(*metric));
-  }
-  std::vector<std::reference_wrapper<const Row>> subjects;
-  subjects.reserve(rows.size());
-  for (const Row* row : rows) subjects.emplace_back(*row);
-  return table_of(fields, subjects);
-}
-
-std::vector<std::string> sets_legend(const Results& results) {
-  std::vector<std::string> lines;
-  append_legends(&TablePlaces::sets, lines);
-  if (has_real_rows(results)) {
-    lines.emplace_back(
-        "Arrivals on a real rig are read from the hosts' own clocks: their difference is an error "
-        "of \"emitted after\", which may be negative.");
-  }
-  return lines;
-}
-
-std::string asymmetry_line(const Results& results) {
 std::string results_title(const Results& results) {
   return fmt::format("{}: {}", scenarios::named(results.scenario, results.derivation),
                      counted_seeds(results.first_seed, results.seed_count));
@@ -245,6 +245,31 @@ RowFields scored_seeds_field(const std::vector<const Row*>& rows,
            [metrics](const Row& row) { return scored_seeds_text(scored_seeds_of(row, metrics)); }}};
 }
 
+Table sets_table(const std::vector<const Row*>& rows) {
+  RowFields fields = {pipeline_field<Row>(),
+                      {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
+  append(fields, scored_seeds_field(rows, evaluation::table_metrics(&TablePlaces::sets)));
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::sets)) {
+    append(fields, metric_fields(*metric));
+  }
+  std::vector<std::reference_wrapper<const Row>> subjects;
+  subjects.reserve(rows.size());
+  for (const Row* row : rows) subjects.emplace_back(*row);
+  return table_of(fields, subjects);
+}
+
+std::vector<std::string> sets_legend(const Results& results) {
+  std::vector<std::string> lines;
+  append_legends(&TablePlaces::sets, lines);
+  if (has_real_rows(results)) {
+    lines.emplace_back(
+        "Arrivals on a real rig are read from the hosts' own clocks: their difference is an error "
+        "of \"emitted after\", which may be negative.");
+  }
+  return lines;
+}
+
+std::string asymmetry_line(const Results& results) {
   if (!results.asymmetry_floor) return "";
   const evaluation::AsymmetryFloor& floor = *results.asymmetry_floor;
   return fmt::format(

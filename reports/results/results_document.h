@@ -32,6 +32,12 @@ std::vector<std::string> results_head(const evaluation::Results& results,
 // The columns of a metric in a table of rows: its value and, if it has a heading, its band.
 std::vector<Field<evaluation::Row>> metric_fields(const evaluation::Metric& metric);
 
+// The column of the seeds behind a row's medians of these metrics, "14 of 16", if a row has fewer
+// than all; "12-14 of 16" where the metrics differ. A metric without any value does not count.
+std::vector<Field<evaluation::Row>> scored_seeds_field(
+    const std::vector<const evaluation::Row*>& rows,
+    const std::vector<const evaluation::Metric*>& metrics);
+
 // The gathered sets: a line per pipeline, to compare policies.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.

@@ -68,6 +68,12 @@ std::string shown(const nlohmann::json& flat, const std::string& pointer) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
+// What follows from another difference: what the scenario rests on, and its summary.
+bool is_consequence(const std::string& pointer) {
+  return pointer == "/based_on" || pointer.starts_with("/changed") ||
+         pointer == "/published_left_out" || pointer == "/scenario/summary";
+}
+
 // The first difference of two manifests, and the number of further ones.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here) {
   const nlohmann::json flat_there = there.flatten();
@@ -78,6 +84,9 @@ std::string difference(const nlohmann::json& there, const nlohmann::json& here) 
   }
   for (const auto& [pointer, value] : flat_there.items()) {
     if (!flat_here.contains(pointer)) pointers.push_back(pointer);
+  }
+  if (!std::all_of(pointers.begin(), pointers.end(), is_consequence)) {
+    std::erase_if(pointers, is_consequence);
   }
   if (pointers.empty()) return "its manifest.json was edited";
   const std::string& first = pointers.front();

@@ -17,6 +17,7 @@
 #include "recording/version.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -41,6 +42,16 @@ std::string run_cells(const SweepPlan& plan, const SweepRun& run) {
   std::string cells;
   for (const std::string& value : plan.values(run.point)) cells.append(csv_cell(value)).append(",");
   return cells + fmt::format("{},{}", csv_cell(plan.pipelines[run.pipeline]), run.seed);
+}
+
+// The ends of lines: of a scenario that is changed at all points, with a column of its changes.
+std::string changed_header(const SweepPlan& plan) {
+  return plan.derivation.changes.empty() ? "\n" : ",changed\n";
+}
+
+std::string changed_cell(const SweepPlan& plan) {
+  const std::string changed = scenarios::changed_text(plan.derivation);
+  return changed.empty() ? "\n" : fmt::format(",{}\n", csv_cell(changed));
 }
 
 // A value of an axis: a number where it is one, else a word.
@@ -76,8 +87,20 @@ std::vector<std::string> point_cells(const SweepPlan& plan, const ResponseRow& r
 }
 
 std::string heading(const SweepPlan& plan) {
-  return fmt::format("{}: {}, {}, {}", plan.scenario, counted(plan.points(), "point"),
-                     counted(plan.pipelines.size(), "pipeline"), counted(plan.seeds, "seed"));
+  return fmt::format("{}: {}, {}, {}", scenarios::named(plan.scenario, plan.derivation),
+                     counted(plan.points(), "point"), counted(plan.pipelines.size(), "pipeline"),
+                     counted(plan.seeds, "seed"));
+}
+
+// The seeds behind the medians of a point.
+ScoredSeeds scored_seeds_at(const ResponseRow& row, const std::vector<const Metric*>& metrics) {
+  ScoredSeeds seeds{.all = row.series.front().values.size()};
+  for (const Metric* metric : metrics) {
+    if (metric->is_series()) {
+      seeds.add(evaluation::count_of_existing(row.of(metric->sweep).values));
+    }
+  }
+  return seeds;
 }
 
 std::string percent_text(double share) {
@@ -201,6 +224,13 @@ Figure new_figure(const SweepPlan& plan, const std::string& id, const std::strin
   figure.title = plan.pipelines.size() > 1
                      ? fmt::format("{}: {}", plan.scenario, title)
                      : fmt::format("{}, {}: {}", plan.scenario, plan.pipelines.front(), title);
+  figure.source = {.scenario = plan.scenario,
+                   .derivation = plan.derivation,
+                   .pipeline = plan.pipelines.size() == 1 ? plan.pipelines.front() : "",
+                   .first_seed = plan.first_seed,
+                   .seeds = plan.seeds,
+                   .version = std::string(version()),
+                   .commit = std::string(commit())};
   figure.caption =
       fmt::format("{}, {} each.", counted(plan.points(), "point"), counted(plan.seeds, "seed"));
   return figure;
@@ -227,6 +257,7 @@ std::string sweep_manifest(const SweepPlan& plan, const std::string& study) {
   manifest["axes"] = std::move(axes);
   manifest["pipelines"] = plan.pipelines;
   manifest["seeds"] = {{"first", plan.first_seed}, {"count", plan.seeds}};
+  state_derivation(plan.derivation, manifest);
   manifest["scenario"] = Json::parse(plan.scenario_json);
   return file_text(manifest);
 }
@@ -236,22 +267,24 @@ std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scor
   for (const evaluation::Metric* metric : evaluation::sweep_metrics()) {
     csv.append(",").append(metric->sweep);
   }
-  csv += '\n';
+  csv += changed_header(plan);
+  const std::string changed = changed_cell(plan);
   for (std::size_t index = 0; index < scores.size(); ++index) {
     csv += run_cells(plan, plan.run(index));
     for (const double value : scores[index].values) csv.append(",").append(csv_cell(value));
-    csv += '\n';
+    csv += changed;
   }
   return csv;
 }
 
 std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
-  std::string csv = run_header(plan) + ",host,error_ms\n";
+  std::string csv = run_header(plan) + ",host,error_ms" + changed_header(plan);
+  const std::string changed = changed_cell(plan);
   for (std::size_t index = 0; index < scores.size(); ++index) {
     const std::string cells = run_cells(plan, plan.run(index));
     const std::vector<double>& errors = scores[index].host_errors_ms;
     for (std::size_t host = 0; host < errors.size(); ++host) {
-      csv += fmt::format("{},{},{}\n", cells, host, csv_cell(errors[host]));
+      csv += fmt::format("{},{},{}{}", cells, host, csv_cell(errors[host]), changed);
     }
   }
   return csv;
@@ -261,6 +294,10 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
   const std::vector<const Metric*> metrics = evaluation::table_metrics(&TablePlaces::response);
   std::vector<Column> columns = point_columns(plan);
   const std::size_t keys = columns.size();
+  const bool lack_seeds = std::any_of(rows.begin(), rows.end(), [&](const ResponseRow& row) {
+    return scored_seeds_at(row, metrics).lack();
+  });
+  if (lack_seeds) columns.push_back({"seeds"});
   for (const Metric* metric : metrics) {
     columns.push_back({metric->heading});
     if (metric == metrics.front()) columns.push_back({metric->band_heading});
@@ -268,6 +305,7 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
   Table table(std::move(columns), keys);
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
+    if (lack_seeds) cells.push_back(scored_seeds_text(scored_seeds_at(row, metrics)));
     for (const Metric* metric : metrics) {
       const double value = row.value(*metric);
       cells.push_back(metric->is_share() ? share_text(value) : number_text(value));
@@ -275,10 +313,12 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
     }
     table.add(std::move(cells));
   }
-  return {.heading = heading(plan),
-          .table = std::move(table),
-          .prose = {"Medians over the seeds; precision and recall over all of them. Margin: the "
-                    "gathering interval less the 99.9 % quantile of a seed's spreads."}};
+  Block block{.heading = heading(plan),
+              .table = std::move(table),
+              .prose = {"Medians over the seeds; precision and recall over all of them. Margin: "
+                        "the gathering interval less the 99.9 % quantile of a seed's spreads."}};
+  if (lack_seeds) block.prose.emplace_back(kScoredSeedsLegend);
+  return block;
 }
 
 Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {

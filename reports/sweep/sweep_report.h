@@ -18,7 +18,8 @@ std::string sweep_manifest(const evaluation::SweepPlan& plan, const std::string&
 
 // sweep.csv, one line for each point, pipeline and seed: the swept values under their JSON
 // pointers, pipeline, seed, and the columns of evaluation::sweep_metrics(). Numbers are the
-// shortest that read back as the same double; a value that does not exist is an empty cell.
+// shortest that read back as the same double; a value that does not exist is an empty cell. Of a
+// scenario that is changed at all points, a last column: changed.
 std::string sweep_csv(const evaluation::SweepPlan& plan,
                       const std::vector<evaluation::SweepScore>& scores);
 

@@ -107,23 +107,21 @@ std::int64_t JsonNode::count() const {
   return value_.get<std::int64_t>();
 }
 
-std::vector<double> JsonNode::numbers(std::size_t seeds) const {
+double JsonNode::value_of(const evaluation::Metric& metric) const {
+  const double value = number();
+  if (!metric.can_be(value)) refuse(metric.allowed());
+  return value;
+}
+
+std::vector<double> JsonNode::values_of(const evaluation::Metric& metric, std::size_t seeds) const {
   if (!value_.is_array()) refuse(fmt::format("an array of {} values, one for each seed", seeds));
   if (value_.size() != seeds) {
     fail(fmt::format("found {} values, allowed: {}, one for each seed", value_.size(), seeds));
   }
   std::vector<double> all;
   all.reserve(seeds);
-  for (const json& value : value_) {
-    const bool is_right = value.is_number() || value.is_null();
-    if (!is_right) elements()[all.size()].refuse("a number or null");
-    all.push_back(value.is_null() ? evaluation::kNan : value.get<double>());
-  }
+  for (const JsonNode& element : elements()) all.push_back(element.value_of(metric));
   return all;
-}
-
-evaluation::Series JsonNode::series(std::size_t seeds) const {
-  return evaluation::make_series((*this)["values"].numbers(seeds));
 }
 
 void JsonNode::check_schema_version(int newest) const {

@@ -50,10 +50,9 @@ class JsonNode {
   bool flag() const;
   double number() const;  // null is NaN
   std::int64_t count() const;
-  // Numbers or nulls, one for each seed.
-  std::vector<double> numbers(std::size_t seeds) const;
-  // The member "values", with median and band computed from it.
-  evaluation::Series series(std::size_t seeds) const;
+  // A metric's number (null is NaN), or its values, one for each seed: such as it can be.
+  double value_of(const evaluation::Metric& metric) const;
+  std::vector<double> values_of(const evaluation::Metric& metric, std::size_t seeds) const;
   // The member "schema_version": 1 to `newest`.
   void check_schema_version(int newest) const;
   std::string dump() const { return value_.dump(2); }

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace simbench::reports {
 
 std::string number_text(double value) {
-  if (std::isnan(value)) return "-";
+  if (!std::isfinite(value)) return "-";
   const double size = std::abs(value);
   if (size >= 1e6) return fmt::format("{:.1e}", value);
   if (size < 0.0005) return "0.000";  // never "-0.000"
@@ -16,12 +17,12 @@ std::string number_text(double value) {
 }
 
 std::string band_text(const evaluation::Series& series) {
-  if (std::isnan(series.p05)) return "-";
+  if (!std::isfinite(series.p05) || !std::isfinite(series.p95)) return "-";
   return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
 }
 
 std::string share_text(double share) {
-  if (std::isnan(share)) return "-";
+  if (!std::isfinite(share)) return "-";
   if (share == 0) return "0 %";
   if (share == 1) return "100 %";
   const std::string text = fmt::format("{:.1f}", share * 100);
@@ -31,7 +32,7 @@ std::string share_text(double share) {
 }
 
 std::string percentile_text(const evaluation::Percentile& percentile) {
-  if (std::isnan(percentile.percent)) return "-";
+  if (!std::isfinite(percentile.percent)) return "-";
   return fmt::format("{:.0f} % [{:.0f}-{:.0f}]", percentile.percent, percentile.low,
                      percentile.high);
 }
@@ -60,6 +61,7 @@ std::string count_text(std::int64_t count) {
 }
 
 std::string short_text(double value) {
+  if (!std::isfinite(value)) return "-";
   struct Prefix {
     double factor;
     const char* symbol;
@@ -76,6 +78,17 @@ std::string counted_seeds(std::uint64_t first, std::uint64_t count) {
   const std::string seeds = counted(count, "seed");
   return count == 1 ? fmt::format("{} ({})", seeds, first)
                     : fmt::format("{} ({}-{})", seeds, first, first + count - 1);
+}
+
+void ScoredSeeds::add(std::size_t seeds) {
+  if (seeds == 0) return;
+  fewest = most == 0 ? seeds : std::min(fewest, seeds);
+  most = std::max(most, seeds);
+}
+
+std::string scored_seeds_text(const ScoredSeeds& seeds) {
+  if (seeds.fewest == seeds.most) return fmt::format("{} of {}", seeds.most, seeds.all);
+  return fmt::format("{}-{} of {}", seeds.fewest, seeds.most, seeds.all);
 }
 
 double shown_value(const evaluation::Metric& metric, double value) {

@@ -2,6 +2,7 @@
 #ifndef SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
 #define SIMBENCH_REPORTS_TEXT_NUMBER_TEXT_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -11,13 +12,14 @@
 namespace simbench::reports {
 
 // Three decimals (a microsecond, where the unit is a millisecond), fewer for numbers of 100 and
-// more, scientific from a million on: "0.004", "12.345", "547.5", "1.6e+09"; "-" for NaN.
+// more, scientific from a million on: "0.004", "12.345", "547.5", "1.6e+09"; "-" for what is not
+// finite, here and below.
 std::string number_text(double value);
 
 // The 5-95 % band: "[1.802, 3.511]".
 std::string band_text(const evaluation::Series& series);
 
-// A share in percent: "97.3 %"; "-" for NaN. Only exactly 0 and 1 are written as 0 % and 100 %.
+// A share in percent: "97.3 %". Only exactly 0 and 1 are written as 0 % and 100 %.
 std::string share_text(double share);
 
 // A percentile with its binomial interval: "33 % [18-51]".
@@ -34,6 +36,23 @@ std::string short_text(double value);
 
 // The seeds of a result: "1 seed (7)", "32 seeds (1-32)".
 std::string counted_seeds(std::uint64_t first, std::uint64_t count);
+
+// The seeds behind the medians of a row: those that have a value in its metrics, of all.
+struct ScoredSeeds {
+  std::size_t all = 0;
+  std::size_t fewest = 0;  // of a metric that has any
+  std::size_t most = 0;
+
+  // Adds a metric with so many.
+  void add(std::size_t seeds);
+  bool lack() const { return fewest < all; }
+};
+
+// "14 of 16"; "12-14 of 16" where the metrics differ.
+std::string scored_seeds_text(const ScoredSeeds& seeds);
+// The meaning of a column of these.
+inline constexpr const char* kScoredSeedsLegend =
+    "seeds: those with a value, of all; medians and bands are over them.";
 
 // A metric's value in the units of reports: milliseconds unchanged, shares in percent.
 double shown_value(const evaluation::Metric& metric, double value);

@@ -99,11 +99,13 @@ inline evaluation::Results sample_results() {
   results.first_seed = 1;
   results.seed_count = 2;
   results.rows = {full_row(), bare_row()};
-  results.claims = {{.id = "C1", .text = "none is worst", .holds_fraction = 0.5, .needs = ""},
-                    {.id = "C4",
-                     .text = "lower at 45 than at 15 FPS",
-                     .holds_fraction = std::nullopt,
-                     .needs = "18cam_6host_15fps"}};
+  results.claims = {
+      {.id = "C1", .text = "none is worst", .holds_fraction = 0.5, .needs = "", .decided_seeds = 2},
+      {.id = "C4",
+       .text = "lower at 45 than at 15 FPS",
+       .holds_fraction = std::nullopt,
+       .needs = "18cam_6host_15fps",
+       .decided_seeds = 0}};
   results.warnings = {"a host was not synchronised"};
   results.performance = {.events = 1234567,
                          .simulated_seconds = 64,

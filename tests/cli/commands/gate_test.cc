@@ -104,6 +104,30 @@ TEST_F(Gate, AMissingBaselineHasAStatusOfItsOwn) {
   EXPECT_THAT(result.err, HasSubstr("simbench gate results --save-baseline b.json"));
 }
 
+TEST_F(Gate, AnAmdBelowZeroIsRefusedAndALostOneFailsWithoutANan) {
+  run_to("now", {"--seeds", "2"});
+  save("now");
+  Json results = Json::parse(content("now/results.json"));
+  results["rows"][1]["amd_ms"]["values"][1] = -0.5;
+  file("now/results.json", results.dump(2));
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"gate", "now", "--baseline", "b.json"}, {"gate", "now", "--save-baseline", "c.json"}}) {
+    const ProgramResult refused = run(command);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, testing::ContainsRegex("now/results.json:[0-9]+: "
+                                                    "/rows/1/amd_ms/values/1: found -0.5, "
+                                                    "allowed: a number from 0"));
+  }
+  for (Json& value : results["rows"][1]["amd_ms"]["values"]) value = nullptr;
+  file("now/results.json", results.dump(2));
+  for (const std::string format : {"text", "json", "junit"}) {
+    const ProgramResult lost = gate("now", {"--format", format});
+    EXPECT_EQ(lost.status, 3);
+    EXPECT_THAT(lost.out, HasSubstr("2 of 2 seeds lost"));
+    EXPECT_THAT(lost.out, testing::Not(HasSubstr("nan")));
+  }
+}
+
 TEST_F(Gate, BadInputIsToldApart) {
   run_to("now", {"--seeds", "2"});
   EXPECT_EQ(run({"gate", "now"}).status, 2);

@@ -56,6 +56,14 @@ Claim claim(const std::vector<Row>& rows, const std::string& id, double rate_hz 
   return {};
 }
 
+TEST(ClaimsTest, SaysOfHowManySeedsItsFractionIs) {
+  std::vector<Row> rows = good_rows();
+  EXPECT_EQ(claim(rows, "C1").decided_seeds, 2U);
+  first_seed(rows, "yoon2021_both").amd_ms = kNan;
+  EXPECT_EQ(claim(rows, "C1").decided_seeds, 1U);
+  EXPECT_THAT(claim(rows, "C1").holds_fraction, Optional(1.0));
+}
+
 TEST(ClaimsTest, AllTenInOrderWithTheirText) {
   const std::vector<Claim> claims = check_claims(good_rows(), 45);
   ASSERT_EQ(claims.size(), 10U);

@@ -98,6 +98,19 @@ TEST_F(BaselineFile, WhatElseIsEditedShows) {
   EXPECT_THAT(reading(), ThrowsMessage<InputError>(HasSubstr("/kind")));
 }
 
+TEST_F(BaselineFile, AValueThatItsMetricCannotHaveIsRefused) {
+  Baseline written = make_baseline(sample_archive("a", 1, 2));
+  written.pipelines[1].values[0][1] = -0.5;
+  write_baseline(written, path_);
+  EXPECT_THAT(reading(), ThrowsMessage<InputError>(AllOf(
+                             HasSubstr("b.json:"), HasSubstr("/pipelines/1/amd_ms/1: found -0.5"),
+                             HasSubstr("allowed: a number from 0"))));
+  written = make_baseline(sample_archive("a", 1, 2));
+  written.pipelines[0].values.back()[0] = 1.5;
+  write_baseline(written, path_);
+  EXPECT_THAT(reading(), ThrowsMessage<InputError>(HasSubstr("allowed: a share from 0 to 1")));
+}
+
 TEST_F(BaselineFile, ANewerOneIsForANewerProgram) {
   write_baseline(make_baseline(sample_archive("a")), path_);
   edit("\"schema_version\": 1", "\"schema_version\": 2");

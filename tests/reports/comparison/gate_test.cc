@@ -70,6 +70,43 @@ TEST(ExactGate, TheMarginDecides) {
   EXPECT_EQ(amd_of_good(better).outcome, GateOutcome::kBetter);
 }
 
+TEST(ExactGate, AValueThatIsLostFailsWithoutANan) {
+  for (const std::size_t lost : {1U, 32U}) {
+    Archive now = sample_archive("now");
+    std::fill_n(now.results.rows[1].amd_ms.values.begin(), lost, kNaN);
+    const GateReport report = exact(now);
+    EXPECT_EQ(amd_of_good(report).outcome, GateOutcome::kFailed);
+    EXPECT_THAT(gate_text(report), HasSubstr("of 32 seeds lost their"));
+    for (const std::string& text : {gate_text(report), gate_junit(report), gate_json(report)}) {
+      EXPECT_THAT(text, Not(HasSubstr("nan")));
+    }
+    EXPECT_THAT(gate_junit(report), HasSubstr("<failure message=\"AMD of good"));
+  }
+}
+
+TEST(ExactGate, AValueThatIsNewIsAChange) {
+  Archive before = sample_archive("before");
+  std::vector<double>& values = before.results.rows[1].amd_ms.values;
+  values.assign(values.size(), kNaN);
+  const GateReport report = gate(sample_archive("now"), baseline_of(before), GateMode::kExact);
+  EXPECT_TRUE(report.passed());
+  EXPECT_EQ(amd_of_good(report).outcome, GateOutcome::kChanged);
+  EXPECT_THAT(gate_text(report), HasSubstr("did not exist"));
+  EXPECT_THAT(gate_text(report), Not(HasSubstr("nan")));
+}
+
+TEST(StatisticalGate, OfOtherSeedsMostValuesMustStillExist) {
+  Archive now = sample_archive("now", 101);
+  std::vector<double>& values = now.results.rows[1].amd_ms.values;
+  std::fill_n(values.begin(), values.size() / 2, kNaN);
+  EXPECT_TRUE(statistical(now).passed());
+  values[values.size() / 2] = kNaN;
+  const GateReport report = statistical(now);
+  EXPECT_TRUE(report.by_index);
+  EXPECT_EQ(amd_of_good(report).outcome, GateOutcome::kFailed);
+  EXPECT_THAT(gate_text(report), Not(HasSubstr("nan")));
+}
+
 TEST(ExactGate, SmallValuesHaveAnAbsoluteMargin) {
   Archive before = sample_archive("before");
   scale(before.results.rows[1].amd_ms, 0.001);  // 2 us, of which 2 % would be nothing

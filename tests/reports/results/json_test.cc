@@ -44,7 +44,7 @@ TEST(ResultsJson, ARowHasEverything) {
       "emission_latency_max_ms": 6.0},
     "frames": {"expected": 34560, "delivered": 34557, "dropped": 3},
     "evaluated_pulses": 960, "unsynchronised_hosts": 1,
-    "ground_truth": "simulation", "verified": true, "notes": [],
+    "scored_seeds": 2, "ground_truth": "simulation", "verified": true, "notes": [],
     "published": {"amd_ms": 2.438, "rmdv_ms": 1.8044, "amd_inside": true, "rmdv_inside": false,
                   "rmdv_attainable": false,
                   "amd_percentile": 50.0, "amd_percentile_interval": [32.25, 67.75],
@@ -71,9 +71,10 @@ TEST(ResultsJson, WhatDoesNotExistIsNull) {
 TEST(ResultsJson, ClaimsThatNeedAnotherScenarioHoldInNone) {
   const Json claims = Json::parse(json(sample_results()))["claims"];
   EXPECT_EQ(claims, Json::parse(R"([
-    {"id": "C1", "holds_fraction": 0.5, "text": "none is worst", "needs": null},
+    {"id": "C1", "holds_fraction": 0.5, "text": "none is worst", "needs": null,
+     "decided_seeds": 2},
     {"id": "C4", "holds_fraction": null, "text": "lower at 45 than at 15 FPS",
-     "needs": "18cam_6host_15fps"}])"));
+     "needs": "18cam_6host_15fps", "decided_seeds": 0}])"));
 }
 
 TEST(ResultsJson, OnlyPerformanceDiffersBetweenEqualRuns) {

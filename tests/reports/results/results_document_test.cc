@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "evaluation/scoring/metrics.h"
+#include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 #include "tests/reports/sample_results.h"
 
@@ -141,6 +142,36 @@ TEST(ResultsDocument, AMetricThatNamesItsTableStandsInIt) {
   EXPECT_THAT(plain(document), HasSubstr("\n  mine: of this test.\n"));
   EXPECT_THAT(markdown(document), HasSubstr("| pulses scored | mine ms |\n"));
   EXPECT_THAT(html(document.blocks), HasSubstr("title=\"mine: of this test.\">mine ms</th></tr>"));
+}
+
+TEST(Table, SaysOverHowManySeedsAMedianIs) {
+  EXPECT_THAT(table(sample_results(), ""), Not(HasSubstr("seeds  ")));
+  evaluation::Results results = sample_results();
+  results.rows[0].amd_ms.values = {1.5, kNaN};
+  results.rows[0].rmdv_ms.values = {0.5, kNaN};
+  results.rows[0].absolute_error_ms.values = {28, kNaN};
+  const std::string text = table(results, "");
+  EXPECT_THAT(text, testing::ContainsRegex("pipeline +seeds "));
+  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1 of 2 +2.000"));
+  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1-2 of 2 +29.000"));
+  EXPECT_THAT(text, testing::ContainsRegex("free_running +2 of 2 "));
+  EXPECT_THAT(text, HasSubstr(kScoredSeedsLegend));
+  const Document document = results_document(results, "");
+  EXPECT_THAT(markdown(document), HasSubstr("| yoon2021_both | 1 of 2 | 2.000 |"));
+  EXPECT_THAT(html(document.blocks), HasSubstr("<td>1 of 2</td><td>2.000</td>"));
+}
+
+TEST(Table, APipelineWithoutAnySeedSaysSo) {
+  evaluation::Results results = sample_results();
+  evaluation::Row& lost = results.rows[1];
+  lost.amd_ms = lost.rmdv_ms = lost.seed_recall = no_series();
+  EXPECT_THAT(table(results, ""), testing::ContainsRegex("free_running +0 of 2 +- "));
+}
+
+TEST(Table, AClaimSaysInHowManySeedsItWasDecided) {
+  evaluation::Results results = sample_results();
+  results.claims[0].decided_seeds = 1;
+  EXPECT_THAT(table(results, ""), HasSubstr("50.0 % of 1 seed  none is worst"));
 }
 
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {

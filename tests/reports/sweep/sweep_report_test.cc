@@ -90,6 +90,18 @@ TEST(SweepReport, TheResponseIsOfAllSeeds) {
   EXPECT_THAT(table, HasSubstr("75.0 %"));
 }
 
+TEST(SweepReport, SaysOverHowManySeedsAMedianIs) {
+  std::vector<SweepScore> some = scores();
+  EXPECT_THAT(plain({.blocks = {response_block(plan(), rows())}}), testing::Not(HasSubstr("of 2")));
+  some[0].at("amd_ms") = std::numeric_limits<double>::quiet_NaN();
+  some[0].at("host_error_ms") = std::numeric_limits<double>::quiet_NaN();
+  const std::string table =
+      plain({.blocks = {response_block(plan(), evaluation::response(plan(), some))}});
+  EXPECT_THAT(table, testing::ContainsRegex("4 +8 +kernel +fast +1 of 2 +1.000 "));
+  EXPECT_THAT(table, testing::ContainsRegex("2 +4 +application +slow +2 of 2 +14.500 "));
+  EXPECT_THAT(table, HasSubstr("medians and bands are over them"));
+}
+
 TEST(SweepReport, HostsInTheOrderOfTheirSessions) {
   EXPECT_THAT(plain({.blocks = {host_order_block(plan(), rows())}}),
               testing::ContainsRegex("4 +8 +kernel +fast +1.000  2.000\n"));

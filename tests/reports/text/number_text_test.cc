@@ -23,6 +23,15 @@ TEST(NumberText, ZeroHasNoSign) {
   EXPECT_EQ(number_text(-0.0004), "0.000");
 }
 
+TEST(NumberText, WhatIsNotFiniteIsADash) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double value : {kNaN, kInfinity, -kInfinity}) {
+    EXPECT_EQ(number_text(value), "-");
+    EXPECT_EQ(share_text(value), "-");
+    EXPECT_EQ(short_text(value), "-");
+  }
+}
+
 TEST(NumberText, WhatDoesNotExistIsADash) {
   EXPECT_EQ(number_text(kNaN), "-");
   EXPECT_EQ(band_text(no_series()), "-");
