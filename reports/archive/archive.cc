@@ -136,9 +136,9 @@ void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::
   const JsonNode node = *metric.json_in == '\0' ? row_node[metric.member()]
                                                 : row_node[metric.json_in][metric.member()];
   if (metric.is_series()) {
-    metric.series(row) = node.series(seeds);
+    metric.series(row) = evaluation::make_series(node["values"].values_of(metric, seeds));
   } else if (!metric.is_count()) {
-    metric.number(row) = node.number();
+    metric.number(row) = node.value_of(metric);
   } else if (metric.needs == evaluation::Needs::kNothing || !node.is_null()) {
     metric.count(row) = node.count();
   }
@@ -159,26 +159,31 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   return row;
 }
 
-evaluation::Claim read_claim(const JsonNode& node) {
+evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   evaluation::Claim claim;
   claim.id = node["id"].text();
   claim.text = node["text"].text();
   if (!node["holds_fraction"].is_null()) claim.holds_fraction = node["holds_fraction"].number();
   if (!node["needs"].is_null()) claim.needs = node["needs"].text();
+  claim.decided_seeds = claim.holds_fraction ? seeds : 0;  // archives of simbench 0.1
+  if (node.has("decided_seeds")) {
+    claim.decided_seeds = static_cast<std::uint64_t>(node["decided_seeds"].count());
+  }
   return claim;
 }
 
 evaluation::Results read_results(const JsonNode& root) {
   evaluation::Results results;
   results.scenario = root["scenario"].text();
+  results.derivation = read_derivation(root);
   results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
   results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
   for (const JsonNode& row : root["rows"].elements()) {
     results.rows.push_back(read_row(row, results.seed_count));
-  results.derivation = read_derivation(root);
   }
-  for (const JsonNode& claim : root["claims"].elements())
-    results.claims.push_back(read_claim(claim));
+  for (const JsonNode& claim : root["claims"].elements()) {
+    results.claims.push_back(read_claim(claim, results.seed_count));
+  }
   if (const JsonNode floor = root["asymmetry_floor"]; !floor.is_null()) {
     results.asymmetry_floor =
         evaluation::AsymmetryFloor{.sigma_ms = floor["sigma_ms"].number(),
