@@ -1,6 +1,10 @@
 #include "algorithms/device_time/offset_filters.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <utility>
 #include <vector>
@@ -78,18 +82,122 @@ std::unique_ptr<DeviceTimeEstimator> make_sliding_minimum(SlidingMinimumSettings
 
 namespace {
 
+// The median of many values of which some change at a time: counts them in bins over their middle
+// range, and selects only in the bin of the median. The result is that of median_in_place().
+class ChangingMedian {
+ public:
+  void reserve(std::size_t count) {
+    values_.reserve(count);
+    bins_.reserve(count);
+  }
+  void clear() {
+    values_.clear();
+    bins_.clear();
+    counts_.fill(0);
+  }
+
+  void push_back(double value) {
+    values_.push_back(value);
+    bins_.push_back(bin_of(value));
+    ++counts_[bins_.back()];
+  }
+  void replace(std::size_t index, double value) {
+    values_[index] = value;
+    --counts_[bins_[index]];
+    bins_[index] = bin_of(value);
+    ++counts_[bins_[index]];
+  }
+
+  // At least one value.
+  double median() {
+    const std::size_t middle = values_.size() / 2;
+    const std::size_t first = middle - (values_.size() % 2 == 0 ? 1 : 0);
+    if (++since_spread_ >= kLeastBetween && selected_.size() > values_.size() / kFewParts) spread();
+    std::size_t low = 0;
+    std::size_t below = 0;  // values in bins before `low`
+    while (below + counts_[low] <= first) below += counts_[low++];
+    std::size_t high = low;
+    for (std::size_t up_to = below + counts_[low]; up_to <= middle;) up_to += counts_[++high];
+    select(static_cast<std::uint16_t>(low), static_cast<std::uint16_t>(high - low));
+    const auto at = selected_.begin() + static_cast<std::ptrdiff_t>(middle - below);
+    std::nth_element(selected_.begin(), at, selected_.end());
+    return first == middle ? *at : (*std::max_element(selected_.begin(), at) + *at) / 2;
+  }
+
+ private:
+  static constexpr std::size_t kBins = 1024;
+  static constexpr std::size_t kFewParts = 64;     // so small a part of the values is few
+  static constexpr std::size_t kLeastBetween = 8;  // medians between two spreads: ties stay many
+
+  std::uint16_t bin_of(double value) const {
+    return static_cast<std::uint16_t>(
+        std::clamp((value - begin_) * bins_per_unit_, 0.0, static_cast<double>(kBins - 1)));
+  }
+
+  // Selects the values in bins from `low` to `low` + `further`: few, so most blocks have none.
+  void select(std::uint16_t low, std::uint16_t further) {
+    constexpr std::size_t kBlock = 64;
+    const auto is_wanted = [low, further](std::uint16_t bin) {
+      return static_cast<std::uint16_t>(bin - low) <= further;
+    };
+    selected_.clear();
+    std::size_t begin = 0;
+    for (; begin + kBlock <= bins_.size(); begin += kBlock) {
+      std::uint16_t any = 0;
+      for (std::size_t i = 0; i < kBlock; ++i) any |= is_wanted(bins_[begin + i]) ? 1 : 0;
+      if (any == 0) continue;
+      for (std::size_t i = begin; i < begin + kBlock; ++i) {
+        if (is_wanted(bins_[i])) selected_.push_back(values_[i]);
+      }
+    }
+    for (; begin < bins_.size(); ++begin) {
+      if (is_wanted(bins_[begin])) selected_.push_back(values_[begin]);
+    }
+  }
+
+  // Spreads the bins from the lowest to the highest eighth of the values.
+  void spread() {
+    since_spread_ = 0;
+    selected_ = values_;
+    const auto eighth = static_cast<std::ptrdiff_t>(selected_.size() / 8);
+    const auto low = selected_.begin() + eighth;
+    const auto high = selected_.end() - 1 - eighth;
+    std::nth_element(selected_.begin(), low, selected_.end());
+    std::nth_element(low, high, selected_.end());
+    begin_ = *low;
+    bins_per_unit_ = static_cast<double>(kBins) / (*high - *low);
+    if (!std::isfinite(bins_per_unit_)) bins_per_unit_ = 0;
+    counts_.fill(0);
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      bins_[i] = bin_of(values_[i]);
+      ++counts_[bins_[i]];
+    }
+  }
+
+  std::vector<double> values_;
+  std::vector<std::uint16_t> bins_;  // of each value
+  std::array<std::uint32_t, kBins> counts_{};
+  std::vector<double> selected_;
+  std::size_t since_spread_ = 0;
+  double begin_ = 0;
+  double bins_per_unit_ = 0;  // 0: all in the first bin
+};
+
 class TheilSen final : public DeviceTimeEstimator {
  public:
   explicit TheilSen(TheilSenWindow window) : frames_(window.frames) {
     points_.reserve(frames_);
-    values_.reserve(frames_ * (frames_ + 1) / 2);
+    values_.reserve(frames_);
+    slopes_.reserve(frames_ * (frames_ - 1) / 2);
   }
 
   GlobalTime stamp(const DeviceSample& sample) override {
     const OffsetStream::Sample kind = stream_.push(sample);
     if (kind == OffsetStream::Sample::kFirst) {
       points_.clear();
+      slopes_.clear();
       oldest_ = 0;
+      replaced_ = 0;
     }
     if (kind != OffsetStream::Sample::kLate) add(stream_.point());
     return stream_.stamp(level_ + slope_ * from_origin(stream_.point().x));
@@ -98,29 +206,52 @@ class TheilSen final : public DeviceTimeEstimator {
  private:
   void add(LinePoint point) {
     if (points_.size() < frames_) {
+      for (const LinePoint& other : points_) slopes_.push_back(slope_between(other, point));
       points_.push_back(point);
     } else {
       points_[oldest_] = point;
       oldest_ = (oldest_ + 1) % frames_;
+      ++replaced_;
     }
     if (points_.size() == 1 || ++since_refit_ >= points_.size() / 20) refit(point.x);
+  }
+
+  // The slopes of the points that were replaced since the last refit: row after row, a point's with
+  // those before it in the ring.
+  void renew_slopes() {
+    const auto is_new = [this](std::size_t place) {
+      return (oldest_ + frames_ - 1 - place) % frames_ < replaced_;
+    };
+    renewed_.clear();
+    for (std::size_t place = 0; place < points_.size(); ++place) {
+      if (is_new(place)) renewed_.push_back(place);
+    }
+    std::size_t row = 0;  // of a place: the number of its slope with the first
+    for (std::size_t place = 1; place < points_.size(); row += place++) {
+      const auto renew = [&](std::size_t before) {
+        slopes_.replace(row + before, slope_between(points_[before], points_[place]));
+      };
+      if (is_new(place)) {
+        for (std::size_t before = 0; before < place; ++before) renew(before);
+      } else {
+        for (const std::size_t before : renewed_) {
+          if (before < place) renew(before);
+        }
+      }
+    }
+    replaced_ = 0;
+  }
+
+  static double slope_between(LinePoint a, LinePoint b) {
+    return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
   }
 
   // The line through the points, with its level at `origin`.
   void refit(std::int64_t origin) {
     since_refit_ = 0;
+    if (replaced_ > 0) renew_slopes();
     origin_ = origin;
-    slope_ = 0;
-    if (points_.size() > 1) {
-      values_.clear();
-      for (std::size_t i = 1; i < points_.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-          values_.push_back(static_cast<double>(points_[i].y - points_[j].y) /
-                            static_cast<double>(points_[i].x - points_[j].x));
-        }
-      }
-      slope_ = median_in_place(values_);
-    }
+    slope_ = points_.size() > 1 ? slopes_.median() : 0;
     values_.clear();
     for (const LinePoint& point : points_) {
       values_.push_back(static_cast<double>(point.y) - slope_ * from_origin(point.x));
@@ -135,6 +266,9 @@ class TheilSen final : public DeviceTimeEstimator {
   std::vector<LinePoint> points_;  // a ring once it is full; all x differ
   std::size_t oldest_ = 0;
   std::size_t since_refit_ = 0;
+  std::size_t replaced_ = 0;  // points whose slopes are not renewed, the newest ones
+  ChangingMedian slopes_;     // between each two points
+  std::vector<std::size_t> renewed_;
   std::vector<double> values_;
   std::int64_t origin_ = 0;
   double slope_ = 0;

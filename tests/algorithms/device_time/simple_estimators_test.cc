@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "algorithms/device_time/offset_filters.h"
 #include "algorithms/device_time/yoon2021.h"
+#include "algorithms/median.h"
 #include "bench/device_time_worlds.h"
 #include "tests/algorithms/device_time/streams.h"
 
@@ -96,6 +100,68 @@ TEST(TheilSen, IsTheMedianOfSlopesAndResiduals) {
   samples[2].arrival += Microseconds(5);
   const auto estimator = make_theil_sen({.frames = 300});
   EXPECT_NEAR(errors_us(*estimator, samples, truth).back(), 5, 1e-3);
+}
+
+// The definition: all slopes and residuals of a window, anew for each refit.
+class PlainTheilSen {
+ public:
+  explicit PlainTheilSen(std::size_t frames) : frames_(frames) {}
+
+  // Of the offset, in ns, at sensor time x_us.
+  double offset(double x_us, double y_ns) {
+    points_.emplace_back(x_us, y_ns);
+    if (points_.size() > frames_) points_.erase(points_.begin());
+    if (points_.size() == 1 || ++since_refit_ >= points_.size() / 20) refit();
+    return level_ + slope_ * (x_us - origin_);
+  }
+
+ private:
+  void refit() {
+    since_refit_ = 0;
+    origin_ = points_.back().first;
+    std::vector<double> slopes;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        slopes.push_back((points_[i].second - points_[j].second) /
+                         (points_[i].first - points_[j].first));
+      }
+    }
+    slope_ = slopes.empty() ? 0 : median_in_place(slopes);
+    std::vector<double> levels;
+    for (const auto& [x, y] : points_) levels.push_back(y - slope_ * (x - origin_));
+    level_ = median_in_place(levels);
+  }
+
+  std::size_t frames_;
+  std::size_t since_refit_ = 0;
+  std::vector<std::pair<double, double>> points_;
+  double origin_ = 0;
+  double slope_ = 0;
+  double level_ = 0;
+};
+
+TEST(TheilSen, IsThatOfItsDefinitionToTheLastBit) {
+  for (const std::uint32_t levels : {1U, 3U, 1'000'000U}) {  // the first two: many equal slopes
+    for (const std::size_t frames : {1U, 2U, 45U, 90U}) {
+      std::mt19937_64 random(levels + frames);
+      const auto estimator = make_theil_sen({.frames = frames});
+      PlainTheilSen plain(frames);
+      std::int64_t first_ns = 0;
+      for (std::int64_t i = 0; i < 600; ++i) {
+        const std::int64_t x_us = 20'000 * i;
+        const std::int64_t drift_ns = i > 300 ? 100 * i * i : 20 * i;
+        const auto y_ns = drift_ns + static_cast<std::int64_t>(random() % levels);
+        const DeviceSample sample =
+            sample_at(kDeviceZeroUs + x_us, kHostZeroNs + 1000 * x_us + y_ns);
+        if (i == 0) first_ns = y_ns;
+        const double offset =
+            plain.offset(static_cast<double>(x_us), static_cast<double>(y_ns - first_ns));
+        EXPECT_EQ(nanoseconds_of(estimator->stamp(sample)),
+                  kHostZeroNs + 1000 * x_us + first_ns + std::llrint(offset))
+            << levels << " " << frames << " " << i;
+      }
+    }
+  }
 }
 
 TEST(Kalman, ConvergesOnALine) {
