@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/cli/program.h"
@@ -72,6 +73,34 @@ TEST_F(RecordCommand, AReplayOfAGenlockRigGivesTheNumbersOfTheRun) {
                             "--pipelines", "oracle,yoon2021_both"});
 }
 
+// Without polls, two_way_poll would be the bare arrivals.
+TEST_F(RecordCommand, ARecordingWithoutPollsHasNoNumbersOfAPipelineThatNeedsThem) {
+  const ProgramResult recorded =
+      run({"record", "--scenario", "18cam_6host_45fps_lan", "--set", "/timeline/frames=40",
+           "--pipelines", "best_online_oracle_hosts,genlock", "-o", "rec"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  Json manifest = Json::parse(content("rec/manifest.json"));
+  for (Json& capture : manifest["captures"]) {
+    capture["complete"] = false;  // so that lines may be missing
+    const std::string events = "rec/" + capture["pipeline"].get<std::string>() + "/1/events.csv";
+    std::istringstream lines(content(events));
+    std::string kept;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find(",poll,") == std::string::npos) kept += line + "\n";
+    }
+    file(events, kept);
+  }
+  file("rec/manifest.json", manifest.dump());
+  const ProgramResult replayed = run({"replay", "rec", "--format", "json"});
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("seed 1: two_way_poll needs polls of the cameras' clocks"));
+  const Json root = Json::parse(replayed.out);
+  for (const Json& row : root["rows"]) {
+    EXPECT_EQ(row["amd_ms"]["median"].is_null(), row["pipeline"] != "genlock") << row["pipeline"];
+  }
+  EXPECT_EQ(root["rows"].size(), 2U);
+}
+
 TEST_F(RecordCommand, AReplayOfARigWithFaultsGivesTheNumbersOfTheRun) {
   expect_replay_equals_run({"--scenario", "18cam_6host_45fps_frame_drops_10pct", "--set",
                             "/timeline/frames=40", "--pipelines", "yoon2021_both"});
@@ -135,14 +164,17 @@ TEST_F(RecordCommand, AFullDiskIsAClearErrorAndTheRestIsReplayed) {
 TEST_F(RecordCommand, CtrlCKeepsWhatWasRecorded) {
   const ProgramResult result =
       run({"record", "--scenario", "18cam_6host_45fps", "--set", "/timeline/frames=500000",
-           "--pipelines", "genlock", "-o", "rec"},
+           "--pipelines", "genlock,oracle", "-o", "rec"},
           {.interrupt_after = std::chrono::milliseconds(500)});
   EXPECT_EQ(result.status, 130);
-  EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 1 capture; rec holds what was "));
+  EXPECT_THAT(result.err, HasSubstr("interrupted after 0 of 2 captures; rec holds what was "));
   const Json capture = Json::parse(content("rec/manifest.json"))["captures"][0];
   EXPECT_EQ(capture["complete"], false);
   EXPECT_EQ(capture["notes"][0], "interrupted");
   EXPECT_EQ(content("rec/genlock/1/frames.csv").back(), '\n');
+  const ProgramResult replayed = run({"replay", "rec"});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("note: pipeline oracle: 1 of 1 capture not recorded"));
 }
 
 TEST_F(RecordCommand, ADamagedRecordingIsReplayedUpToTheDamage) {

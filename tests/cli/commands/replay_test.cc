@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -90,6 +92,7 @@ TEST_F(ReplayCommand, WhatOnlyAFolderTakesIsRefusedForFiles) {
 }
 
 TEST_F(ReplayCommand, RecordingsOfOneNameAreTwoCameras) {
+  for (const char* name : {"front", "back"}) std::filesystem::create_directory(folder() / name);
   file("front/cam.csv", recording(0));
   file("back/cam.csv", recording(2));
   const ProgramResult result = run({"replay", "front/cam.csv", "back/cam.csv", "--format", "json"});
@@ -179,6 +182,21 @@ TEST_F(ReplayCommand, EscapesInNamesAreShown) {
     EXPECT_THAT(result.out, Not(HasSubstr("\x07")));
   }
   EXPECT_THAT(run({"replay", "\x1b[2Jnone.csv"}).err, Not(HasSubstr("\x1b")));
+}
+
+TEST_F(ReplayCommand, ALongRecordingShowsProgressAndHearsCtrlC) {
+  std::string text = kHeader;
+  for (int i = 0; i < 400'000; ++i)
+    text += fmt::format("Depth,0,{},{}.25,{}.5\n", i, i * 33, i * 33);
+  const std::string name = file("long.csv", text);
+  const ProgramResult stopped = run({"replay", name, "--output", "results"},
+                                    {.interrupt_after = std::chrono::milliseconds(400)});
+  EXPECT_EQ(stopped.status, 130);
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted after "));
+  EXPECT_THAT(names_in(), ElementsAre("long.csv"));
+  const ProgramResult whole = run({"replay", name});
+  EXPECT_EQ(whole.status, 0);
+  EXPECT_THAT(whole.err, HasSubstr(" of 6800000 stamps ("));
 }
 
 TEST_F(ReplayCommand, ARealRecordingIsConvertedAndReplayed) {
