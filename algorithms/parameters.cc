@@ -60,6 +60,24 @@ bool allows(const ParameterSpec& spec, const ParameterValue& value) {
                 (known.empty() ? "this algorithm has none" : "known parameters: " + known));
 }
 
+// Blames the one of the two that was given, as the other is a default.
+void check_order(const ParameterSpec& spec, const ParameterValues& values,
+                 const ParameterValues& given) {
+  const auto other = values.find(spec.not_below);
+  if (other == values.end()) return;
+  const double low = std::get<double>(other->second);
+  const double high = std::get<double>(values.at(spec.name));
+  if (low <= high) return;
+  if (given.contains(spec.name)) {
+    throw ParameterError(spec.name, "parameter " + quoted(spec.name) + " is " + text_of(high) +
+                                        "; allowed: at least " + quoted(spec.not_below) +
+                                        ", which is " + text_of(low));
+  }
+  throw ParameterError(spec.not_below, "parameter " + quoted(spec.not_below) + " is " +
+                                           text_of(low) + "; allowed: at most " +
+                                           quoted(spec.name) + ", which is " + text_of(high));
+}
+
 }  // namespace
 
 Parameters check_parameters(const std::vector<ParameterSpec>& specs, const ParameterValues& given) {
@@ -74,6 +92,7 @@ Parameters check_parameters(const std::vector<ParameterSpec>& specs, const Param
     }
     checked.values_[name] = value;
   }
+  for (const ParameterSpec& spec : specs) check_order(spec, checked.values_, given);
   return checked;
 }
 
@@ -98,6 +117,11 @@ ParameterSpec number_parameter(std::string name, double fallback, double low, do
   spec.high = high;
   spec.meaning = std::move(meaning);
   spec.source = std::move(source);
+  return spec;
+}
+
+ParameterSpec not_below(const std::string& other, ParameterSpec spec) {
+  spec.not_below = other;
   return spec;
 }
 

@@ -1,8 +1,8 @@
 // Parameters of an algorithm: what it declares, and the checked values it is made with.
 //
 // An algorithm states each parameter once - name, default, range, meaning, source. A scenario may
-// set it; check_parameters() refuses names that were not declared and values out of range, so a
-// factory can rely on what it gets.
+// set it; check_parameters() refuses names that were not declared, values out of range and values
+// that contradict each other, so a factory can rely on what it gets.
 //
 //   const std::vector<ParameterSpec> specs = {
 //       number_parameter("stamps", 100, 1, 1e6, "n_d", "assumption")};
@@ -30,6 +30,7 @@ struct ParameterSpec {
   std::vector<std::string> choices;  // allowed texts
   std::string meaning;
   std::string source;
+  std::string not_below{};  // another parameter of the algorithm, whose number this one must reach
 };
 
 // A value that is not allowed. `parameter` names it, for a JSON pointer.
@@ -74,6 +75,9 @@ inline constexpr const char* kAssumption = "assumption";
 // A number from `low` to `high`, both included.
 ParameterSpec number_parameter(std::string name, double fallback, double low, double high,
                                std::string meaning, std::string source);
+
+// The same, and not below the number of that other parameter, which is declared too.
+ParameterSpec not_below(const std::string& other, ParameterSpec spec);
 
 // One of `choices`; the first is the default.
 ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,

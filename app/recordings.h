@@ -51,6 +51,8 @@ class RecordedRun {
   RecordedRun& operator=(const RecordedRun&) = delete;
 
   const scenarios::Scenario& scenario() const { return scenario_; }
+  // The planned captures that are not there, as of a killed `simbench record`: a line a pipeline.
+  std::vector<std::string> missing() const;
   // These pipelines, or all in the order in which they were recorded if none is named. Throws
   // scenarios::InputError for one that was not recorded.
   std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;

@@ -14,6 +14,7 @@ namespace simbench::cli {
 namespace {
 
 // The names of the checks, which CLI11 never shows. In one_of() the words follow, a line each.
+constexpr const char* kNotEmptyCheck = "not empty";
 constexpr const char* kNumberCheck = "number";
 constexpr const char* kWordsCheck = "one of";
 
@@ -38,13 +39,28 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
   return {check, "", fmt::format("{}\n{}", kWordsCheck, fmt::join(words, "\n"))};
 }
 
-// The name of the option's first check; empty if it has none.
+CLI::Validator not_empty() {
+  const auto check = [](const std::string& text) -> std::string {
+    return text.empty() ? "found '', allowed: a value that is not empty" : "";
+  };
+  return {check, "", kNotEmptyCheck};
+}
+
+// The name of the option's last check; every option with a value has one.
 std::string check_name(CLI::Option& option) {
+  std::string name;
   try {
-    return option.get_validator(0)->get_name();
+    for (int i = 0;; ++i) name = option.get_validator(i)->get_name();
   } catch (const CLI::OptionNotFound&) {
-    return "";
+    return name;
   }
+}
+
+// All options with a value, also those without a name.
+template <class Value>
+CLI::Option* with_value(CLI::App& command, const std::string& names, const std::string& place,
+                        Value& value, const std::string& text) {
+  return command.add_option(names, value, text)->type_name(place)->check(not_empty());
 }
 
 }  // namespace
@@ -80,33 +96,31 @@ Option Command::flag(const std::string& names, bool& value, const std::string& t
 
 Option Command::text(const std::string& names, const std::string& place, std::string& value,
                      const std::string& text) {
-  return Option(command_->add_option(names, value, text)->type_name(place));
+  return Option(with_value(*command_, names, place, value, text));
 }
 
 Option Command::texts(const std::string& names, const std::string& place,
                       std::vector<std::string>& values, const std::string& text) {
-  CLI::Option* option = command_->add_option(names, values, text)->type_name(place);
+  CLI::Option* option = with_value(*command_, names, place, values, text);
   if (names.starts_with("-")) option->allow_extra_args(false);
   return Option(option);
 }
 
 Option Command::list(const std::string& names, const std::string& place,
                      std::vector<std::string>& values, const std::string& text) {
-  return Option(command_->add_option(names, values, text)
-                    ->type_name(place)
-                    ->delimiter(',')
-                    ->allow_extra_args(false));
+  return Option(
+      with_value(*command_, names, place, values, text)->delimiter(',')->allow_extra_args(false));
 }
 
 Option Command::word(const std::string& names, const std::string& place, std::string& value,
                      const std::vector<std::string>& words, const std::string& text) {
-  return Option(command_->add_option(names, value, text)->type_name(place)->check(one_of(words)));
+  return Option(with_value(*command_, names, place, value, text)->check(one_of(words)));
 }
 
 template <class Number>
 Option Command::number(const std::string& names, const std::string& place, Number& value,
                        double low, double high, const std::string& text) {
-  CLI::Option* option = command_->add_option(names, value, text)->type_name(place);
+  CLI::Option* option = with_value(*command_, names, place, value, text);
   if constexpr (std::is_same_v<Number, std::vector<double>>) {
     option->delimiter(',')->allow_extra_args(false);
   }
@@ -123,9 +137,8 @@ template Option Command::number(const std::string&, const std::string&, std::vec
 template <class Number>
 Option Command::whole_number(const std::string& names, const std::string& place, Number& value,
                              std::uint64_t low, std::uint64_t high, const std::string& text) {
-  return Option(command_->add_option(names, value, text)
-                    ->type_name(place)
-                    ->check(within("a whole number", low, high)));
+  return Option(
+      with_value(*command_, names, place, value, text)->check(within("a whole number", low, high)));
 }
 
 template <class Number>
@@ -168,11 +181,9 @@ void Command::sets(std::vector<std::string>& values) {
     return fmt::format("found '{}', allowed: /json/pointer=value, as in /timeline/frames=100",
                        text);
   };
-  command_
-      ->add_option("--set", values,
-                   "Change a parameter of the scenario, repeatable;\n"
-                   "`simbench describe SCENARIO` lists all parameters")
-      ->type_name("/POINTER=VALUE")
+  with_value(*command_, "--set", "/POINTER=VALUE", values,
+             "Change a parameter of the scenario, repeatable;\n"
+             "`simbench describe SCENARIO` lists all parameters")
       ->allow_extra_args(false)
       ->check(CLI::Validator(check, ""));
 }

@@ -118,6 +118,7 @@ int bad_input(const std::exception& error) {
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   const std::vector<std::string> arguments(argv, argv + argc);
+  cli::hold_standard_descriptors();
   cli::choose_message_format(arguments);
   reports::set_page_width(cli::width_of_output());
   try {

@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string_view>
 
+#include "recording/text_fields.h"
 #include "reports/text/output_file.h"
 
 namespace simbench::cli {
@@ -22,11 +22,21 @@ using Json = nlohmann::ordered_json;
 
 bool json_messages = false;
 
+// A message may name a file or a camera, whose name may hold anything.
+std::string printable_lines(std::string_view text) {
+  std::string lines;
+  for (std::size_t end = 0; (end = text.find('\n')) != std::string_view::npos;) {
+    lines += printable_name(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return lines + printable_name(text);
+}
+
 void print_line(const char* kind, const std::string& text) {
   if (json_messages) {
     std::cerr << event_line({{"event", kind}, {"text", text}}) << std::flush;
   } else {
-    std::cerr << kind << ": " << text << '\n';
+    std::cerr << kind << ": " << printable_lines(text) << '\n';
   }
 }
 
@@ -41,8 +51,8 @@ void print_result(const std::string& text) {
   errno = 0;
   std::cout << text << std::flush;
   if (!std::cout) {
-    throw std::runtime_error(fmt::format("the result could not be written to standard output: {}",
-                                         reports::system_reason()));
+    throw reports::OutputError(
+        fmt::format("standard output: cannot be written: {}", reports::system_reason()));
   }
 }
 
@@ -65,7 +75,7 @@ void print_error(const std::string& text, const std::string& next) {
   } else if (json_messages) {
     std::cerr << event_line({{"event", "error"}, {"text", text}, {"next", next}}) << std::flush;
   } else {
-    std::cerr << "error: " << text << "\nSee: " << next << '\n';
+    std::cerr << "error: " << printable_lines(text) << "\nSee: " << next << '\n';
   }
 }
 

@@ -29,7 +29,8 @@ enum ExitStatus : int {
   kInterrupted = 130,
 };
 
-// Writes the result to standard output. Throws std::runtime_error if that fails (a full disk).
+// Writes the result to standard output. Throws reports::OutputError if that fails (a full disk, a
+// closed descriptor).
 void print_result(const std::string& text);
 
 // Chooses JSON if the arguments have --json (before any "--"), so that also messages about the

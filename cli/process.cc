@@ -1,5 +1,6 @@
 #include "cli/process.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -44,6 +45,13 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, kBytes);
   mallopt(M_MMAP_THRESHOLD, kBytes);
 #endif
+}
+
+void hold_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // The lowest free number is taken; one that can only be read.
+    if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", O_RDONLY);
+  }
 }
 
 std::filesystem::path sibling_program(const std::string& name) {

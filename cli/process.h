@@ -21,6 +21,11 @@ namespace simbench::cli {
 // nothing.
 void keep_freed_memory();
 
+// Occupies those of the three standard descriptors that are closed, so that no file of results gets
+// the number of standard output; what is written there fails as it would if they were closed. Call
+// before any file is opened.
+void hold_standard_descriptors();
+
 std::filesystem::path sibling_program(const std::string& name);
 
 // Goes on as that program, with these arguments (argv, its own name included). Returns only if it

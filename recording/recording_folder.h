@@ -1,7 +1,8 @@
 // Recordings as files: a folder that every backend writes alike, and that plays back as recorded.
 //
 //   DIR/manifest.json              format, simbench version and commit, backend, resolved scenario,
-//                                  names of hosts and cameras, and the captures with seed,
+//                                  names of hosts and cameras, what was planned, and the captures
+//                                  that were begun, with seed,
 //                                  pipeline, layout, cost, notes, and whether they are complete
 //   DIR/<pipeline>/<seed>/frames.csv   one line a frame, with a header: order, then the columns of
 //                                  recording/event_text.h (truth columns empty without truth)
@@ -48,12 +49,20 @@ class RecordingFolderError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What was to be recorded: these pipelines, each at every seed. Empty: nobody said.
+struct PlannedCaptures {
+  std::vector<std::string> pipelines{};
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 0;
+};
+
 // What all captures of a folder share.
 struct RecordingDescription {
   std::string backend{};               // "sim" or "hardware"
   std::string scenario_json{};         // resolved
   std::vector<std::string> hosts{};    // names, by number; empty: "host0", ...
   std::vector<std::string> cameras{};  // serials, by number; empty: "camera0", ...
+  PlannedCaptures planned{};
 };
 
 // One capture of a folder.

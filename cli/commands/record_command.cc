@@ -46,8 +46,9 @@ struct RecordOptions {
 
 // Describes the recording, with the names of hosts and cameras in the rig file.
 RecordingDescription description_of(const scenarios::Scenario& scenario,
-                                    const std::string& rig_file) {
-  RecordingDescription description = {.backend = "sim", .scenario_json = scenario.resolved_json};
+                                    const PlannedCaptures& planned, const std::string& rig_file) {
+  RecordingDescription description = {
+      .backend = "sim", .scenario_json = scenario.resolved_json, .planned = planned};
   if (rig_file.empty()) return description;
   description.backend = "hardware";
   for (const hardware::RigHost& host : hardware::load_rig(rig_file).hosts) {
@@ -89,7 +90,11 @@ int record(const RecordOptions& options) {
   print_warnings(scenarios::warnings(scenario));
   check_collect_options(options, choices.size());
   const auto source = app::interruptible(source_of(options, scenario));
-  RecordingWriter writer(options.output, description_of(scenario, options.backend.rig));
+  PlannedCaptures planned = {.first_seed = options.seed, .seeds = options.repeats};
+  for (const evaluation::PipelineChoice& choice : choices) {
+    planned.pipelines.push_back(choice.pipeline.name);
+  }
+  RecordingWriter writer(options.output, description_of(scenario, planned, options.backend.rig));
   app::CapturesMade made;
   const std::uint64_t wanted = choices.size() * options.repeats;
   const auto finished = watched<bool>(

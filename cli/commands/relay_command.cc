@@ -7,7 +7,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -76,7 +75,7 @@ int run_relay(const RelayOptions& options) {
         std::chrono::duration<double>(options.for_s)));
     limit.async_wait(end);
   }
-  std::cout << "ready" << std::endl;
+  print_result("ready\n");
   context.run();
   print_result(hardware::statistics_json(relay->statistics()) + "\n");
   return kOk;

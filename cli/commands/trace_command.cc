@@ -93,7 +93,7 @@ class Output {
     std::ostream& out = file_ ? stream_ : std::cout;
     errno = 0;
     cli::write(trace, format, out);
-    if (!out) fail();
+    if (!out.flush()) fail();
     if (!file_) return;
     stream_.close();
     if (!stream_) fail();

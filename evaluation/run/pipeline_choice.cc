@@ -48,11 +48,14 @@ bool declares(const AlgorithmInfo& info, const std::string& parameter) {
                      [&](const ParameterSpec& spec) { return spec.name == parameter; });
 }
 
+std::string parameter_pointer(const std::string& key, const std::string& parameter) {
+  return scenarios::child_pointer(scenarios::child_pointer("/algorithms", key), parameter);
+}
+
 // Requires that an algorithm of that name or family declares the parameter, and allows its value.
 void check_parameter(const Scenario& scenario, const std::string& key, const std::string& parameter,
                      const ParameterValue& value, const std::vector<const AlgorithmInfo*>& named) {
-  const std::string pointer =
-      scenarios::child_pointer(scenarios::child_pointer("/algorithms", key), parameter);
+  const std::string pointer = parameter_pointer(key, parameter);
   bool declared = false;
   std::vector<std::string> known;
   for (const AlgorithmInfo* info : named) {
@@ -60,19 +63,46 @@ void check_parameter(const Scenario& scenario, const std::string& key, const std
       if (std::find(known.begin(), known.end(), spec.name) == known.end()) {
         known.push_back(spec.name);
       }
-    }
-    if (!declares(*info, parameter)) continue;
-    declared = true;
-    try {
-      check_parameters(info->parameters, {{parameter, value}});
-    } catch (const ParameterError& error) {
-      scenarios::fail_at(scenario, pointer, error.what());
+      if (spec.name != parameter) continue;
+      declared = true;
+      try {
+        check_parameters({spec}, {{parameter, value}});
+      } catch (const ParameterError& error) {
+        scenarios::fail_at(scenario, pointer, error.what());
+      }
     }
   }
   if (declared) return;
   scenarios::fail_at(
       scenario, pointer,
       known.empty() ? fmt::format("\"{}\" has no parameters", key) : unknown(parameter, known));
+}
+
+// Blames the place where the scenario sets the parameter.
+[[noreturn]] void fail_at_parameter(const Scenario& scenario, const AlgorithmInfo& info,
+                                    const ParameterError& error) {
+  for (const std::string& key : {info.name, info.family}) {
+    const auto found = scenario.algorithms.find(key);
+    if (found == scenario.algorithms.end() || !found->second.contains(error.parameter())) continue;
+    scenarios::fail_at(scenario, parameter_pointer(key, error.parameter()), error.what());
+  }
+  scenarios::fail_at(scenario, scenarios::child_pointer("/algorithms", info.family), error.what());
+}
+
+Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
+  ParameterValues given;
+  for (const std::string& key : {info.family, info.name}) {
+    const auto found = scenario.algorithms.find(key);
+    if (found == scenario.algorithms.end()) continue;
+    for (const auto& [parameter, value] : found->second) {
+      if (declares(info, parameter)) given[parameter] = value;
+    }
+  }
+  try {
+    return check_parameters(info.parameters, given);
+  } catch (const ParameterError& error) {
+    fail_at_parameter(scenario, info, error);
+  }
 }
 
 void check_all_parameters(const Scenario& scenario) {
@@ -93,19 +123,24 @@ void check_all_parameters(const Scenario& scenario) {
     for (const auto& [parameter, value] : parameters) {
       check_parameter(scenario, key, parameter, value, named);
     }
+    for (const AlgorithmInfo* info : named) parameters_of(scenario, *info);
   }
 }
 
-Parameters parameters_of(const Scenario& scenario, const AlgorithmInfo& info) {
-  ParameterValues given;
-  for (const std::string& key : {info.family, info.name}) {
-    const auto found = scenario.algorithms.find(key);
-    if (found == scenario.algorithms.end()) continue;
-    for (const auto& [parameter, value] : found->second) {
-      if (declares(info, parameter)) given[parameter] = value;
-    }
+// Makes each algorithm once: one of a user's own may refuse what its declaration allows.
+void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
+  const AlgorithmInfo* info = &choice.host_sync.info;
+  try {
+    choice.host_sync.make(choice.host_sync_parameters);
+    info = &choice.device_time.info;
+    if (choice.device_time.make) choice.device_time.make(choice.device_time_parameters);
+    info = &choice.gathering.info;
+    const Nanoseconds period = from_ms(1e3 / scenario.trigger.rate_hz);
+    choice.gathering.make(choice.gathering_parameters,
+                          {.sources = 1, .period = period, .interval = period});
+  } catch (const ParameterError& error) {
+    fail_at_parameter(scenario, *info, error);
   }
-  return check_parameters(info.parameters, given);
 }
 
 // What the scenario lacks of an algorithm's need; empty if nothing.
@@ -181,14 +216,16 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
                        fmt::format("found \"{}\", but \"{}\" has no variants", pipeline.device_time,
                                    variants.base));
   }
-  return {.pipeline = pipeline,
-          .host_sync = host_sync,
-          .host_sync_parameters = parameters_of(scenario, host_sync.info),
-          .device_time = device_time,
-          .device_time_variants = variants,
-          .device_time_parameters = parameters_of(scenario, device_time.info),
-          .gathering = gathering,
-          .gathering_parameters = parameters_of(scenario, gathering.info)};
+  PipelineChoice choice = {.pipeline = pipeline,
+                           .host_sync = host_sync,
+                           .host_sync_parameters = parameters_of(scenario, host_sync.info),
+                           .device_time = device_time,
+                           .device_time_variants = variants,
+                           .device_time_parameters = parameters_of(scenario, device_time.info),
+                           .gathering = gathering,
+                           .gathering_parameters = parameters_of(scenario, gathering.info)};
+  check_can_be_made(scenario, choice);
+  return choice;
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 //
 // An algorithm's parameters come from the scenario's /algorithms/<its name> or else
 // /algorithms/<its family>; several algorithms may share a family, and each takes what it declares.
-// Refused are a parameter that no algorithm of that name declares, and an algorithm that needs what
-// the scenario's world lacks (AlgorithmInfo::needs). The name of a device_time may have the
-// suffixes of its variants (algorithms/device_time/variants.h).
+// Refused are a parameter that no algorithm of that name declares, parameters that contradict each
+// other, and an algorithm that needs what the scenario's world lacks (AlgorithmInfo::needs). The
+// name of a device_time may have the suffixes of its variants (algorithms/device_time/variants.h).
 //
 //   for (const PipelineChoice& choice : choose_pipelines(scenario, {"yoon2021_both"})) {
 //     PipelineScorer scorer(scorer_setup(scenario, choice));

@@ -192,6 +192,7 @@ Task<void> RigSession::capture() {
                        scenario_.timeline.warm_up_ms / 1000));
   if (triggered) co_await trigger_.turn(!genlock);
   co_await may_on_all(&RigSession::start);
+  started_ = true;
   if (genlock) co_await trigger_.turn(true);
   const double capture_s =
       (scenario_.timeline.warm_up_ms + scenario_.trigger.start_delay_ms) / 1000 +
@@ -246,7 +247,11 @@ Task<void> RigSession::end_all() {
 void RigSession::note_missing_frames() {
   const bool any = std::any_of(hosts_.begin(), hosts_.end(),
                                [](const HostState& host) { return host.journal.frames() > 0; });
-  if (!any) return;
+  if (!any) {
+    if (started_)
+      note("no frame arrived; is the trigger connected, at a rate that the mode allows?");
+    return;
+  }
   const std::int64_t wanted = layout_.first_pulse + layout_.pulses;
   std::uint32_t camera = 0;
   for (std::size_t host = 0; host < rig_.hosts.size(); ++host) {

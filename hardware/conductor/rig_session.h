@@ -121,6 +121,7 @@ class RigSession {
   std::vector<std::string> notes_;
   bool sync_ended_ = false;  // the master's
   std::optional<std::string> sync_failure_;
+  bool started_ = false;  // the cameras
   bool ending_ = false;
 };
 

@@ -1,5 +1,7 @@
-// Connections that have not proved the key yet: at most 64, for 2 s each. A further one makes the
+// Connections that have not proved the key yet: at most 256, for 2 s each. A further one makes the
 // oldest of the address with most of them be refused, so a flood displaces its own connections.
+// There is no limit for an address: a flood from the conductor's own would shut that out, which
+// needs no more than a round trip of 256 connections' time to prove the key.
 //
 // One thread.
 //
@@ -12,15 +14,17 @@
 
 #include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <cstddef>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 
 #include "hardware/clock/monotonic_time.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/net/secure_stream.h"
-#include "hardware/net/token_bucket.h"
 
 namespace simbench::hardware {
 
@@ -39,18 +43,23 @@ class Newcomers {
   void refuse_all();
 
  private:
+  // The newcomers of each address.
+  using Counts = std::map<boost::asio::ip::address, std::size_t>;
   struct Newcomer {
     boost::asio::ip::address from;
     boost::asio::cancellation_signal refuse;
+    bool is_refused = false;
   };
 
   void refuse_one();
+  void forget(const boost::asio::ip::address& from);
 
   boost::asio::io_context& context_;
   SecretKey key_;
   PeerName me_;
-  std::list<Newcomer> waiting_;
-  SourceBuckets allowed_;
+  std::list<Newcomer> waiting_;  // the oldest first
+  std::list<Newcomer> refused_;  // and not gone yet
+  Counts counts_;                // of those that wait
 };
 
 }  // namespace simbench::hardware

@@ -1,11 +1,14 @@
 #include "reports/text/output_file.h"
 
 #include <fmt/format.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -15,12 +18,63 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of an earlier result while the next one gets its name.
+constexpr const char* kAside = ".old";
+
 [[noreturn]] void fail(const std::string& named, const std::string& problem) {
   throw OutputError(fmt::format("{}: {}", named, problem));
 }
 
+// Nothing can be written there until somebody has made the target.
+void refuse_dangling_link(const std::string& named, const fs::path& path) {
+  fs::path link = fs::absolute(path);
+  if (!link.has_filename()) link = link.parent_path();
+  std::error_code error;
+  if (!fs::is_symlink(fs::symlink_status(link, error)) || fs::exists(link, error)) return;
+  fail(named, fmt::format("is a link to {}, which does not exist; make that, or remove the link",
+                          fs::read_symlink(link, error).string()));
+}
+
+// The name under which this process, or another one, writes `path`.
+fs::path unfinished_path(const fs::path& path, const std::string& process) {
+  return path.parent_path() / fmt::format(".{}.{}.unfinished", path.filename().string(), process);
+}
+
+bool is_dead(const std::string& process) {
+  pid_t id = 0;
+  const char* end = process.data() + process.size();
+  const auto [stop, error] = std::from_chars(process.data(), end, id);
+  return error == std::errc() && stop == end && id > 0 && ::kill(id, 0) != 0 && errno == ESRCH;
+}
+
+// Removes what killed processes have left of `path`. An earlier result that such a one had put
+// aside to replace it gets its name back.
+void clear_unfinished(const fs::path& path) {
+  const std::string begin = fmt::format(".{}.", path.filename().string());
+  const std::string end = ".unfinished";
+  std::vector<std::string> dead;
+  std::error_code error;
+  for (fs::directory_iterator entry(path.parent_path(), error), last; !error && entry != last;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.size() <= begin.size() + end.size()) continue;
+    if (!name.starts_with(begin) || !name.ends_with(end)) continue;
+    const std::string process = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (is_dead(process)) dead.push_back(process);
+  }
+  for (const std::string& process : dead) {
+    const fs::path unfinished = unfinished_path(path, process);
+    fs::path aside = unfinished;
+    aside += kAside;
+    if (!fs::exists(path, error)) fs::rename(aside, path, error);
+    fs::remove_all(aside, error);
+    fs::remove_all(unfinished, error);
+  }
+}
+
 // The full path, for a link that of its target.
 fs::path full_path(const std::string& named) {
+  refuse_dangling_link(named, named);
   std::error_code error;
   fs::path path = fs::weakly_canonical(fs::absolute(named), error);
   if (error) fail(named, error.message());
@@ -41,6 +95,7 @@ constexpr std::array<const char*, 4> kOwnFiles = {kManifest, "results.json", "fr
 
 // The folder's full path, without a slash at its end, for the name of a sibling.
 fs::path normal_path(const fs::path& folder) {
+  refuse_dangling_link(fmt::format("--output {}", folder.string()), folder);
   std::error_code error;
   fs::path path = fs::weakly_canonical(fs::absolute(folder), error);
   if (error) fail_output(folder, error.message());
@@ -89,8 +144,8 @@ void fail_output(const fs::path& folder, const std::string& problem) {
 std::string system_reason() { return errno ? std::strerror(errno) : "write error"; }
 
 OutputFile::OutputFile(const std::string& path) : named_(path), path_(full_path(path)) {
-  temporary_ =
-      path_.parent_path() / fmt::format(".{}.{}.unfinished", path_.filename().string(), getpid());
+  clear_unfinished(path_);
+  temporary_ = unfinished_path(path_, std::to_string(getpid()));
   errno = 0;
   std::ofstream file(temporary_, std::ios::binary);
   if (!file) {
@@ -127,13 +182,14 @@ void write_file(const std::string& path, std::string_view content) {
 
 OutputFolder::OutputFolder(const fs::path& folder, const std::vector<std::string>& more_own_files)
     : folder_(normal_path(folder)) {
+  clear_unfinished(folder_);
   check_replaceable(folder_, more_own_files);
   const fs::path parent = folder_.parent_path();
   std::error_code error;
   if (!fs::is_directory(parent, error)) {
     fail_output(folder, fmt::format("there is no folder {}; make it first", parent.string()));
   }
-  temporary_ = parent / fmt::format(".{}.{}.unfinished", folder_.filename().string(), getpid());
+  temporary_ = unfinished_path(folder_, std::to_string(getpid()));
   fs::remove_all(temporary_, error);  // of an earlier process with this one's number
   fs::create_directory(temporary_, error);
   if (error) fail_output(folder, fmt::format("cannot be written: {}", error.message()));
@@ -168,7 +224,7 @@ void OutputFolder::publish() {
   fs::path aside;
   if (fs::exists(folder_, error)) {
     aside = temporary_;
-    aside += ".old";
+    aside += kAside;
     fs::rename(folder_, aside, error);
     if (error) fail_output(folder_, fmt::format("cannot be replaced: {}", error.message()));
   }

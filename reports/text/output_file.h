@@ -1,9 +1,10 @@
 // Files and folders of results that appear complete or not at all.
 //
 // They are written under a temporary name beside their own; publish() renames. Without publish()
-// nothing is left, and an earlier result in that place stays. A link stays one: its target is
-// replaced. An OutputFolder replaces only an earlier result of simbench: it refuses a folder with
-// anything else in it.
+// nothing is left, and an earlier result in that place stays; what a killed process has left is
+// removed by the next one that writes there. A link stays one: its target is replaced. An
+// OutputFolder replaces only an earlier result of simbench: it refuses a folder with anything else
+// in it.
 //
 //   OutputFile file("fig8.csv");              // before the work: refuses what cannot be written
 //   file.write(text);

@@ -94,5 +94,27 @@ TEST(ParametersDeathTest, AskingForWhatWasNotDeclaredIsABug) {
   EXPECT_DEATH(parameters.number("threshold_ms"), "did not declare");
 }
 
+TEST(Parameters, RefusesThoseThatContradictEachOther) {
+  const std::vector<ParameterSpec> specs = {
+      number_parameter("least", 6, 0, 17, "", "test"),
+      not_below("least", number_parameter("most", 10, 0, 17, "", "test"))};
+  const auto problem = [&](const ParameterValues& given, const std::string& blamed) {
+    try {
+      check_parameters(specs, given);
+    } catch (const ParameterError& error) {
+      EXPECT_EQ(error.parameter(), blamed);
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(problem({{"most", 5.0}}, "most"),
+            "parameter \"most\" is 5; allowed: at least \"least\", which is 6");
+  EXPECT_EQ(problem({{"least", 12.0}}, "least"),
+            "parameter \"least\" is 12; allowed: at most \"most\", which is 10");
+  EXPECT_EQ(problem({{"least", 12.0}, {"most", 11.0}}, "most"),
+            "parameter \"most\" is 11; allowed: at least \"least\", which is 12");
+  EXPECT_EQ(problem({{"least", 3.0}, {"most", 3.0}}, ""), "none");
+}
+
 }  // namespace
 }  // namespace simbench

@@ -144,5 +144,44 @@ TEST_F(BadInput, OutputFoldersAreCheckedBeforeTheWork) {
   EXPECT_EQ(content("mine/notes.txt"), "mine");
 }
 
+TEST_F(BadInput, AlgorithmParametersThatContradictEachOther) {
+  const std::string name = file("polls.json",
+                                "{\"base\": \"18cam_6host_45fps_lan\",\n"
+                                " \"algorithms\": {\"ntp\": {\n"
+                                "  \"max_poll\": 5}}}\n");
+  const std::vector<std::string> parts = {"polls.json:3", "/algorithms/ntp/max_poll",
+                                          "is 5; allowed: at least \"min_poll\", which is 6"};
+  refuses({"validate", name}, parts);
+  refuses({"run", "--scenario", name, "--pipelines", "oracle"}, parts);
+}
+
+TEST_F(BadInput, AnEmptyValueOfAnyOption) {
+  const auto refuses_empty = [&](std::vector<std::string> command, const std::string& option) {
+    if (option.starts_with("-")) command.push_back(option);
+    command.emplace_back("");
+    refuses(command, {option + ": found '', allowed: a value that is not empty"});
+  };
+  for (const char* option :
+       {"--output", "--pipelines", "--set", "--rig", "--key-file", "--seeds", "--format"}) {
+    refuses_empty({"run", "--scenario", "3cam_1host_30fps"}, option);
+  }
+  refuses_empty({"run"}, "--scenario");
+  refuses_empty({"record", "--scenario", "3cam_1host_30fps", "-o", "x"}, "--collect");
+  refuses_empty({"node", "--rig", "rig.json", "--name", "host0"}, "--key-file");
+  refuses_empty({"node", "--rig", "rig.json", "--name", "host0"}, "--journal");
+  refuses_empty({"validate-model"}, "--save");
+  refuses_empty({"gate", "a", "b"}, "--junit");
+  refuses_empty({"sweep"}, "--study");
+  refuses_empty({"validate"}, "files");
+  refuses_empty({"replay"}, "recordings");
+  EXPECT_THAT(names_in(), testing::IsEmpty());
+}
+
+TEST_F(BadInput, ALinkToNothingAsOutputIsRefusedBeforeTheRun) {
+  std::filesystem::create_symlink("nowhere", folder() / "link");
+  refuses({"run", "--scenario", "3cam_1host_30fps", "--seeds", "100000", "--output", "link"},
+          {"--output link: is a link to nowhere, which does not exist"});
+}
+
 }  // namespace
 }  // namespace simbench

@@ -31,6 +31,7 @@ void redirect(const fs::path& path, int descriptor) {
   }
   redirect(out, STDOUT_FILENO);
   redirect(err, STDERR_FILENO);
+  if (options.closed_out) close(STDOUT_FILENO);
   if (options.largest_file) {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit = {*options.largest_file, *options.largest_file};

@@ -30,6 +30,8 @@ struct ProgramOptions {
   std::vector<std::string> environment = {};
   // Where standard output goes instead of ProgramResult::out.
   std::string out_file = {};
+  // Nothing is open as standard output.
+  bool closed_out = false;
 };
 
 // Whether simbench-reconstruct lies beside the program: only where Embree and Open3D are.

@@ -139,5 +139,41 @@ TEST_F(Usage, NumbersAreChecked) {
   refuses({"--scenario", "18cam_6host_45fps", "--set", "/timeline/frames"}, {"--set"});
 }
 
+TEST_F(Usage, AResultThatCannotBeWrittenIsOneClearLine) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"list"},
+           {"--help"},
+           {"--version"},
+           {"run", "--help"},
+           {"describe", "3cam_1host_30fps"},
+           {"completion", "bash"},
+           {"manual"},
+           {"manual", "run"},
+           {"trace", "--scenario", "3cam_1host_30fps", "-o", "-", "--format", "csv"},
+           {"sweep", "--study", "list"},
+           {"run", "--scenario", "3cam_1host_30fps", "--seeds", "1", "--jobs", "1"}}) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const ProgramResult full = run(arguments, {.out_file = "/dev/full"});
+    EXPECT_EQ(full.status, 2);
+    EXPECT_THAT(full.err, HasSubstr("error: "));
+    EXPECT_THAT(full.err, HasSubstr("No space left on device\n"));
+    EXPECT_THAT(full.err, Not(HasSubstr("internal error")));
+    const ProgramResult closed = run(arguments, {.closed_out = true});
+    EXPECT_EQ(closed.status, 2);
+    EXPECT_THAT(closed.err, HasSubstr("Bad file descriptor\n"));
+    EXPECT_THAT(closed.err, Not(HasSubstr("internal error")));
+  }
+}
+
+// Without an open standard output no other file may get its number.
+TEST_F(Usage, NothingIsWrittenIntoAResultThatHasTheNumberOfAClosedOutput) {
+  const ProgramResult result =
+      run({"run", "--scenario", "3cam_1host_30fps", "--seeds", "1", "--output", "results"},
+          {.closed_out = true});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(content("results/results.json"), StartsWith("{"));
+  EXPECT_THAT(content("results/hosts.csv"), Not(HasSubstr("AMD")));
+}
+
 }  // namespace
 }  // namespace simbench

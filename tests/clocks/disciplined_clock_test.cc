@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "hardware/clock/node_clock.h"
@@ -462,6 +465,63 @@ TEST(DisciplinedClockWorldsTest, TheWorldsAgree) {
       EXPECT_DOUBLE_EQ(log[i].rate_ppb, log_of_sim[i].rate_ppb) << "seed " << seed;
     }
   }
+}
+
+// Remembers the furthest instant at which it was looked at.
+struct WatchedOscillator {
+  using Instant = MonotonicTime;
+  double deviation_ns(Instant at) const {
+    *furthest = std::max(*furthest, at);
+    return to_ns(at.time_since_epoch()) * 1e-5;
+  }
+  SteadyTime steady(Instant at) const {
+    return SteadyTime(at.time_since_epoch() + from_ns(deviation_ns(at)));
+  }
+  std::shared_ptr<Instant> furthest = std::make_shared<Instant>();
+};
+
+// 5e8 ms at 500 ppm take 31 years, through which nobody samples an oscillator's noise.
+TEST(DisciplinedClockFarSlew, IsPlannedWhenItsEndIsNear) {
+  const WatchedOscillator oscillator;
+  DisciplinedClock clock(3, oscillator, MonotonicTime{}, HostTime{});
+  std::vector<ClockAdjustment> log;
+  clock.observe([&](const ClockAdjustment& entry) { log.push_back(entry); });
+  clock.slew(MonotonicTime{}, from_ms(5e8), 500'000);
+  EXPECT_EQ(*oscillator.furthest, MonotonicTime{});
+  int looks = 0;
+  MonotonicTime now{};
+  for (std::optional<MonotonicTime> look; (look = clock.settles_at());) {
+    ASSERT_GT(*look, now);
+    ASSERT_LT(++looks, 40);
+    now = *look;
+    EXPECT_EQ(log.size(), 1U);
+    clock.settle(now);
+    EXPECT_LE(*oscillator.furthest, now + std::chrono::hours(25));
+  }
+  ASSERT_EQ(log.size(), 2U);
+  EXPECT_EQ(log[1].rate_ppb, 0);
+  const double ahead_ms =
+      to_ms(clock.read(now) - HostTime(oscillator.steady(now).time_since_epoch()));
+  EXPECT_NEAR(ahead_ms, 5e8, 1e-3);
+}
+
+TEST(FirstInstant, IsFoundFromAnyGuess) {
+  for (const double guess : {-9e15, -1.0, 41.0, 42.0, 43.0, 1e15}) {
+    int looks = 0;
+    const TrueTime found = first_instant(TrueTime(from_ns(guess)), [&](TrueTime t) {
+      ++looks;
+      return t >= TrueTime(Nanoseconds(42));
+    });
+    EXPECT_EQ(found, TrueTime(Nanoseconds(42))) << guess;
+    EXPECT_LT(looks, 120) << guess;
+  }
+}
+
+TEST(FirstInstant, EndsWhereThereIsNone) {
+  EXPECT_GT(first_instant(TrueTime{}, [](TrueTime) { return false; }),
+            TrueTime(Nanoseconds(1L << 60)));
+  EXPECT_LT(first_instant(TrueTime{}, [](TrueTime) { return true; }),
+            TrueTime(Nanoseconds(-(1L << 59))));
 }
 
 }  // namespace

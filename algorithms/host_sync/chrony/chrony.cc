@@ -212,15 +212,16 @@ std::vector<ParameterSpec> chrony_parameters() {
   return {
       number_parameter("min_poll", 6, 0, 17, "shortest poll interval, log2 s",
                        kChronyDocumentation),
-      number_parameter("max_poll", 10, 0, 17, "longest poll interval, log2 s",
-                       kChronyDocumentation),
+      not_below("min_poll", number_parameter("max_poll", 10, 0, 17, "longest poll interval, log2 s",
+                                             kChronyDocumentation)),
       number_parameter("poll_target", 8, 3, 60, "samples that the poll interval aims at",
                        kChronyDocumentation),
       flag_parameter("iburst", true, "four good exchanges at 2 s to begin with",
                      "usual configuration (iburst)"),
       number_parameter("min_samples", 6, 3, 64, "samples that the runs test leaves",
                        kChronyDocumentation),
-      number_parameter("max_samples", 64, 4, 64, "samples that are kept", kChronyDocumentation),
+      not_below("min_samples", number_parameter("max_samples", 64, 4, 64, "samples that are kept",
+                                                kChronyDocumentation)),
       number_parameter("max_delay_ratio", 10, 0.1, 1e6,
                        "largest delay above the minimum, in standard deviations of the samples",
                        kChronyDocumentation),
@@ -245,7 +246,6 @@ std::unique_ptr<HostSync> make_chrony(const Parameters& parameters) {
   ChronySettings settings;
   settings.poll_min = static_cast<int>(parameters.number("min_poll"));
   settings.poll_max = static_cast<int>(parameters.number("max_poll"));
-  check_poll_bounds(settings.poll_min, settings.poll_max);
   settings.poll_target = parameters.number("poll_target");
   settings.initial_burst = parameters.flag("iburst");
   settings.stats.min_samples = static_cast<std::size_t>(parameters.number("min_samples"));

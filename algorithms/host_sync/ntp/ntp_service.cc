@@ -245,10 +245,6 @@ void NtpClient::note_reply(bool replied) {
 
 }  // namespace
 
-void check_poll_bounds(int low, int high) {
-  if (low > high) throw ParameterError("max_poll", "max_poll must not be below min_poll");
-}
-
 NtpStamps stamps_of(const Parameters& parameters) {
   return parameters.text("stamps") == "kernel" ? NtpStamps::kKernel : NtpStamps::kApplication;
 }
@@ -290,7 +286,8 @@ std::vector<ParameterSpec> ntp_parameters(double service_hours) {
       number_parameter("panic_s", 1000, 0, 1e9, "offset that ends the service; 0: none",
                        kReferenceNtp),
       number_parameter("min_poll", 6, 3, 17, "shortest poll interval, log2 s", kReferenceNtp),
-      number_parameter("max_poll", 10, 3, 17, "longest poll interval, log2 s", kReferenceNtp),
+      not_below("min_poll", number_parameter("max_poll", 10, 3, 17, "longest poll interval, log2 s",
+                                             kReferenceNtp)),
       flag_parameter("iburst", true, "a burst of eight exchanges while the server is not reached",
                      "usual configuration (iburst)"),
       choice_parameter("stamps", {"application", "kernel"},
@@ -322,7 +319,6 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double se
     settings.discipline.panic_s = parameters.number("panic_s");
     settings.discipline.poll_min = static_cast<int>(parameters.number("min_poll"));
     settings.discipline.poll_max = static_cast<int>(parameters.number("max_poll"));
-    check_poll_bounds(settings.discipline.poll_min, settings.discipline.poll_max);
     settings.initial_burst = parameters.flag("iburst");
     settings.stamps = stamps_of(parameters);
     settings.broadcast_interval = from_seconds(parameters.number("broadcast_interval_s"));

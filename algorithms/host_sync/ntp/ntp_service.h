@@ -65,9 +65,7 @@ class NtpService : public HostSync {
   NtpSettings settings_;
 };
 
-// For all algorithms that poll as NTP does: throws ParameterError unless min_poll <= max_poll;
-// reads the parameter stamps, "application" or "kernel".
-void check_poll_bounds(int low, int high);
+// For all algorithms that poll as NTP does: reads the parameter stamps, "application" or "kernel".
 NtpStamps stamps_of(const Parameters& parameters);
 
 }  // namespace simbench

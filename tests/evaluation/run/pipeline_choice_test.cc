@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "evaluation/run/evaluate.h"
 #include "scenarios/loader.h"
 #include "tests/evaluation/test_scenario.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -192,6 +194,70 @@ TEST(PipelineChoiceTest, TheScenarioDecidesWhatIsScored) {
   EXPECT_EQ(setup.median, MedianKind::kMeanOfMiddleTwo);
   EXPECT_DOUBLE_EQ(setup.gathering_interval_periods, 0.25);
   EXPECT_TRUE(setup.genlock);
+}
+
+std::string problem_with(const std::vector<scenarios::Override>& overrides) {
+  try {
+    choose_pipelines(scenarios::load_scenario("18cam_6host_45fps_lan", overrides), {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(PipelineChoiceTest, ParametersThatContradictEachOtherAreRefusedWhereTheyAreSet) {
+  EXPECT_EQ(problem_with({{"/algorithms/ntp/max_poll", "5"}}),
+            "--set /algorithms/ntp/max_poll: parameter \"max_poll\" is 5; allowed: at least "
+            "\"min_poll\", which is 6");
+  EXPECT_THAT(problem_with({{"/algorithms/ntp/min_poll", "12"}}),
+              HasSubstr("--set /algorithms/ntp/min_poll: parameter \"min_poll\" is 12"));
+  EXPECT_THAT(problem_with({{"/algorithms/chrony/max_poll", "5"}}), HasSubstr("\"min_poll\""));
+  EXPECT_THAT(problem_with({{"/algorithms/chrony/max_samples", "5"}}),
+              HasSubstr("at least \"min_samples\", which is 6"));
+  EXPECT_EQ(problem_with({{"/algorithms/ntp/max_poll", "5"}, {"/algorithms/ntp/min_poll", "4"}}),
+            "none");
+}
+
+// Every pair of a least and a most is declared, whatever algorithm has it.
+TEST(PipelineChoiceTest, EveryPairOfBoundsIsInOrder) {
+  int pairs = 0;
+  for (const HostSyncEntry& entry : nonempty(host_sync_algorithms())) {
+    for (const ParameterSpec& spec : entry.info.parameters) {
+      if (!spec.name.starts_with("max_")) continue;
+      const std::string least = "min_" + spec.name.substr(4);
+      const bool has_least =
+          std::any_of(entry.info.parameters.begin(), entry.info.parameters.end(),
+                      [&](const ParameterSpec& other) { return other.name == least; });
+      if (!has_least) continue;
+      ++pairs;
+      EXPECT_EQ(spec.not_below, least) << entry.info.name;
+    }
+  }
+  EXPECT_GT(pairs, 3);
+}
+
+// A user's own algorithm that refuses what its declaration allows.
+TEST(PipelineChoiceTest, AnAlgorithmThatCannotBeMadeIsRefused) {
+  const char* const name = "test_fussy";
+  if (find_device_time(name) == nullptr) {
+    register_device_time({.info = {.name = name,
+                                   .family = name,
+                                   .summary = "takes no odd number",
+                                   .source = "this test",
+                                   .parameters = {number_parameter("number", 2, 0, 9, "", "test")}},
+                          .make = [](const Parameters& parameters) {
+                            if (parameters.number("number") == 3) {
+                              throw ParameterError("number", "found 3, allowed: even numbers");
+                            }
+                            return std::make_unique<Lag>(1);
+                          }});
+  }
+  const std::vector<scenarios::Override> base = {{"/pipelines/0/device_time", name}};
+  EXPECT_EQ(problem_with(base), "none");
+  std::vector<scenarios::Override> odd = base;
+  odd.push_back({"/algorithms/test_fussy/number", "3"});
+  EXPECT_EQ(problem_with(odd),
+            "--set /algorithms/test_fussy/number: found 3, allowed: even numbers");
 }
 
 }  // namespace

@@ -109,6 +109,22 @@ TEST(RigSource, SaysWhichCameraRefuses) {
               AllOf(HasSubstr("host1: camera cam1"), HasSubstr("it offers 640x480")));
 }
 
+TEST(RigSource, SaysThatNoFrameCame) {
+  TestRig rig({0, 0});
+  for (const std::size_t host : {0U, 1U}) rig.silence_cameras(host);
+  const Outcome outcome = record(rig.rig(), small_scenario());
+  EXPECT_EQ(outcome.failure, "");
+  EXPECT_THAT(outcome.cost.notes,
+              Contains(HasSubstr("no frame arrived; is the trigger connected")));
+}
+
+TEST(RigSource, SaysWhichCameraHasNoFrame) {
+  TestRig rig({0, 0});
+  rig.silence_cameras(1);
+  const Outcome outcome = record(rig.rig(), small_scenario());
+  EXPECT_THAT(outcome.cost.notes, ElementsAre(HasSubstr("host1: camera cam1: no frame came")));
+}
+
 TEST(RigSource, UnknownPipelinesAreRefusedByTheNodes) {
   const TestRig rig({0, 0});
   const scenarios::Scenario scenario = small_scenario();

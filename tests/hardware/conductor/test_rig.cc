@@ -31,13 +31,14 @@ class NoSync final : public HostSync {
 
 class TickingCamera final : public Camera {
  public:
-  TickingCamera(std::string serial, std::atomic<std::size_t>& delivered)
-      : info_{std::move(serial), "ticking", "", ""}, delivered_(delivered) {}
+  TickingCamera(std::string serial, bool silent, std::atomic<std::size_t>& delivered)
+      : info_{std::move(serial), "ticking", "", ""}, silent_(silent), delivered_(delivered) {}
   ~TickingCamera() override { stop(); }
 
   const CameraInfo& info() const override { return info_; }
   void configure(const CameraSettings&) override {}
   void start(FrameHandler on_frame, CameraEventHandler) override {
+    if (silent_) return;
     thread_ = std::jthread([this, on_frame](const std::stop_token& stopped) {
       const MonotonicTime start = monotonic_now();
       for (std::uint32_t counter = 0; !stopped.stop_requested(); ++counter) {
@@ -57,6 +58,7 @@ class TickingCamera final : public Camera {
 
  private:
   CameraInfo info_;
+  bool silent_;
   std::atomic<std::size_t>& delivered_;
   std::jthread thread_;
 };
@@ -67,9 +69,10 @@ class TickingDriver final : public CameraDriver {
   std::vector<CameraInfo> list() override { return {{serial_, "ticking", "", ""}}; }
   std::unique_ptr<Camera> open(const std::string& serial) override {
     if (broken) throw CameraError("does not offer 848x480 at 90 Hz; it offers 640x480 at 30 Hz");
-    return std::make_unique<TickingCamera>(serial, delivered);
+    return std::make_unique<TickingCamera>(serial, silent, delivered);
   }
   std::atomic<bool> broken = false;
+  std::atomic<bool> silent = false;
   std::atomic<std::size_t> delivered = 0;
 
  private:
@@ -175,6 +178,8 @@ std::size_t TestRig::frames_in_journals(std::size_t host) const {
 }
 
 void TestRig::break_cameras(std::size_t host) { hosts_[host]->driver.broken = true; }
+
+void TestRig::silence_cameras(std::size_t host) { hosts_[host]->driver.silent = true; }
 
 std::size_t TestRig::frames_delivered(std::size_t host) const {
   return hosts_[host]->driver.delivered;

@@ -40,6 +40,8 @@ class TestRig {
   std::size_t restart(std::size_t host);
   // From now on this host's cameras refuse to be opened.
   void break_cameras(std::size_t host);
+  // They are opened, but have no frame.
+  void silence_cameras(std::size_t host);
   // What its cameras have delivered so far.
   std::size_t frames_delivered(std::size_t host) const;
 

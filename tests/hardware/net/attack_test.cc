@@ -237,5 +237,27 @@ TEST(Attack, AFloodIsRefusedAndWhatIsRealArrives) {
   EXPECT_GT(counted.refused_rate, 0u);
 }
 
+// Connections that never say a word come from 127.0.0.1, as the conductor's own does.
+TEST(Attack, AFloodFromTheConductorsAddressDoesNotLockItOut) {
+  Networks hosts(1);
+  std::unique_ptr<SecureStream> admitted;
+  hosts.networks[0]->on_conductor(
+      [&](std::unique_ptr<SecureStream> stream) { admitted = std::move(stream); });
+  const std::uint16_t port = hosts.networks[0]->port();
+  std::vector<tcp::socket> flood;
+  const auto connect_one = [&] {
+    flood.emplace_back(hosts.context).connect({boost::asio::ip::make_address("127.0.0.1"), port});
+    hosts.context.poll();
+  };
+  for (int i = 0; i < 400; ++i) connect_one();
+  pass(hosts.context, 20);
+  Running conductor(hosts.context, SecureStream::connect(hosts.context, "127.0.0.1", port,
+                                                         key_from_digit('7'), PeerName{}, soon()));
+  for (int i = 0; i < 20; ++i) connect_one();
+  EXPECT_NE(conductor.get(), nullptr);
+  EXPECT_TRUE(until(hosts.context, [&] { return admitted != nullptr; }));
+  EXPECT_GE(hosts.statistics(0).refused_connections, 400U - 256U);
+}
+
 }  // namespace
 }  // namespace simbench::hardware

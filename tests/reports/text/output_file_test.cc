@@ -2,6 +2,7 @@
 #include "reports/text/output_file.h"
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -71,6 +72,28 @@ TEST_F(OutputFileTest, WhatCannotBeWrittenIsRefusedBeforeTheWork) {
   EXPECT_THAT(problem(path("missing/a.html")), HasSubstr("missing; make it first"));
   EXPECT_THAT(problem("/dev/null"), HasSubstr("is not a file that can be replaced"));
   EXPECT_THAT(problem("/proc/a.html"), HasSubstr("cannot be written"));
+}
+
+TEST_F(OutputFileTest, ALinkToNothingIsRefusedBeforeTheWork) {
+  fs::create_symlink(path("nowhere"), path("link"));
+  EXPECT_THAT(problem(path("link")), HasSubstr("is a link to " + path("nowhere")));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(OutputFileTest, WhatAKilledProcessLeftIsCleared) {
+  const pid_t dead = fork();
+  if (dead == 0) _exit(0);
+  waitpid(dead, nullptr, 0);
+  const auto unfinished = [&](pid_t process) {
+    return path(".a.html." + std::to_string(process) + ".unfinished");
+  };
+  put(unfinished(dead), "half");
+  put(unfinished(getppid()), "of a process that works");
+  put(path(".a.html.txt.unfinished"), "no process");
+  const OutputFile file(path("a.html"));
+  EXPECT_FALSE(fs::exists(unfinished(dead)));
+  EXPECT_TRUE(fs::exists(unfinished(getppid())));
+  EXPECT_TRUE(fs::exists(path(".a.html.txt.unfinished")));
 }
 
 }  // namespace

@@ -213,5 +213,21 @@ TEST(OscillatorTest, ComponentsAndSeedsDiffer) {
   EXPECT_NE(one, OscillatorModel(noisy(1, 1), kRunSeed + 1, "host1").deviation_ns(at_seconds(5)));
 }
 
+TEST(OscillatorTest, AClockRunsForwardHoweverItWanders) {
+  scenarios::Oscillator parameters = noisy(0, 1e6);
+  parameters.wander_step_ms = 1000;
+  parameters.skew_sigma_ppm = 0;
+  for (const double ramp_ppm_per_hour : {-1000.0, 0.0, 1000.0}) {
+    parameters.ramp_ppm_per_hour = ramp_ppm_per_hour;
+    const OscillatorModel oscillator(parameters, kRunSeed, "host1");
+    double last_ns = oscillator.deviation_ns(at_seconds(-1e6));
+    for (double s = -1e6 + 100; s < 1e6; s += 100) {
+      const double ns = oscillator.deviation_ns(at_seconds(s));
+      ASSERT_LT(std::abs(ns - last_ns), 0.11 * 100e9) << s;
+      last_ns = ns;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace simbench::sim

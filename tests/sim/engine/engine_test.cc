@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <string>
 
 #include "tests/sim/engine/recorder.h"
@@ -241,6 +242,22 @@ TEST(EngineDeathTest, StopsAtProgrammingErrors) {
   recorder.on_event = [&](const Event&) { engine.run(); };
   recorder.schedule(100);
   EXPECT_DEATH(engine.run(), "must not run the engine");
+}
+
+TEST(Engine, StopsSoonOnceItIsCancelled) {
+  std::atomic<bool> cancel = false;
+  Engine engine({.cancel = &cancel});
+  Recorder recorder(engine);
+  recorder.schedule(0, 0);
+  recorder.on_event = [&](const Event& event) {
+    if (event.subject == 10) cancel = true;
+    recorder.schedule(event.time.time_since_epoch().count() + 1, event.subject + 1);
+  };
+  engine.run();
+  EXPECT_GT(engine.events(), 10U);
+  EXPECT_LT(engine.events(), 5000U);
+  engine.run();
+  EXPECT_LT(engine.events(), 5000U);
 }
 
 }  // namespace

@@ -70,5 +70,18 @@ TEST(BurstProcessTest, LinksDiffer) {
   EXPECT_GT(different, 100);
 }
 
+// The permitted extremes: two billion bursts in a cell, which nobody samples.
+TEST(BurstProcessTest, SoManyBurstsThatOneIsAlwaysUnderWay) {
+  BurstProcess bursts({.rate_hz = 1e5, .duration_exponential_ms = 1e6, .latency_ms = 1}, kLoadSeed,
+                      kLinkBursts, 0);
+  for (int ms = -1000; ms < 1000; ++ms) EXPECT_TRUE(bursts.active(at_ms(ms)));
+}
+
+TEST(BurstProcessTest, JustFewEnoughBurstsAreSampledAndOneIsAlwaysUnderWay) {
+  BurstProcess bursts({.rate_hz = 999, .duration_exponential_ms = 50, .latency_ms = 1}, kLoadSeed,
+                      kLinkBursts, 0);
+  for (int ms = -1000; ms < 1000; ++ms) EXPECT_TRUE(bursts.active(at_ms(ms)));
+}
+
 }  // namespace
 }  // namespace simbench::sim
