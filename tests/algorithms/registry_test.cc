@@ -17,6 +17,7 @@ using ::testing::ElementsAre;
 template <class Entry>
 std::vector<std::string> entry_names(const std::vector<Entry>& entries) {
   std::vector<std::string> all;
+  all.reserve(entries.size());
   for (const Entry& entry : entries) all.push_back(entry.info.name);
   return all;
 }
@@ -75,12 +76,14 @@ TEST(Registry, FindsByName) {
 }
 
 TEST(Registry, TakesAUsersAlgorithmOnce) {
-  register_device_time(constant("registry_test_constant"));
-  EXPECT_THAT(entry_names(device_time_algorithms()), Contains("registry_test_constant"));
-  const DeviceTimeEntry* entry = find_device_time("registry_test_constant");
+  static int repetition = 0;  // of this test in this program
+  const std::string name = "registry_test_constant" + std::to_string(repetition++);
+  register_device_time(constant(name));
+  EXPECT_THAT(entry_names(device_time_algorithms()), Contains(name));
+  const DeviceTimeEntry* entry = find_device_time(name);
   ASSERT_NE(entry, nullptr);
   EXPECT_EQ(entry->make({})->stamp({}), GlobalTime(from_ms(1)));
-  EXPECT_THROW(register_device_time(constant("registry_test_constant")), std::invalid_argument);
+  EXPECT_THROW(register_device_time(constant(name)), std::invalid_argument);
   EXPECT_THROW(register_device_time(constant("raw_arrival")), std::invalid_argument);
 }
 

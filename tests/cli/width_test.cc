@@ -25,7 +25,7 @@ class Width : public ProgramTest {
 };
 
 const std::vector<std::vector<std::string>>& commands() {
-  static const std::vector<std::vector<std::string>> kCommands = {
+  static const std::vector<std::vector<std::string>> all_commands = {
       {"run", "--scenario", "18cam_6host_45fps", "--seeds", "1", "--set", "/timeline/frames=20"},
       {"run", "--scenario", "3cam_1host_30fps", "--seeds", "1", "--set", "/timeline/frames=8",
        "--pipelines", "free_running", "--budget"},
@@ -34,7 +34,7 @@ const std::vector<std::vector<std::string>>& commands() {
       {"list", "pipelines"},
       {"list", "cameras"},
       {"list", "algorithms"}};
-  return kCommands;
+  return all_commands;
 }
 
 TEST_F(Width, TablesAndProseFit) {

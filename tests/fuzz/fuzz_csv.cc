@@ -7,6 +7,7 @@
 #include "evaluation/replay/replay.h"
 #include "recording/rs_csv.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   simbench::CsvRecordingReader reader;
   try {

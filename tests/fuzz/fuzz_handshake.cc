@@ -9,9 +9,8 @@
 
 #include "hardware/net/wire.h"
 
+namespace simbench::hardware {
 namespace {
-
-using namespace simbench::hardware;
 
 void expect(bool holds) {
   if (!holds) std::abort();
@@ -47,9 +46,12 @@ void try_frames(std::span<const std::byte> bytes) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
   try_frames(try_hello(bytes));
   try_frames(bytes);
   return 0;
 }
+
+}  // namespace simbench::hardware

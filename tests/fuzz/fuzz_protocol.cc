@@ -45,6 +45,7 @@ void try_answer(std::span<const std::byte> message) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> message(reinterpret_cast<const std::byte*>(data), size);
   try_request(message);

@@ -5,9 +5,10 @@
 
 #include "hardware/rig/rig.h"
 
+namespace simbench {
+
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace simbench;
   const std::string text(reinterpret_cast<const char*>(data), size);
   static const scenarios::Scenario scenario = scenarios::load_scenario("6cam_2host_30fps");
   try {
@@ -20,3 +21,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   return 0;
 }
+
+}  // namespace simbench

@@ -36,26 +36,26 @@ class NullGate : public testing::Test {
   static void SetUpTestSuite() {
     const scenarios::Scenario scenario =
         scenarios::load_scenario("6cam_2host_30fps", {{"/timeline/frames", "30"}});
-    all_ = new Archive;
-    all_->scenario_json = scenario.resolved_json;
-    all_->results = evaluation::evaluate(
+    archives = new Archive;
+    archives->scenario_json = scenario.resolved_json;
+    archives->results = evaluation::evaluate(
         scenario, [&] { return sim::make_simulation(scenario); },
         {.seeds = 2 * kGates * kSeeds,
          .pipelines = {"ntp_last_set", "yoon2021_network", "yoon2021_time", "yoon2021_both",
                        "oracle"}},
         nullptr);
   }
-  static void TearDownTestSuite() { delete all_; }
+  static void TearDownTestSuite() { delete archives; }
 
   // The archive of the seeds from `first` on.
   static Archive part(std::uint64_t first) {
     Archive archive;
     archive.path = "part";
-    archive.scenario_json = all_->scenario_json;
-    archive.results.scenario = all_->results.scenario;
+    archive.scenario_json = archives->scenario_json;
+    archive.results.scenario = archives->results.scenario;
     archive.results.first_seed = first;
     archive.results.seed_count = kSeeds;
-    for (const evaluation::Row& row : all_->results.rows) {
+    for (const evaluation::Row& row : archives->results.rows) {
       evaluation::Row some;
       some.pipeline = row.pipeline;
       some.amd_ms = slice(row.amd_ms, first);
@@ -86,10 +86,10 @@ class NullGate : public testing::Test {
     return failed;
   }
 
-  static Archive* all_;
+  static Archive* archives;
 };
 
-Archive* NullGate::all_ = nullptr;
+Archive* NullGate::archives = nullptr;
 
 TEST_F(NullGate, FailsSeldomWhereNothingChanged) {
   const int failed = failures(true, 1);
@@ -108,7 +108,7 @@ TEST_F(NullGate, FailsSeldomWithoutMarginsToo) {
 
 // The t-test of one metric is neither blind nor jumpy: it rejects about as often as its level says.
 TEST_F(NullGate, ASingleMetricIsRejectedAboutOnceInTwenty) {
-  for (std::size_t row = 0; row < nonempty(all_->results.rows).size(); ++row) {
+  for (std::size_t row = 0; row < nonempty(archives->results.rows).size(); ++row) {
     int rejected = 0;
     for (std::uint64_t i = 0; i < kGates; ++i) {
       const auto t =
@@ -117,8 +117,8 @@ TEST_F(NullGate, ASingleMetricIsRejectedAboutOnceInTwenty) {
       rejected += static_cast<int>(t.p <= 0.05);
     }
     // 10 are expected; outside of this in fewer than 1 of 1000.
-    EXPECT_GE(rejected, 1) << all_->results.rows[row].pipeline;
-    EXPECT_LE(rejected, 21) << all_->results.rows[row].pipeline;
+    EXPECT_GE(rejected, 1) << archives->results.rows[row].pipeline;
+    EXPECT_LE(rejected, 21) << archives->results.rows[row].pipeline;
   }
 }
 

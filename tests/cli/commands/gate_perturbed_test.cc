@@ -1,4 +1,5 @@
 // `simbench gate` on an algorithm that was made worse: a regression over 5 frames in place of 30.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -64,8 +65,8 @@ class PerturbedGate : public ProgramTest {
       EXPECT_EQ(same.status, 0) << same.out << same.err;
       const ProgramResult result = gate("now");
       EXPECT_EQ(result.status, 3) << result.out << result.err;
-      EXPECT_THAT(result.out,
-                  HasSubstr("FAILED: AMD of " + pipeline + " in " + scenario + ", seeds 1-32"));
+      EXPECT_THAT(result.out, HasSubstr(fmt::format("FAILED: AMD of {} in {}, seeds 1-32", pipeline,
+                                                    scenario)));
       EXPECT_THAT(result.out, HasSubstr("simbench gate now --baseline b.json"));
       EXPECT_THAT(content("j.xml"), HasSubstr("<failure message=\"AMD of " + pipeline));
     }

@@ -17,7 +17,7 @@ using testing::ThrowsMessage;
 FitInput rig_of(const std::vector<std::uint32_t>& hosts, double period_ms = 1e3 / 30) {
   FitInput input;
   for (const std::uint32_t host : hosts) {
-    while (input.hosts.size() <= host) input.hosts.push_back("h");
+    while (input.hosts.size() <= host) input.hosts.emplace_back("h");
     input.cameras.push_back({"camera", host});
     FitStream stream{.camera = input.cameras.size() - 1, .kind = "depth", .frames = {}};
     for (int i = 0; i < 200; ++i) {

@@ -70,8 +70,8 @@ TEST(ExposureSet, Spread) {
   EXPECT_EQ(set.spread_ms(), 0);
   set.cameras = {std::nullopt, SetExposure{.mid_exposure_s = 5}};
   EXPECT_EQ(set.spread_ms(), 0);
-  set.cameras.push_back(SetExposure{.mid_exposure_s = 4.25});
-  set.cameras.push_back(SetExposure{.mid_exposure_s = 4.5});
+  set.cameras.emplace_back(SetExposure{.mid_exposure_s = 4.25});
+  set.cameras.emplace_back(SetExposure{.mid_exposure_s = 4.5});
   EXPECT_EQ(set.spread_ms(), 750);
 }
 

@@ -24,6 +24,7 @@ Row leaderboard_row(const std::string& pipeline, std::vector<double> errors, boo
 
 std::vector<std::string> names(const std::vector<Rank>& ranks) {
   std::vector<std::string> names;
+  names.reserve(ranks.size());
   for (const Rank& rank : ranks) names.push_back(rank.row->pipeline);
   return names;
 }

@@ -131,7 +131,8 @@ TEST(Compare, ARatioToNothingDoesNotExist) {
 }
 
 TEST(Compare, OrderOfArgumentsOnlyTurnsTheSign) {
-  PairedValues values = pairs_of(40, [](auto i, double a) { return a + 0.1 * double(i % 7); });
+  PairedValues values =
+      pairs_of(40, [](auto i, double a) { return a + 0.1 * static_cast<double>(i % 7); });
   const PairedComparison forth = compare(values, {});
   for (Pair& pair : values.pairs) std::swap(pair.a, pair.b);
   const PairedComparison back = compare(values, {});

@@ -47,6 +47,7 @@ TEST(SeedsNeeded, TheFewestThatAreEnough) {
 TEST(SeedsNeeded, HoldsForDrawsFromTheRun) {
   std::mt19937 random(3);
   std::vector<double> values;
+  values.reserve(999);
   for (int i = 0; i < 999; ++i) {
     values.push_back(std::exp(static_cast<double>(random()) / 4294967296.0 * 4));
   }
@@ -55,6 +56,7 @@ TEST(SeedsNeeded, HoldsForDrawsFromTheRun) {
   constexpr int kStudies = 4000;
   for (int study = 0; study < kStudies; ++study) {
     std::vector<double> drawn;
+    drawn.reserve(16);
     for (int i = 0; i < 16; ++i) drawn.push_back(values[random() % values.size()]);
     const double centre = median(drawn);
     inside += centre >= interval.low && centre <= interval.high ? 1 : 0;

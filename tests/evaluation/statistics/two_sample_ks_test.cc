@@ -107,6 +107,8 @@ TEST(TwoSampleKs, RejectsAsOftenAsItSays) {
   for (int trial = 0; trial < 4000; ++trial) {
     std::vector<double> a;
     std::vector<double> b;
+    a.reserve(20);
+    b.reserve(30);
     for (int i = 0; i < 20; ++i) a.push_back(static_cast<double>(random()));
     for (int i = 0; i < 30; ++i) b.push_back(static_cast<double>(random()));
     if (ks_distance(a, b) >= critical) ++rejected;

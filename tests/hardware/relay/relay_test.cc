@@ -36,6 +36,9 @@ scenarios::Scenario scenario(const std::vector<scenarios::Override>& overrides =
 
 // Two nodes, and a relay that runs in a thread of its own.
 class RelayTest : public testing::Test {
+ public:
+  ~RelayTest() override { stop(); }
+
  protected:
   RelayTest() {
     for (int node = 0; node < 2; ++node) {
@@ -47,7 +50,6 @@ class RelayTest : public testing::Test {
       rigs_.push_back(rig);
     }
   }
-  ~RelayTest() override { stop(); }
 
   void start(scenarios::Scenario scenario) {
     scenario_ = std::move(scenario);

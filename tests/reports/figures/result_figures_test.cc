@@ -125,6 +125,7 @@ TEST(ResultFiguresTest, HostOrderIsTheMedianByHost) {
 
 TEST(ResultFiguresTest, OfManyPipelinesTheFirstAreDrawnTogether) {
   std::vector<evaluation::Row> rows;
+  rows.reserve(40);
   for (int i = 0; i < 40; ++i) rows.push_back(row("pipeline " + std::to_string(i), {1.0 + i}));
   const std::vector<Figure> figures = distributions(archive_of(std::move(rows)));
   EXPECT_THAT(figures, SizeIs(41));

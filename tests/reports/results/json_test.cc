@@ -59,7 +59,7 @@ TEST(ResultsJson, WhatDoesNotExistIsNull) {
             Json::parse(R"({"median": null, "p05": null, "p95": null, "values": [null, null]})"));
   const Json nothing =
       Json::parse(R"({"median": null, "p05": null, "p95": null, "values": [null, null]})");
-  const Json gathering = row["gathering_score"];
+  const Json& gathering = row["gathering_score"];
   EXPECT_TRUE(gathering["precision"].is_null());
   EXPECT_EQ(gathering["recall"], 0.0);
   EXPECT_TRUE(gathering["margin_ms"].is_null());

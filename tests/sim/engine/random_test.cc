@@ -21,6 +21,7 @@ static_assert(std::uniform_random_bit_generator<RandomStream>);
 template <class Generator>
 std::vector<std::uint64_t> first_draws(Generator generator, int count) {
   std::vector<std::uint64_t> draws;
+  draws.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) draws.push_back(generator());
   return draws;
 }

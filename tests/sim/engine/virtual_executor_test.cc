@@ -46,11 +46,11 @@ class VirtualExecutorTest : public testing::Test {
 
 TEST_F(VirtualExecutorTest, PostedWorkRunsNowInOrderAndNotNested) {
   asio::post(context, [this] {
-    log.push_back("a begins");
-    asio::post(context, [this] { log.push_back("c"); });
-    log.push_back("a ends");
+    log.emplace_back("a begins");
+    asio::post(context, [this] { log.emplace_back("c"); });
+    log.emplace_back("a ends");
   });
-  asio::post(context, [this] { log.push_back("b"); });
+  asio::post(context, [this] { log.emplace_back("b"); });
   EXPECT_TRUE(log.empty());
   engine.run();
   EXPECT_THAT(log, ElementsAre("a begins", "a ends", "b", "c"));
@@ -120,7 +120,7 @@ asio::awaitable<void> log_wait(VirtualContext& context, WaitPoint& point,
     log.push_back((notified ? "notified at " : "deadline at ") +
                   std::to_string(context.engine().now().time_since_epoch().count()));
   } catch (const boost::system::system_error& error) {
-    log.push_back(error.code() == asio::error::operation_aborted ? "aborted" : "failed");
+    log.emplace_back(error.code() == asio::error::operation_aborted ? "aborted" : "failed");
   }
 }
 
@@ -241,7 +241,7 @@ asio::awaitable<void> fail_beside(VirtualContext& context, std::vector<std::stri
     try {
       std::rethrow_exception(errors.first_exception());
     } catch (const std::runtime_error& error) {
-      log.push_back(error.what());
+      log.emplace_back(error.what());
     }
   }
 }

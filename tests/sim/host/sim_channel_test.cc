@@ -58,6 +58,7 @@ Task<void> receive_many(SimWorld& world, int count, double patience_ms,
 
 std::vector<double> returned_ms(const std::vector<Received>& received) {
   std::vector<double> all;
+  all.reserve(received.size());
   for (const Received& one : received) all.push_back(one.returned_ms);
   return all;
 }

@@ -89,11 +89,13 @@ class World {
 
 std::vector<std::uint8_t> numbers(const std::vector<Seen>& seen) {
   std::vector<std::uint8_t> all;
+  all.reserve(seen.size());
   for (const Seen& message : seen) all.push_back(message.number);
   return all;
 }
 std::vector<double> times(const std::vector<Seen>& seen) {
   std::vector<double> all;
+  all.reserve(seen.size());
   for (const Seen& message : seen) all.push_back(message.at_ms);
   return all;
 }

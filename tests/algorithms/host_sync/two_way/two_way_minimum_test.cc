@@ -20,6 +20,7 @@ class ExponentialWorld {
   std::vector<TwoWayExchange> exchanges(int count) {
     const ClockLine truth = remote_clock({}, 0);
     std::vector<TwoWayExchange> made;
+    made.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       made.push_back(exchange_at(truth, at_second(0.01 * i), delay(), delay()));
     }
@@ -70,6 +71,7 @@ TEST(TwoWayMinimumTest, BestRoundTripIsNearTheTabulatedDeviation) {
 TEST(TwoWayMinimumTest, WithoutJitterBothAreExactUpToHalfTheAsymmetry) {
   const ClockLine truth = remote_clock(from_ms(-40), 0);
   std::vector<TwoWayExchange> exchanges;
+  exchanges.reserve(5);
   for (int i = 0; i < 5; ++i) {
     exchanges.push_back(exchange_at(truth, at_second(i), from_ms(0.3), from_ms(0.1)));
   }
@@ -92,6 +94,7 @@ TEST(TwoWayMinimumTest, TheBestRoundTripWinsWhereverItIs) {
 TEST(TwoWayMinimumTest, AKnownRateIsTakenOutOfIndependentMinima) {
   const ClockLine truth = remote_clock(from_ms(3), 100'000);
   std::vector<TwoWayExchange> exchanges;
+  exchanges.reserve(10);
   for (int i = 0; i < 10; ++i) {
     exchanges.push_back(exchange_at(truth, at_second(i), from_ms(0.2), from_ms(0.2)));
   }
