@@ -39,6 +39,7 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
 std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
                     const std::vector<StudyTable>& tables) {
   reports::Document document;
+  if (!plan.derivation.changes.empty()) document.head = {scenarios::changed_text(plan.derivation)};
   for (const StudyTable table : tables) {
     document.blocks.push_back(
         table == StudyTable::kHostOrder     ? reports::host_order_block(plan, rows)

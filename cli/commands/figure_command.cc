@@ -10,11 +10,13 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
+#include "evaluation/budget/budget.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/text/block.h"
+#include "reports/text/number_text.h"
 #include "reports/text/output_file.h"
 #include "scenarios/loader.h"
 
@@ -119,6 +121,15 @@ app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& e
   return options;
 }
 
+// A budget takes minutes, so its work is stated before it begins.
+void announce_budget(const FigureEntry& entry, const app::FigureOptions& options,
+                     std::uint64_t first_seed) {
+  if (entry.scope != FigureScope::kPipeline) return;
+  print_note(fmt::format("{} runs {}, each of them {} times with other stages ideal (--seeds)",
+                         entry.id, reports::counted_seeds(first_seed, options.budget_seeds),
+                         evaluation::StageSet::kSets));
+}
+
 std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command,
                                                     const FigureEntry& entry) {
   const scenarios::Scenario scenario =
@@ -128,6 +139,7 @@ std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command
   std::vector<std::string> known;
   for (const scenarios::Pipeline& pipeline : scenario.pipelines) known.push_back(pipeline.name);
   const app::FigureOptions options = options_of(command, entry, known);
+  announce_budget(entry, options, command.seed.value_or(1));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
     return app::scenario_figures(scenario, options, command.seeds, progress);
   });
@@ -139,6 +151,7 @@ std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
   std::vector<std::string> known;
   for (const evaluation::Row& row : archive.results.rows) known.push_back(row.pipeline);
   const app::FigureOptions options = options_of(command, entry, known);
+  announce_budget(entry, options, command.seed.value_or(archive.results.first_seed));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
     return app::archive_figures(archive, options, progress);
   });

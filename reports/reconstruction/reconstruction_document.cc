@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
+#include "recording/version.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 
@@ -161,9 +162,9 @@ std::string points_text(const std::vector<CurvePoint>& points) {
 }
 
 std::string title_line(const ReconstructionResults& results) {
-  return fmt::format("{}: {}, {} each", results.scenario.name,
-                     counted_seeds(results.first_seed, results.seeds),
-                     counted(results.frames, "frame set"));
+  return fmt::format(
+      "{}: {}, {} each", scenarios::named(results.scenario.name, results.scenario.derivation),
+      counted_seeds(results.first_seed, results.seeds), counted(results.frames, "frame set"));
 }
 
 Table table_4(const ReconstructionResults& results) {
@@ -454,6 +455,9 @@ std::vector<std::string> honest_notes(const ReconstructionResults& results) {
 Document reconstruction_document(const ReconstructionResults& results) {
   Document document{.title = title_line(results)};
   if (!results.scenario.summary.empty()) document.head.push_back(results.scenario.summary);
+  for (std::string& line : scenarios::derivation_lines(results.scenario.derivation)) {
+    document.head.push_back(std::move(line));
+  }
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "Reprojection error", .table = table_4(results)});
   blocks.push_back({.heading = "The frame sets", .table = reconstructed_sets_table(results)});
@@ -477,6 +481,13 @@ Figure reconstruction_figure(const ReconstructionResults& results) {
   Figure figure;
   figure.id = "reconstruction";
   figure.title = fmt::format("{}: what desynchronisation costs", results.scenario.name);
+  figure.source = {.scenario = results.scenario.name,
+                   .derivation = results.scenario.derivation,
+                   .pipeline = results.rows.size() == 1 ? results.rows.front().pipeline : "",
+                   .first_seed = results.first_seed,
+                   .seeds = results.seeds,
+                   .version = std::string(version()),
+                   .commit = std::string(commit())};
   figure.caption = fmt::format(
       "Over desynchronisation: all hosts off by a known amount, exposures of a host's cameras "
       "coincide, the hosts are spread over it. Over speed: the exposures that the pipeline has. "

@@ -120,10 +120,15 @@ std::string reconstruction_html(const ReconstructionPage& page) {
   const ReconstructionResults& results = page.results;
   const std::string& name = results.scenario.name;
   const std::vector<Block> blocks = reconstruction_document(results).blocks;
+  const scenarios::Derivation& derivation = results.scenario.derivation;
+  std::string about = html_paragraph("summary", results.scenario.summary);
+  for (const std::string& line : scenarios::derivation_lines(derivation)) {
+    about += html_paragraph("provenance", line);
+  }
   const std::string main = fmt::format(
       "<article class=\"archive\" data-archive=\"0\" data-name=\"{0}\">\n<h2>{0}</h2>\n{1}{2}{3}{4}"
       "{5}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{6}</article>\n",
-      html_escaped(name), html_paragraph("summary", results.scenario.summary),
+      html_escaped(scenarios::named(name, derivation)), about,
       html_paragraph("provenance", reconstruction_line(results)), html(blocks.front()),
       pictures_html(page), html(std::vector<Block>(blocks.begin() + 1, blocks.end())),
       reproduce_html(page));

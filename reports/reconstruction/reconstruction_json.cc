@@ -9,6 +9,7 @@
 #include "recording/version.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/results/csv.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -144,22 +145,22 @@ std::string reconstruction_csv_line(const ReprojectionRow& row) {
 std::string reconstruction_json(const ReconstructionResults& results) {
   Json rows = Json::array();
   for (const ReprojectionRow& row : results.rows) rows.push_back(reprojection_row_json(row));
-  const Json root = {
-      {"schema_version", 1},
-      {"scenario", results.scenario.name},
-      {"version", version()},
-      {"commit", commit()},
-      {"first_seed", results.first_seed},
-      {"seeds", results.seeds},
-      {"frames", results.frames},
-      {"rows", rows},
-      {"published", all_published_json(results)},
-      {"published_ratio", ratio_json(results)},
-      {"curve", curve_json(results.curve)},
-      {"limits", limits_json(results.curve)},
-      {"speed_needed", speed_needed_json(results.speed_needed)},
-      {"notes", honest_notes(results)},
-      {"performance", {{"wall_s", results.wall_s}, {"seconds_per_set", results.seconds_per_set}}}};
+  Json root = {{"schema_version", 1}, {"scenario", results.scenario.name}};
+  state_derivation(results.scenario.derivation, root);
+  root.update({{"version", version()},
+               {"commit", commit()},
+               {"first_seed", results.first_seed},
+               {"seeds", results.seeds},
+               {"frames", results.frames},
+               {"rows", rows},
+               {"published", all_published_json(results)},
+               {"published_ratio", ratio_json(results)},
+               {"curve", curve_json(results.curve)},
+               {"limits", limits_json(results.curve)},
+               {"speed_needed", speed_needed_json(results.speed_needed)},
+               {"notes", honest_notes(results)},
+               {"performance",
+                {{"wall_s", results.wall_s}, {"seconds_per_set", results.seconds_per_set}}}});
   return file_text(root);
 }
 

@@ -42,8 +42,8 @@ class Run : public ProgramTest {
 TEST_F(Run, TheTableHasARowPerPipelineAndItsLegend) {
   const ProgramResult result = run(small());
   EXPECT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"yoon2021_both", "oracle", "AMD", "RMDV", "published", "2.438",
-                           "How to read it", "claims", "events/s"}) {
+  for (const char* part :
+       {"yoon2021_both", "oracle", "AMD", "RMDV", "How to read it", "claims", "events/s"}) {
     EXPECT_THAT(result.out, HasSubstr(part));
   }
   EXPECT_THAT(result.err, HasSubstr("6 runs in"));
@@ -59,7 +59,8 @@ TEST_F(Run, TheCommandRunIsTheDefault) {
 }
 
 TEST_F(Run, JsonIsAllThatIsOnStandardOutput) {
-  const ProgramResult result = run(small({"--format", "json"}));
+  const ProgramResult result = run({"run", "--scenario", "18cam_6host_45fps", "--seeds", "3",
+                                    "--pipelines", "yoon2021_both,oracle", "--format", "json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json root = Json::parse(result.out);
   EXPECT_EQ(root["scenario"], "18cam_6host_45fps");

@@ -58,6 +58,17 @@ Figure photographs() {
 }
 
 class GnuplotTest : public testing::Test {
+// Of a changed world.
+FigureSource sample_source() {
+  return {.scenario = "sample",
+          .derivation = {.base = "sample", .changes = {{"/a", "1", "2"}}},
+          .pipeline = "mine",
+          .first_seed = 7,
+          .seeds = 2,
+          .version = "1.2.3",
+          .commit = "abc"};
+}
+
  protected:
   std::string file(const std::string& name) const { return folder_ / name; }
   std::string content(const std::string& name) const { return folder_.content(name); }
@@ -78,6 +89,32 @@ TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
 }
 
 TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
+TEST_F(GnuplotTest, AnSvgHasTheTitleAndTheSourceOfItsFigure) {
+  for (Figure figure : {sample_figure(), photographs()}) {
+    figure.title = "A & B";
+    figure.source = sample_source();
+    draw(figure, PlotFormat::kSvg, file("x.svg"));
+    const std::string svg = content("x.svg");
+    EXPECT_THAT(svg, HasSubstr("<title>A &amp; B</title>\n<desc>sample (changed), mine, 2 seeds "
+                               "(7-8), simbench 1.2.3 (abc); changed: /a 1 → 2</desc>"));
+    EXPECT_THAT(svg, Not(HasSubstr("Gnuplot")));
+    const std::string script = gnuplot_script(figure, PlotFormat::kPdf, "x.pdf");
+    EXPECT_THAT(script, HasSubstr("'sample (changed), mine, 2 seeds (7-8), simbench 1.2.3 (abc)'"));
+    EXPECT_THAT(script, HasSubstr("'changed: /a 1 → 2'"));
+  }
+}
+
+TEST(FigureSourceTest, CutsManyChangesAndMayBeUnknown) {
+  FigureSource source = sample_source();
+  source.pipeline = "";
+  source.derivation.changes.assign(8, {"/a", "1", ""});
+  const std::vector<std::string> lines = source_lines(source);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], "sample (changed), 2 seeds (7-8), simbench 1.2.3 (abc)");
+  EXPECT_THAT(lines[1], testing::EndsWith(", /a 1 → none, and 2 more"));
+  EXPECT_TRUE(source_lines({}).empty());
+}
+
   const std::string script = gnuplot_script(sample_figure(), PlotFormat::kSvg, "x.svg");
   EXPECT_THAT(script, HasSubstr("title 'host 0'"));
   EXPECT_THAT(script, Not(HasSubstr("'host 0, camera 1'")));
@@ -197,6 +234,16 @@ TEST(FigureCsvTest, HasALineForEveryPoint) {
 }
 
 TEST(FigureCsvTest, ABandIsTwoMoreSeries) {
+TEST(FigureCsvTest, AChangedWorldHasAColumn) {
+  Figure figure;
+  FigurePanel panel;
+  panel.title = "AMD";
+  panel.series = {line_series("mine", {2}, 0)};
+  figure.panels = {panel};
+  figure.source = sample_source();
+  EXPECT_EQ(figure_csv(figure), "panel,series,x,y,changed\nAMD,mine,0,2,changed: /a 1 → 2\n");
+}
+
   Figure figure;
   FigurePanel panel;
   panel.title = "AMD";

@@ -28,6 +28,19 @@ TEST(ResultsCsv, OneLinePerPipeline) {
             ",,,,,,,,0,,0,0,0,0,0,,,,,,,0,0,0,0,0,,,,,2\n");
 }
 
+TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {
+  evaluation::Results results = sample_results();
+  results.derivation = {.base = "sample", .changes = {{"/a", "1", "2"}, {"/b", "", "\"c\""}}};
+  std::istringstream lines(csv(results));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_TRUE(line.ends_with(",changed")) << line;
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",\"changed: /a 1 → 2, /b none → c\"")) << line;
+  }
+}
+
 TEST(ResultsCsv, FramesHaveALinePerPulse) {
   std::ostringstream out;
   write_frames_csv(sample_results(), out);
