@@ -44,6 +44,9 @@ of these, sweep.txt the table, sweep.svg the plot (drawn by gnuplot), runs.log t
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
+// Checking fewer takes no time to speak of.
+constexpr std::size_t kManyPoints = 1000;
+
 struct SweepOptions {
   std::string study;
   evaluation::SweepRequest request;
@@ -86,8 +89,8 @@ const Study* study_of(SweepOptions& options) {
 }
 
 // Runs what the log lacks. False if it was interrupted.
-bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
-                 evaluation::TaskFarm& farm) {
+bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, const std::string& folder,
+                 unsigned jobs, evaluation::TaskFarm& farm) {
   std::vector<std::size_t> missing;
   for (std::size_t run = 0; run < plan.runs(); ++run) {
     if (log.text(run).empty()) missing.push_back(run);
@@ -97,10 +100,11 @@ bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
         {counted(log.damaged(), "damaged record") + " in runs.log; their runs are done again"});
   }
   if (log.finished() > 0) {
-    print_note(fmt::format("{} of {} runs are already finished", log.finished(), plan.runs()));
+    print_note(
+        fmt::format("{} of {} finished already", log.finished(), counted(plan.runs(), "run")));
   }
   if (missing.empty()) return true;
-  const auto done = watched<bool>([&](const evaluation::Progress& progress) {
+  const auto work = [&](const evaluation::Progress& progress) {
     evaluation::Tasks tasks = evaluation::sweep_tasks(plan, missing);
     tasks.threads = jobs;
     std::size_t finished = 0;
@@ -109,8 +113,10 @@ bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, unsigned jobs,
       progress(++finished, missing.size());
     });
     return std::optional(true);
-  });
-  return done.has_value();
+  };
+  return watched<bool>(work, {.kept = "the finished runs are kept in " + folder +
+                                      ", and the same command goes on from there"})
+      .has_value();
 }
 
 int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
@@ -125,14 +131,16 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   options.request.overrides = overrides_of(options.sets);
   if (options.seeds) options.request.seeds = *options.seeds;
   const SweepPlan plan = evaluation::make_plan(options.request);
+  if (plan.points() >= kManyPoints) {
+    print_note("checking " + counted(plan.points(), "point"));
+  }
   print_warnings(evaluation::check_points(plan, options.request, options.jobs));
 
   reports::SweepFolder folder(options.output, reports::sweep_manifest(plan, options.study),
                               plan.runs(), options.restart);
   evaluation::ThreadFarm threads(app::simulated_sweep_workers());
-  if (!finish_runs(plan, folder.log(), options.jobs, farm != nullptr ? *farm : threads)) {
-    print_note(fmt::format("{} of {} runs are kept in {}; the same command goes on from there",
-                           folder.log().finished(), plan.runs(), options.output));
+  if (!finish_runs(plan, folder.log(), options.output, options.jobs,
+                   farm != nullptr ? *farm : threads)) {
     return kInterrupted;
   }
   const std::vector<scenarios::StudyTable> tables =

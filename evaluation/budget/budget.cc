@@ -215,7 +215,7 @@ Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeli
   }
   Budget budget;
   budget.pipeline = pipeline.name;
-  budget.amd_of_sets = all_exist(scores.set_amd_ms);
+  budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
   budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
   budget.absolute_error_ms =
       divide(budget.amd_of_sets ? scores.set_absolute_error_ms : scores.absolute_error_ms);

@@ -13,6 +13,7 @@
 
 #include "evaluation/replay/replay.h"
 #include "evaluation/statistics/statistics.h"
+#include "recording/counted.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -300,9 +301,8 @@ std::vector<std::string> not_identified(const RigFit& fit, const FitInput& input
   if (input.hosts.size() > 1) {
     if (fit.network.latency_quantiles_ms.empty()) {
       lines.push_back(fmt::format(
-          "the network: {} exchanges with four stamps, {} are needed; latencies are those of the "
-          "base",
-          fit.network.round_trips_ms.size(), kFewestExchanges));
+          "the network: {} with four stamps, {} are needed; latencies are those of the base",
+          counted(fit.network.round_trips_ms.size(), "exchange"), kFewestExchanges));
     } else {
       lines.emplace_back("asymmetry of the links: that of the base");
     }

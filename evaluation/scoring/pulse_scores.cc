@@ -100,7 +100,7 @@ void score_errors(const PulseTable& table, SeedScore& score) {
       absolute.add(std::abs(error));
       bias.add(error);
     }
-    exposure.add(to_ms(table.exposure_spread(row)));
+    if (table.sources() > 1) exposure.add(to_ms(table.exposure_spread(row)));
   }
   score.absolute_error_ms = absolute.value();
   score.bias_ms = bias.value();
@@ -175,16 +175,18 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
     hosts.add_pulse(stamps);
     score.pulses.push_back(pulse);
   }
+  score.sets.complete_pulses = static_cast<std::int64_t>(score.pulses.size());
+  if (table.sources() < 2) return;  // the stamp of a single camera has no range
   score.amd_ms = amd.value();
   score.rmdv_ms = rmdv.value();
   score.share_below_half_period = below_half_period.value();
   score.spread_in_host_ms = hosts.inside_ms();
   score.spread_between_hosts_ms = hosts.between_ms();
   score.trend_ms = trend_ms(score.pulses);
-  score.sets.complete_pulses = static_cast<std::int64_t>(score.pulses.size());
 }
 
 double amd_ms(const PulseTable& table) {
+  if (table.sources() < 2) return kNan;
   Mean amd;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.complete(row)) amd.add(spread_ms(table.global_ns(row)));

@@ -116,7 +116,7 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
     row.precision = ratio(row.sets.pure, row.sets.emitted);
     row.recall = ratio(row.sets.pure, row.sets.complete_pulses);
     row.evaluated_pulses = row.sets.complete_pulses;
-    row.margin_ms = margin_ms(seeds, setting.gathering_interval_ms);
+    row.margin_ms = setting.sources == 1 ? kNan : margin_ms(seeds, setting.gathering_interval_ms);
   } else {  // the range of a gathered set does not show how close gathering came to failing
     row.precision = row.recall = row.margin_ms = kNan;
     row.evaluated_pulses = row.sets.emitted;
@@ -136,6 +136,10 @@ std::size_t scored_seeds(const Row& row) {
     if (metric.is_series()) most = std::max(most, scored_seeds(row, metric));
   }
   return most;
+}
+
+bool has_single_camera(const Row& row) {
+  return row.evaluated_pulses > 0 && count_of_existing(row.amd_ms.values) == 0;
 }
 
 PublishedComparison compare(const scenarios::Published& published, const Row& row,

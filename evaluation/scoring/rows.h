@@ -38,6 +38,9 @@ std::size_t scored_seeds(const Row& row, const Metric& metric);
 // Of AMD; where no seed has one, of the metric with the most.
 std::size_t scored_seeds(const Row& row);
 
+// Whether the row has pulses but no AMD: those of a single camera.
+bool has_single_camera(const Row& row);
+
 // Compares a published result with the seeds of a row.
 PublishedComparison compare(const scenarios::Published& published, const Row& row,
                             const RowSetting& setting);

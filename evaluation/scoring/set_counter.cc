@@ -75,7 +75,7 @@ void SetCounter::score(SeedScore& score) const {
   score.sets.index_errors = index_errors_;
   if (emitted_ == 0) return;  // they stay NaN
   const auto sets = static_cast<double>(emitted_);
-  score.set_amd_ms = range_sum_ms_ / sets;
+  if (table_.sources() > 1) score.set_amd_ms = range_sum_ms_ / sets;
   score.emission_latency_ms = latency_sum_ms_ / sets;
   score.emission_latency_max_ms = latency_max_ms_;
   if (errors_ > 0) score.set_absolute_error_ms = error_sum_ms_ / static_cast<double>(errors_);

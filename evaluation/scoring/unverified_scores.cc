@@ -90,11 +90,12 @@ void UnverifiedScores::score(SeedScore& score) const {
     spreads_ms += set.spread_ms;
     deviations_ms += set.deviation_ms;
   }
+  score.emission_latency_ms = latency_sum_ms_ / count;
+  score.emission_latency_max_ms = latency_max_ms_;
+  if (host_of_camera_.size() < 2) return;  // the stamp of a single camera has no range
   score.amd_ms = spreads_ms / count;
   score.set_amd_ms = score.amd_ms;
   score.rmdv_ms = deviations_ms / count;
-  score.emission_latency_ms = latency_sum_ms_ / count;
-  score.emission_latency_max_ms = latency_max_ms_;
 }
 
 }  // namespace simbench::evaluation

@@ -168,7 +168,7 @@ Task<void> RigSession::collect() {
 
 Task<void> RigSession::synchronise() {
   if (request_.host_sync == nullptr) co_return;
-  progress(fmt::format("synchronising {} hosts", hosts_.size()));
+  progress("synchronising " + counted(hosts_.size(), "host"));
   for (std::size_t host = 1; host < hosts_.size(); ++host) co_await synchronise_slave(host);
   co_await hosts_[0].link.ask("synchronise", master_role(hosts_.size()), kConductorSilence);
   const std::optional<Nanoseconds> service = request_.host_sync->warm_up();
@@ -188,7 +188,8 @@ Task<void> RigSession::synchronise() {
 Task<void> RigSession::capture() {
   const bool genlock = scenario_.cameras.sync_mode == scenarios::SyncMode::kGenlock;
   const bool triggered = waits_for_trigger(scenario_.cameras.sync_mode);
-  progress(fmt::format("capturing {} frames after {:.1f} s", scenario_.timeline.frames,
+  progress(fmt::format("capturing {} after {:.1f} s",
+                       counted(static_cast<std::uint64_t>(scenario_.timeline.frames), "frame"),
                        scenario_.timeline.warm_up_ms / 1000));
   if (triggered) co_await trigger_.turn(!genlock);
   co_await may_on_all(&RigSession::start);

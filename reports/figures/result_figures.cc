@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "evaluation/budget/budget.h"
+#include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/text/number_text.h"
@@ -104,7 +105,9 @@ FigurePanel pulse_panel(const std::vector<RowRef>& rows, std::uint64_t seed, std
   made.x_is_pulse = true;
   for (const RowRef& ref : rows) {
     const SeedScore* score = seed_of(*ref.row, seed);
-    if (score == nullptr || score->pulses.empty()) continue;
+    if (score == nullptr || score->pulses.empty() || evaluation::has_single_camera(*ref.row)) {
+      continue;
+    }
     FigureSeries curve = series(ref.row->pipeline, Mark::kLine, ref.colour);
     for (const PulseScore& pulse : score->pulses) {
       curve.x.push_back(static_cast<double>(pulse.pulse));
@@ -250,7 +253,8 @@ Figure frame_errors(const Archive& archive, std::uint64_t seed) {
       pulse_panel(rows, seed, "Terms of AMD", "range of the stamps (ms)", &PulseScore::spread_ms);
   if (amd.series.empty()) {
     return absent(std::move(figure),
-                  "No pulse was delivered by all cameras, or the archive has no frames.csv.");
+                  "No pulse was delivered by all of several cameras, or the archive has no "
+                  "frames.csv.");
   }
   add_published(rows, &Published::amd_ms, amd);
   FigurePanel rmdv = pulse_panel(rows, seed, "Terms of RMDV", "deviation from the median (ms)",

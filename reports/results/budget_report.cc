@@ -17,6 +17,7 @@ using evaluation::BudgetPart;
 using evaluation::ErrorParts;
 
 std::string band(const BudgetPart& part) {
+  if (std::isnan(part.p05)) return "-";
   return fmt::format("[{}, {}]", number_text(part.p05), number_text(part.p95));
 }
 

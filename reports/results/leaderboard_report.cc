@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
+#include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/results/results_document.h"
@@ -146,7 +148,10 @@ Document leaderboard_document(const Results& results, const std::string& summary
     document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
   }
   Block more;
-  for (const std::string& text : {unverified_legend(results), asymmetry_line(results)}) {
+  const bool is_single =
+      std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera);
+  for (const std::string& text : {unverified_legend(results), asymmetry_line(results),
+                                  std::string(is_single ? kSingleCameraLegend : "")}) {
     if (!text.empty()) more.prose.push_back(text);
   }
   if (!more.prose.empty()) document.blocks.push_back(std::move(more));

@@ -142,6 +142,9 @@ std::vector<std::string> results_legend(const Results& results) {
   }
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
+  if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
+    lines.emplace_back(kSingleCameraLegend);
+  }
   if (const std::string unverified = unverified_legend(results); !unverified.empty()) {
     lines.push_back(unverified);
   }

@@ -92,6 +92,11 @@ std::string heading(const SweepPlan& plan) {
                      counted(plan.seeds, "seed"));
 }
 
+bool is_of_single_camera(const ResponseRow& row) {
+  return row.of("complete_pulses").median > 0 &&
+         evaluation::count_of_existing(row.of("amd_ms").values) == 0;
+}
+
 // The seeds behind the medians of a point.
 ScoredSeeds scored_seeds_at(const ResponseRow& row, const std::vector<const Metric*>& metrics) {
   ScoredSeeds seeds{.all = row.series.front().values.size()};
@@ -318,6 +323,9 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
               .prose = {"Medians over the seeds; precision and recall over all of them. Margin: "
                         "the gathering interval less the 99.9 % quantile of a seed's spreads."}};
   if (lack_seeds) block.prose.emplace_back(kScoredSeedsLegend);
+  if (std::any_of(rows.begin(), rows.end(), is_of_single_camera)) {
+    block.prose.emplace_back(kSingleCameraLegend);
+  }
   return block;
 }
 

@@ -54,6 +54,10 @@ std::string scored_seeds_text(const ScoredSeeds& seeds);
 inline constexpr const char* kScoredSeedsLegend =
     "seeds: those with a value, of all; medians and bands are over them.";
 
+// Why such a row has no AMD.
+inline constexpr const char* kSingleCameraLegend =
+    "AMD, RMDV, spreads and margin compare cameras: of a single one there are none.";
+
 // A metric's value in the units of reports: milliseconds unchanged, shares in percent.
 double shown_value(const evaluation::Metric& metric, double value);
 

@@ -49,6 +49,41 @@ TEST_F(Run, TheTableHasARowPerPipelineAndItsLegend) {
   EXPECT_THAT(result.err, HasSubstr("6 runs in"));
 }
 
+TEST_F(Run, OneCameraHasNoAmdAndTheTableSaysWhy) {
+  const std::vector<std::string> command = {
+      "run",   "--scenario",          "3cam_1host_30fps", "--set", "/cameras/count=1",
+      "--set", "/timeline/frames=30", "--seeds",          "2",     "--pipelines",
+      "oracle"};
+  const auto formatted = [&](const std::string& format) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--format", format});
+    return run(arguments).out;
+  };
+  EXPECT_THAT(run(command).out, testing::ContainsRegex("\noracle +- +- +- +-\n"));
+  EXPECT_THAT(run(command).out, HasSubstr("compare cameras: of a single one there are none"));
+  EXPECT_THAT(formatted("markdown"), HasSubstr("| oracle | - | - | - | - |"));
+  EXPECT_THAT(formatted("csv"), HasSubstr("\noracle,oracle,regression_30,yoon2021,,,,,,,"));
+  const Json row = Json::parse(formatted("json"))["rows"][0];
+  EXPECT_TRUE(row["amd_ms"]["median"].is_null());
+  EXPECT_TRUE(row["rmdv_ms"]["median"].is_null());
+  EXPECT_FALSE(row["absolute_error_ms"]["median"].is_null());
+}
+
+TEST_F(Run, WithTwoSeedsNoVerdictIsPrinted) {
+  const ProgramResult result =
+      run({"run", "--scenario", "18cam_6host_45fps", "--seeds", "2", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json root = Json::parse(result.out);
+  int published = 0;
+  for (const Json& row : root["rows"]) {
+    if (row["published"].is_null()) continue;
+    ++published;
+    EXPECT_TRUE(row["published"]["amd_inside"].is_null()) << row["pipeline"];
+    EXPECT_TRUE(row["published"]["rmdv_inside"].is_null()) << row["pipeline"];
+  }
+  EXPECT_EQ(published, 4);
+}
+
 TEST_F(Run, TheCommandRunIsTheDefault) {
   std::vector<std::string> arguments = small({"--format", "json"});
   const ProgramResult named = run(arguments);
@@ -144,6 +179,27 @@ TEST_F(Run, CtrlCEndsItWithoutAHalfWrittenResult) {
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("interrupted after"));
   EXPECT_THAT(names_in(), IsEmpty());
+}
+
+// Worlds that do not come to their next frame for long.
+TEST_F(Run, CtrlCEndsEveryWorld) {
+  const std::vector<std::vector<std::string>> worlds = {
+      {"--set", "/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s=1000000", "--seeds", "100000"},
+      {"--set", "/pipelines/0/host_sync=\"two_way_hull\"", "--set",
+       "/algorithms/two_way/warm_up_s=1000000", "--set", "/algorithms/two_way/interval_ms=0.1"},
+      {"--set", "/hosts/load_burst/rate_hz=100000", "--set",
+       "/hosts/load_burst/duration_exponential_ms=1000000", "--seeds", "100000"},
+      {"--set", "/hosts/clock/oscillator/wander_step_ms=1", "--set",
+       "/timeline/wait_before_capture_ms=1000000000"},
+      {"--set", "/hosts/count=1000000", "--set", "/cameras/count=1000000"}};
+  for (std::vector<std::string> world : worlds) {
+    SCOPED_TRACE(testing::PrintToString(world));
+    world.insert(world.begin(), {"--scenario", "18cam_6host_45fps_lan"});
+    const ProgramResult result = run(world, {.interrupt_after = std::chrono::milliseconds(700)});
+    EXPECT_EQ(result.status, 130);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr("interrupted after"));
+  }
 }
 
 }  // namespace

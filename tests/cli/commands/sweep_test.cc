@@ -1,5 +1,6 @@
 // simbench sweep through the real program: what it writes, how it goes on, what it refuses.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -48,7 +49,8 @@ class SweepTest : public ProgramTest {
   std::string all_of(const std::string& folder) const {
     std::string all;
     for (const std::string& name : names_in(folder)) {
-      if (name != "sweep.svg") all.append(name).append("\n").append(content(folder + "/" + name));
+      if (name == "sweep.svg") continue;
+      all.append(name).append("\n").append(content(fmt::format("{}/{}", folder, name)));
     }
     return all;
   }
@@ -123,7 +125,7 @@ TEST_F(SweepTest, TheSameCommandAgainRepeatsNothing) {
   const ProgramResult second = run(command("out"));
   EXPECT_EQ(second.status, 0);
   EXPECT_EQ(second.out, first.out);
-  EXPECT_THAT(second.err, HasSubstr("60 of 60 runs are already finished"));
+  EXPECT_THAT(second.err, HasSubstr("60 of 60 runs finished already"));
   EXPECT_THAT(second.err, Not(HasSubstr("left")));
   EXPECT_EQ(all_of("out"), before);
 }
@@ -143,7 +145,7 @@ TEST_F(SweepTest, KilledAgainAndAgainItEndsTheSame) {
   const ProgramResult last = run(command("out"));
   ASSERT_EQ(last.status, 0) << last.err;
   if (finished > 0 && last.err.find("damaged") == std::string::npos) {
-    EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are already finished"));
+    EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs finished already"));
   }
   EXPECT_EQ(all_of("out"), all_of("whole"));
   EXPECT_EQ(last.out, content("whole/sweep.txt"));
@@ -156,7 +158,9 @@ TEST_F(SweepTest, InterruptedItSaysHowToGoOn) {
   const ProgramResult result = run(longer, options);
   EXPECT_EQ(result.status, 130);
   EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, HasSubstr("runs are kept in out; the same command goes on from there"));
+  EXPECT_THAT(result.err, testing::ContainsRegex("interrupted after .* runs; the finished runs "
+                                                 "are kept in out, and the same command goes on"));
+  EXPECT_THAT(result.err, Not(HasSubstr("no result was written")));
 }
 
 TEST_F(SweepTest, AFullDiskLosesNothing) {
@@ -176,7 +180,7 @@ TEST_F(SweepTest, AFullDiskLosesNothing) {
   EXPECT_GT(finished, 0U);
   const ProgramResult last = run(command("out"));
   EXPECT_EQ(last.status, 0);
-  EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs are already finished"));
+  EXPECT_THAT(last.err, HasSubstr(std::to_string(finished) + " of 60 runs finished already"));
   EXPECT_EQ(all_of("out"), all_of("whole"));
 }
 
@@ -190,7 +194,7 @@ TEST_F(SweepTest, DamagedRecordsAreSaidAndDoneAgain) {
   const ProgramResult result = run(command("out"));
   EXPECT_EQ(result.status, 0);
   EXPECT_THAT(result.err, HasSubstr("2 damaged records in runs.log; their runs are done again"));
-  EXPECT_THAT(result.err, HasSubstr("58 of 60 runs are already finished"));
+  EXPECT_THAT(result.err, HasSubstr("58 of 60 runs finished already"));
   EXPECT_THAT(result.err, HasSubstr("2 runs in"));
   EXPECT_EQ(all_of("out"), all_of("whole"));
 }
@@ -258,6 +262,14 @@ TEST_F(SweepTest, Studies) {
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("+-5 %"));
   EXPECT_THAT(content("out/manifest.json"), HasSubstr("\"study\": \"seeds_needed\""));
+}
+
+TEST_F(SweepTest, SaysThatItChecksManyPoints) {
+  file("results", "in the way");
+  const ProgramResult many = run({"sweep", "--scenario", "3cam_1host_30fps", "--sweep",
+                                  "/trigger/pulse_jitter_sigma_us=0:999:1", "-o", "results"});
+  EXPECT_EQ(many.status, 2);
+  EXPECT_THAT(many.err, testing::StartsWith("note: checking 1000 points\n"));
 }
 
 }  // namespace

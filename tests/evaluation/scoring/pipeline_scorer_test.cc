@@ -197,6 +197,16 @@ TEST(PipelineScorerTest, OneHostHasNoHostErrorAndNoSpreadBetweenHosts) {
   EXPECT_THAT(one_camera_each.spread_in_host_ms, IsNan());
 }
 
+TEST(PipelineScorerTest, OneCameraHasNoRange) {
+  const SeedScore seed = score(TestCapture(1, 1), arrival_setup());
+  for (const double value : {seed.amd_ms, seed.rmdv_ms, seed.set_amd_ms, seed.exposure_spread_ms,
+                             seed.trend_ms, seed.share_below_half_period}) {
+    EXPECT_THAT(value, IsNan());
+  }
+  EXPECT_FALSE(std::isnan(seed.absolute_error_ms));
+  EXPECT_GT(seed.sets.complete_pulses, 0);
+}
+
 TEST(PipelineScorerTest, TrendIsTheChangeFromFirstToLast) {
   TestCapture capture(1, 2);
   capture.late_by = [](std::uint32_t camera, std::int64_t pulse) {
