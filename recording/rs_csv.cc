@@ -254,7 +254,7 @@ void CsvRecordingReader::File::check_naming(const Naming& naming, std::string_vi
 
 void CsvRecordingReader::read_file(const std::string& path, const std::string& name,
                                    const ReadProgress& progress) {
-  constexpr std::uint64_t kProgressBytes = std::uint64_t{16} << 20;
+  constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 20;
   try {
     LineReader lines(path);
     File file(*this, path, name);

@@ -7,10 +7,11 @@
 // Errors: FileError; its what() is the reason alone ("Input/output error"), for a message that
 // names the file.
 //
+//   char buffer[4096];
 //   InputFile file("front.csv");
 //   while (const std::size_t size = file.read(buffer, sizeof buffer)) use(buffer, size);
 //
-//   const std::string text = file_content("scenario.json", kMaximumBytes);
+//   const std::string text = file_content("scenario.json", 4 << 20);
 #ifndef SIMBENCH_SCENARIOS_INPUT_FILE_H_
 #define SIMBENCH_SCENARIOS_INPUT_FILE_H_
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "app/interrupt.h"
 #include "app/recordings.h"
@@ -65,25 +67,36 @@ void check_options_for_files(const ReplayOptions& options) {
   }
 }
 
-// The same progress, which ends the work after Ctrl-C.
-evaluation::Progress interruptible(const evaluation::Progress& progress) {
-  return [&progress](std::uint64_t done, std::uint64_t total) {
-    progress(done, total);
-    if (app::InterruptHandler::raised()) throw RecordingCancelled();
-  };
+void end_if_interrupted() {
+  if (app::InterruptHandler::raised()) throw RecordingCancelled();
 }
 
 // Nothing after Ctrl-C.
 std::optional<CsvRecordings> read_files(const std::vector<std::string>& files) {
   constexpr unsigned kMegabyte = 20;
+  constexpr std::uint64_t kFewMegabytes = 16;
   return watched<CsvRecordings>(
       [&](const evaluation::Progress& progress) {
-        const evaluation::Progress watching = interruptible(progress);
         return read_recordings(files, [&](std::uint64_t done, std::uint64_t total) {
-          watching(done >> kMegabyte, total >> kMegabyte);
+          const std::uint64_t all = total >> kMegabyte;
+          if (all >= kFewMegabytes) progress(done >> kMegabyte, all);
+          end_if_interrupted();
         });
       },
       {.unit = "megabyte"});
+}
+
+// Nothing after Ctrl-C.
+std::optional<evaluation::Replay> replay_files(std::vector<CameraStream> streams) {
+  return watched<evaluation::Replay>(
+      [&](const evaluation::Progress& progress) {
+        return evaluation::run_replay(std::move(streams),
+                                      [&](std::uint64_t done, std::uint64_t total) {
+                                        progress(done, total);
+                                        end_if_interrupted();
+                                      });
+      },
+      {.unit = "stamp"});
 }
 
 int run_files(const ReplayOptions& options) {
@@ -93,14 +106,10 @@ int run_files(const ReplayOptions& options) {
   provenance.started = std::chrono::system_clock::now();
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-  std::optional<CsvRecordings> recordings = read_files(options.files);
+  auto recordings = read_files(options.files);
   if (!recordings) return kInterrupted;
   for (const std::string& note : recordings->notes) print_note(note);
-  const auto replayed = watched<evaluation::Replay>(
-      [&](const evaluation::Progress& progress) {
-        return evaluation::run_replay(std::move(recordings->streams), interruptible(progress));
-      },
-      {.unit = "stamp"});
+  const auto replayed = replay_files(std::move(recordings->streams));
   if (!replayed) return kInterrupted;
   const evaluation::Replay& replay = *replayed;
   print_warnings(replay.warnings);

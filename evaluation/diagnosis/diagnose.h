@@ -22,7 +22,7 @@
 // What too few frames leave undefined is NaN. Complexity: O(n log n) in the frames of a stream.
 // Source: docs/reference/users.md section 1, docs/reference/d455.md sections 2 and 4.
 //
-//   Diagnosis d = diagnose(streams, {.rate_hz = 30});
+//   Diagnosis d = diagnose(reader.take(), {.rate_hz = 30});
 //   print(d.verdict.status, d.verdict.reason);
 #ifndef SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_
 #define SIMBENCH_EVALUATION_DIAGNOSIS_DIAGNOSE_H_

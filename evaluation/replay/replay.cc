@@ -351,7 +351,7 @@ class StampProgress {
     progress_(done_ += stamps, total_);
   }
 
-  static constexpr std::uint64_t kStep = std::uint64_t{1} << 17;
+  static constexpr std::uint64_t kStep = std::uint64_t{1} << 14;  // tens of milliseconds
 
  private:
   static constexpr std::uint64_t kFewStamps = 4'000'000;  // a second's work
@@ -381,6 +381,7 @@ class EstimatorJobs {
   }
 
   void run() {
+    learn();
     run_jobs(entries_.size(), {.threads = threads_}, [this](std::size_t job) {
       if (needs_polls(*entries_[job])) {
         leave_out(job);
@@ -401,6 +402,16 @@ class EstimatorJobs {
     return in_rig;
   }
 
+  // Before all others run: learning takes the most memory.
+  void learn() {
+    learned_.resize(entries_.size());
+    for (std::size_t row = 0; row < entries_.size(); ++row) {
+      const DeviceTimeEntry& entry = *entries_[row];
+      if (!entry.make(check_parameters(entry.info.parameters, {}))->offline()) continue;
+      for (const CameraReplay& camera : replay_.cameras) learned_[row].emplace_back(entry, camera);
+    }
+  }
+
   void leave_out(std::size_t row) {
     const std::string& name = entries_[row]->info.name;
     for (CameraReplay& camera : replay_.cameras) {
@@ -417,7 +428,8 @@ class EstimatorJobs {
     AllStamps all(replay_.cameras.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       CameraReplay& camera = replay_.cameras[i];
-      CameraEstimator estimator = estimator_for(*entries_[row], camera);
+      CameraEstimator estimator = learned_[row].empty() ? CameraEstimator(*entries_[row], camera)
+                                                        : std::move(learned_[row][i]);
       std::vector<GlobalTime> stamps = stamps_of(camera, estimator);
       camera.rows[row] = scored(name, camera.frames, stamps, estimator.relative());
       if (in_rig_[i]) all[i] = std::move(stamps);
@@ -425,12 +437,6 @@ class EstimatorJobs {
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
       replay_.rigs[i].rows[row] = rig_row(name, rigs_[i], all);
     }
-  }
-
-  // One at a time: learning takes the most memory.
-  CameraEstimator estimator_for(const DeviceTimeEntry& entry, const CameraReplay& camera) {
-    const std::lock_guard lock(learning_);
-    return {entry, camera};
   }
 
   std::vector<GlobalTime> stamps_of(const CameraReplay& camera, CameraEstimator& estimator) {
@@ -449,7 +455,7 @@ class EstimatorJobs {
   const std::vector<const DeviceTimeEntry*> entries_;
   const std::vector<bool> in_rig_;
   std::optional<StampProgress> progress_;
-  std::mutex learning_;
+  std::vector<std::vector<CameraEstimator>> learned_;  // by row and camera, of offline ones
   unsigned threads_ = 1;
 };
 

@@ -21,7 +21,7 @@
 //
 // Complexity: linear in the frames, except for sorting them by arrival. Estimators run beside each
 // other, fewer of them with more frames. Memory: 24 bytes a frame, and 24 more for each estimator
-// that runs (56 while one learns the whole recording). Source: docs/design.md sections 2 and 8,
+// that runs (48 while one learns the whole recording). Source: docs/design.md sections 2 and 8,
 // docs/reference/paper.md section 8, docs/reference/device_time.md sections 1 and 5; check values:
 // tests/data/README.md (ibl: -215.385 ppm by least squares, -214.932 ppm by the lower envelope).
 //
