@@ -11,7 +11,7 @@
 //   const app::InterruptHandler handler;
 //   {
 //     const InterruptDeadline deadline([] { print_note("interrupted"); });
-//     work();
+//     use();
 //   }
 #ifndef SIMBENCH_CLI_INTERRUPT_DEADLINE_H_
 #define SIMBENCH_CLI_INTERRUPT_DEADLINE_H_

@@ -5,7 +5,7 @@
 // is too long ("FILE:LINE: ...").
 //
 //   LineReader lines("DIR/frames.csv");
-//   while (const auto line = lines.next()) parse(*line, lines.place());
+//   while (const auto line = lines.next()) use(*line, lines.place());
 #ifndef SIMBENCH_RECORDING_LINE_READER_H_
 #define SIMBENCH_RECORDING_LINE_READER_H_
 

@@ -1,7 +1,7 @@
 // A folder of its own among the system's temporary files, removed with everything in it.
 //
 //   TemporaryFolder folder;
-//   write_rig(folder.file("rig.json"));
+//   use(folder.file("rig.json"));
 #ifndef SIMBENCH_HARDWARE_EXPERIMENT_TEMPORARY_FOLDER_H_
 #define SIMBENCH_HARDWARE_EXPERIMENT_TEMPORARY_FOLDER_H_
 
