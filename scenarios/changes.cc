@@ -42,7 +42,7 @@ const ordered_json* member(const ordered_json* value, const std::string& key) {
   const auto found = value->find(key);
   return found == value->end() ? nullptr : &*found;
 }
-const ordered_json* element(const ordered_json* value, std::size_t index) {
+const ordered_json* element_at(const ordered_json* value, std::size_t index) {
   if (value == nullptr || !value->is_array() || index >= value->size()) return nullptr;
   return &(*value)[index];
 }
@@ -55,8 +55,8 @@ void compare(const std::string& pointer, const ordered_json* from, const ordered
     changes.push_back({pointer, text_or_nothing(from), text_or_nothing(to)});
     return;
   }
-  for (std::size_t i = 0; element(from, i) != nullptr || element(to, i) != nullptr; ++i) {
-    compare(fmt::format("{}/{}", pointer, i), element(from, i), element(to, i), changes);
+  for (std::size_t i = 0; element_at(from, i) != nullptr || element_at(to, i) != nullptr; ++i) {
+    compare(fmt::format("{}/{}", pointer, i), element_at(from, i), element_at(to, i), changes);
   }
   if (to != nullptr && to->is_object()) {
     for (const auto& [key, value] : to->items()) {

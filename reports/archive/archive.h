@@ -1,6 +1,6 @@
 // The result archive that --output writes, with all that is needed to read, check and repeat a run.
 //
-//   manifest.json   the fully resolved scenario and its changes (reports/results/derivation_json.h),
+//   manifest.json   the fully resolved scenario, its changes (reports/results/derivation_json.h),
 //                   seeds, version, commit, command, start and end
 //   results.json    see reports/results/json.h
 //   frames.csv      spread and deviation of every evaluated pulse

@@ -19,6 +19,7 @@
 #include "algorithms/ports/time.h"
 #include "recording/recording.h"
 #include "recording/world_observer.h"
+#include "scenarios/derivation.h"
 
 namespace simbench::reports {
 
@@ -73,6 +74,7 @@ struct TraceLeftOut {
 
 struct Trace {
   std::string scenario;
+  scenarios::Derivation derivation{};  // of that scenario
   std::string pipeline;
   std::uint64_t seed = 0;
   std::uint32_t hosts = 0;

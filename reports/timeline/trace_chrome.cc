@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "recording/version.h"
+#include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 #include "reports/timeline/trace.h"
 #include "reports/timeline/trace_events.h"
@@ -144,16 +145,16 @@ class ChromeWriter {
   }
 
   Json other_data() const {
-    Json data = {
-        {"simbench", version()},
-        {"scenario", trace_.scenario},
-        {"pipeline", trace_.pipeline},
-        {"seed", trace_.seed},
-        {"events", timeline_.events.size()},
-        {"time", "ts and dur in microseconds of true time"},
-        {"ts_0_is_true_time_us", us(zero_.time_since_epoch())},
-        {"nominal_lengths_us", {{"pulse", us(kShownPulse)}, {"message", us(kShownMessage)}}},
-        {"left_out", left_out_notes(trace_)}};
+    Json data = {{"simbench", version()}, {"scenario", trace_.scenario}};
+    state_derivation(trace_.derivation, data);
+    data.update(
+        {{"pipeline", trace_.pipeline},
+         {"seed", trace_.seed},
+         {"events", timeline_.events.size()},
+         {"time", "ts and dur in microseconds of true time"},
+         {"ts_0_is_true_time_us", us(zero_.time_since_epoch())},
+         {"nominal_lengths_us", {{"pulse", us(kShownPulse)}, {"message", us(kShownMessage)}}},
+         {"left_out", left_out_notes(trace_)}});
     return data;
   }
 

@@ -197,6 +197,7 @@ Trace record_trace(const scenarios::Scenario& scenario, const evaluation::Pipeli
   evaluation::score_run(source, choice, seed, scorer, recorder, &recorder);
   Trace trace = recorder.finish();
   trace.scenario = scenario.name;
+  trace.derivation = scenario.derivation;
   trace.pipeline = choice.pipeline.name;
   trace.seed = seed;
   return trace;

@@ -130,6 +130,13 @@ TEST_F(ChangedWorld, IsNoneWithoutAChange) {
                                 HasSubstr("18 cameras in genlock"), Not(HasSubstr("changed:"))));
 }
 
+TEST_F(ChangedWorld, IsStatedInTimelines) {
+  const ProgramResult trace = run({"trace", "--scenario", "18cam_6host_45fps", "--set",
+                                   "/trigger/rate_hz=30", "-o", "trace.json"});
+  ASSERT_EQ(trace.status, 0) << trace.err;
+  EXPECT_EQ(Json::parse(content("trace.json"))["otherData"]["changed"].size(), 1U);
+}
+
 // Draws nothing within the time: the note stands before the work.
 TEST_F(ChangedWorld, ABudgetStatesItsSeedsBeforeItBegins) {
   const ProgramResult result =

@@ -20,13 +20,13 @@ Scenario load_changed(const std::vector<Override>& overrides) {
   return load_scenario("18cam_6host_45fps", overrides);
 }
 
-std::string changed(const Scenario& scenario) { return changed_text(scenario.derivation); }
+std::string changes_of(const Scenario& scenario) { return changed_text(scenario.derivation); }
 std::string heading(const Scenario& scenario) { return named(scenario.name, scenario.derivation); }
 
 TEST(Derivation, OfASetIsItsOldAndItsNewValue) {
   const Scenario scenario =
       load_changed({{"/cameras/count", "12"}, {"/hosts/count", "4"}, {"/trigger/rate_hz", "30"}});
-  EXPECT_EQ(changed(scenario),
+  EXPECT_EQ(changes_of(scenario),
             "changed: /hosts/count 6 → 4, /trigger/rate_hz 45 → 30, /cameras/count 18 → 12");
   EXPECT_EQ(heading(scenario), "18cam_6host_45fps (changed)");
   EXPECT_EQ(changed_text(scenario.derivation, 1), "changed: /hosts/count 6 → 4, and 2 more");
@@ -35,7 +35,7 @@ TEST(Derivation, OfASetIsItsOldAndItsNewValue) {
 TEST(Derivation, OfEveryBuiltinIsNone) {
   for (const BuiltinScenario& each : builtin_scenarios()) {
     const Scenario scenario = load_scenario(each.name);
-    EXPECT_EQ(changed(scenario), "") << each.name;
+    EXPECT_EQ(changes_of(scenario), "") << each.name;
     EXPECT_EQ(heading(scenario), each.name);
     EXPECT_EQ(scenario.summary, each.summary);
   }
@@ -51,7 +51,7 @@ TEST(Derivation, OfAnOwnScenarioIsFromTheNearestBuiltin) {
                                                        "usb": {"buffered_frames": 9}})");
   const Scenario scenario = load_scenario(two, {{"/hosts/nic/hardware_stamps", "true"}});
   EXPECT_EQ(heading(scenario), "two (based on 18cam_6host_15fps)");
-  EXPECT_EQ(changed(scenario),
+  EXPECT_EQ(changes_of(scenario),
             "changed: /timeline/frames 480 → 7, /hosts/nic/hardware_stamps false → true, "
             "/usb/buffered_frames 4 → 9");
 }
@@ -63,7 +63,7 @@ TEST(Derivation, OfACompleteFileIsFromTheFile) {
   EXPECT_EQ(heading(load_scenario_text(text, "mine.json")), "mine");
   const Scenario set = load_scenario_text(text, "mine.json", {{"/timeline/frames", "8"}});
   EXPECT_EQ(heading(set), "mine (changed)");
-  EXPECT_THAT(changed(set), HasSubstr("/timeline/frames "));
+  EXPECT_THAT(changes_of(set), HasSubstr("/timeline/frames "));
   EXPECT_THAT(set.summary, HasSubstr("frames: 8"));
 }
 
@@ -73,7 +73,7 @@ TEST(Derivation, HasListsFaultsAndParametersOfAlgorithms) {
                     {"/cameras/host_of_camera", "[0,0,0,1,1,1,2,2,2,3,3,3,4,4,4,5,5,5]"},
                     {"/algorithms/yoon2021/stamps", "null"},
                     {"/algorithms/chrony/gain", "0.5"}});
-  EXPECT_THAT(changed(scenario),
+  EXPECT_THAT(changes_of(scenario),
               AllOf(HasSubstr("/faults/0/kind none → clock_step"), HasSubstr("/faults/0/step_ms"),
                     HasSubstr("/cameras/host_of_camera [] → [0,0,0,1,1,1,2,2,2,3,3,3,4,4,4,5,5,5]"),
                     HasSubstr("/algorithms/yoon2021/stamps 100 → none"),
@@ -91,7 +91,7 @@ TEST(Derivation, HasNoWordsAboutTheWorldAndNoChoiceOfPipelines) {
 
 TEST(Derivation, APipelineThatKeepsItsNameAloneIsAChange) {
   const Scenario scenario = load_changed({{"/pipelines/4/host_sync", "oracle"}});
-  EXPECT_EQ(changed(scenario), "changed: /pipelines/4/host_sync yoon2021_both → oracle");
+  EXPECT_EQ(changes_of(scenario), "changed: /pipelines/4/host_sync yoon2021_both → oracle");
   EXPECT_EQ(scenario.published.count("yoon2021_both"), 0U);
   EXPECT_EQ(scenario.published.count("yoon2021_time"), 1U);
 }
@@ -99,7 +99,7 @@ TEST(Derivation, APipelineThatKeepsItsNameAloneIsAChange) {
 TEST(Derivation, OutlivesTheResolvedText) {
   const Scenario scenario = load_changed({{"/trigger/rate_hz", "30"}});
   const Scenario again = load_scenario_text(scenario.resolved_json, "manifest.json");
-  EXPECT_EQ(changed(again), changed(scenario));
+  EXPECT_EQ(changes_of(again), changes_of(scenario));
   EXPECT_EQ(again.derivation.unpublished, scenario.derivation.unpublished);
   EXPECT_EQ(again.resolved_json, scenario.resolved_json);
 }

@@ -42,7 +42,8 @@ TEST_F(FigureTest, WritesSvgPdfAndCsv) {
   EXPECT_EQ(csv.status, 0);
   EXPECT_THAT(csv.out, IsEmpty());
   EXPECT_THAT(csv.err, HasSubstr("8.3 ms"));
-  EXPECT_THAT(content("x.csv"), StartsWith("panel,series,x,y,changed\ngenlock,\"host 0, camera 0\",00:"));
+  EXPECT_THAT(content("x.csv"),
+              StartsWith("panel,series,x,y,changed\ngenlock,\"host 0, camera 0\",00:"));
   EXPECT_THAT(names_in(), ElementsAre("x.csv", "x.pdf", "x.svg"));
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure.h"
 #include "reports/text/output_file.h"
 #include "tests/scratch_folder.h"
@@ -57,7 +58,6 @@ Figure photographs() {
   return figure;
 }
 
-class GnuplotTest : public testing::Test {
 // Of a changed world.
 FigureSource sample_source() {
   return {.scenario = "sample",
@@ -69,6 +69,7 @@ FigureSource sample_source() {
           .commit = "abc"};
 }
 
+class GnuplotTest : public testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder_ / name; }
   std::string content(const std::string& name) const { return folder_.content(name); }
@@ -88,7 +89,6 @@ TEST_F(GnuplotTest, DrawsPanelsAsSvg) {
   EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
 TEST_F(GnuplotTest, AnSvgHasTheTitleAndTheSourceOfItsFigure) {
   for (Figure figure : {sample_figure(), photographs()}) {
     figure.title = "A & B";
@@ -115,6 +115,7 @@ TEST(FigureSourceTest, CutsManyChangesAndMayBeUnknown) {
   EXPECT_TRUE(source_lines({}).empty());
 }
 
+TEST_F(GnuplotTest, SeriesOfOneColourAreOneEntryOfTheLegend) {
   const std::string script = gnuplot_script(sample_figure(), PlotFormat::kSvg, "x.svg");
   EXPECT_THAT(script, HasSubstr("title 'host 0'"));
   EXPECT_THAT(script, Not(HasSubstr("'host 0, camera 1'")));
@@ -233,7 +234,6 @@ TEST(FigureCsvTest, HasALineForEveryPoint) {
             "\"A, B\",warm-up,1,\n");
 }
 
-TEST(FigureCsvTest, ABandIsTwoMoreSeries) {
 TEST(FigureCsvTest, AChangedWorldHasAColumn) {
   Figure figure;
   FigurePanel panel;
@@ -244,6 +244,7 @@ TEST(FigureCsvTest, AChangedWorldHasAColumn) {
   EXPECT_EQ(figure_csv(figure), "panel,series,x,y,changed\nAMD,mine,0,2,changed: /a 1 → 2\n");
 }
 
+TEST(FigureCsvTest, ABandIsTwoMoreSeries) {
   Figure figure;
   FigurePanel panel;
   panel.title = "AMD";
