@@ -14,7 +14,6 @@ namespace simbench::cli {
 namespace {
 
 // The names of the checks, which CLI11 never shows. In one_of() the words follow, a line each.
-constexpr const char* kNotEmptyCheck = "not empty";
 constexpr const char* kNumberCheck = "number";
 constexpr const char* kWordsCheck = "one of";
 
@@ -43,24 +42,23 @@ CLI::Validator not_empty() {
   const auto check = [](const std::string& text) -> std::string {
     return text.empty() ? "found '', allowed: a value that is not empty" : "";
   };
-  return {check, "", kNotEmptyCheck};
+  return {check, ""};
 }
 
-// The name of the option's last check; every option with a value has one.
+// The name of the option's check; empty if it takes no value.
 std::string check_name(CLI::Option& option) {
-  std::string name;
   try {
-    for (int i = 0;; ++i) name = option.get_validator(i)->get_name();
+    return option.get_validator(0)->get_name();
   } catch (const CLI::OptionNotFound&) {
-    return name;
+    return "";
   }
 }
 
-// All options with a value, also those without a name.
+// Adds any option with a value, also one without a name. No `check` takes an empty value.
 template <class Value>
 CLI::Option* with_value(CLI::App& command, const std::string& names, const std::string& place,
-                        Value& value, const std::string& text) {
-  return command.add_option(names, value, text)->type_name(place)->check(not_empty());
+                        Value& value, const std::string& text, CLI::Validator check) {
+  return command.add_option(names, value, text)->type_name(place)->check(std::move(check));
 }
 
 }  // namespace
@@ -96,35 +94,37 @@ Option Command::flag(const std::string& names, bool& value, const std::string& t
 
 Option Command::text(const std::string& names, const std::string& place, std::string& value,
                      const std::string& text) {
-  return Option(with_value(*command_, names, place, value, text));
+  return Option(with_value(*command_, names, place, value, text, not_empty()));
 }
 
 Option Command::texts(const std::string& names, const std::string& place,
                       std::vector<std::string>& values, const std::string& text) {
-  CLI::Option* option = with_value(*command_, names, place, values, text);
+  CLI::Option* option = with_value(*command_, names, place, values, text, not_empty());
   if (names.starts_with("-")) option->allow_extra_args(false);
   return Option(option);
 }
 
 Option Command::list(const std::string& names, const std::string& place,
                      std::vector<std::string>& values, const std::string& text) {
-  return Option(
-      with_value(*command_, names, place, values, text)->delimiter(',')->allow_extra_args(false));
+  return Option(with_value(*command_, names, place, values, text, not_empty())
+                    ->delimiter(',')
+                    ->allow_extra_args(false));
 }
 
 Option Command::word(const std::string& names, const std::string& place, std::string& value,
                      const std::vector<std::string>& words, const std::string& text) {
-  return Option(with_value(*command_, names, place, value, text)->check(one_of(words)));
+  return Option(with_value(*command_, names, place, value, text, one_of(words)));
 }
 
 template <class Number>
 Option Command::number(const std::string& names, const std::string& place, Number& value,
                        double low, double high, const std::string& text) {
-  CLI::Option* option = with_value(*command_, names, place, value, text);
+  CLI::Option* option =
+      with_value(*command_, names, place, value, text, within("a number", low, high));
   if constexpr (std::is_same_v<Number, std::vector<double>>) {
     option->delimiter(',')->allow_extra_args(false);
   }
-  return Option(option->check(within("a number", low, high)));
+  return Option(option);
 }
 
 template Option Command::number(const std::string&, const std::string&, double&, double, double,
@@ -138,7 +138,7 @@ template <class Number>
 Option Command::whole_number(const std::string& names, const std::string& place, Number& value,
                              std::uint64_t low, std::uint64_t high, const std::string& text) {
   return Option(
-      with_value(*command_, names, place, value, text)->check(within("a whole number", low, high)));
+      with_value(*command_, names, place, value, text, within("a whole number", low, high)));
 }
 
 template <class Number>
@@ -183,9 +183,9 @@ void Command::sets(std::vector<std::string>& values) {
   };
   with_value(*command_, "--set", "/POINTER=VALUE", values,
              "Change a parameter of the scenario, repeatable;\n"
-             "`simbench describe SCENARIO` lists all parameters")
-      ->allow_extra_args(false)
-      ->check(CLI::Validator(check, ""));
+             "`simbench describe SCENARIO` lists all parameters",
+             CLI::Validator(check, ""))
+      ->allow_extra_args(false);
 }
 
 void Command::jobs(unsigned& value, const std::string& text) {

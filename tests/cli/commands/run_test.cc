@@ -167,7 +167,7 @@ TEST_F(Run, AFullDiskLeavesNothing) {
 
 TEST_F(Run, AResultThatCannotBePrintedIsAnError) {
   const ProgramResult result = run(small(), {.out_file = "/dev/full"});
-  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("standard output"));
 }
 

@@ -207,10 +207,10 @@ std::string problem_with(const std::vector<scenarios::Override>& overrides) {
 
 TEST(PipelineChoiceTest, ParametersThatContradictEachOtherAreRefusedWhereTheyAreSet) {
   EXPECT_EQ(problem_with({{"/algorithms/ntp/max_poll", "5"}}),
-            "--set /algorithms/ntp/max_poll: parameter \"max_poll\" is 5; allowed: at least "
+            "--set /algorithms/ntp/max_poll=5: parameter \"max_poll\" is 5; allowed: at least "
             "\"min_poll\", which is 6");
   EXPECT_THAT(problem_with({{"/algorithms/ntp/min_poll", "12"}}),
-              HasSubstr("--set /algorithms/ntp/min_poll: parameter \"min_poll\" is 12"));
+              HasSubstr("--set /algorithms/ntp/min_poll=12: parameter \"min_poll\" is 12"));
   EXPECT_THAT(problem_with({{"/algorithms/chrony/max_poll", "5"}}), HasSubstr("\"min_poll\""));
   EXPECT_THAT(problem_with({{"/algorithms/chrony/max_samples", "5"}}),
               HasSubstr("at least \"min_samples\", which is 6"));
@@ -257,7 +257,7 @@ TEST(PipelineChoiceTest, AnAlgorithmThatCannotBeMadeIsRefused) {
   std::vector<scenarios::Override> odd = base;
   odd.push_back({"/algorithms/test_fussy/number", "3"});
   EXPECT_EQ(problem_with(odd),
-            "--set /algorithms/test_fussy/number: found 3, allowed: even numbers");
+            "--set /algorithms/test_fussy/number=3: found 3, allowed: even numbers");
 }
 
 }  // namespace
