@@ -69,18 +69,17 @@ std::optional<evaluation::Results> measure_rig(const scenarios::Scenario& scenar
   evaluation::EvaluationOptions evaluation = options.evaluation;
   evaluation.jobs = 1;
   evaluation.keep_pulses = !options.output.empty();
-  return evaluate(
-      scenario,
-      [&]() -> std::unique_ptr<RecordingSource> {
-        return app::interruptible(make_rig_source(options.backend, scenario));
-      },
-      evaluation);
+  return evaluate(scenario,
+                  [&]() -> std::unique_ptr<RecordingSource> {
+                    return app::interruptible(make_rig_source(options.backend, scenario));
+                  },
+                  evaluation, {.waits_for_end = true});
 }
 
 // An error budget of every pipeline in place of the table.
 int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) {
-                                  .derivation = scenario.derivation,
   reports::BudgetReport report = {.scenario = scenario.name,
+                                  .derivation = scenario.derivation,
                                   .first_seed = options.evaluation.first_seed,
                                   .seeds = options.evaluation.seeds,
                                   .budgets = {}};
