@@ -115,6 +115,10 @@ std::string ratio_cell(double ratio) {
   return ratio > 0 && ratio < kSmall ? factor_text(ratio) : number_text(ratio);
 }
 
+std::string interval_cell(const std::string& low, const std::string& high) {
+  return low == "-" || high == "-" ? "-" : fmt::format("[{}, {}]", low, high);
+}
+
 std::vector<std::string> cells(const std::string& pipeline, const Metric& metric,
                                const PairedComparison& c, double smallest_effect) {
   const auto shown = [&](double value) { return number_text(shown_value(metric, value)); };
@@ -123,9 +127,9 @@ std::vector<std::string> cells(const std::string& pipeline, const Metric& metric
           shown(c.median_a),
           shown(c.median_b),
           shown(c.difference.value),
-          fmt::format("[{}, {}]", shown(c.difference.low), shown(c.difference.high)),
+          interval_cell(shown(c.difference.low), shown(c.difference.high)),
           ratio_cell(c.ratio.value),
-          fmt::format("[{}, {}]", ratio_cell(c.ratio.low), ratio_cell(c.ratio.high)),
+          interval_cell(ratio_cell(c.ratio.low), ratio_cell(c.ratio.high)),
           verdict_text(c, smallest_effect)};
 }
 

@@ -196,6 +196,14 @@ void note_more(const Archive& result, const Baseline& baseline, GateReport& repo
     report.notes.push_back(
         fmt::format("not in the baseline, so not checked: {}", fmt::join(more, ", ")));
   }
+  const auto without_values = std::count_if(
+      report.checks.begin(), report.checks.end(),
+      [](const GateCheck& check) { return std::isnan(check.baseline) && std::isnan(check.value); });
+  if (without_values > 0) {
+    report.notes.push_back(
+        fmt::format("{} of {} show nothing: neither the baseline nor the result has a value",
+                    without_values, counted(report.checks.size(), "check")));
+  }
   if (report.passed() && report.count(GateOutcome::kSame) < report.checks.size() &&
       report.mode == GateMode::kExact) {
     report.notes.emplace_back(kAnew);

@@ -154,6 +154,12 @@ Figure distribution(const std::vector<RowRef>& rows, const Results& results) {
       "Scores of {} in ascending order: the curve at 50 % is the median of the tables, at 5 and 95 "
       "% the band. A line is a published value, which is one recording.",
       counted(results.seed_count, "seed"));
+  const auto lacks_seeds = [&results](const RowRef& ref) {
+    return evaluation::scored_seeds(*ref.row) < results.seed_count;
+  };
+  if (std::any_of(rows.begin(), rows.end(), lacks_seeds)) {
+    figure.caption += " Not every seed has a score of every pipeline: see the tables.";
+  }
   if (std::any_of(figure.panels.begin(), figure.panels.end(),
                   [](const FigurePanel& made) { return made.log_y; })) {
     figure.caption += kLogNote;

@@ -68,7 +68,7 @@ wait "$job" || status=$?
 finished=$(wc -l < killed/runs.log)
 (( finished >= 5 && finished < 1200 )) || fail "$finished runs were finished"
 ranks 2 "$simbench" "${large[@]}" -o killed > killed.txt 2> again.err || fail "the next start"
-grep -q "^note: $finished of 1200 runs are already finished" again.err ||
+grep -q "^note: $finished of 1200 runs finished already" again.err ||
   grep -q 'damaged' again.err || fail "finished runs were lost"
 "$simbench" "${large[@]}" -o whole > whole.txt 2> whole.err || fail "one process"
 same whole killed

@@ -84,6 +84,15 @@ TEST(ExactGate, AValueThatIsLostFailsWithoutANan) {
   }
 }
 
+TEST(ExactGate, ChecksWithoutAnyValueAreNoted) {
+  Archive empty = sample_archive("before");
+  std::vector<double>& values = empty.results.rows[1].amd_ms.values;
+  values.assign(values.size(), kNaN);
+  const GateReport report = gate(empty, baseline_of(empty), GateMode::kExact);
+  EXPECT_TRUE(report.passed());
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("1 of 8 checks show nothing")));
+}
+
 TEST(ExactGate, AValueThatIsNewIsAChange) {
   Archive before = sample_archive("before");
   std::vector<double>& values = before.results.rows[1].amd_ms.values;

@@ -100,6 +100,13 @@ TEST(ResultFiguresTest, ADistributionHasTheMedianAndTheBandOfTheTables) {
   }
 }
 
+TEST(ResultFiguresTest, ADistributionOfFewerSeedsSaysSo) {
+  const Archive whole = archive_of({row("mine", {1, 2})});
+  EXPECT_THAT(distributions(whole)[0].caption, testing::Not(HasSubstr("Not every seed")));
+  const Archive some = archive_of({row("mine", {1, evaluation::kNan})});
+  EXPECT_THAT(distributions(some)[0].caption, HasSubstr("Not every seed"));
+}
+
 TEST(ResultFiguresTest, APublishedLineHasTheColourOfItsPipeline) {
   Archive results = archive_of({row("mine", {2, 4}), row("yours", {3, 5})});
   results.results.rows[0].published.emplace().amd_ms = 2.5;
