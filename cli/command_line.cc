@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "recording/version.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
+#include "scenarios/document.h"
 #include "scenarios/loader.h"
 
 namespace simbench {
@@ -132,6 +134,10 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
     return bad_input(error);
   } catch (const RecordingFolderError& error) {
     return bad_input(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    cli::print_error(fmt::format("{}: {}", scenarios::shown_text(error.path1().string()),
+                                 error.code().message()));
+    return ExitStatus::kBadInput;
   } catch (const std::exception& error) {
     cli::print_internal_error(
         fmt::format("{}\n(simbench {}, commit {})", error.what(), version(), commit()));

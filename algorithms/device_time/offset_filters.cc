@@ -144,7 +144,9 @@ class ChangingMedian {
     std::size_t begin = 0;
     for (; begin + kBlock <= bins_.size(); begin += kBlock) {
       std::uint16_t any = 0;
-      for (std::size_t i = 0; i < kBlock; ++i) any |= is_wanted(bins_[begin + i]) ? 1 : 0;
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        any = static_cast<std::uint16_t>(any | (is_wanted(bins_[begin + i]) ? 1 : 0));
+      }
       if (any == 0) continue;
       for (std::size_t i = begin; i < begin + kBlock; ++i) {
         if (is_wanted(bins_[i])) selected_.push_back(values_[i]);

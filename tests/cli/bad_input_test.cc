@@ -110,10 +110,17 @@ TEST_F(BadInput, DamagedRecordings) {
   refuses(replay(file("empty.csv", "")), {"empty.csv:1: the file is empty"});
   refuses(replay(file("header.csv", header)), {"header.csv:1", "without a frame"});
   refuses(replay(file("other.csv", "a,b\n1,2\n")), {"other.csv:1", "allowed: the header"});
-  refuses(replay(file("cut.csv", header + "Depth,0,1,10,1\nDepth,0,2,4")), {"cut.csv:3"});
+  refuses(replay(file("cut.csv", header + "Depth,0,1,10,1\nDepth,0,2,4\n")), {"cut.csv:3"});
   refuses(replay(file("text.csv", header + "Depth,0,1,ten,1\n")), {"text.csv:2", "'ten'"});
   refuses({"replay", "cut.csv", "cut.csv"}, {"cut.csv"});
   refuses({"convert-ibl", "cut.csv"}, {"cut.csv", "*.timestamps.ssv"});
+}
+
+TEST_F(BadInput, ANameThatIsTooLong) {
+  const std::string name(5000, 'a');
+  refuses({"replay", name}, {"File name too long"});
+  refuses({"report", name, "--output", "x.html"}, {"File name too long"});
+  refuses({"figure", "distributions", name, "--output", "x.svg"}, {"File name too long"});
 }
 
 TEST_F(BadInput, AKeyThatCannotBeRead) {
