@@ -96,10 +96,6 @@ std::optional<std::uint64_t> whole_float(double value, double largest) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace
-
-namespace {
-
 // The lines of a *.timestamps.ssv.
 class IblTimestamps {
  public:

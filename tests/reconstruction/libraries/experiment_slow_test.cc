@@ -15,6 +15,8 @@ namespace {
 
 using testing::HasSubstr;
 
+constexpr const char* kStudio = "18cam_6host_30fps_studio";
+
 // Six small cameras on two hosts, at one height.
 scenarios::Scenario small_rig(std::vector<scenarios::Override> more = {}) {
   std::vector<scenarios::Override> overrides = {
@@ -28,7 +30,10 @@ scenarios::Scenario small_rig(std::vector<scenarios::Override> more = {}) {
       {"/timeline/frames", "60"},
   };
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return scenarios::load_scenario("18cam_6host_30fps_studio", overrides);
+  scenarios::Scenario scenario = scenarios::load_scenario(kStudio, overrides);
+  // They hold in the whole world only; here it is tried how a row is compared with them.
+  scenario.studio->published = scenarios::load_scenario(kStudio).studio->published;
+  return scenario;
 }
 
 ReconstructionResults run(const scenarios::Scenario& scenario, ReconstructionOptions options,
