@@ -49,6 +49,7 @@ Table error_table(const Board& board) {
       {{board.name.empty() ? "reference" : board.name, Align::kLeft}, name},
       {{"stamps", Align::kLeft}, stamps}};
   std::vector<const Row*> rows;
+  rows.reserve(ranks.size());
   for (const Rank& rank : ranks) rows.push_back(rank.row);
   for (const Field<Row>& field : scored_seeds_field(rows, board_metrics())) {
     fields.push_back({field.column, [field](const Rank& rank) { return field.cell(*rank.row); }});

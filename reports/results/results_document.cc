@@ -171,7 +171,7 @@ Table claims_table(const Results& results) {
       {{"holds in"},
        [&results](const Claim& claim) {
          if (!claim.holds_fraction) return std::string("-");
-         const std::string share = share_text(*claim.holds_fraction);
+         std::string share = share_text(*claim.holds_fraction);
          if (claim.decided_seeds >= results.seed_count) return share;
          return fmt::format("{} of {}", share, counted(claim.decided_seeds, "seed"));
        }},
