@@ -1,4 +1,5 @@
-# simbench_folder_library(NAME [RUNS_ONCE] [PARSES] [PRECOMPILE header...] [LINK target...])
+# simbench_folder_library(NAME [RUNS_ONCE] [PARSES] [UNIT_FILES n] [PRECOMPILE header...]
+#                         [LINK target...])
 #
 # Makes the static library simbench_NAME from every .cc file below the calling folder, links it
 # publicly to the given targets, lets includes be written from the root of the project, and installs
@@ -7,9 +8,10 @@
 # RUNS_ONCE: code in which no run spends its time. It is optimised a little in Release, and not at
 # all under the sanitizers, which find no less in it.
 # PARSES: code that fuzzers watch.
+# UNIT_FILES: as in cmake/fast_build.cmake, where files take long; not under the sanitizers.
 # PRECOMPILE: headers that most files of the folder include (cmake/fast_build.cmake has the rest).
 function(simbench_folder_library name)
-  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "" "PRECOMPILE;LINK" ${ARGN})
+  cmake_parse_arguments(arg "RUNS_ONCE;PARSES" "UNIT_FILES" "PRECOMPILE;LINK" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/main\\.cc$")
   add_library(simbench_${name} STATIC ${sources})
@@ -28,7 +30,11 @@ function(simbench_folder_library name)
   if(SIMBENCH_BUILD_FUZZ AND arg_PARSES)
     list(APPEND options -fsanitize=fuzzer-no-link)
   endif()
-  simbench_fast_build(simbench_${name} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
+  set(unit_files "")
+  if(arg_UNIT_FILES AND NOT SIMBENCH_SANITIZE)
+    set(unit_files UNIT_FILES ${arg_UNIT_FILES})
+  endif()
+  simbench_fast_build(simbench_${name} ${unit_files} PRECOMPILE ${arg_PRECOMPILE} OPTIONS ${options})
   install(TARGETS simbench_${name} EXPORT simbench)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/simbench
           FILES_MATCHING PATTERN "*.h")
