@@ -248,11 +248,10 @@ Task<void> RigSession::end_all() {
 void RigSession::note_missing_frames() {
   const bool any = std::any_of(hosts_.begin(), hosts_.end(),
                                [](const HostState& host) { return host.journal.frames() > 0; });
-  if (!any) {
-    if (started_)
-      note("no frame arrived; is the trigger connected, at a rate that the mode allows?");
-    return;
+  if (!any && started_) {
+    note("no frame arrived; is the trigger connected, at a rate that the mode allows?");
   }
+  if (!any) return;
   const std::int64_t wanted = layout_.first_pulse + layout_.pulses;
   std::uint32_t camera = 0;
   for (std::size_t host = 0; host < rig_.hosts.size(); ++host) {

@@ -180,8 +180,9 @@ std::optional<std::string> problem_of(const Ending& ending, const std::string& i
 
 }  // namespace simbench::robustness
 
-// In place of the C library's, for this program and the libraries that it uses: a child with a
-// fault reads as much as it may, and then fails.
+// In place of the C library's, for this program and the libraries that it uses, so that no read
+// escapes it, also one past scenarios/input_file.h: a child with a fault reads as much as it may,
+// and then fails.
 extern "C" ssize_t read(int file, void* buffer, size_t size) {
   using namespace simbench::robustness;
   if (active_fault != nullptr && is_below(file, active_fault->folder)) {

@@ -45,34 +45,31 @@ Part random_word(const std::string& text, Random& random) {
   return {begin, end - begin};
 }
 
+// A part that a change is about: anywhere, or a whole line.
+Part random_piece(const std::string& text, Random& random) {
+  return random.one_in(2) ? random_part(text, random) : random_line(text, random);
+}
+
 void change_once(std::string& text, Random& random) {
   switch (random.below(9)) {
     case 0:
       if (!text.empty()) text[random.below(text.size())] = static_cast<char>(random.below(256));
       return;
-    case 1: {
-      const Part part = random_part(text, random);
-      text.erase(part.begin, part.size);
-      return;
-    }
+    case 1:
     case 2: {
-      const Part part = random_part(text, random);
-      text.insert(random.below(text.size() + 1), text.substr(part.begin, part.size));
+      const Part piece = random_piece(text, random);
+      text.erase(piece.begin, piece.size);
       return;
     }
     case 3:
+    case 4: {
+      const Part piece = random_piece(text, random);
+      text.insert(random.below(text.size() + 1), text.substr(piece.begin, piece.size));
+      return;
+    }
+    case 5:
       text.resize(random.below(text.size() + 1));
       return;
-    case 4: {
-      const Part line = random_line(text, random);
-      text.erase(line.begin, line.size);
-      return;
-    }
-    case 5: {
-      const Part line = random_line(text, random);
-      text.insert(line.begin, text.substr(line.begin, line.size));
-      return;
-    }
     case 6:
       text.insert(random.below(text.size() + 1), hostile_word(random));
       return;
