@@ -166,17 +166,17 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!table.complete(row)) continue;
     const auto stamps = table.global_ns(row);
-    const PulseScore pulse = {.pulse = table.pulse_of(row),
-                              .spread_ms = spread_ms(stamps),
-                              .deviation_ms = deviation_ms(stamps, scoring.median, workspace)};
+    PulseScore& pulse = score.pulses.emplace_back(PulseScore{.pulse = table.pulse_of(row)});
+    if (table.sources() < 2) continue;  // the stamp of a single camera has no range
+    pulse.spread_ms = spread_ms(stamps);
+    pulse.deviation_ms = deviation_ms(stamps, scoring.median, workspace);
     amd.add(pulse.spread_ms);
     rmdv.add(pulse.deviation_ms);
     below_half_period.add(pulse.spread_ms < to_ms(scoring.period) / 2 ? 1 : 0);
     hosts.add_pulse(stamps);
-    score.pulses.push_back(pulse);
   }
   score.sets.complete_pulses = static_cast<std::int64_t>(score.pulses.size());
-  if (table.sources() < 2) return;  // the stamp of a single camera has no range
+  if (table.sources() < 2) return;
   score.amd_ms = amd.value();
   score.rmdv_ms = rmdv.value();
   score.share_below_half_period = below_half_period.value();

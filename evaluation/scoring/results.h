@@ -29,9 +29,11 @@ enum class GroundTruth : std::uint8_t {
 
 // One evaluated pulse, as in frames.csv; one set of an unverified capture.
 struct PulseScore {
-  std::int64_t pulse = 0;   // in an unverified capture the set's number
-  double spread_ms = 0;     // max - min of the global stamps: this pulse's term of AMD
-  double deviation_ms = 0;  // this pulse's term of RMDV
+  std::int64_t pulse = 0;  // in an unverified capture the set's number
+  // Max - min of the global stamps, this pulse's term of AMD, and that of RMDV. NaN of a single
+  // camera.
+  double spread_ms = kNan;
+  double deviation_ms = kNan;
 };
 
 // One pipeline, one seed (on a real rig: one repetition).

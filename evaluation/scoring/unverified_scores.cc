@@ -69,9 +69,12 @@ void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
   const double latency_ms = to_ms(now_ - latest_arrival);
   latency_max_ms_ = sets_.empty() ? latency_ms : std::max(latency_max_ms_, latency_ms);
   latency_sum_ms_ += latency_ms;
-  sets_.push_back({.pulse = static_cast<std::int64_t>(sets_.size()),
-                   .spread_ms = spread_ms(stamps_ns_),
-                   .deviation_ms = deviation_ms(stamps_ns_, median_, sorted_)});
+  PulseScore& scored =
+      sets_.emplace_back(PulseScore{.pulse = static_cast<std::int64_t>(sets_.size())});
+  if (host_of_camera_.size() > 1) {  // the stamp of a single camera has no range
+    scored.spread_ms = spread_ms(stamps_ns_);
+    scored.deviation_ms = deviation_ms(stamps_ns_, median_, sorted_);
+  }
   if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
 }
 
@@ -92,7 +95,7 @@ void UnverifiedScores::score(SeedScore& score) const {
   }
   score.emission_latency_ms = latency_sum_ms_ / count;
   score.emission_latency_max_ms = latency_max_ms_;
-  if (host_of_camera_.size() < 2) return;  // the stamp of a single camera has no range
+  if (host_of_camera_.size() < 2) return;
   score.amd_ms = spreads_ms / count;
   score.set_amd_ms = score.amd_ms;
   score.rmdv_ms = deviations_ms / count;

@@ -240,7 +240,7 @@ namespace {
 
 using evaluation::SeedScore;
 
-constexpr std::size_t kCells = 5;  // of a line of either file
+constexpr std::size_t kCells = 5;  // of a line of either file, before those of a changed world
 
 LineReader lines_of_archive(const std::string& path) {
   try {
@@ -256,22 +256,34 @@ class CsvFile {
  public:
   CsvFile(const Archive& archive, const char* name, std::string_view header)
       : lines_(lines_of_archive((std::filesystem::path(archive.path) / name).string())) {
-    if (!next() || line_ != header) fail(fmt::format("line 1 has to be '{}'", header));
+    const bool found = next();
+    changed_ = found && line_ == std::string(header) + ",changed";
+    if (!found || (line_ != header && !changed_)) {
+      fail(fmt::format("line 1 has to be '{}', of a changed world with ',changed'", header));
+    }
   }
 
-  // Splits the next line, which must have kCells cells; false at the end.
+  // Splits the next line, which must have kCells cells, and of a changed world the changes; false
+  // at the end.
   bool next_row() {
     if (!next()) return false;
     std::string_view rest = line_;
     name_ = take_name(rest);
     for (std::size_t i = 1; i < kCells; ++i) {
       const std::size_t comma = rest.find(',');
-      if ((comma == std::string_view::npos) != (i == kCells - 1)) {
-        fail(fmt::format("allowed: exactly {} cells; was the file cut short?", kCells));
+      const bool last = i == kCells - 1 && !changed_;
+      if ((comma == std::string_view::npos) != last) {
+        fail(fmt::format("allowed: exactly {} cells; was the file cut short?",
+                         kCells + (changed_ ? 1 : 0)));
       }
       cells_[i] = rest.substr(0, comma);
-      rest.remove_prefix(i == kCells - 1 ? rest.size() : comma + 1);
+      rest.remove_prefix(last ? rest.size() : comma + 1);
     }
+    if (changed_ && rest != changes_.value_or(std::string(rest))) {
+      fail(fmt::format("found '{}', allowed: '{}', the changes of all lines",
+                       scenarios::shown_text(rest), scenarios::shown_text(*changes_)));
+    }
+    if (!changes_) changes_ = rest;
     return true;
   }
 
@@ -331,6 +343,8 @@ class CsvFile {
   std::string_view line_;
   std::string name_;
   std::string_view cells_[kCells];
+  bool changed_ = false;
+  std::optional<std::string> changes_;
 };
 
 // The score for a line, which begins with pipeline and seed. `row`: that of the line before, or

@@ -77,6 +77,18 @@ std::vector<std::string> published_cells(const Row& row) {
           flag(published.rmdv_attainable)};
 }
 
+// The end of a header or of a line: with a column of the changes of a changed world.
+struct LineEnds {
+  explicit LineEnds(const scenarios::Derivation& derivation) {
+    const std::string changed = scenarios::changed_text(derivation);
+    if (changed.empty()) return;
+    header = ",changed\n";
+    line = "," + csv_cell(changed) + "\n";
+  }
+  std::string header = "\n";
+  std::string line = "\n";
+};
+
 bool synchronised(const SeedScore& seed, std::size_t host) {
   return std::none_of(seed.failures.begin(), seed.failures.end(),
                       [host](const SyncOutcome& failure) { return failure.slave == host; });
@@ -121,15 +133,16 @@ std::string csv(const evaluation::Results& results) {
 }
 
 void write_frames_csv(const evaluation::Results& results, std::ostream& out) {
-  out << "pipeline,seed,pulse,spread_ms,deviation_ms\n";
+  const LineEnds ends(results.derivation);
+  out << "pipeline,seed,pulse,spread_ms,deviation_ms" << ends.header;
   fmt::memory_buffer text;
   for (const Row& row : results.rows) {
     const std::string name = csv_cell(row.pipeline);
     for (const SeedScore& seed : row.seeds) {
       text.clear();
       for (const evaluation::PulseScore& pulse : seed.pulses) {
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", name, seed.seed, pulse.pulse,
-                       pulse.spread_ms, pulse.deviation_ms);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}{}", name, seed.seed, pulse.pulse,
+                       csv_cell(pulse.spread_ms), csv_cell(pulse.deviation_ms), ends.line);
       }
       out.write(text.data(), static_cast<std::streamsize>(text.size()));
     }
@@ -137,12 +150,14 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out) {
 }
 
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out) {
-  out << "pipeline,seed,host,error_ms,synchronised\n";
+  const LineEnds ends(results.derivation);
+  out << "pipeline,seed,host,error_ms,synchronised" << ends.header;
   for (const Row& row : results.rows) {
     for (const SeedScore& seed : row.seeds) {
       for (std::size_t host = 0; host < seed.host_errors_ms.size(); ++host) {
-        out << fmt::format("{},{},{},{},{}\n", csv_cell(row.pipeline), seed.seed, host,
-                           csv_cell(seed.host_errors_ms[host]), flag(synchronised(seed, host)));
+        out << fmt::format("{},{},{},{},{}{}", csv_cell(row.pipeline), seed.seed, host,
+                           csv_cell(seed.host_errors_ms[host]), flag(synchronised(seed, host)),
+                           ends.line);
       }
     }
   }

@@ -18,10 +18,11 @@ namespace simbench::reports {
 // changed, the same text in each line ("changed: /trigger/rate_hz 45 → 30").
 std::string csv(const evaluation::Results& results);
 
-// frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms; needs EvaluationOptions::keep_pulses.
+// frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms, and changed as above; needs
+// EvaluationOptions::keep_pulses.
 void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 
-// hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0).
+// hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0), and changed as above.
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
 // A cell, quoted where necessary (RFC 4180); what is not finite is empty.

@@ -11,6 +11,7 @@
 
 #include "algorithms/device_time/yoon2021.h"
 #include "tests/evaluation/test_capture.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -205,6 +206,10 @@ TEST(PipelineScorerTest, OneCameraHasNoRange) {
   }
   EXPECT_FALSE(std::isnan(seed.absolute_error_ms));
   EXPECT_GT(seed.sets.complete_pulses, 0);
+  for (const PulseScore& pulse : nonempty(seed.pulses)) {
+    EXPECT_THAT(pulse.spread_ms, IsNan());
+    EXPECT_THAT(pulse.deviation_ms, IsNan());
+  }
 }
 
 TEST(PipelineScorerTest, TrendIsTheChangeFromFirstToLast) {

@@ -11,6 +11,7 @@
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/forwarding_sink.h"
 #include "tests/evaluation/test_capture.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -75,6 +76,15 @@ TEST(PipelineScorerUnverified, WhatNeedsPulsesOrTruthDoesNotExist) {
 
 // 3 frames of warm-up at 50 Hz: what arrives from 60 ms after the first frame is evaluated, for as
 // long as 10 frames take.
+TEST(PipelineScorerUnverified, SetsOfOneCameraHaveNoRange) {
+  const SeedScore seed = score(capture_without_truth(1, 1), arrival_setup());
+  EXPECT_THAT(seed.amd_ms, IsNan());
+  for (const PulseScore& set : nonempty(seed.pulses)) {
+    EXPECT_THAT(set.spread_ms, IsNan());
+    EXPECT_THAT(set.deviation_ms, IsNan());
+  }
+}
+
 TEST(PipelineScorerUnverified, WarmUpAndEndAreCountedInTime) {
   TestCapture capture = capture_without_truth(1, 2);
   capture.late_by = [](std::uint32_t camera, std::int64_t pulse) {

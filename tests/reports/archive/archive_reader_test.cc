@@ -68,6 +68,20 @@ TEST_F(ArchiveReader, ChangesOfTheScenarioAreRead) {
   EXPECT_THAT(content("manifest.json"), HasSubstr("\"based_on\": \"built_in\""));
 }
 
+TEST_F(ArchiveReader, SeedsOfAChangedWorldAreRead) {
+  written_.derivation = {.base = "built_in", .changes = {{"/a", "1", "[1,2]"}, {"/b", "", "3"}}};
+  OutputFolder output(folder_.path());
+  write_archive(output, written_, scenarios::load_scenario("3cam_1host_30fps"),
+                {.command = {"simbench", "run"}, .started = {}, .finished = {}});
+  Archive archive = read_archive(folder_.path().string());
+  read_seed_details(archive);
+  ASSERT_EQ(archive.results.rows[0].seeds[1].pulses.size(), 2);
+  EXPECT_EQ(archive.results.rows[0].seeds[1].pulses[1].deviation_ms, 0.5);
+  EXPECT_EQ(archive.results.rows[0].seeds[1].host_errors_ms, (std::vector<double>{0, -0.125}));
+  edit("hosts.csv", "0,0,1,\"changed", "0,0,\"changed");
+  EXPECT_THAT(problem(), HasSubstr("hosts.csv:3: found"));
+}
+
 TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
   const Archive archive = read_archive(folder_.path().string());
   EXPECT_EQ(archive.version, version());

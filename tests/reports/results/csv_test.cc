@@ -41,6 +41,34 @@ TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {
   }
 }
 
+TEST(ResultsCsv, FramesAndHostsOfAChangedWorldSaySo) {
+  evaluation::Results results = sample_results();
+  results.derivation = {.base = "sample", .changes = {{"/a", "1", "2"}, {"/b", "", "3"}}};
+  for (const auto write : {write_frames_csv, write_hosts_csv}) {
+    std::ostringstream out;
+    write(results, out);
+    std::istringstream lines(out.str());
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",changed")) << line;
+    int count = 0;
+    for (; std::getline(lines, line); ++count) {
+      EXPECT_TRUE(line.ends_with(",\"changed: /a 1 → 2, /b none → 3\"")) << line;
+    }
+    EXPECT_EQ(count, 4);
+  }
+}
+
+TEST(ResultsCsv, PulsesOfASingleCameraHaveEmptyCells) {
+  evaluation::Results results = sample_results();
+  results.rows.resize(1);
+  results.rows[0].seeds.resize(1);
+  results.rows[0].seeds[0].pulses = {{.pulse = 225}};
+  std::ostringstream out;
+  write_frames_csv(results, out);
+  EXPECT_EQ(out.str(), "pipeline,seed,pulse,spread_ms,deviation_ms\nyoon2021_both,1,225,,\n");
+}
+
 TEST(ResultsCsv, FramesHaveALinePerPulse) {
   std::ostringstream out;
   write_frames_csv(sample_results(), out);
