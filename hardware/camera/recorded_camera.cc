@@ -200,6 +200,9 @@ void RecordedPlayer::add(RecordedPlay& play) {
     play.state = RecordedPlay::State::kWaiting;
     play.unreadable = 0;
     if (play.trigger_file.empty()) begin(play, play.started + kBeforeZero);
+    for (const std::string& note : play.camera->notes) {
+      play.on_event({CameraEvent::Kind::kNote, note});
+    }
     plays_.push_back(&play);
     next_look_ = {};
     if (!thread_.joinable()) thread_ = std::thread([this] { run(); });

@@ -11,7 +11,7 @@
 //    more than 1 s before start(). When the file is removed playing ends; it begins anew with the
 //    next file: `"trigger": {"on_command", "off_command"}` of a rig can write and remove it.
 // Frames that were due before start() are not played. A recording is played once; a kEnded event
-// reports its end.
+// reports its end, and a kNote with each start() what the reader left out of a CSV.
 //
 // Frames carry the recorded counter, exposure and device stamps. `arrived` is the instant at which
 // the frame was due, to the nanosecond, and `backend` as long before it as in the recording. The

@@ -224,6 +224,7 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_csv(const std::string& pat
     }
   }
   Choice choice = choose(path, wanted, names);
+  choice.cameras[choice.of_wanted.front()]->notes = reader.notes();
   std::optional<std::int64_t> zero_ns;
   for (const CameraStream& stream : streams) {
     for (const StampedFrame& frame : stream.frames) {

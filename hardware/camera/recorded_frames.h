@@ -44,6 +44,8 @@ struct PlayedFrame {
 struct PlayedCamera {
   std::string name;                 // in the recording
   std::vector<PlayedFrame> frames;  // in order of due time; at least one
+  // What was left out of the recording, a line each; only of the first wanted camera.
+  std::vector<std::string> notes{};
 };
 
 // One for each of `wanted`, which are cameras of one recording.

@@ -64,6 +64,25 @@ TEST(RecordedCamera, PlaysEveryFrameAsRecordedAndNeverEarly) {
   }
 }
 
+TEST(RecordedCamera, NotesALastLineThatMayBeCut) {
+  const ScratchFolder folder;
+  std::string text = kHeader + lines("front", 3) + lines("back", 3);
+  text.pop_back();
+  const std::string csv = folder.write("a.csv", text);
+  RecordedCameraDriver driver({recorded("front", csv), recorded("back", csv)});
+  SeenFrames front;
+  SeenFrames back;
+  const auto first = driver.open("front");
+  const auto second = driver.open("back");
+  first->start(front.on_frame(), front.on_event());
+  second->start(back.on_frame(), back.on_event());
+  ASSERT_TRUE(front.wait_for_event(CameraEvent::Kind::kNote,
+                                   csv + ":7: the last line has no line end and may be cut"));
+  ASSERT_TRUE(back.wait_for_event(CameraEvent::Kind::kEnded, "the recording is over"));
+  EXPECT_EQ(back.frames().size(), 2U);
+  EXPECT_EQ(back.events_of(CameraEvent::Kind::kNote), 0U);  // said once for the file
+}
+
 TEST(RecordedCamera, ListsWhatItPlays) {
   const ScratchFolder folder;
   const std::string csv = folder.write("a.csv", kHeader + lines("front", 1) + lines("back", 1));
