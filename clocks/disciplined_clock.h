@@ -162,6 +162,11 @@ class DisciplinedClock {
   [[gnu::always_inline]] HostTime read(Instant t, double deviation_ns) const {
     return reading(setting_at(t), t, deviation_ns).whole;
   }
+  // The reading minus `from`, with its part of a nanosecond.
+  double read_since_ns(Instant t, HostTime from) const {
+    const Reading then = reading(setting_at(t), t);
+    return static_cast<double>((then.whole - from).count()) + then.part_ns;
+  }
   // The first instant, not before `now`, at which the clock reads `at` or more without a further
   // adjustment.
   Instant when(HostTime at, Instant now) const;

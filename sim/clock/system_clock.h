@@ -71,6 +71,10 @@ class SystemClock {
     const double deviation_ns = oscillator.deviation_ns(t);
     return {clock_->read(t, deviation_ns), oscillator.steady(t, deviation_ns)};
   }
+  // How far the clock is ahead of true time, with its part of a nanosecond.
+  double ahead_ns(TrueTime t) const {
+    return clock_->read_since_ns(t, HostTime(t.time_since_epoch()));
+  }
   // The first instant, not before `now`, at which the clock reads `at` or more without a further
   // adjustment.
   TrueTime when(HostTime at, TrueTime now) const;

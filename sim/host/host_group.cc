@@ -16,6 +16,15 @@ std::string host_component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
 }
 
+OscillatorModel oscillator_of(const scenarios::Hosts& hosts, std::uint64_t run_seed,
+                              std::size_t host) {
+  if (host == 0 && hosts.master_is_exact) return OscillatorModel(0);
+  OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
+  const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
+  if (!skews_ppm.empty()) oscillator.set_skew(skews_ppm[host] * 1e-6);
+  return oscillator;
+}
+
 // The offset of a slave's clock before synchronisation.
 double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
                  InitialClocks initial_clocks, std::size_t host, double skew_against_master) {
@@ -25,6 +34,7 @@ double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
     return skew_then * clock.last_set.hours_ago * kMsPerHour +
            skew_against_master * clock.last_set.minutes_since_baseline * kMsPerMinute;
   }
+  if (!clock.initial_offset_of_host_ms.empty()) return clock.initial_offset_of_host_ms[host];
   RandomStream draw(run_seed, host_component(host, "initial offset"));
   return draw.normal(clock.initial_offset_sigma_ms);
 }
@@ -52,21 +62,21 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .run_seed = run_seed};
   const std::vector<std::size_t> cameras = scenario.cameras_by_host();
   for (PeerId id = 0; id < static_cast<PeerId>(scenario.hosts.count); ++id) {
-    make_clock(scenario.hosts.clock, run_seed, initial_clocks);
+    make_clock(scenario.hosts, run_seed, initial_clocks);
     hosts_.emplace_back(world, id, clocks_.back(), cameras[id] > 0);
   }
 }
 
-void HostGroup::make_clock(const scenarios::HostClock& parameters, std::uint64_t run_seed,
+void HostGroup::make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,
                            InitialClocks initial_clocks) {
   const std::size_t host = clocks_.size();
-  OscillatorModel oscillator(parameters.oscillator, run_seed, host_component(host, "oscillator"));
+  OscillatorModel oscillator = oscillator_of(parameters, run_seed, host);
   RandomStream epoch(run_seed, host_component(host, "steady epoch"));
   const SteadyTime steady_epoch{from_ms(epoch.uniform(0, kSteadyEpochMaxMs))};
   Nanoseconds offset{};
   if (host > 0) {
     const double skew = oscillator.skew() - clocks_[0].oscillator().skew();
-    offset = from_ms(offset_ms(parameters, run_seed, initial_clocks, host, skew));
+    offset = from_ms(offset_ms(parameters.clock, run_seed, initial_clocks, host, skew));
   }
   clocks_.emplace_back(static_cast<std::uint32_t>(host), std::move(oscillator), offset,
                        steady_epoch);
@@ -80,7 +90,7 @@ std::vector<SystemClock*> HostGroup::clocks() {
 }
 
 void HostGroup::on_capture_start(const TriggerTree& trigger, std::int64_t last) {
-  outages_.start(engine_.now());
+  begin_faults();
   trigger_line_.start(trigger, last);
   for (SimHost& host : hosts_) host.trigger_started();
 }

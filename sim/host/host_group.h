@@ -1,11 +1,12 @@
 // All hosts of a scenario, with their clocks and the network between them, ready to run.
 //
 // The clocks at true zero, whenever the world starts: the master's reads 0. The slaves' clocks are
-//   kUnsynchronised  off by N(initial_offset_sigma_ms)
+//   kUnsynchronised  off by N(initial_offset_sigma_ms), or as initial_offset_of_host_ms states
 //   kLastSet         off by N(last_set.skew_sigma_ppm) * hours_ago, the rate error of those hours
 //                    being independent of the present one, plus the present rate difference to the
 //                    master times minutes_since_baseline
 //   kMaster          the master's own, at every instant.
+// Oscillators have their drawn skews, or those of skew_of_host_ppm; an exact master's has no error.
 // Each host's steady clock starts from an arbitrary reading of its own within an hour, so that a
 // mix of two hosts' steady times shows.
 //
@@ -57,8 +58,9 @@ class HostGroup {
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
 
-  // The capture begins now: its trigger has pulses up to slot `last`, and the times of faults count
-  // from now.
+  // The times of faults count from now.
+  void begin_faults() { outages_.start(engine_.now()); }
+  // The capture begins now, with its faults: its trigger has pulses up to slot `last`.
   void on_capture_start(const TriggerTree& trigger, std::int64_t last);
 
   Network& network() { return network_; }
@@ -68,7 +70,7 @@ class HostGroup {
   void report_clocks();
 
  private:
-  void make_clock(const scenarios::HostClock& parameters, std::uint64_t run_seed,
+  void make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,
                   InitialClocks initial_clocks);
 
   Engine& engine_;

@@ -1,7 +1,5 @@
 #include "sim/rig/simulation.h"
 
-#include <boost/asio/co_spawn.hpp>
-#include <exception>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +13,7 @@
 #include "sim/rig/capture_reports.h"
 #include "sim/rig/clock_polls.h"
 #include "sim/rig/clock_sampling.h"
+#include "sim/rig/synchronisation_run.h"
 
 namespace simbench::sim {
 namespace {
@@ -31,6 +30,7 @@ class Run {
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
+        synchronisation_(hosts_, *context_),
         sampling_(request.observer == nullptr ? std::nullopt
                                               : std::make_optional<ClockSampling>(
                                                     *request.observer, hosts_.clocks(), engine_)),
@@ -53,7 +53,7 @@ class Run {
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     engine_.run();
     if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
-    if (failure_) std::rethrow_exception(failure_);
+    synchronisation_.check();
     if (!captured_) throw SimulationError(standstill());
     if (sampling_) sampling_->finish();
     return {.events = engine_.events(),
@@ -74,25 +74,9 @@ class Run {
 
   void start_host_sync() {
     if (host_sync_ == nullptr) return start_capture_at(engine_.now() + wait_before_capture());
-    std::vector<PeerId> slaves;
-    for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
-    for (const PeerId slave : slaves) {
-      boost::asio::co_spawn(*context_, host_sync_->run_slave(hosts_.host(slave), 0),
-                            [this](const std::exception_ptr& failure) { ended(failure); });
-    }
-    boost::asio::co_spawn(*context_, host_sync_->run_master(hosts_.host(0), slaves),
-                          [this](const std::exception_ptr& failure) {
-                            ended(failure);
-                            if (!failure && !service_time()) {
-                              start_capture_at(engine_.now() + wait_before_capture());
-                            }
-                          });
-  }
-
-  void ended(const std::exception_ptr& failure) {
-    if (!failure) return;
-    failure_ = failure;
-    engine_.stop();
+    synchronisation_.start(*host_sync_, [this] {
+      if (!service_time()) start_capture_at(engine_.now() + wait_before_capture());
+    });
   }
 
   void start_capture_at(TrueTime at) {
@@ -119,11 +103,11 @@ class Run {
   Engine engine_;
   std::unique_ptr<VirtualContext> context_;
   HostGroup hosts_;
+  SynchronisationRun synchronisation_;
   std::optional<ClockSampling> sampling_;  // with an observer
   FrameFeeds frame_feeds_;
   Capture capture_;
   ClockPolls clock_polls_;
-  std::exception_ptr failure_;
   bool captured_ = false;
 };
 

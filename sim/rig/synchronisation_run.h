@@ -1,0 +1,67 @@
+// The host synchronisation of a world under way: the coroutines of the master and of all slaves.
+//
+//   SynchronisationRun synchronisation(hosts, context);
+//   synchronisation.start(host_sync, [&] { start_capture(); });
+//   engine.run();
+//   synchronisation.check();
+#ifndef SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
+#define SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
+
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "algorithms/ports/host_sync.h"
+#include "sim/engine/virtual_executor.h"
+#include "sim/host/host_group.h"
+
+namespace simbench::sim {
+
+class SynchronisationRun {
+ public:
+  // Both must outlive the engine's run; the coroutines end with the context.
+  SynchronisationRun(HostGroup& hosts, VirtualContext& context)
+      : hosts_(hosts), context_(context) {}
+  SynchronisationRun(const SynchronisationRun&) = delete;
+  SynchronisationRun& operator=(const SynchronisationRun&) = delete;
+
+  // Begins now; `on_end` is called when the master has returned. A coroutine that throws stops the
+  // engine.
+  void start(HostSync& host_sync, std::function<void()> on_end) {
+    on_end_ = std::move(on_end);
+    std::vector<PeerId> slaves;
+    for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
+    for (const PeerId slave : slaves) {
+      boost::asio::co_spawn(context_, host_sync.run_slave(hosts_.host(slave), 0),
+                            [this](const std::exception_ptr& failure) { ended(failure); });
+    }
+    boost::asio::co_spawn(context_, host_sync.run_master(hosts_.host(0), slaves),
+                          [this](const std::exception_ptr& failure) {
+                            ended(failure);
+                            if (!failure) on_end_();
+                          });
+  }
+
+  // Throws what a coroutine has thrown.
+  void check() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void ended(const std::exception_ptr& failure) {
+    if (!failure) return;
+    failure_ = failure;
+    context_.engine().stop();
+  }
+
+  HostGroup& hosts_;
+  VirtualContext& context_;
+  std::function<void()> on_end_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
