@@ -1,0 +1,88 @@
+// How stable a clock is: deviations, wander and time error of a measured or simulated series of its
+// time error, as people who judge clocks and links read them.
+//
+// The time error x is what the clock shows minus what it should show, in seconds, at points one
+// interval tau0 apart. A series may have gaps: it consists of evenly spaced pieces. No difference
+// reaches over a gap and nothing is interpolated; the terms of all pieces are pooled, and each
+// result says of how many it is. A piece of N points has, at an averaging time tau = m tau0,
+//
+//   name        value                                                         terms of a piece
+//   ADEV        sqrt(mean(d_i^2) / 2) / tau,  d_i = x_(i+2m) - 2 x_(i+m) + x_i     N - 2m
+//   ADEV plain  the same, i = 0, m, 2m ...                                    (N - 1) div m - 1
+//   MDEV        sqrt(mean(D_j^2) / 2) / tau,  D_j = mean of d_j ... d_(j+m-1)      N - 3m + 1
+//   HDEV        sqrt(mean(h_i^2) / 6) / tau,
+//                 h_i = x_(i+3m) - 3 x_(i+2m) + 3 x_(i+m) - x_i               N - 3m
+//   HDEV plain  the same, i = 0, m, 2m ...                                    (N - 1) div m - 2
+//   TDEV        tau MDEV / sqrt(3), in seconds                                as MDEV
+//   MTIE        max over i of (max - min of x_i ... x_(i+m)), in seconds      N - m
+//
+// and none where that is less than 1. A value without a term in any piece does not exist: it is
+// absent, never NaN and never 0. HDEV is that of three-point frequency differences, which a linear
+// frequency drift leaves as it is. With a constant frequency offset MTIE grows without end; the
+// deviations do not see it.
+//
+// Numerics: differences are taken first, so that an offset of the clock costs no digits; rolling
+// sums are compensated. Complexity: O(N) for each value; MTIE over all octaves O(N log N), by
+// doubling its windows; MTIE at one m O(N log m). Memory: two series.
+//
+// Sources: W. J. Riley, Handbook of Frequency Stability Analysis, NIST SP 1065, 2008, section 5.2
+// (Allan, overlapping Allan, modified Allan, time and Hadamard variance); Recommendation ITU-T
+// G.810 (08/96), appendix II (estimators of ADEV, MDEV, TDEV and MTIE).
+//
+//   TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0, .x_s = {0, 1e-6, 3e-6}}}};
+//   const Stability stability = stability_of(series);
+//   const std::optional<StabilityPoint> mtie = deviation_at(series, Deviation::kMtie, 2);
+#ifndef SIMBENCH_EVALUATION_STABILITY_STABILITY_H_
+#define SIMBENCH_EVALUATION_STABILITY_STABILITY_H_
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "evaluation/stability/time_error.h"
+
+namespace simbench::evaluation {
+
+enum class Deviation : std::uint8_t {
+  kAdev,  // the overlapping one
+  kAdevPlain,
+  kMdev,
+  kHdev,  // the overlapping one
+  kHdevPlain,
+  kTdev,
+  kMtie
+};
+
+struct StabilityPoint {
+  double tau_s = 0;
+  double value = 0;        // without a unit; of TDEV and MTIE see where it stands
+  std::int64_t terms = 0;  // differences, or windows of MTIE, that it is of
+};
+
+// At tau = m intervals, m >= 1; TDEV and MTIE in seconds. Nothing if no piece is long enough.
+std::optional<StabilityPoint> deviation_at(const TimeErrorSeries& series, Deviation deviation,
+                                           std::int64_t m);
+
+// At m = 1, 2, 4 ... as far as it exists; TDEV and MTIE in seconds.
+std::vector<StabilityPoint> deviation_over_octaves(const TimeErrorSeries& series,
+                                                   Deviation deviation);
+
+// All of that over octaves, with the time error itself; ADEV and HDEV are the overlapping ones. Of
+// a series without points everything is 0 and empty.
+struct Stability {
+  double interval_s = 0;
+  std::int64_t points = 0;
+  std::int64_t pieces = 0;  // that have points
+  std::vector<StabilityPoint> adev{};
+  std::vector<StabilityPoint> mdev{};
+  std::vector<StabilityPoint> hdev{};
+  std::vector<StabilityPoint> tdev_ms{};
+  std::vector<StabilityPoint> mtie_ms{};
+  TimeErrorSummary time_error{};
+  std::vector<TimeErrorStep> steps{};
+};
+Stability stability_of(const TimeErrorSeries& series);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_STABILITY_STABILITY_H_

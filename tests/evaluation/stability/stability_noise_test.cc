@@ -1,0 +1,123 @@
+// Series of noise of known kind and level: slopes and levels of the deviations against theory
+// (NIST SP 1065, section 5.2 and table 4; IEEE Std 1139-2008, annex B), over many seeds.
+#include <gmock/gmock.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "evaluation/stability/stability.h"
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr int kSeeds = 200;
+constexpr std::size_t kPoints = 1024;
+constexpr double kSigma = 1e-9;
+
+std::vector<double> white(boost::random::mt19937& random) {
+  boost::random::normal_distribution<double> normal(0, kSigma);
+  std::vector<double> noise(kPoints);
+  for (double& value : noise) value = normal(random);
+  return noise;
+}
+
+std::vector<double> sums(std::vector<double> noise) {
+  double sum = 0;
+  for (double& value : noise) value = sum += value;
+  return noise;
+}
+
+// Power over frequency: white noise behind the filter (1 - 1/z)^(-1/2). Source: Kasdin 1995,
+// "Discrete simulation of colored noise", Proc. IEEE 83(5), section III.
+std::vector<double> flicker(boost::random::mt19937& random) {
+  std::vector<double> response = {1};
+  for (std::size_t k = 1; k < kPoints; ++k) {
+    const auto order = static_cast<double>(k);
+    response.push_back(response.back() * (order - 0.5) / order);
+  }
+  const std::vector<double> input = white(random);
+  std::vector<double> output(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    double value = 0;
+    for (std::size_t k = 0; k <= i; ++k) value += response[k] * input[i - k];
+    output[i] = value;
+  }
+  return output;
+}
+
+// The deviation at m = 8, 16, 32 and 64: root of the mean variance over the seeds.
+std::vector<double> mean_deviation(
+    const std::function<std::vector<double>(boost::random::mt19937&)>& noise, Deviation deviation) {
+  std::vector<double> variances(4);
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    boost::random::mt19937 random(seed);
+    const TimeErrorSeries series{.interval_s = 1, .pieces = {{.start_s = 0, .x_s = noise(random)}}};
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+      const double value = deviation_at(series, deviation, std::int64_t{8} << i)->value;
+      variances[i] += value * value / kSeeds;
+    }
+  }
+  for (double& value : variances) value = std::sqrt(value);
+  return variances;
+}
+
+// Slope over the three octaves, and level: value = level tau^slope.
+void expect_power_law(const std::vector<double>& values, double slope, double level) {
+  const double found = std::log(values[3] / values[0]) / std::log(8);
+  EXPECT_NEAR(found, slope, slope == 0 ? 0.05 : 0.05 * std::abs(slope));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double expected = level * std::pow(8.0 * static_cast<double>(1U << i), slope);
+    EXPECT_NEAR(values[i], expected, 0.03 * expected) << "octave " << i;
+  }
+}
+
+TEST(StabilityOfNoise, WhitePhase) {
+  const auto noise = [](auto& random) { return white(random); };
+  expect_power_law(mean_deviation(noise, Deviation::kAdev), -1, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kAdevPlain), -1, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kMdev), -1.5, std::sqrt(3) * kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kTdev), -0.5, kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kHdev), -1, std::sqrt(10.0 / 3) * kSigma);
+}
+
+TEST(StabilityOfNoise, FlickerPhase) {
+  // h_1 = 4 pi sigma^2; the filter's sharp end at half the rate stands in the ADEV alone.
+  const double h1 = 4 * std::numbers::pi * kSigma * kSigma;
+  const double modified = 3 * std::log(256.0 / 27) * h1 / (8 * std::numbers::pi * std::numbers::pi);
+  expect_power_law(mean_deviation(flicker, Deviation::kMdev), -1, std::sqrt(modified));
+  expect_power_law(mean_deviation(flicker, Deviation::kTdev), 0, std::sqrt(modified / 3));
+}
+
+TEST(StabilityOfNoise, WhiteFrequency) {
+  const auto noise = [](auto& random) { return sums(white(random)); };
+  expect_power_law(mean_deviation(noise, Deviation::kAdev), -0.5, kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kHdev), -0.5, kSigma);
+  expect_power_law(mean_deviation(noise, Deviation::kMdev), -0.5, kSigma * std::sqrt(0.5));
+  expect_power_law(mean_deviation(noise, Deviation::kTdev), 0.5, kSigma * std::sqrt(0.5 / 3));
+}
+
+TEST(StabilityOfNoise, FlickerFrequency) {
+  // h_-1 = sigma^2 / pi.
+  const double h = kSigma * kSigma / std::numbers::pi;
+  const auto noise = [](auto& random) { return sums(flicker(random)); };
+  expect_power_law(mean_deviation(noise, Deviation::kAdev), 0, std::sqrt(2 * std::log(2) * h));
+  expect_power_law(mean_deviation(noise, Deviation::kMdev), 0,
+                   std::sqrt(h * (27 * std::log(3) - 32 * std::log(2)) / 8));
+  expect_power_law(mean_deviation(noise, Deviation::kHdev), 0,
+                   std::sqrt(h * std::log(256.0 / 27) / 2));
+}
+
+TEST(StabilityOfNoise, RandomWalkFrequency) {
+  const auto noise = [](auto& random) { return sums(sums(white(random))); };
+  expect_power_law(mean_deviation(noise, Deviation::kAdev), 0.5, kSigma / std::sqrt(3));
+  expect_power_law(mean_deviation(noise, Deviation::kMdev), 0.5, kSigma * std::sqrt(11.0 / 40));
+  expect_power_law(mean_deviation(noise, Deviation::kHdev), 0.5, kSigma / std::sqrt(6));
+}
+
+}  // namespace
+}  // namespace simbench::evaluation
