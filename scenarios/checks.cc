@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -30,6 +31,15 @@ void check_name(const Scenario& scenario, const std::string& pointer, const std:
                       shown_text(name)));
 }
 
+// `found` values where there may be none or one for each of the `count` things.
+void check_size(const Scenario& scenario, const std::string& pointer, std::size_t found,
+                std::string_view values, std::int64_t count, std::string_view things) {
+  if (found == 0 || found == static_cast<std::size_t>(count)) return;
+  fail_at(scenario, pointer,
+          fmt::format("found {} {}, allowed none or one for each of the {} {}", found, values,
+                      count, things));
+}
+
 void check_hosts(const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const std::int64_t hosts = scenario.hosts.count;
@@ -41,11 +51,8 @@ void check_hosts(const Scenario& scenario) {
                         "(/hosts/count is {})",
                         cameras.cameras_per_host, last, scenario.host_of(last), hosts - 1, hosts));
   }
-  if (cameras.host_of_camera.size() != static_cast<std::size_t>(cameras.count)) {
-    fail_at(scenario, "/cameras/host_of_camera",
-            fmt::format("found {} hosts, allowed none or one for each of the {} cameras",
-                        cameras.host_of_camera.size(), cameras.count));
-  }
+  check_size(scenario, "/cameras/host_of_camera", cameras.host_of_camera.size(), "hosts",
+             cameras.count, "cameras");
   for (std::size_t j = 0; j < cameras.host_of_camera.size(); ++j) {
     if (cameras.host_of_camera[j] < hosts) continue;
     fail_at(scenario, fmt::format("/cameras/host_of_camera/{}", j),
@@ -56,11 +63,78 @@ void check_hosts(const Scenario& scenario) {
 
 void check_skews(const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
-  const std::size_t found = cameras.skew_of_camera_ppm.size();
-  if (found == 0 || found == static_cast<std::size_t>(cameras.count)) return;
-  fail_at(scenario, "/cameras/skew_of_camera_ppm",
-          fmt::format("found {} skews, allowed none or one for each of the {} cameras", found,
-                      cameras.count));
+  check_size(scenario, "/cameras/skew_of_camera_ppm", cameras.skew_of_camera_ppm.size(), "skews",
+             cameras.count, "cameras");
+}
+
+void check_host_clocks(const Scenario& scenario) {
+  const Hosts& hosts = scenario.hosts;
+  const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
+  const std::vector<double>& offsets_ms = hosts.clock.initial_offset_of_host_ms;
+  check_size(scenario, "/hosts/clock/skew_of_host_ppm", skews_ppm.size(), "skews", hosts.count,
+             "hosts");
+  check_size(scenario, "/hosts/clock/initial_offset_of_host_ms", offsets_ms.size(), "offsets",
+             hosts.count, "hosts");
+  if (hosts.master_is_exact && !skews_ppm.empty() && skews_ppm.front() != 0) {
+    fail_at(scenario, "/hosts/clock/skew_of_host_ppm/0",
+            fmt::format("found {}, allowed 0: the master is exact (/hosts/master_is_exact)",
+                        skews_ppm.front()));
+  }
+  if (!offsets_ms.empty() && offsets_ms.front() != 0) {
+    fail_at(scenario, "/hosts/clock/initial_offset_of_host_ms/0",
+            fmt::format("found {}, allowed 0: the master's clock is the reference, it reads 0 at "
+                        "true zero",
+                        offsets_ms.front()));
+  }
+}
+
+// The latency is a table: then a link has none of its own.
+void check_no_latency(const Scenario& scenario, const std::string& pointer,
+                      const std::optional<double>& latency_ms) {
+  if (!latency_ms) return;
+  fail_at(scenario, pointer,
+          fmt::format("found {}, allowed nothing where /network/latency_quantiles_ms has the "
+                      "latency of every link",
+                      *latency_ms));
+}
+
+// Neither way of a link may be shorter than none.
+void check_asymmetry(const Scenario& scenario, const std::string& pointer, const Link& link) {
+  const Network& network = scenario.network;
+  const double fixed_ms = network.latency_quantiles_ms.empty()
+                              ? link.latency_fixed_ms.value_or(network.latency_fixed_ms)
+                              : network.latency_quantiles_ms.front();
+  const double found_ms = link.asymmetry_ms.value_or(0);
+  if (std::abs(found_ms) <= 2 * fixed_ms) return;
+  fail_at(scenario, pointer,
+          fmt::format("found {}, allowed from {} to {}, twice the least latency of the link",
+                      found_ms, -2 * fixed_ms, 2 * fixed_ms));
+}
+
+void check_links(const Scenario& scenario) {
+  const std::vector<Link>& links = scenario.network.links;
+  std::set<std::int64_t> hosts;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Link& link = links[i];
+    const std::string pointer = fmt::format("/network/links/{}", i);
+    if (link.host == 0 || link.host >= scenario.hosts.count) {
+      fail_at(scenario, pointer + "/host",
+              fmt::format("found {}, allowed a slave, whose link with the master (host 0) this is: "
+                          "from 1 on and below /hosts/count, {}",
+                          link.host, scenario.hosts.count));
+    }
+    if (!hosts.insert(link.host).second) {
+      fail_at(scenario, pointer + "/host",
+              fmt::format("found a second link of host {}, allowed one of each slave with the "
+                          "master",
+                          link.host));
+    }
+    if (!scenario.network.latency_quantiles_ms.empty()) {
+      check_no_latency(scenario, pointer + "/latency_fixed_ms", link.latency_fixed_ms);
+      check_no_latency(scenario, pointer + "/latency_exponential_ms", link.latency_exponential_ms);
+    }
+    check_asymmetry(scenario, pointer + "/asymmetry_ms", link);
+  }
 }
 
 void check_quantiles(const Scenario& scenario, const std::string& pointer,
@@ -376,8 +450,10 @@ void check_studio(const Scenario& scenario) {
 void check(const Scenario& scenario) {
   check_name(scenario, "/name", scenario.name);
   check_hosts(scenario);
+  check_host_clocks(scenario);
   check_skews(scenario);
   check_tables(scenario);
+  check_links(scenario);
   check_streams(scenario);
   check_rates(scenario);
   check_shutters(scenario);

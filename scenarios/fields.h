@@ -83,7 +83,24 @@ struct nlohmann::adl_serializer<simbench::scenarios::Fault> {
   }
 };
 
+// What a scenario does without has null, or no member.
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  static void to_json(json& out, const std::optional<T>& value) {
+    out = value ? json(*value) : json();
+  }
+  static void from_json(const json& in, std::optional<T>& value) {
+    if (in.is_null()) {
+      value.reset();
+    } else {
+      value = in.get<T>();
+    }
+  }
+};
+
 namespace simbench::scenarios {
+
+// Members "with default" may be missing where the schema lets them; it requires all else.
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timeline, wait_before_capture_ms, warm_up_ms, frames)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Oscillator, skew_sigma_ppm, white_frequency_ppb,
@@ -91,25 +108,30 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Oscillator, skew_sigma_ppm, white_frequency_p
                                    ramp_ppm_per_hour, self_heating_ppm,
                                    self_heating_time_constant_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LastSet, hours_ago, skew_sigma_ppm, minutes_since_baseline)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HostClock, oscillator, initial_offset_sigma_ms, tick_ms,
-                                   resolution_ms, read_cost_ms, set_cost_ms,
-                                   set_cost_session_log_sigma, set_cost_call_log_sigma,
-                                   set_effective_fraction, arrival_quantum_ms, last_set)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HostClock, oscillator, initial_offset_sigma_ms,
+                                                skew_of_host_ppm, initial_offset_of_host_ms,
+                                                tick_ms, resolution_ms, read_cost_ms, set_cost_ms,
+                                                set_cost_session_log_sigma, set_cost_call_log_sigma,
+                                                set_effective_fraction, arrival_quantum_ms,
+                                                last_set)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Burst, rate_hz, duration_exponential_ms, latency_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Nic, hardware_stamps, skew_sigma_ppm, stamp_resolution_ns,
                                    stamp_jitter_sigma_ns, cross_stamp_cost_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PulseLines, pps, gnss, trigger, pps_jitter_sigma_us,
                                    interrupt_latency_us, interrupt_latency_exponential_us)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Hosts, count, clock, send_cost_ms, send_cost_exponential_ms,
-                                   send_cost_session_exponential_ms, receive_wake_up_ms,
-                                   load_log_sigma, nic, pulse_lines, load_burst)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Network, latency_fixed_ms, latency_exponential_ms,
-                                   latency_session_exponential_ms, asymmetry_sigma_ms,
-                                   spike_probability, spike_max_ms, latency_quantiles_ms, burst,
-                                   bandwidth_mbit_per_s, overhead_bytes, loss_probability,
-                                   duplicate_probability, reorder_probability, reorder_max_ms,
-                                   retransmit_timeout_ms, nagle, delayed_ack_ms, stamp_point,
-                                   capture_traffic_share, switch_clock, switch_clock_error_ns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Hosts, count, master_is_exact, clock, send_cost_ms,
+                                                send_cost_exponential_ms,
+                                                send_cost_session_exponential_ms,
+                                                receive_wake_up_ms, load_log_sigma, nic,
+                                                pulse_lines, load_burst)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Link, host, latency_fixed_ms,
+                                                latency_exponential_ms, asymmetry_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
+    Network, latency_fixed_ms, latency_exponential_ms, latency_session_exponential_ms,
+    asymmetry_sigma_ms, port_asymmetry_sigma_ms, spike_probability, spike_max_ms,
+    latency_quantiles_ms, burst, bandwidth_mbit_per_s, overhead_bytes, loss_probability,
+    duplicate_probability, reorder_probability, reorder_max_ms, retransmit_timeout_ms, nagle,
+    delayed_ack_ms, stamp_point, capture_traffic_share, switch_clock, switch_clock_error_ns, links)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,
@@ -147,28 +169,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Studio, radius_m, azimuth_step_deg, heights_m
                                    min_distance_m, max_distance_m, point_spacing_mm,
                                    visibility_tolerance_mm, visibility_spread_px, subject,
                                    published)
-
-}  // namespace simbench::scenarios
-
-// A scenario without a studio has null, or no member.
-template <>
-struct nlohmann::adl_serializer<std::optional<simbench::scenarios::Studio>> {
-  using Studio = simbench::scenarios::Studio;
-  static void to_json(json& out, const std::optional<Studio>& studio) {
-    out = studio ? json(*studio) : json();
-  }
-  static void from_json(const json& in, std::optional<Studio>& studio) {
-    if (in.is_null()) {
-      studio.reset();
-    } else {
-      studio = in.get<Studio>();
-    }
-  }
-};
-
-namespace simbench::scenarios {
-
-// With default for the studio's sake; the schema requires all else.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Scenario, name, summary, timeline, hosts, network,
                                                 trigger, cameras, usb, faults, evaluation,
                                                 algorithms, pipelines, published, studio)

@@ -131,8 +131,9 @@ json parse_value(const std::string& value, const std::string& label) {
   }
 }
 
-std::string no_such_key(const std::string& pointer, const std::string& key, const json& object) {
-  std::vector<std::string> known;
+std::string no_such_key(const std::string& pointer, const std::string& key, const json& object,
+                        std::vector<std::string> known) {
+  std::erase_if(known, [&object](const std::string& name) { return object.contains(name); });
   for (const auto& [name, member] : object.items()) known.push_back(name);
   const std::string parent = pointer.empty() ? "the scenario" : pointer;
   if (known.empty()) {
@@ -162,9 +163,15 @@ bool is_algorithm_parameter(const std::vector<std::string>& keys) {
   return keys.size() == 3 && keys[0] == "algorithms" && !keys[1].empty() && !keys[2].empty();
 }
 
+// The members that the schema lets an object below the scenario do without.
+std::vector<std::string> optional_members(const nlohmann::ordered_json* node) {
+  if (node == nullptr || node == &ordered_schema()) return {};
+  return node->value("x-optional", std::vector<std::string>());
+}
+
 // --set /json/pointer=value: replaces the value at the pointer; null removes it. The value must
-// exist, except for /algorithms/NAME/PARAMETER: the algorithms declare their own parameters and
-// defaults. Throws InputError.
+// exist, except for /algorithms/NAME/PARAMETER (the algorithms declare their own parameters and
+// defaults) and for members that the schema calls optional. Throws InputError.
 void apply_override(const Override& setting, std::size_t level, json& document, Places& places) {
   const std::string& pointer = setting.pointer;
   const std::string label =
@@ -174,24 +181,28 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
   }
   const std::vector<std::string> keys = keys_of(pointer, label);
   const json value = parse_value(setting.value, label);
-  const bool may_create = is_algorithm_parameter(keys);
+  const bool is_parameter = is_algorithm_parameter(keys);
 
   json* target = &document;
   json* parent = nullptr;
   std::string walked;
+  const nlohmann::ordered_json* schema = &ordered_schema();
   for (const std::string& key : keys) {
+    const std::vector<std::string> optional = optional_members(schema);
+    const bool may_create = is_parameter || std::ranges::find(optional, key) != optional.end();
     parent = target;
     if (target->is_array()) {
       target = &element(*target, walked, key, label);
     } else if (target->is_object() && (target->contains(key) || may_create)) {
       target = &(*target)[key];
     } else if (target->is_object()) {
-      throw InputError(label + ": " + no_such_key(walked, key, *target));
+      throw InputError(label + ": " + no_such_key(walked, key, *target, optional));
     } else {
       throw InputError(fmt::format("{}: found no \"{}\" in {}, which is a single value", label,
                                    shown_text(key), walked));
     }
     walked = child_pointer(walked, key);
+    if (schema != nullptr) schema = schema_of_child(*schema, key);
     if (may_create && target->is_null()) *target = json::object();
   }
 

@@ -5,7 +5,8 @@
 // has the name, the unit and the meaning of its JSON key; scenarios/schema.json documents each with
 // its allowed range and its source. There are no defaults (the zeros below never reach a loaded
 // scenario): a scenario inherits or states every member, so that `simbench describe` prints every
-// number behind a result. Members whose values are words are enums (scenarios/choices.h).
+// number behind a result. The exceptions are the schema's "x-optional" members, whose effect is off
+// until they are stated. Members whose values are words are enums (scenarios/choices.h).
 //
 // Conventions: *_sigma is a standard deviation of a zero-mean normal; *_exponential_ms the mean of
 // an exponential; *_log_sigma the sigma of exp(N(0, sigma)), a factor of median 1; a probability is
@@ -59,7 +60,10 @@ struct LastSet {
 
 struct HostClock {
   Oscillator oscillator;
-  double initial_offset_sigma_ms = 0;     // slaves' clocks before synchronisation; the master has 0
+  double initial_offset_sigma_ms = 0;  // slaves' clocks before synchronisation; the master has 0
+  // In place of the draws, the master first (else empty).
+  std::vector<double> skew_of_host_ppm{};
+  std::vector<double> initial_offset_of_host_ms{};
   double tick_ms = 0;                     // granularity of the system clock itself (0: continuous)
   double resolution_ms = 0;               // get and set round down to this (SYSTEMTIME: 1 ms)
   double read_cost_ms = 0;                // CPU time of a get call
@@ -98,7 +102,8 @@ struct PulseLines {
 };
 
 struct Hosts {
-  std::int64_t count = 0;  // host 0 is the master
+  std::int64_t count = 0;        // host 0 is the master
+  bool master_is_exact = false;  // the master's oscillator has no frequency error of any kind
   HostClock clock;
   double send_cost_ms = 0;                      // sender occupancy per message
   double send_cost_exponential_ms = 0;          // additional, per message
@@ -110,11 +115,20 @@ struct Hosts {
   Burst load_burst;  // frames are delivered and messages noticed later
 };
 
+// The link of a host with the master. What it does not state is the network's.
+struct Link {
+  std::int64_t host = 0;
+  std::optional<double> latency_fixed_ms{};
+  std::optional<double> latency_exponential_ms{};
+  std::optional<double> asymmetry_ms{};  // fixed latency towards the host minus back
+};
+
 struct Network {
   double latency_fixed_ms = 0;
   double latency_exponential_ms = 0;
   double latency_session_exponential_ms = 0;  // per session: Exp(this * M)
   double asymmetry_sigma_ms = 0;              // per link: forward minus backward fixed latency
+  double port_asymmetry_sigma_ms = 0;         // per host: its port of the switch adds to all links
   double spike_probability = 0;
   double spike_max_ms = 0;  // a spike adds U(0, this)
   // In place of fixed, exponential and spike: the latency at equally spaced probabilities 0 to 1.
@@ -133,6 +147,7 @@ struct Network {
   double capture_traffic_share = 0;  // of each frame's bytes, sent on through the host's port
   SwitchClockKind switch_clock{};    // PTP
   double switch_clock_error_ns = 0;
+  std::vector<Link> links{};
 };
 
 struct TriggerPause {

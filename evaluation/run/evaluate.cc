@@ -35,6 +35,13 @@ bool is_offline(const PipelineChoice& choice) {
          choice.device_time.make(choice.device_time_parameters)->offline();
 }
 
+// The sigma of the links' asymmetry where it is drawn for each of them alone, else 0.
+double drawn_asymmetry_ms(const scenarios::Network& network) {
+  const bool is_stated = std::ranges::any_of(
+      network.links, [](const scenarios::Link& link) { return link.asymmetry_ms.has_value(); });
+  return is_stated || network.port_asymmetry_sigma_ms > 0 ? 0 : network.asymmetry_sigma_ms;
+}
+
 // A job that failed: scenario, pipeline, seed, version and reason.
 class JobFailed : public std::runtime_error {
  public:
@@ -128,7 +135,7 @@ class Evaluation {
     results.first_seed = options_.first_seed;
     results.seed_count = options_.seeds;
     results.asymmetry_floor =
-        asymmetry_floor(scenario_.network.asymmetry_sigma_ms, scenario_.hosts.count);
+        asymmetry_floor(drawn_asymmetry_ms(scenario_.network), scenario_.hosts.count);
     const RowSetting setting = row_setting(scenario_);
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
       results.rows.push_back(row(pipeline, setting));

@@ -84,10 +84,17 @@ std::vector<ClockStart> draw_clock_starts(const scenarios::Scenario& scenario, s
   for (std::int64_t host = 0; host < scenario.hosts.count; ++host) {
     boost::random::mt19937_64 generator(seed * 1'000'003 + static_cast<std::uint64_t>(host));
     boost::random::normal_distribution<double> normal;
+    const auto value_or = [host](const std::vector<double>& stated, double drawn) {
+      return stated.empty() ? drawn : stated[static_cast<std::size_t>(host)];
+    };
+    const double skew_ppm =
+        value_or(clock.skew_of_host_ppm, normal(generator) * clock.oscillator.skew_sigma_ppm);
+    const double offset_ms = value_or(clock.initial_offset_of_host_ms,
+                                      normal(generator) * clock.initial_offset_sigma_ms);
+    const bool is_exact = host == 0 && scenario.hosts.master_is_exact;
     ClockStart start;
-    start.skew_ppm = cut(normal(generator) * clock.oscillator.skew_sigma_ppm, kMaxSkewPpm);
-    start.offset_ms =
-        host == 0 ? 0 : cut(normal(generator) * clock.initial_offset_sigma_ms, kMaxOffsetMs);
+    start.skew_ppm = is_exact ? 0 : cut(skew_ppm, kMaxSkewPpm);
+    start.offset_ms = host == 0 ? 0 : cut(offset_ms, kMaxOffsetMs);
     starts.push_back(start);
   }
   return starts;

@@ -89,6 +89,13 @@ void check_relay_can(const scenarios::Scenario& scenario) {
   refuse_unless_zero("/network/capture_traffic_share", network.capture_traffic_share);
   refuse_unless_zero("/network/latency_session_exponential_ms",
                      network.latency_session_exponential_ms);
+  refuse_unless_zero("/network/port_asymmetry_sigma_ms", network.port_asymmetry_sigma_ms);
+  if (!network.links.empty()) {
+    scenarios::fail_at(scenario, "/network/links",
+                       fmt::format("found {} links, allowed where a relay imitates the network: "
+                                   "none",
+                                   network.links.size()));
+  }
   if (network.nagle) {
     scenarios::fail_at(scenario, "/network/nagle",
                        "found true, allowed where a relay imitates the network: false");

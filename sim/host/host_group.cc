@@ -16,8 +16,8 @@ std::string host_component(std::size_t host, const char* what) {
   return "host" + std::to_string(host) + ": " + what;
 }
 
-OscillatorModel oscillator_of(const scenarios::Hosts& hosts, std::uint64_t run_seed,
-                              std::size_t host) {
+OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run_seed,
+                                std::size_t host) {
   if (host == 0 && hosts.master_is_exact) return OscillatorModel(0);
   OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
   const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
@@ -70,7 +70,7 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
 void HostGroup::make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,
                            InitialClocks initial_clocks) {
   const std::size_t host = clocks_.size();
-  OscillatorModel oscillator = oscillator_of(parameters, run_seed, host);
+  OscillatorModel oscillator = host_oscillator(parameters, run_seed, host);
   RandomStream epoch(run_seed, host_component(host, "steady epoch"));
   const SteadyTime steady_epoch{from_ms(epoch.uniform(0, kSteadyEpochMaxMs))};
   Nanoseconds offset{};

@@ -5,10 +5,28 @@
 namespace simbench::sim {
 namespace {
 
-double asymmetry_ms(double sigma_ms, std::uint64_t run_seed, PeerId from, PeerId to) {
-  static constexpr ComponentKey kAsymmetry("network: asymmetry");
-  RandomStream draw(run_seed, kAsymmetry, std::min(from, to), std::max(from, to));
-  const double forward_minus_backward_ms = draw.normal(sigma_ms);
+constexpr ComponentKey kAsymmetry("network: asymmetry");
+constexpr ComponentKey kPortAsymmetry("network: asymmetry of a port");
+
+// What the scenario states of the link; null: nothing.
+const scenarios::Link* stated_link(const scenarios::Network& network, PeerId from, PeerId to) {
+  if (std::min(from, to) != 0) return nullptr;
+  const auto found = std::ranges::find(network.links, static_cast<std::int64_t>(std::max(from, to)),
+                                       &scenarios::Link::host);
+  return found == network.links.end() ? nullptr : &*found;
+}
+
+// Of this direction against the other.
+double asymmetry_ms(const scenarios::Network& network, const scenarios::Link& link,
+                    std::uint64_t run_seed, PeerId from, PeerId to) {
+  const PeerId lower = std::min(from, to);
+  const PeerId higher = std::max(from, to);
+  const auto port_ms = [&](PeerId host) {
+    return RandomStream(run_seed, kPortAsymmetry, host).normal(network.port_asymmetry_sigma_ms);
+  };
+  RandomStream draw(run_seed, kAsymmetry, lower, higher);
+  const double of_link_ms = link.asymmetry_ms.value_or(draw.normal(network.asymmetry_sigma_ms));
+  const double forward_minus_backward_ms = of_link_ms + port_ms(lower) - port_ms(higher);
   return from < to ? forward_minus_backward_ms : -forward_minus_backward_ms;
 }
 
@@ -20,9 +38,13 @@ LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_se
       table_ms_(network.latency_quantiles_ms),
       bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {
   const bool is_table = !table_ms_.empty();
-  const double asymmetry = asymmetry_ms(network.asymmetry_sigma_ms, run_seed, from, to) / 2;
-  fixed_ms_ = (is_table ? 0 : network.latency_fixed_ms) + session_latency_ms + asymmetry;
-  const double least_ms = is_table ? table_ms_.least() : network.latency_fixed_ms;
+  const scenarios::Link* const stated = stated_link(network, from, to);
+  const scenarios::Link link = stated == nullptr ? scenarios::Link{} : *stated;
+  const double asymmetry = asymmetry_ms(network, link, run_seed, from, to) / 2;
+  const double stated_ms = link.latency_fixed_ms.value_or(network.latency_fixed_ms);
+  exponential_ms_ = link.latency_exponential_ms.value_or(network.latency_exponential_ms);
+  fixed_ms_ = (is_table ? 0 : stated_ms) + session_latency_ms + asymmetry;
+  const double least_ms = is_table ? table_ms_.least() : stated_ms;
   cable_ = from_ms(std::max(0.0, least_ms + asymmetry));
 }
 
@@ -34,7 +56,7 @@ Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
 }
 
 double LinkLatency::draw_parametric_ms(RandomStream& draw) const {
-  const double latency_ms = fixed_ms_ + draw.exponential(network_->latency_exponential_ms);
+  const double latency_ms = fixed_ms_ + draw.exponential(exponential_ms_);
   // Both are always drawn, so that later draws stay the same.
   const bool has_spike = draw.chance(network_->spike_probability);
   const double spike_ms = draw.uniform(0, network_->spike_max_ms);

@@ -8,7 +8,11 @@
 //   table +- asymmetry / 2 + burst (while one lasts) + session
 //
 // The asymmetry is the fixed latency from the host of lower number to that of higher number minus
-// the fixed latency back, one draw per link. A latency is never negative.
+// the fixed latency back: one draw per link, and that of the lower host's port less that of the
+// higher host's, one draw per host. A latency is never negative.
+//
+// What the scenario states of a slave's link with the master (network/links) takes the place of
+// fixed, of the mean of Exp and of the link's draw.
 //
 // Source: docs/reference/calibration.md section 2 ("lat()"); docs/reference/host_sync.md section 3.
 #ifndef SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
@@ -35,7 +39,7 @@ constexpr std::uint64_t direction_of(PeerId from, PeerId to) {
 
 class LinkLatency {
  public:
-  // `session_latency_ms` is added. `network` must outlive this.
+  // `session_latency_ms` is added. `network` must outlive this. Linear in the links it states.
   LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
               double session_latency_ms);
 
@@ -52,6 +56,7 @@ class LinkLatency {
   const scenarios::Network* network_;
   QuantileTable table_ms_;
   double fixed_ms_ = 0;  // of every message
+  double exponential_ms_ = 0;
   Nanoseconds cable_{};
   BurstProcess bursts_;
 };

@@ -114,6 +114,68 @@ TEST(Checks, CamerasAndHosts) {
             "my.json:4: /cameras/host_of_camera/1: found 6, allowed 0 to 5 (/hosts/count is 6)");
 }
 
+TEST(Checks, ValuesOfHosts) {
+  for (const std::string count : {"5", "7"}) {
+    const std::string values = count == "5" ? "[0, 1, 2, 3, 4]" : "[0, 1, 2, 3, 4, 5, 6]";
+    EXPECT_EQ(error_of(R"("hosts": {"clock": {"skew_of_host_ppm": )" + values + "}}"),
+              "my.json:3: /hosts/clock/skew_of_host_ppm: found " + count +
+                  " skews, allowed none or one for each of the 6 hosts");
+    EXPECT_EQ(error_of(R"("hosts": {"clock": {"initial_offset_of_host_ms": )" + values + "}}"),
+              "my.json:3: /hosts/clock/initial_offset_of_host_ms: found " + count +
+                  " offsets, allowed none or one for each of the 6 hosts");
+  }
+  EXPECT_EQ(error_of("\"hosts\": {\"master_is_exact\": true,\n"
+                     "\"clock\": {\"skew_of_host_ppm\": [1, 1, 2, 3, 4, 5]}}"),
+            "my.json:4: /hosts/clock/skew_of_host_ppm/0: found 1, allowed 0: the master is exact "
+            "(/hosts/master_is_exact)");
+  EXPECT_EQ(error_of(R"("hosts": {"clock": {"initial_offset_of_host_ms": [2, 1, 2, 3, 4, 5]}})"),
+            "my.json:3: /hosts/clock/initial_offset_of_host_ms/0: found 2, allowed 0: the "
+            "master's clock is the reference, it reads 0 at true zero");
+  EXPECT_EQ(error_of(R"("hosts": {"clock": {"skew_of_host_ppm": [1, 1, 2, 3, 4, 5]}})"), "");
+  EXPECT_EQ(error_of(R"("hosts": {"clock": {"skew_of_host_ppm": [], "initial_offset_of_host_ms":
+                     []}})"),
+            "");
+}
+
+// The message about these links.
+std::string error_of_links(const std::string& links, const std::string& others = "") {
+  return error_of("\"network\": {" + others + "\"links\": [\n" + links + "]}");
+}
+
+TEST(Checks, LinksOfSlavesWithTheMaster) {
+  EXPECT_EQ(error_of_links(R"({"host": 1}, {"host": 5, "asymmetry_ms": -0.2})"), "");
+  for (const std::string host : {"0", "6", "999999"}) {
+    EXPECT_EQ(error_of_links("{\"host\": " + host + "}"),
+              "my.json:4: /network/links/0/host: found " + host +
+                  ", allowed a slave, whose link with the master (host 0) this is: from 1 on and "
+                  "below /hosts/count, 6");
+  }
+  EXPECT_EQ(error_of_links("{\"host\": 2},\n{\"host\": 2}"),
+            "my.json:5: /network/links/1/host: found a second link of host 2, allowed one of each "
+            "slave with the master");
+  EXPECT_EQ(error_of_links(R"({"asymmetry_ms": 0.1})"),
+            "my.json:4: /network/links/0/host: found nothing, allowed a whole number from 0 to "
+            "999999");
+  EXPECT_EQ(error_of_links(R"({"host": 2, "latency_ms": 1})"),
+            "my.json:4: /network/links/0/latency_ms: found an unknown key, allowed asymmetry_ms, "
+            "host, latency_exponential_ms, latency_fixed_ms");
+}
+
+TEST(Checks, LinksAgreeWithTheirNetwork) {
+  EXPECT_EQ(error_of_links(R"({"host": 2, "asymmetry_ms": 0.3})"),
+            "my.json:4: /network/links/0/asymmetry_ms: found 0.3, allowed from -0.2 to 0.2, twice "
+            "the least latency of the link");
+  EXPECT_EQ(error_of_links(R"({"host": 2, "asymmetry_ms": 0.3, "latency_fixed_ms": 0.15})"), "");
+  const std::string table = "\"latency_quantiles_ms\": [0.2, 0.3], ";
+  EXPECT_EQ(error_of_links(R"({"host": 2, "asymmetry_ms": 0.4})", table), "");
+  EXPECT_EQ(error_of_links(R"({"host": 2, "latency_fixed_ms": 1})", table),
+            "my.json:4: /network/links/0/latency_fixed_ms: found 1, allowed nothing where "
+            "/network/latency_quantiles_ms has the latency of every link");
+  EXPECT_EQ(error_of_links(R"({"host": 2, "latency_exponential_ms": 1})", table),
+            "my.json:4: /network/links/0/latency_exponential_ms: found 1, allowed nothing where "
+            "/network/latency_quantiles_ms has the latency of every link");
+}
+
 std::string stream(const std::string& kind, int width, int height, int rate_hz) {
   return fmt::format(
       R"({{"kind": "{}", "width": {}, "height": {}, "bytes_per_pixel": 2, "mode_rate_hz": {},

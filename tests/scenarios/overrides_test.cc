@@ -44,6 +44,29 @@ TEST(Set, MayCreateParametersOfAlgorithmsOnly) {
             "ntp_last_set, yoon2021_both, yoon2021_network, yoon2021_time");
 }
 
+TEST(Set, MayCreateWhatTheSchemaCallsOptional) {
+  EXPECT_TRUE(set("/hosts/master_is_exact", "true").hosts.master_is_exact);
+  EXPECT_EQ(
+      set("/hosts/clock/skew_of_host_ppm", "[0, 1, 2, 3, 4, 5]").hosts.clock.skew_of_host_ppm.at(5),
+      5);
+  const Scenario linked = load_scenario(
+      "18cam_6host_45fps", {{"/network/links", R"([{"host": 2, "asymmetry_ms": 0.1}])"},
+                            {"/network/links/0/latency_fixed_ms", "0.3"}});
+  EXPECT_EQ(linked.network.links.at(0).latency_fixed_ms, 0.3);
+  EXPECT_FALSE(linked.network.links.at(0).latency_exponential_ms.has_value());
+  EXPECT_EQ(load_scenario("18cam_6host_45fps").resolved_json,
+            load_scenario("18cam_6host_45fps",
+                          {{"/hosts/master_is_exact", "true"}, {"/hosts/master_is_exact", "null"}})
+                .resolved_json);
+  EXPECT_EQ(error_of_set("/hosts/master_is_exct", "true"),
+            "--set /hosts/master_is_exct=true: found no \"master_is_exct\" in /hosts, did you mean "
+            "master_is_exact?");
+  EXPECT_EQ(error_of_set("/hosts/clock/skew_of_host_ppm/0", "1"),
+            "--set /hosts/clock/skew_of_host_ppm/0=1: found no \"0\" in "
+            "/hosts/clock/skew_of_host_ppm, which is empty");
+  EXPECT_EQ(error_of_set("/base", "x").find("--set /base=x: found no \"base\""), 0U);
+}
+
 TEST(Set, NullRemoves) {
   EXPECT_EQ(set("/published/ntp_last_set", "null").published.count("ntp_last_set"), 0U);
   EXPECT_EQ(set("/published", R"({"oracle": null})").published.size(), 0U);

@@ -196,6 +196,9 @@ TEST(NetworkLaw, WhatARelayCannotImitateIsRefused) {
               HasSubstr("capture_traffic_share"));
   EXPECT_THAT(law_refusal("/network/latency_session_exponential_ms", "1"),
               HasSubstr("latency_session_exponential_ms"));
+  EXPECT_THAT(law_refusal("/network/port_asymmetry_sigma_ms", "0.1"),
+              HasSubstr("port_asymmetry_sigma_ms"));
+  EXPECT_THAT(law_refusal("/network/links", R"([{"host": 1}])"), HasSubstr("found 1 links"));
 }
 
 }  // namespace
