@@ -161,10 +161,6 @@ Placement placement_of(const Percentile& percentile) {
   return Placement::kTooFewSeeds;
 }
 
-bool inside(double published, const Series& series) {
-  return series.p05 <= published && published <= series.p95;
-}
-
 MedianInterval median_interval(const std::vector<double>& values, std::int64_t seeds) {
   const double shape = (static_cast<double>(seeds) + 1) / 2;
   const double low_at = boost::math::ibeta_inv(shape, shape, kTail, InDouble());

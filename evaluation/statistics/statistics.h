@@ -87,9 +87,6 @@ inline constexpr std::int64_t kFewestOutside = 72;
 
 Placement placement_of(const Percentile& percentile);
 
-// Whether `published` lies between the 5 % and the 95 % quantile of the series.
-bool inside(double published, const Series& series);
-
 // The 95 % interval of the median of n seeds, from one large run that stands for the distribution.
 //
 // The median of n draws is near the order statistic of rank (n + 1) / 2, which is Beta-distributed

@@ -91,8 +91,6 @@ constexpr const char* kDesyncLegend =
     "desynchronisation: how far apart the true mid-exposures of a frame set are. In every row "
     "frames are grouped by the nearest global stamp, without a threshold; seeds without a gathered "
     "set: those in which the pipeline's own gathering emitted none.";
-constexpr const char* kPublishedLegend =
-    "published: the paper's Table 4, one recording. inside: within the band.";
 constexpr const char* kLimitLegend =
     "desynchronisation up to: the largest one at which the median error stays within 10 % of its "
     "floor, the error at the smallest desynchronisation of the curve (interpolated). cost: the "
@@ -257,7 +255,10 @@ Block row_notes(const ReconstructionResults& results) {
 
 Block reconstruction_legend(const ReconstructionResults& results) {
   Block block{.heading = "How to read it", .items = {kErrorLegend, kDesyncLegend}};
-  if (published_ratio(results.rows)) block.items.emplace_back(kPublishedLegend);
+  if (published_ratio(results.rows)) {
+    block.items.push_back(
+        fmt::format("published: the paper's Table 4, one recording. {}", placement_legend()));
+  }
   if (!results.curve.empty()) block.items.emplace_back(kLimitLegend);
   return block;
 }
@@ -386,7 +387,7 @@ std::string published_text(const std::optional<PublishedReprojection>& published
   const double value = (*published).*member;
   if (std::isnan(simulated.median)) return cm_text(value);
   return fmt::format("{}, {}", cm_text(value),
-                     evaluation::inside(value, simulated) ? "inside" : "outside");
+                     placement_text(evaluation::percentile_of(value, simulated.values)));
 }
 
 std::int64_t total_over_seeds(const ReprojectionRow& row, std::int64_t SeedReprojection::*member) {

@@ -74,7 +74,7 @@ std::string ms_text(double ms);
 std::string ms_text(const evaluation::Series& series);
 // "1.20 m/s", or "x 1.5" for a script without walking.
 std::string speed_text(double speed_m_per_s, double speed_factor);
-// "9.70, outside"; "-" without a published value.
+// "9.70, outside" (placement_text()); "-" without a published value.
 std::string published_text(const std::optional<scenarios::PublishedReprojection>& published,
                            double scenarios::PublishedReprojection::*member,
                            const evaluation::Series& simulated);

@@ -10,6 +10,7 @@
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
@@ -25,8 +26,10 @@ Json published_error_json(const ReprojectionRow& row) {
   if (!row.published) return nullptr;
   return {{"mean_cm", row.published->mean_cm},
           {"std_cm", row.published->std_cm},
-          {"mean_inside", evaluation::inside(row.published->mean_cm, row.mean_cm())},
-          {"std_inside", evaluation::inside(row.published->std_cm, row.std_cm())}};
+          {"mean_inside",
+           inside_json(evaluation::percentile_of(row.published->mean_cm, row.mean_cm().values))},
+          {"std_inside",
+           inside_json(evaluation::percentile_of(row.published->std_cm, row.std_cm().values))}};
 }
 
 Json reprojection_row_json(const ReprojectionRow& row) {

@@ -7,7 +7,7 @@
 //    "rows": [{"pipeline", "host_sync", "device_time", "gathering", "mean_cm": series, "std_cm",
 //      "median_cm", "p95_cm", "desync_ms": likewise, "sets", "failed_sets", "missing_frames": over
 //      all seeds, "no_gathered_set_share", "published": null or {"mean_cm", "std_cm",
-//      "mean_inside", "std_inside"}, "notes"}],
+//      "mean_inside", "std_inside" (null: too few seeds to tell)}, "notes"}],
 //    "published": {pipeline: {"mean_cm", "std_cm"}},
 //    "published_ratio": null or {"worst", "best", "ratio": series, "published"},
 //    "curve": [{"speed_m_per_s", "speed_factor", "desync_ms", "mean_cm": series, "std_cm"}],

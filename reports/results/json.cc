@@ -7,14 +7,14 @@
 #include "reports/text/json_node.h"
 
 namespace simbench::reports {
-namespace {
 
-// Null with too few seeds to tell.
 Json inside_json(const evaluation::Percentile& percentile) {
   const evaluation::Placement placement = evaluation::placement_of(percentile);
   if (placement == evaluation::Placement::kTooFewSeeds) return nullptr;
   return placement == evaluation::Placement::kInside;
 }
+
+namespace {
 
 Json published_json(const std::optional<evaluation::PublishedComparison>& published) {
   if (!published) return nullptr;

@@ -32,11 +32,15 @@
 #include <string>
 
 #include "evaluation/scoring/results.h"
+#include "reports/text/json_node.h"
 
 namespace simbench::reports {
 
 // The schema of manifest.json and results.json: the written one, and the newest that can be read.
 inline constexpr int kArchiveSchemaVersion = 1;
+
+// Whether a value at this percentile is inside; null with too few seeds to tell.
+Json inside_json(const evaluation::Percentile& percentile);
 
 // Indented by two, ends with a line feed.
 std::string json(const evaluation::Results& results);

@@ -149,12 +149,10 @@ std::vector<std::string> results_legend(const Results& results) {
     lines.push_back(unverified);
   }
   if (any_published(results)) {
-    lines.emplace_back(fmt::format(
-        "published: the paper's one recording. inside: the whole interval of its "
-        "percentile lies from 5 to 95 %; outside: all of it lies beyond; too few seeds: "
-        "neither (outside takes {} seeds). not attainable: under eq. (4) no data have "
-        "that RMDV with that AMD.",
-        evaluation::kFewestOutside));
+    lines.push_back(fmt::format(
+        "published: the paper's one recording. {} not attainable: under eq. (4) no data have that "
+        "RMDV with that AMD.",
+        placement_legend()));
   }
   if (gatherings_differ(results)) {
     const std::vector<std::string> sets = sets_legend(results);

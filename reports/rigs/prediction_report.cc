@@ -22,11 +22,15 @@ using evaluation::Series;
 constexpr const char* kOfPulses[] = {"amd_ms", "rmdv_ms", "host_error_ms", "absolute_error_ms"};
 constexpr const char* kOfSets[] = {"set_amd_ms"};
 
-constexpr const char* kPredictionLegend =
-    "Prediction: the simulator's, for the same scenario. inside: the measured median lies in the "
-    "simulated 5-95 % band, so this number does not distinguish the rig from such a world; "
-    "outside: the scenario does not describe this rig (simbench fit makes one that does).";
-constexpr const char* kOneRepetition = "One repetition has a value and no band.";
+std::string prediction_legend(bool one_repetition) {
+  const std::string legend = fmt::format(
+      "Prediction: the simulator's, for the same scenario, among whose seeds the measured median "
+      "has "
+      "a percentile. {} What is inside does not distinguish the rig from such a world; a scenario "
+      "does not describe what is outside (simbench fit makes one that does).",
+      placement_legend());
+  return one_repetition ? legend + " One repetition has a value and no band." : legend;
+}
 
 std::span<const char* const> metrics_of(const Row& measured) {
   if (measured.verified() || evaluation::count_of_existing(measured.amd_ms.values) == 0)
@@ -43,9 +47,8 @@ std::string measured_band(const Prediction& prediction) {
   return prediction.measured_count > 1 ? band_text(prediction.measured) : "-";
 }
 
-std::string inside_text(const Prediction& prediction) {
-  if (!prediction.inside) return "-";
-  return *prediction.inside ? "inside" : "outside";
+std::string place_text(const Prediction& prediction) {
+  return prediction.percentile ? placement_text(*prediction.percentile) : "-";
 }
 
 std::string metric_text(const Prediction& prediction) {
@@ -65,7 +68,7 @@ Table prediction_table(const std::vector<Prediction>& rows) {
               2);
   for (const Prediction& row : rows) {
     table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),
-               number_text(row.simulated.median), band_text(row.simulated), inside_text(row)});
+               number_text(row.simulated.median), band_text(row.simulated), place_text(row)});
   }
   return table;
 }
@@ -79,7 +82,7 @@ Json prediction_json(const Prediction& row) {
           {"verified", row.verified},
           {"measured", measured},
           {"simulated", band_json(row.simulated)},
-          {"inside", row.inside ? Json(*row.inside) : Json()}};
+          {"inside", row.percentile ? inside_json(*row.percentile) : Json()}};
 }
 
 }  // namespace
@@ -97,10 +100,10 @@ std::vector<Prediction> predictions(const Results& measured, const Results& simu
                      .measured = metric.series(found),
                      .simulated = metric.series(*predicted),
                      .measured_count = evaluation::count_of_existing(metric.series(found).values),
-                     .inside = std::nullopt};
+                     .percentile = std::nullopt};
       if (!is_predicted(id, row.measured_count)) continue;
       if (row.measured_count > 0 && evaluation::count_of_existing(row.simulated.values) > 0) {
-        row.inside = evaluation::inside(row.measured.median, row.simulated);
+        row.percentile = evaluation::percentile_of(row.measured.median, row.simulated.values);
       }
       all.push_back(std::move(row));
     }
@@ -112,11 +115,10 @@ Block prediction_block(const Results& measured, const Results& simulated) {
   const std::vector<Prediction> rows = predictions(measured, simulated);
   const bool one = std::any_of(rows.begin(), rows.end(),
                                [](const Prediction& row) { return row.measured_count == 1; });
-  return {
-      .heading = fmt::format("Measured beside predicted ({})",
-                             counted(simulated.seed_count, "simulated seed")),
-      .table = prediction_table(rows),
-      .prose = {one ? fmt::format("{} {}", kPredictionLegend, kOneRepetition) : kPredictionLegend}};
+  return {.heading = fmt::format("Measured beside predicted ({})",
+                                 counted(simulated.seed_count, "simulated seed")),
+          .table = prediction_table(rows),
+          .prose = {prediction_legend(one)}};
 }
 
 std::string json_with_prediction(const Results& measured, const Results& simulated) {

@@ -1,10 +1,10 @@
 // Measured results of a real rig beside the simulator's prediction for the same scenario.
 //
-// The measured median of each pipeline and metric stands beside the simulated band. Inside the band
-// means only that this number does not distinguish the rig from the simulated worlds. One
-// repetition has a value and no band. An unverified row (evaluation/scoring/unverified_scores.h) is
-// compared by the range of its gathered sets, which simulated rows have too; the others by AMD,
-// RMDV and, where they exist, the errors.
+// The measured median of each pipeline and metric stands beside the simulated band and is placed by
+// its percentile (placement_of()). Inside means only that this number does not distinguish the rig
+// from the simulated worlds. One repetition has a value and no band. An unverified row
+// (evaluation/scoring/unverified_scores.h) is compared by the range of its gathered sets, which
+// simulated rows have too; the others by AMD, RMDV and, where they exist, the errors.
 //
 //   Document document = results_document(measured, summary);
 //   document.blocks.push_back(prediction_block(measured, simulated));
@@ -28,8 +28,8 @@ struct Prediction {
   evaluation::Series measured;
   evaluation::Series simulated;
   std::size_t measured_count = 0;  // of values that exist
-  // Whether the measured median lies in the simulated 5-95 % band; nothing if one does not exist.
-  std::optional<bool> inside;
+  // Of the measured median among the simulated seeds; nothing if one does not exist.
+  std::optional<evaluation::Percentile> percentile;
 };
 
 // Returns predictions in the order of `measured`. A pipeline that `simulated` lacks has none; one
@@ -44,7 +44,7 @@ Block prediction_block(const evaluation::Results& measured, const evaluation::Re
 //                  "rows": [{"pipeline", "metric", "verified",
 //                            "measured": {"count", "median", "p05", "p95"},
 //                            "simulated": {"median", "p05", "p95"}, "inside": true, false or
-//                            null}]}
+//                            null (too few seeds, or a value does not exist)}]}
 std::string json_with_prediction(const evaluation::Results& measured,
                                  const evaluation::Results& simulated);
 

@@ -49,6 +49,13 @@ std::string placement_text(const evaluation::Percentile& percentile) {
   return "";
 }
 
+std::string placement_legend() {
+  return fmt::format(
+      "inside: the whole interval of its percentile lies from 5 to 95 %; outside: all of it lies "
+      "beyond; too few seeds: neither (outside takes {} seeds).",
+      evaluation::kFewestOutside);
+}
+
 std::string count_text(std::int64_t count) {
   const std::string digits = std::to_string(count);
   const std::size_t sign = count < 0 ? 1 : 0;

@@ -27,6 +27,8 @@ std::string percentile_text(const evaluation::Percentile& percentile);
 
 // "inside", "outside" or "too few seeds" of the published value at this percentile.
 std::string placement_text(const evaluation::Percentile& percentile);
+// What the three mean.
+std::string placement_legend();
 
 // A count with thousands set apart: "1 234 567".
 std::string count_text(std::int64_t count);

@@ -146,14 +146,5 @@ TEST(PlacementTest, NeedsSeeds) {
   EXPECT_EQ(placement_among(kFewestOutside, kFewestOutside), Placement::kOutside);
 }
 
-TEST(InsideTest, MeansBetweenTheQuantilesWithBothEnds) {
-  const Series series = make_series({0, 100});
-  EXPECT_TRUE(inside(5, series));
-  EXPECT_TRUE(inside(95, series));
-  EXPECT_FALSE(inside(4.9, series));
-  EXPECT_FALSE(inside(95.1, series));
-  EXPECT_FALSE(inside(1, make_series({})));
-}
-
 }  // namespace
 }  // namespace simbench::evaluation

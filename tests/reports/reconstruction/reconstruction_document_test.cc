@@ -27,11 +27,26 @@ TEST(ReconstructionTable, HasTheRowsOfTable4) {
   const std::string text = reconstruction_table();
   EXPECT_THAT(text, HasSubstr("a_studio: 3 seeds (1-3), 10 frame sets each\n"));
   // The 5 % and 95 % quantiles of 6, 8, 13 are 6.2 and 12.5.
-  EXPECT_THAT(text, ContainsRegex("ntp_last_set +8.00 \\[6.20, 12.50\\] +9.70, inside +"
-                                  "4.00 \\[3.10, 6.25\\] +12.14, outside\n"));
-  EXPECT_THAT(text, ContainsRegex("yoon2021_both +2.40 \\[2.04, 2.58\\] +2.39, inside +"
-                                  "1.20 \\[1.02, 1.29\\] +1.80, outside\n"));
+  EXPECT_THAT(text, ContainsRegex("ntp_last_set +8.00 \\[6.20, 12.50\\] +9.70, too few seeds +"
+                                  "4.00 \\[3.10, 6.25\\] +12.14, too few seeds\n"));
+  EXPECT_THAT(text, ContainsRegex("yoon2021_both +2.40 \\[2.04, 2.58\\] +2.39, too few seeds +"
+                                  "1.20 \\[1.02, 1.29\\] +1.80, too few seeds\n"));
   EXPECT_THAT(text, ContainsRegex("oracle +2.10 \\[2.01, 2.19\\] +- +1.05 \\[[^]]*\\] +-\n"));
+}
+
+TEST(ReconstructionTable, PlacesPublishedValuesByTheirPercentile) {
+  auto results = sample_reconstruction();
+  std::vector<double> means;
+  for (int i = 0; i < 80; ++i) means.push_back(9 + 0.02 * i);  // 35 below 9.703; half of all < 12
+  const auto published = results.rows[0].published;
+  results.rows[0] = sample_row("ntp_last_set", means, 547, false);
+  results.rows[0].published = published;
+  const std::string text = plain(reconstruction_document(results));
+  EXPECT_THAT(text, ContainsRegex("ntp_last_set .*9.70, inside .*12.14, outside\n"));
+  EXPECT_THAT(text, HasSubstr("too few seeds: neither (outside takes 72 seeds)"));
+  const Json row = Json::parse(reconstruction_json(results))["rows"][0];
+  EXPECT_EQ(row["published"]["mean_inside"], true);
+  EXPECT_EQ(row["published"]["std_inside"], false);
 }
 
 TEST(ReconstructionTable, SaysHowTheRowsCameAbout) {
@@ -109,8 +124,8 @@ TEST(ReconstructionJson, HasRowsWithSeries) {
   EXPECT_EQ(row["missing_frames"], 7);
   EXPECT_NEAR(row["no_gathered_set_share"].get<double>(), 2.0 / 3, 1e-12);
   EXPECT_EQ(row["published"]["mean_cm"], 9.703);
-  EXPECT_EQ(row["published"]["mean_inside"], true);
-  EXPECT_EQ(row["published"]["std_inside"], false);
+  EXPECT_EQ(row["published"]["mean_inside"], nullptr);  // three seeds do not tell
+  EXPECT_EQ(row["published"]["std_inside"], nullptr);
   EXPECT_EQ(root["rows"][2]["published"], nullptr);
   EXPECT_EQ(root["published"]["yoon2021_both"]["std_cm"], 1.7967);
 }

@@ -38,7 +38,7 @@ TEST(ReconstructionHtml, HasTheNumbersOfTheTable) {
   const std::string page = reconstruction_page(sample_reconstruction());
   for (const char* part :
        {"<th scope=\"row\" class=\"text\">ntp_last_set</th><td>8.00 [6.20, 12.50]</td>"
-        "<td>9.70, inside</td>",
+        "<td>9.70, too few seeds</td>",
         "3.33 [3.03, 4.83]", "No speed of the subject", "<td>66.7 %</td>", "<td>&gt; 100</td>",
         "<td>30.0</td><td>0.0100</td>", "oracle: seed 2: too little", "the mesh has 3 holes",
         "measures calibration and depth noise", "what desynchronisation costs a reconstruction",

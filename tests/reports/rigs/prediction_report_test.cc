@@ -14,6 +14,7 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::GroundTruth;
+using evaluation::Placement;
 using evaluation::Results;
 using evaluation::Row;
 using testing::HasSubstr;
@@ -32,13 +33,24 @@ Row row_of(const std::string& pipeline, std::vector<double> amd, GroundTruth tru
   return row;
 }
 
+// 101 values from 1 to 3 times `middle` / 2.
+std::vector<double> even(double middle) {
+  std::vector<double> values;
+  for (int i = -50; i <= 50; ++i) values.push_back(middle * (1 + i / 100.0));
+  return values;
+}
+
 Results simulated() {
   Results results = sample_results();
-  results.rows = {row_of("both", {1, 2, 3}, GroundTruth::kSimulation),
-                  row_of("time", {4, 5, 6}, GroundTruth::kSimulation)};
-  results.rows[0].host_error_ms = evaluation::make_series({0.1, 0.2, 0.3});
-  results.seed_count = 3;
+  results.rows = {row_of("both", even(2), GroundTruth::kSimulation),
+                  row_of("time", even(5), GroundTruth::kSimulation)};
+  results.rows[0].host_error_ms = evaluation::make_series(even(0.2));
+  results.seed_count = 101;
   return results;
+}
+
+evaluation::Placement place(const Prediction& row) {
+  return evaluation::placement_of(row.percentile.value());
 }
 
 Results measured(std::vector<double> amd, GroundTruth truth = GroundTruth::kGenlockOrder) {
@@ -48,15 +60,18 @@ Results measured(std::vector<double> amd, GroundTruth truth = GroundTruth::kGenl
   return results;
 }
 
-TEST(Prediction, TheMeasuredMedianIsInsideTheSimulatedBandOrNot) {
+TEST(Prediction, TheMeasuredMedianIsPlacedByItsPercentile) {
   const std::vector<Prediction> rows = predictions(measured({2.5, 2.7}), simulated());
   ASSERT_EQ(rows.size(), 2);  // errors cannot be measured there
   EXPECT_EQ(rows[0].metric, "amd_ms");
-  EXPECT_EQ(rows[0].inside, true);  // 2.6 in [1.1, 2.9]
+  EXPECT_EQ(place(rows[0]), Placement::kInside);  // 80 of 101 are below
   EXPECT_EQ(rows[1].metric, "rmdv_ms");
-  EXPECT_EQ(rows[1].inside, true);
-  EXPECT_EQ(predictions(measured({2.95, 2.95}), simulated())[0].inside, false);
-  EXPECT_EQ(predictions(measured({1.0, 1.0}), simulated())[0].inside, false);
+  EXPECT_EQ(place(rows[1]), Placement::kInside);
+  // Beyond the band of [1.1, 2.9], which the percentile's interval does not show.
+  EXPECT_EQ(place(predictions(measured({2.95, 2.95}), simulated())[0]), Placement::kTooFewSeeds);
+  for (const double far : {0.9, 3.1}) {
+    EXPECT_EQ(place(predictions(measured({far, far}), simulated())[0]), Placement::kOutside) << far;
+  }
 }
 
 TEST(Prediction, WhereTruthIsKnownErrorsAreComparedToo) {
@@ -65,7 +80,7 @@ TEST(Prediction, WhereTruthIsKnownErrorsAreComparedToo) {
   const std::vector<Prediction> rows = predictions(known, simulated());
   ASSERT_EQ(rows.size(), 3);
   EXPECT_EQ(rows[2].metric, "host_error_ms");
-  EXPECT_EQ(rows[2].inside, true);
+  EXPECT_EQ(place(rows[2]), Placement::kInside);
 }
 
 TEST(Prediction, UnverifiedRowsAreComparedBySets) {
@@ -74,7 +89,7 @@ TEST(Prediction, UnverifiedRowsAreComparedBySets) {
   ASSERT_EQ(rows.size(), 1);
   EXPECT_EQ(rows[0].metric, "set_amd_ms");
   EXPECT_FALSE(rows[0].verified);
-  EXPECT_EQ(rows[0].inside, true);  // 1 in [0.55, 1.45]
+  EXPECT_EQ(place(rows[0]), Placement::kInside);
   EXPECT_THAT(plain({.blocks = {prediction_block(found, simulated())}}),
               HasSubstr("AMD of sets (unverified)"));
 }
@@ -84,7 +99,7 @@ TEST(Prediction, OneRepetitionHasAValueAndNoBand) {
   EXPECT_THAT(
       text,
       HasSubstr("both      AMD         2.000         -      2.000  [1.100, 2.900]  inside\n"));
-  EXPECT_THAT(text, HasSubstr("One repetition\nhas a value and no band."));
+  EXPECT_THAT(text, HasSubstr("One repetition has a\nvalue and no band."));
   EXPECT_THAT(plain({.blocks = {prediction_block(measured({2, 2}), simulated())}}),
               Not(HasSubstr("One repetition")));
 }
@@ -94,7 +109,7 @@ TEST(Prediction, APipelineThatWasNeverCapturedHasItsPrediction) {
   const std::vector<Prediction> rows = predictions(nothing, simulated());
   ASSERT_EQ(rows.size(), 1);
   EXPECT_EQ(rows[0].metric, "amd_ms");
-  EXPECT_FALSE(rows[0].inside.has_value());
+  EXPECT_FALSE(rows[0].percentile.has_value());
   EXPECT_THAT(plain({.blocks = {prediction_block(nothing, simulated())}}),
               Not(HasSubstr("unverified")));
 }
@@ -108,7 +123,7 @@ TEST(Prediction, OfOnePipelineThatWasNotSimulatedThereIsNone) {
 TEST(Prediction, IsAMemberOfTheResultsJson) {
   const auto root = nlohmann::json::parse(json_with_prediction(measured({2}), simulated()));
   EXPECT_EQ(root["rows"].size(), 1);
-  EXPECT_EQ(root["prediction"]["seeds"]["count"], 3);
+  EXPECT_EQ(root["prediction"]["seeds"]["count"], 101);
   const auto& row = root["prediction"]["rows"][0];
   EXPECT_EQ(row["pipeline"], "both");
   EXPECT_EQ(row["metric"], "amd_ms");
@@ -118,6 +133,8 @@ TEST(Prediction, IsAMemberOfTheResultsJson) {
   EXPECT_DOUBLE_EQ(row["simulated"]["p05"], 1.1);
   EXPECT_EQ(row["inside"], true);
   EXPECT_EQ(row["verified"], true);
+  const auto beyond = nlohmann::json::parse(json_with_prediction(measured({2.95}), simulated()));
+  EXPECT_TRUE(beyond["prediction"]["rows"][0]["inside"].is_null());
 }
 
 TEST(Prediction, Markdown) {
