@@ -22,20 +22,11 @@ using Json = nlohmann::ordered_json;
 
 bool json_messages = false;
 
-// A message may name a file or a camera, whose name may hold anything.
-std::string printable_lines(std::string_view text) {
-  std::string lines;
-  for (std::size_t end = 0; (end = text.find('\n')) != std::string_view::npos;) {
-    lines += printable_name(text.substr(0, end)) + '\n';
-    text.remove_prefix(end + 1);
-  }
-  return lines + printable_name(text);
-}
-
 void print_line(const char* kind, const std::string& text) {
   if (json_messages) {
     std::cerr << event_line({{"event", kind}, {"text", text}}) << std::flush;
   } else {
+    // It may name a file or a camera, whose name may hold anything.
     std::cerr << kind << ": " << printable_lines(text) << '\n';
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "algorithms/ports/assert.h"
+#include "recording/text_fields.h"
 #include "reports/text/html_text.h"
 #include "reports/text/plain_text.h"
 
@@ -22,6 +23,29 @@ std::string markdown_cell(const std::string& text) {
     escaped += c == '|' ? std::string("\\|") : std::string(1, c);
   }
   return escaped;
+}
+
+// With what a terminal would obey as \xHH: names may come from a file that anyone wrote.
+Table printable(Table table) {
+  for (Column& column : table.columns) column.header = printable_lines(column.header);
+  for (std::vector<std::string>& row : table.rows) {
+    for (std::string& cell : row) cell = printable_name(cell);
+  }
+  return table;
+}
+
+Document printable(Document document) {
+  const auto show = [](std::vector<std::string>& texts) {
+    for (std::string& text : texts) text = printable_lines(text);
+  };
+  document.title = printable_name(document.title);
+  show(document.head);
+  for (Block& block : document.blocks) {
+    block.heading = printable_name(block.heading);
+    show(block.prose);
+    show(block.items);
+  }
+  return document;
 }
 
 // Without the empty line before the first part of a document.
@@ -75,7 +99,10 @@ void Table::add(std::vector<std::string> cells) {
   rows.push_back(std::move(cells));
 }
 
-std::string plain(const Document& document) {
+std::string plain(const Table& table) { return aligned(printable(table)); }
+
+std::string plain(const Document& raw) {
+  const Document document = printable(raw);
   std::string out;
   if (!document.title.empty()) out += document.title + "\n";
   for (const std::string& text : document.head) out += wrapped(text);
@@ -83,7 +110,8 @@ std::string plain(const Document& document) {
   return fitted(without_first_break(std::move(out)));
 }
 
-std::string markdown(const Table& table) {
+std::string markdown(const Table& raw) {
+  const Table table = printable(raw);
   std::string out = "|";
   for (const Column& column : table.columns) {
     out += fmt::format(" {} |", markdown_cell(column.header));
@@ -101,7 +129,8 @@ std::string markdown(const Table& table) {
   return out;
 }
 
-std::string markdown(const Document& document) {
+std::string markdown(const Document& raw) {
+  const Document document = printable(raw);
   std::string out;
   if (!document.title.empty()) out += fmt::format("## {}\n", document.title);
   for (const std::string& text : document.head) out += fmt::format("\n{}\n", text);

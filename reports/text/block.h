@@ -10,8 +10,9 @@
 //   std::cout << plain(document);
 //
 // A header may have several lines ('\n'); Markdown and HTML join them by blanks. Headers and cells
-// are text, which renderers escape. Plain cells count as ASCII: their width is their length. Every
-// line ends with '\n', none with a blank.
+// are text, which renderers escape: what a terminal would obey, plain text and Markdown show as
+// \xHH. Plain cells count as ASCII: their width is their length. Every line ends with '\n', none
+// with a blank.
 //
 // Plain text is laid out for the page of reports/text/plain_text.h. A table wider than the page is
 // divided into parts, each with the key columns first; long prose in cells wraps. Only a word wider

@@ -233,7 +233,7 @@ std::string fitted(std::string_view text) {
   return out;
 }
 
-std::string plain(const Table& table) {
+std::string aligned(const Table& table) {
   std::vector<Need> needs;
   needs.reserve(table.columns.size());
   for (std::size_t c = 0; c < table.columns.size(); ++c) {

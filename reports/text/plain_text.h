@@ -20,6 +20,8 @@
 
 namespace simbench::reports {
 
+struct Table;
+
 // The page's width in columns; std::nullopt: no limit. Not while another thread prints.
 void set_page_width(std::optional<std::size_t> columns);
 std::optional<std::size_t> page_width();
@@ -42,6 +44,9 @@ inline constexpr std::size_t kProseWidth = 24;
 // Prose in lines of at most kTextWidth columns or the page's width (a longer word has a line of its
 // own), each after `indent` blanks and ended by '\n'.
 std::string wrapped(std::string_view text, std::size_t indent = 0);
+
+// A table on the page, as plain() draws it, of printable cells.
+std::string aligned(const Table& table);
 
 // Breaks every line that is wider than the page at a blank; the rest is indented by two more
 // blanks. Unchanged without a limit.

@@ -43,6 +43,22 @@ TEST(Table, MarkdownJoinsHeadersAndEscapesBars) {
             "| longer | 12345.25 |  |\n");
 }
 
+// Names of scenarios and pipelines come from files that anyone may have written.
+TEST(Document, TerminalEscapesAreShownAndNotObeyed) {
+  const std::string name = "\x1b[2J\x1b]0;mine\x07\u009b31m\r";
+  const std::string shown = "\\x1b[2J\\x1b]0;mine\\x07\\xc2\\x9b31m\\x0d";
+  Table table({{"pipeline", Align::kLeft}, {"AMD\nms" + name}});
+  table.add({name, "1"});
+  const Document document{
+      .title = name,
+      .head = {name},
+      .blocks = {{.heading = name, .table = table, .prose = {name}}, {.items = {name}}}};
+  for (const std::string& text : {plain(document), markdown(document), plain(table)}) {
+    EXPECT_EQ(text.find_first_of("\x1b\x07\r\x9b"), std::string::npos) << text;
+    EXPECT_THAT(text, HasSubstr(shown));
+  }
+}
+
 TEST(Table, HtmlHasItsCellsAsText) {
   Table table({{"name", Align::kLeft}, {"AMD\nms", Align::kRight, "a \"mean\""}});
   table.add({"<b>", "1.500"});
