@@ -299,7 +299,9 @@ Document results_document(const Results& results, const std::string& summary) {
   blocks.push_back(stages_block(results.rows));
   if (!results.claims.empty()) {
     blocks.push_back(
-        {.heading = "The paper's claims, and the fraction of seeds in which each holds",
+        {.heading = fmt::format(
+             "The paper's claims{}, and the fraction of seeds in which each holds",
+             results.derivation.unpublished.empty() ? "" : " about its own rig, not this one"),
          .table = claims_table(results)});
   }
   blocks.push_back({.prose = {cost_line(results)}});

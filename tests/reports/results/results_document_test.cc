@@ -174,6 +174,22 @@ TEST(Table, AClaimSaysInHowManySeedsItWasDecided) {
   EXPECT_THAT(table(results, ""), HasSubstr("50.0 % of 1 seed  none is worst"));
 }
 
+TEST(ResultsDocument, ClaimsOfThePaperAreNotThoseOfAnotherWorld) {
+  evaluation::Results results = sample_results();
+  const auto heading = [&results] {
+    const std::string text = plain(results_document(results, ""));
+    const std::size_t at = text.find("The paper's claims");
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(heading(), "The paper's claims, and the fraction of seeds in which each holds");
+  results.derivation = {
+      .base = "sample", .changes = {{"/a", "1", "2"}}, .unpublished = "18cam_6host_45fps"};
+  EXPECT_EQ(
+      heading(),
+      "The paper's claims about its own rig, not this one, and the fraction of seeds in which "
+      "each holds");
+}
+
 TEST(Table, WithoutPublishedValuesHasNoColumnsForThem) {
   evaluation::Results results = sample_results();
   results.rows[0].published.reset();
