@@ -56,6 +56,11 @@ TriangleMesh read_mesh(const std::string& path) {
     throw InputError(
         fmt::format("{}: found no such file, allowed: a PLY, OBJ, OFF or STL mesh", path));
   }
+  try {
+    file_content(path, kLargestFile);  // Open3D takes a read error for the end of some formats
+  } catch (const FileError& error) {
+    throw InputError(fmt::format("{}: cannot be read: {}", path, error.what()));
+  }
   open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
   open3d::geometry::TriangleMesh file;
   if (!open3d::io::ReadTriangleMesh(path, file) || file.vertices_.empty()) {

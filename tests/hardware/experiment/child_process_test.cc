@@ -6,11 +6,13 @@
 #include <sys/wait.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <fstream>
 #include <memory>
 #include <string>
 
 #include "hardware/experiment/experiment_rig.h"
+#include "tests/read_fault.h"
 
 namespace simbench::hardware {
 namespace {
@@ -46,6 +48,22 @@ TEST_F(ChildProcessTest, WhatItSaidLastIsInTheMessage) {
     FAIL() << "a line was read";
   } catch (const ChildError& error) {
     EXPECT_STREQ(error.what(), "simbench -c: ended before it was ready: no such rig");
+  }
+}
+
+TEST_F(ChildProcessTest, ALogThatCannotBeReadIsNotTakenForAnEmptyOne) {
+  const std::string last = "no such rig\n";
+  ChildProcess child(shell("printf '" + last + "' >&2; exit 3"));
+  for (std::size_t byte = 0; byte < last.size(); ++byte) {
+    const ReadFault fault(byte);
+    try {
+      child.read_line(child_limit());
+      FAIL() << "a line was read";
+    } catch (const ChildError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("ended before it was ready: " + folder_.file("log") +
+                                          ": cannot be read: "))
+          << byte;
+    }
   }
 }
 

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 
 #include "reconstruction/primitives.h"
 #include "scenarios/loader.h"
+#include "tests/read_fault.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::reconstruction {
@@ -52,6 +55,24 @@ float height_of(const TriangleMesh& mesh) {
   }
   EXPECT_NEAR(low, 0, 1e-5) << "not on the floor";
   return high - low;
+}
+
+TEST_F(MeshFile, AReadErrorIsNoEndOfTheFile) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\n";
+  const std::string path = write(".obj", text);
+  EXPECT_EQ(problem_of(path), "none");
+  for (std::size_t byte = 0; byte < text.size(); ++byte) {
+    const ReadFault fault(byte);
+    EXPECT_THAT(problem_of(path), HasSubstr("mesh.obj: cannot be read: ")) << byte;
+  }
+}
+
+TEST_F(MeshFile, WhatCannotBeReadBackIsNotGivenOn) {
+  const std::size_t size = box_in(1).size();
+  for (const std::size_t byte : {std::size_t{0}, size / 2, size - 1}) {
+    const ReadFault fault(byte);
+    EXPECT_THROW(box_in(1), std::runtime_error) << byte;
+  }
 }
 
 TEST_F(MeshFile, OfMetresIsTakenAsItIs) {
