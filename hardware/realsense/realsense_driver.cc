@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 
@@ -99,6 +100,8 @@ std::vector<CameraInfo> RealsenseDriver::list() {
     throw CameraError(
         fmt::format("cameras cannot be listed: librealsense2 says: {}", error.what()));
   }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const CameraInfo& a, const CameraInfo& b) { return a.serial < b.serial; });
   return result;
 }
 
@@ -110,6 +113,7 @@ std::unique_ptr<Camera> RealsenseDriver::open(const std::string& serial) {
       if (info.serial == serial) return std::make_unique<OpenCamera>(device, state_->open);
       found.push_back(info.serial);
     }
+    std::sort(found.begin(), found.end());
     throw CameraError(serial,
                       fmt::format("not plugged in; RealSense cameras found: {}",
                                   found.empty() ? "none (are librealsense's udev rules installed?)"

@@ -2,6 +2,7 @@
 //
 // Holds librealsense2's context and notifies opened cameras when they are unplugged and plugged in
 // again. Its destruction takes librealsense2 about two seconds.
+// Cameras are listed in the order of their serial numbers: librealsense2's own is not stable.
 //
 // Cameras may outlive the driver; they are then no longer notified.
 // Errors: CameraError: librealsense2 does not start; no camera of this serial number (the message
@@ -24,7 +25,8 @@ namespace simbench::hardware {
 class RealsenseDriver final : public CameraDriver {
  public:
   RealsenseDriver();
-  // With the caller's context, to which software devices can be added.
+  // With the caller's context, to which software devices can be added. From 2.55 on librealsense2
+  // lists such a device only while somebody holds the list that came with its arrival.
   explicit RealsenseDriver(const rs2::context& context);
   ~RealsenseDriver() override;
 

@@ -28,9 +28,19 @@ TEST(RealsenseCamera, SaysWhatItIs) {
   const SoftwareCamera software;
   const RealsenseCamera camera(software.device);
   EXPECT_EQ(camera.info().serial, "018322071234");
-  EXPECT_EQ(camera.info().model, "Software-Device");
+  EXPECT_EQ(camera.info().model, "Intel RealSense D455");
   EXPECT_EQ(camera.info().firmware, "5.12.3.0");
   EXPECT_EQ(camera.info().connection, "USB 3.2");
+}
+
+TEST(RealsenseCamera, WithoutANameItIsKnownByItsSerialNumber) {
+  SoftwareCamera software;
+  software.set_name("");
+  RealsenseCamera camera(software.device);
+  EXPECT_EQ(camera.info().model, "");
+  SeenFrames seen;
+  EXPECT_THAT([&] { camera.start(seen.on_frame(), seen.on_event()); },
+              ThrowsMessage<CameraError>(HasSubstr("camera 018322071234: started before")));
 }
 
 TEST(RealsenseCamera, HandsOnFramesAcrossTheWrapWithoutAnEvent) {
@@ -211,12 +221,13 @@ TEST(RealsenseCamera, AnUnpluggedCameraIsNotStartedAndOneThatCannotGoOnSaysWhy) 
 }
 
 TEST(RealsenseDriver, FindsCamerasBySerialAndToldOfTheirReturn) {
-  SoftwareCamera left("left");
   SoftwareCamera right("right");
-  left.device.add_to(shared_context());
-  right.device.add_to(shared_context());
+  SoftwareCamera left("left");
+  const rs2::device_list right_plugged_in = plug_in(right);
+  const rs2::device_list left_plugged_in = plug_in(left);
   RealsenseDriver driver(shared_context());
   ASSERT_EQ(driver.list().size(), 2U);
+  EXPECT_EQ(driver.list()[0].serial, "left");
   EXPECT_EQ(driver.list()[1].serial, "right");
   EXPECT_EQ(driver.list()[1].firmware, "5.12.3.0");
   EXPECT_THAT([&] { driver.open("middle"); },

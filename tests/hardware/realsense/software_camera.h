@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <librealsense2/hpp/rs_internal.hpp>
 #include <librealsense2/rs.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace simbench::hardware {
 
-// One context for all tests: taking one down takes two seconds.
+// One context for all tests: taking the last one down takes two seconds.
 inline rs2::context& shared_context() {
   static rs2::context context;
   return context;
@@ -24,6 +25,15 @@ class SoftwareCamera {
       : SoftwareCamera(serial, sync_modes, true) {}
   // Without any option.
   static SoftwareCamera bare() { return {"bare", 0, false}; }
+
+  // librealsense2 names software devices up to 2.54 only, and appends what is registered twice.
+  void set_name(const std::string& name) {
+    if (device.supports(RS2_CAMERA_INFO_NAME)) {
+      device.update_info(RS2_CAMERA_INFO_NAME, name);
+    } else {
+      device.register_info(RS2_CAMERA_INFO_NAME, name);
+    }
+  }
 
   // The stamps of the next frame. They stay for those after it.
   void set(rs2_frame_metadata_value value, std::int64_t number) {
@@ -48,6 +58,8 @@ class SoftwareCamera {
         frame(colour_profiles.front(), 0, RS2_TIMESTAMP_DOMAIN_HARDWARE_CLOCK, number));
   }
 
+  // Before the device, which from 2.55 on makes a context of its own.
+  rs2::context context = shared_context();
   rs2::software_device device;
   rs2::software_sensor depth;
   rs2::software_sensor colour;
@@ -57,6 +69,7 @@ class SoftwareCamera {
  private:
   SoftwareCamera(const std::string& serial, float sync_modes, bool options)
       : depth(device.add_sensor("Stereo Module")), colour(device.add_sensor("RGB Camera")) {
+    set_name("Intel RealSense D455");
     device.register_info(RS2_CAMERA_INFO_SERIAL_NUMBER, serial);
     device.register_info(RS2_CAMERA_INFO_FIRMWARE_VERSION, "5.12.3.0");
     device.register_info(RS2_CAMERA_INFO_USB_TYPE_DESCRIPTOR, "3.2");
@@ -88,6 +101,17 @@ class SoftwareCamera {
   int next_id_ = 0;
   std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(848 * 480 * 2);
 };
+
+// Adds the camera to the shared context. Hold the result: since 2.55 the context lists a software
+// device only while somebody has the list of its arrival. Replaces the context's callback.
+[[nodiscard]] inline rs2::device_list plug_in(SoftwareCamera& camera) {
+  const auto arrived = std::make_shared<rs2::device_list>();
+  shared_context().set_devices_changed_callback(
+      [arrived](const rs2::event_information& change) { *arrived = change.get_new_devices(); });
+  camera.device.add_to(shared_context());
+  shared_context().set_devices_changed_callback([](const rs2::event_information&) {});
+  return *arrived;
+}
 
 }  // namespace simbench::hardware
 
