@@ -69,6 +69,9 @@ TEST_F(ChangedWorld, IsStatedInCsvAndJson) {
 TEST_F(ChangedWorld, IsStatedInArchivesAndTheirReports) {
   output({"--output", "archive"});
   EXPECT_EQ(Json::parse(content("archive/manifest.json"))["changed"].size(), 3U);
+  for (const char* name : {"archive/frames.csv", "archive/hosts.csv"}) {
+    EXPECT_THAT(content(name), HasSubstr(kChanges)) << name;
+  }
   ASSERT_EQ(run({"report", "archive", "-o", "page.html"}).status, 0);
   EXPECT_THAT(content("page.html"), AllOf(HasSubstr(kHeading), HasSubstr(kChanges),
                                           Not(HasSubstr("18 cameras in genlock"))));

@@ -21,11 +21,11 @@ using testing::HasSubstr;
 class FitCommand : public ProgramTest {
  protected:
   // At 30 FPS; the camera's clock is 100 ppm fast, every third frame 0.3 ms late.
-  static std::string recording(int frames) {
+  static std::string recording(int frames, double first_stamp_ms = 700, double rate = 1.0001) {
     std::string text = kHeader;
     for (int i = 0; i < frames; ++i) {
       const double ms = i * 1000.0 / 30;
-      text += fmt::format("Depth,0,{},{:.3f},{:.6f}\n", i + 1, 700 + ms * 1.0001,
+      text += fmt::format("Depth,0,{},{:.3f},{:.6f}\n", i + 1, first_stamp_ms + ms * rate,
                           ms + (i % 3 == 0 ? 0.3 : 0));
     }
     return text;
@@ -99,6 +99,13 @@ TEST_F(FitCommand, BadInputIsOneLineAndLeavesTheEarlierFile) {
           "camera few, Depth 0: found 50 frames, a fit needs 100");
   const std::string back = recording(150) + "Depth,0,151,700,6000\n";
   refused({file("back.csv", back)}, "camera back, Depth 0: found device stamp -");
+  refused({file("global.csv", recording(150, 1.7e12))},
+          "camera global: found stamps that count from 1970, allowed stamps of the");
+  // Stamps in microseconds, where milliseconds are meant, drift by nearly 10^6 ppm.
+  refused({file("thousand.csv", recording(150, 700, 1000))},
+          "camera thousand, Depth 0: found a drift of ");
+  refused({file("percent.csv", recording(150, 700, 1.02))},
+          "camera percent, Depth 0: found a drift of ");
   refused({file("fast.csv", recording(150)), "--base", "no_such"}, "no_such");
   refused({file("x.csv", recording(150)), "--seed", "1"}, "--pipeline and --seed choose");
   std::filesystem::create_directory(folder() / "empty");

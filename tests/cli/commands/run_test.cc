@@ -135,7 +135,7 @@ TEST_F(Run, TheArchiveHoldsEverything) {
   EXPECT_TRUE(manifest.contains("version") && manifest.contains("commit"));
   EXPECT_LE(manifest["started"], manifest["finished"]);
   const std::string frames = content("results/frames.csv");
-  EXPECT_THAT(frames, testing::StartsWith("pipeline,seed,pulse,spread_ms,deviation_ms\n"));
+  EXPECT_THAT(frames, testing::StartsWith("pipeline,seed,pulse,spread_ms,deviation_ms,changed\n"));
   EXPECT_EQ(lines(frames), 1U + 2 * 3 * 60);
   EXPECT_EQ(lines(content("results/hosts.csv")), 1U + 2 * 3 * 6);
 }
