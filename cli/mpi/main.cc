@@ -32,6 +32,7 @@
 #include "cli/command_line.h"
 #include "cli/process.h"
 #include "evaluation/sweep/task_farm.h"
+#include "scenarios/loader.h"
 
 namespace simbench {
 namespace {
@@ -46,7 +47,7 @@ constexpr std::chrono::microseconds kLongestPause{1600};
 constexpr std::size_t kAhead = 3;
 constexpr std::size_t kPlenty = 8;  // tasks left for each thread
 
-enum Tag : int { kSetup, kTask, kStop, kAnswer, kFailure };
+enum Tag : int { kSetup, kTask, kStop, kAnswer, kFailure, kRefusal };
 
 // A message between ranks: a number and a text, in one message of plain bytes. (Boost.MPI sends an
 // object of several members as two messages, and waiting for the second takes a whole core.)
@@ -164,6 +165,7 @@ class MpiFarm final : public evaluation::TaskFarm {
       --away;
       queue.attempt(answer.number, [&] {
         if (waiting->tag() == kFailure) throw std::runtime_error(answer.text);
+        if (waiting->tag() == kRefusal) throw scenarios::InputError(answer.text);
         keep(answer.number, answer.text);
       });
       fill(waiting->source());
@@ -220,6 +222,8 @@ void work(const std::string& setup, Exchange& exchange) {
     try {
       if (!worker) worker = app::simulated_sweep_workers()(setup);
       exchange.answer({kAnswer, {task->number, worker(task->text)}});
+    } catch (const scenarios::InputError& error) {
+      exchange.answer({kRefusal, {task->number, error.what()}});
     } catch (const std::exception& error) {
       exchange.answer({kFailure, {task->number, error.what()}});
     }

@@ -18,6 +18,7 @@
 #include "evaluation/scoring/rows.h"
 #include "recording/counted.h"
 #include "recording/version.h"
+#include "scenarios/loader.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -111,14 +112,20 @@ class Evaluation {
       scores_[job] = score_of(choice, seed, source);
     } catch (const RecordingFailed& failure) {
       scores_[job] = missing_score(seed, failure.what());
+    } catch (const scenarios::InputError& error) {
+      throw scenarios::InputError(fmt::format("{}: {}", job_name(job), error.what()));
     } catch (const std::exception& error) {
-      throw JobFailed(fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})",
-                                  scenario_.name, choice.pipeline.name, seed, error.what(),
+      throw JobFailed(fmt::format("{}: {} (simbench {}, commit {})", job_name(job), error.what(),
                                   version(), commit()));
     }
     const std::lock_guard lock(mutex_);
     ++done_;
     if (progress_) progress_(done_, scores_.size());
+  }
+
+  std::string job_name(std::size_t job) const {
+    return fmt::format("{}, pipeline {}, seed {}", scenario_.name,
+                       choices_[pipeline_of(job)].pipeline.name, seed_of(job));
   }
 
   SeedScore score_of(const PipelineChoice& choice, std::uint64_t seed,

@@ -63,9 +63,10 @@ class EvaluationCancelled final : public EvaluationFailed {
   using EvaluationFailed::EvaluationFailed;
 };
 
-// Throws scenarios::InputError for an unknown pipeline or algorithm, or a parameter that its
-// algorithm does not have or allow; EvaluationCancelled; EvaluationFailed if a job failed, with
-// scenario, pipeline, seed, version and commit in its message; and what make_source throws.
+// Throws scenarios::InputError for an unknown pipeline or algorithm, a parameter that its algorithm
+// does not have or allow, or a world that its backend refuses; EvaluationCancelled;
+// EvaluationFailed if a job failed, with scenario, pipeline, seed, version and commit in its
+// message; and what make_source throws.
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
 

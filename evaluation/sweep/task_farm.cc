@@ -28,12 +28,18 @@ class SweepWorker {
     const json task = json::parse(text);
     try {
       return score(load(task.at("values")), task);
+    } catch (const scenarios::InputError& error) {
+      throw scenarios::InputError(with_place(task, error));
     } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("{} {}: {}", name_, task.dump(), error.what()));
+      throw std::runtime_error(with_place(task, error));
     }
   }
 
  private:
+  std::string with_place(const json& task, const std::exception& error) const {
+    return fmt::format("{} {}: {}", name_, task.dump(), error.what());
+  }
+
   std::string score(const Scenario& scenario, const json& task) {
     EvaluationOptions options;
     options.first_seed = task.at("seed");

@@ -122,14 +122,15 @@ void Engine::throw_limit_reached() const {
       events_ >= limits_.max_events
           ? fmt::format("limit of {} events reached", limits_.max_events)
           : fmt::format("limit of virtual time, {} s, reached", seconds_of(limits_.max_time));
-  std::string message = fmt::format("{} at {} s after {} events, {} pending", limit,
+  std::string reached = fmt::format("{} at {} s after {} events, {} pending", limit,
                                     seconds_of(now_), events_, pending());
+  std::string waiting;
   if (wait_reporter_) {
     const std::vector<std::string> waits = wait_reporter_();
-    message += fmt::format("; {} coroutines wait", waits.size());
-    for (const std::string& wait : waits) message += "\n  " + wait;
+    waiting = fmt::format("; {} coroutines wait", waits.size());
+    for (const std::string& wait : waits) waiting += "\n  " + wait;
   }
-  throw EngineLimitReached(message);
+  throw EngineLimitReached(std::move(reached), waiting);
 }
 
 }  // namespace simbench::sim

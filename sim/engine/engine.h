@@ -63,10 +63,15 @@ struct EngineLimits {
 };
 
 // The message has the limit, the virtual time, the events executed and pending, and what live
-// coroutines wait for.
+// coroutines wait for, a line each; limit() its first line alone.
 class EngineLimitReached : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  EngineLimitReached(std::string limit, const std::string& waits)
+      : std::runtime_error(limit + waits), limit_(std::move(limit)) {}
+  const std::string& limit() const { return limit_; }
+
+ private:
+  std::string limit_;
 };
 
 // Names one callback. A default-constructed id names none. Ids are never reused in practice: each

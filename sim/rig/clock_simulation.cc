@@ -86,7 +86,7 @@ class ClockRun {
     for (const scenarios::Fault& fault : scenario_.faults) plan(fault);
     read_clocks();
     if (request_.host_sync != nullptr) synchronisation_.start(*request_.host_sync, [] {});
-    engine_.run();
+    run_world(engine_);
     if (request_.cancel != nullptr && *request_.cancel) throw RecordingCancelled();
     synchronisation_.check();
     return {.events = engine_.events(),

@@ -21,12 +21,16 @@ namespace {
 // One run of the world.
 class Run {
  public:
-  Run(const scenarios::Scenario& scenario, const RecordingRequest& request, RecordingSink& sink)
+  Run(const scenarios::Scenario& scenario, const RecordingRequest& request,
+      const EngineLimits& limits, RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
         start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
         cancel_(request.cancel),
-        engine_({.cancel = request.cancel}, start_),
+        engine_({.max_events = limits.max_events,
+                 .max_time = limits.max_time,
+                 .cancel = request.cancel},
+                start_),
         context_(std::make_unique<VirtualContext>(engine_)),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
                *context_, sink),
@@ -51,7 +55,7 @@ class Run {
     hosts_.report_clocks();
     start_host_sync();
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
-    engine_.run();
+    run_world(engine_);
     if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
     synchronisation_.check();
     if (!captured_) throw SimulationError(standstill());
@@ -113,20 +117,27 @@ class Run {
 
 class Simulation final : public RecordingSource {
  public:
-  explicit Simulation(const scenarios::Scenario& scenario) : scenario_(scenario) {}
+  Simulation(const scenarios::Scenario& scenario, const EngineLimits& limits)
+      : scenario_(scenario), limits_(limits) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    return Run(scenario_, request, sink).run(sink);
+    return Run(scenario_, request, limits_, sink).run(sink);
   }
 
  private:
   const scenarios::Scenario& scenario_;
+  const EngineLimits limits_;
 };
 
 }  // namespace
 
 std::unique_ptr<RecordingSource> make_simulation(const scenarios::Scenario& scenario) {
-  return std::make_unique<Simulation>(scenario);
+  return make_limited_simulation(scenario, {});
+}
+
+std::unique_ptr<RecordingSource> make_limited_simulation(const scenarios::Scenario& scenario,
+                                                         const EngineLimits& limits) {
+  return std::make_unique<Simulation>(scenario, limits);
 }
 
 }  // namespace simbench::sim

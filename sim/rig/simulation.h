@@ -11,8 +11,8 @@
 // before zero and goes on during the capture.
 //
 // Errors: record() throws SimulationError when the synchronisation comes to a standstill before the
-// capture (with what every coroutine waits for), EngineLimitReached when it does not end,
-// RecordingCancelled, and the exceptions of algorithms.
+// capture (with what every coroutine waits for), scenarios::InputError for a world too large for
+// the engine's limits, RecordingCancelled, and the exceptions of algorithms.
 //
 //   const auto source = make_simulation(scenario);
 //   KeptRecording recording;
@@ -25,6 +25,7 @@
 
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
+#include "sim/engine/engine.h"
 
 namespace simbench::sim {
 
@@ -35,6 +36,9 @@ class SimulationError : public std::runtime_error {
 
 // The scenario must outlive the source. Sources share nothing: one per thread.
 std::unique_ptr<RecordingSource> make_simulation(const scenarios::Scenario& scenario);
+// With limits of its own; a request's `cancel` replaces theirs.
+std::unique_ptr<RecordingSource> make_limited_simulation(const scenarios::Scenario& scenario,
+                                                         const EngineLimits& limits);
 
 }  // namespace simbench::sim
 

@@ -2,10 +2,12 @@
 //
 //   SynchronisationRun synchronisation(hosts, context);
 //   synchronisation.start(host_sync, [&] { start_capture(); });
-//   engine.run();
+//   run_world(engine);
 //   synchronisation.check();
 #ifndef SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
 #define SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
+
+#include <fmt/format.h>
 
 #include <boost/asio/co_spawn.hpp>
 #include <exception>
@@ -14,10 +16,24 @@
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "scenarios/loader.h"
+#include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
 
 namespace simbench::sim {
+
+// engine.run(); throws scenarios::InputError, one line, for a world too large for its limits.
+inline void run_world(Engine& engine) {
+  try {
+    engine.run();
+  } catch (const EngineLimitReached& limit) {
+    throw scenarios::InputError(fmt::format(
+        "found a world that is too large: {}; allowed: fewer frames, cameras or hosts, or "
+        "a shorter host synchronisation",
+        limit.limit()));
+  }
+}
 
 class SynchronisationRun {
  public:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
+#include "scenarios/loader.h"
 #include "tests/evaluation/test_scenario.h"
 #include "tests/nonempty.h"
 
@@ -46,6 +47,25 @@ Results evaluated(bool all_fail) {
         return source;
       },
       {.first_seed = 2, .seeds = 3, .jobs = 1}, nullptr);
+}
+
+class TooLarge final : public RecordingSource {
+ public:
+  RecordingCost record(const RecordingRequest& /*request*/, RecordingSink& /*sink*/) override {
+    throw scenarios::InputError("found a world that is too large");
+  }
+};
+
+TEST(EvaluateFailures, AWorldThatItsBackendRefusesIsBadInput) {
+  EXPECT_THAT(
+      [] {
+        evaluate(
+            test_scenario(), [] { return std::make_unique<TooLarge>(); },
+            {.first_seed = 2, .seeds = 3, .jobs = 1}, nullptr);
+      },
+      testing::ThrowsMessage<scenarios::InputError>(testing::AllOf(
+          testing::HasSubstr(", pipeline arrival, seed 2: found a world that is too large"),
+          testing::Not(testing::HasSubstr("commit")))));
 }
 
 TEST(EvaluateFailures, AFailedCaptureIsAHoleAndANote) {

@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "scenarios/loader.h"
 #include "tests/nonempty.h"
 
 namespace simbench::evaluation {
@@ -41,6 +44,26 @@ TEST(ThreadFarm, EveryTaskOnceWithAnyNumberOfThreads) {
 
 TEST(ThreadFarm, NoTasks) {
   ThreadFarm(echo()).run(tasks(0, 4), [](std::size_t, const std::string&) { FAIL(); });
+}
+
+class TooLargeWorld final : public RecordingSource {
+ public:
+  RecordingCost record(const RecordingRequest& /*request*/, RecordingSink& /*sink*/) override {
+    throw scenarios::InputError("found a world that is too large");
+  }
+};
+
+TEST(SweepWorkers, AWorldThatIsRefusedIsBadInputWithItsPlace) {
+  const TaskWorkerFactory make =
+      sweep_workers([](const scenarios::Scenario&) { return std::make_unique<TooLargeWorld>(); });
+  const scenarios::Scenario world = scenarios::load_scenario("3cam_1host_30fps");
+  const TaskWorker worker =
+      make(nlohmann::json{{"name", world.name}, {"scenario", world.resolved_json}}.dump());
+  const std::string task = R"({"pipeline":"oracle","seed":7,"values":[["/timeline/frames","30"]]})";
+  EXPECT_THAT([&] { worker(task); },
+              testing::ThrowsMessage<scenarios::InputError>(testing::AllOf(
+                  testing::HasSubstr("/timeline/frames"),
+                  testing::HasSubstr("pipeline oracle, seed 7: found a world that is too large"))));
 }
 
 TEST(ThreadFarm, AFailureStopsThoseNotBegun) {

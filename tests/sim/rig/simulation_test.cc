@@ -176,6 +176,22 @@ class NeverReady final : public HostSync {
   Task<void> run_slave(Host&, PeerId) override { co_return; }
 };
 
+TEST(Simulation, AWorldTooLargeForTheEngineIsRefusedInOneLine) {
+  const scenarios::Scenario s = ideal_scenario();
+  Collector result;
+  const auto source = make_limited_simulation(s, {.max_events = 100});
+  try {
+    source->record({.seed = 1, .pipeline = "none"}, result);
+    FAIL() << "no InputError";
+  } catch (const scenarios::InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("found a world that is too large: limit of 100 events reached"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+}
+
 TEST(Simulation, SaysWhatAStandstillWaitsFor) {
   const scenarios::Scenario s = ideal_scenario();
   NeverReady stuck;
