@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/camera_profile.h"
+#include "scenarios/frequency_limit.h"
 #include "scenarios/loader.h"
 
 namespace simbench::scenarios {
@@ -133,6 +135,32 @@ void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
        fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
 }
 
+// Walks and ramps that may get to the frequency error at which they end. The walk's sigma grows
+// with the root of time; with half the limit one in ten gets there.
+void warn_about_oscillators(Lines& lines, const Scenario& scenario) {
+  const Timeline& timeline = scenario.timeline;
+  const double seconds = (timeline.wait_before_capture_ms + timeline.warm_up_ms) * 1e-3 +
+                         static_cast<double>(timeline.frames) / scenario.trigger.pulse_rate_hz();
+  const auto warn_if_far = [&](const std::string& pointer, const char* what, double fraction,
+                               double most) {
+    if (fraction < most) return;
+    warn(lines, scenario, pointer,
+         fmt::format("{} the frequency by {:.2g} % in the {:.0f} s until the capture ends; it goes "
+                     "no further than {:g} %",
+                     what, 100 * fraction, seconds, 100 * kMostFrequencyError));
+  };
+  for (const auto& [oscillator, pointer] :
+       {std::pair(&scenario.hosts.clock.oscillator, "/hosts/clock/oscillator"),
+        std::pair(&scenario.cameras.oscillator, "/cameras/oscillator")}) {
+    warn_if_far(fmt::format("{}/random_walk_ppb_per_sqrt_s", pointer), "the walk's sigma moves",
+                oscillator->random_walk_ppb_per_sqrt_s * 1e-9 * std::sqrt(seconds),
+                kMostFrequencyError / 2);
+    warn_if_far(fmt::format("{}/ramp_ppm_per_hour", pointer), "the ramp moves",
+                std::abs(oscillator->ramp_ppm_per_hour) * 1e-6 * seconds / 3600,
+                kMostFrequencyError);
+  }
+}
+
 // The distances of the nearest and the farthest camera from the point that all look at.
 struct Sight {
   double nearest_m = 0;
@@ -182,6 +210,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
+  warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);
   return lines;
 }

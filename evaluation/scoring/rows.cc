@@ -60,12 +60,30 @@ GroundTruth weakest(const std::vector<SeedScore>& seeds) {
   return found.value_or(GroundTruth::kNone);
 }
 
+// A line each; the notes of simulated worlds that say the same are one.
 std::vector<std::string> notes_of(const std::vector<SeedScore>& seeds) {
-  std::vector<std::string> notes;
+  struct Noted {
+    std::string text;
+    std::uint64_t seed;
+    std::uint64_t more = 0;
+  };
+  std::vector<Noted> noted;
   for (const SeedScore& seed : seeds) {
-    for (const std::string& note : seed.cost.notes) {
-      notes.push_back(fmt::format("repetition {}: {}", seed.seed, note));
+    for (const std::string& text : seed.cost.notes) {
+      const auto known = seed.ground_truth != GroundTruth::kSimulation
+                             ? noted.end()
+                             : std::ranges::find(noted, text, &Noted::text);
+      if (known == noted.end()) {
+        noted.push_back({text, seed.seed});
+      } else {
+        ++known->more;
+      }
     }
+  }
+  std::vector<std::string> notes;
+  for (const auto& [text, seed, more] : noted) {
+    notes.push_back(more == 0 ? fmt::format("repetition {}: {}", seed, text)
+                              : fmt::format("repetition {} and {} more: {}", seed, more, text));
   }
   return notes;
 }

@@ -106,7 +106,7 @@ std::string csv_cell(std::string_view text) {
 std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 std::string csv(const evaluation::Results& results) {
-  const bool real = has_real_rows(results);
+  const bool real = has_real_rows(results) || !note_lines(results).empty();
   std::vector<std::string> names = header();
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   const std::string changed = scenarios::changed_text(results.derivation);

@@ -13,7 +13,8 @@ namespace simbench::reports {
 
 // One line per pipeline: the metrics in the columns of evaluation/scoring/metrics.h, with the
 // published values before those of CsvColumns::kValueAtEnd, and scored_seeds as in json.h. If a row
-// is not of a simulation, three more columns: ground_truth (as in reports/results/json.h), verified
+// is not of a simulation or has notes, three more columns: ground_truth (as in
+// reports/results/json.h), verified
 // ("verified" or "unverified") and notes. If the scenario's world is a changed one, a last column:
 // changed, the same text in each line ("changed: /trigger/rate_hz 45 → 30").
 std::string csv(const evaluation::Results& results);

@@ -33,6 +33,8 @@ class DeviceClock {
   // camera's own frame period.
   double true_per_device() const { return 1.0 / (1.0 + oscillator_.skew()); }
 
+  const OscillatorModel& oscillator() const { return oscillator_; }
+
  private:
   OscillatorModel oscillator_;
   std::int64_t epoch_ns_;

@@ -6,6 +6,7 @@
 
 #include "algorithms/ports/assert.h"
 #include "algorithms/ports/time.h"
+#include "scenarios/frequency_limit.h"
 
 namespace simbench::sim {
 namespace {
@@ -66,8 +67,7 @@ double FlickerNoise::step(Frequencies& frequencies, std::int64_t index, double /
 namespace {
 
 constexpr double kPerPpmPerHour = 1e-6 / 3600;  // as a fraction per second
-constexpr double kMostFrequencyError = 0.05;    // of the walk, and of the ramp
-constexpr double kMostWalkPpb = kMostFrequencyError * 1e9;
+constexpr double kMostWalkPpb = scenarios::kMostFrequencyError * 1e9;
 
 }  // namespace
 
@@ -123,8 +123,18 @@ double OscillatorModel::unsteady_ns(TrueTime t) const {
   return ns;
 }
 
+double OscillatorModel::ramp_end_s() const {
+  return scenarios::kMostFrequencyError / std::abs(ramp_per_s_);
+}
+
+bool OscillatorModel::reached_limit(TrueTime end) const {
+  const std::int64_t end_ns = end.time_since_epoch().count();
+  if (ramp_per_s_ != 0 && static_cast<double>(end_ns) * 1e-9 >= ramp_end_s()) return true;
+  return walk_.step_ns() != 0 && first_cut_ < floor_div(end_ns, walk_.step_ns());
+}
+
 double OscillatorModel::ramp_ns(double since_zero_s) const {
-  const double end_s = kMostFrequencyError / std::abs(ramp_per_s_);
+  const double end_s = ramp_end_s();
   const double s = std::min(since_zero_s, end_s);
   return (ramp_per_s_ * s * s / 2 + ramp_per_s_ * s * (since_zero_s - s)) * 1e9;
 }
@@ -132,8 +142,9 @@ double OscillatorModel::ramp_ns(double since_zero_s) const {
 double OscillatorModel::step(double& frequency_ppb, std::int64_t index, double sign) const {
   RandomStream draw(run_seed_, wander_key_, static_cast<std::uint64_t>(index));
   const double before_ppb = frequency_ppb;
-  frequency_ppb =
-      std::clamp(before_ppb + sign * draw.normal(walk_sigma_ppb_), -kMostWalkPpb, kMostWalkPpb);
+  const double free_ppb = before_ppb + sign * draw.normal(walk_sigma_ppb_);
+  frequency_ppb = std::clamp(free_ppb, -kMostWalkPpb, kMostWalkPpb);
+  if (frequency_ppb != free_ppb) first_cut_ = std::min(first_cut_, index);
   return (before_ppb + frequency_ppb) / 2 * step_s_ + draw.normal(phase_sigma_ns_);
 }
 

@@ -16,8 +16,8 @@
 // index, and the walks start at true zero in both directions: values depend neither on the order of
 // the queries nor on when the world starts.
 //
-// The walk and the ramp end at a frequency error of 5 %, further than any oscillator is off: a
-// clock runs forward in every world.
+// The walk and the ramp end at a frequency error of 5 % (scenarios/frequency_limit.h); whether one
+// got there can be asked.
 //
 // The ramp R begins at true zero: R t^2 / 2. Self-heating of H with time constant T begins when the
 // device is switched on, s seconds before t: y = H (1 - exp(-s / T)).
@@ -36,6 +36,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -107,8 +108,12 @@ class OscillatorModel {
     return is_steady_ ? linear_ns : linear_ns + unsteady_ns(t);
   }
 
+  // Whether the walk or the ramp ended before `end`, as far as queries have sampled it.
+  bool reached_limit(TrueTime end) const;
+
  private:
   double unsteady_ns(TrueTime t) const;
+  double ramp_end_s() const;
   double ramp_ns(double since_zero_s) const;
   // White noise and random walk over one step of their grid, for GridWalk.
   double step(double& frequency_ppb, std::int64_t index, double sign) const;
@@ -120,7 +125,9 @@ class OscillatorModel {
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
   std::uint64_t run_seed_ = 0;
   ComponentKey wander_key_{""};
-  GridWalk<double> walk_;                        // the state is the walking frequency in ppb
+  GridWalk<double> walk_;  // the state is the walking frequency in ppb
+  // The first step of the grid at which the walk was cut; a cache, as the walk is.
+  mutable std::int64_t first_cut_ = std::numeric_limits<std::int64_t>::max();
   std::unique_ptr<const FlickerNoise> flicker_;  // large, and rarely there
   double ramp_per_s_ = 0;
   double heating_ = 0;

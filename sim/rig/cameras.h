@@ -64,6 +64,7 @@ class Cameras {
   TrueTime start_of(std::size_t camera) const;
 
   DeviceClock& clock(std::size_t camera) { return clocks_[camera]; }
+  const std::vector<DeviceClock>& clocks() const { return clocks_; }
   // The exposure time that a camera begins with at `at`.
   Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
 

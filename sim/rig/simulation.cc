@@ -1,11 +1,15 @@
 #include "sim/rig/simulation.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "scenarios/frequency_limit.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
@@ -62,10 +66,36 @@ class Run {
     if (sampling_) sampling_->finish();
     return {.events = engine_.events(),
             .simulated_seconds = to_seconds(engine_.now() - start_),
-            .trace_hash = engine_.trace_hash()};
+            .trace_hash = engine_.trace_hash(),
+            .notes = notes()};
   }
 
  private:
+  // Of the walks and ramps that got as far as a clock goes.
+  std::vector<std::string> notes() {
+    const auto is_limited = [this](const OscillatorModel& oscillator) {
+      return oscillator.reached_limit(engine_.now());
+    };
+    const std::vector<SystemClock*> hosts = hosts_.clocks();
+    const auto limited_hosts = std::ranges::count_if(
+        hosts, is_limited,
+        [](const SystemClock* clock) -> const auto& { return clock->oscillator(); });
+    const std::vector<DeviceClock>& cameras = capture_.cameras().clocks();
+    const auto limited_cameras =
+        std::ranges::count_if(cameras, is_limited, &DeviceClock::oscillator);
+    std::vector<std::string> notes;
+    const auto note = [&notes](auto limited, std::size_t all, const char* devices) {
+      if (limited == 0) return;
+      notes.push_back(
+          fmt::format("the clocks of {} of {} {} reached a frequency error of {:g} %: their random "
+                      "walk or ramp goes no further",
+                      limited, all, devices, 100 * scenarios::kMostFrequencyError));
+    };
+    note(limited_hosts, hosts.size(), "hosts");
+    note(limited_cameras, cameras.size(), "cameras");
+    return notes;
+  }
+
   std::optional<Nanoseconds> service_time() const {
     return host_sync_ != nullptr ? host_sync_->warm_up() : std::nullopt;
   }

@@ -49,6 +49,22 @@ Results evaluated(bool all_fail) {
       {.first_seed = 2, .seeds = 3, .jobs = 1}, nullptr);
 }
 
+class Wandering final : public RecordingSource {
+ public:
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    RecordingCost cost = TestSource().record(request, sink);
+    if (request.seed != 3) cost.notes = {"a clock wandered"};
+    return cost;
+  }
+};
+
+TEST(EvaluateFailures, ANoteOfManySeedsIsOneLine) {
+  const Results results = evaluate(
+      test_scenario(), [] { return std::make_unique<Wandering>(); },
+      {.first_seed = 2, .seeds = 4, .jobs = 1}, nullptr);
+  EXPECT_THAT(results.rows[0].notes, ElementsAre("repetition 2 and 2 more: a clock wandered"));
+}
+
 class TooLarge final : public RecordingSource {
  public:
   RecordingCost record(const RecordingRequest& /*request*/, RecordingSink& /*sink*/) override {

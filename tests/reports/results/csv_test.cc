@@ -41,6 +41,14 @@ TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {
   }
 }
 
+TEST(ResultsCsv, NotesOfASimulationHaveAColumn) {
+  evaluation::Results results = sample_results();
+  results.rows[0].notes = {"repetition 1: a clock wandered"};
+  const std::string text = csv(results);
+  EXPECT_TRUE(text.substr(0, text.find('\n')).ends_with(",ground_truth,verified,notes")) << text;
+  EXPECT_NE(text.find(",simulation,verified,repetition 1: a clock wandered\n"), std::string::npos);
+}
+
 TEST(ResultsCsv, FramesAndHostsOfAChangedWorldSaySo) {
   evaluation::Results results = sample_results();
   results.derivation = {.base = "sample", .changes = {{"/a", "1", "2"}, {"/b", "", "3"}}};

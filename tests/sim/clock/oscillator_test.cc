@@ -213,6 +213,20 @@ TEST(OscillatorTest, ComponentsAndSeedsDiffer) {
   EXPECT_NE(one, OscillatorModel(noisy(1, 1), kRunSeed + 1, "host1").deviation_ns(at_seconds(5)));
 }
 
+TEST(OscillatorTest, KnowsWhetherItGotToItsLimit) {
+  const OscillatorModel calm({.random_walk_ppb_per_sqrt_s = 1e3, .wander_step_ms = 1000}, 1, "a");
+  calm.deviation_ns(at_ms(1e6));
+  EXPECT_FALSE(calm.reached_limit(at_ms(1e6)));
+  const OscillatorModel wild({.random_walk_ppb_per_sqrt_s = 1e6, .wander_step_ms = 1000}, 1, "a");
+  wild.deviation_ns(at_ms(1e9));
+  EXPECT_TRUE(wild.reached_limit(at_ms(1e9)));
+  EXPECT_FALSE(wild.reached_limit(at_ms(1e3)));  // 1e6 ppb in the first second, of 5e7
+  // 3600 ppm/h are 1 ppm/s: 5 % after 50 000 s.
+  const OscillatorModel ramp({.ramp_ppm_per_hour = -3600}, 1, "a");
+  EXPECT_FALSE(ramp.reached_limit(at_ms(49.9e6)));
+  EXPECT_TRUE(ramp.reached_limit(at_ms(50.1e6)));
+}
+
 TEST(OscillatorTest, AClockRunsForwardHoweverItWanders) {
   scenarios::Oscillator parameters = noisy(0, 1e6);
   parameters.wander_step_ms = 1000;

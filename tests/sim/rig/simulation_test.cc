@@ -176,6 +176,26 @@ class NeverReady final : public HostSync {
   Task<void> run_slave(Host&, PeerId) override { co_return; }
 };
 
+TEST(Simulation, NotesClocksThatGoNoFurther) {
+  scenarios::Scenario s = ideal_scenario();
+  Collector usual;
+  EXPECT_TRUE(make_simulation(s)->record({.seed = 1, .pipeline = "none"}, usual).notes.empty());
+  s.hosts.clock.oscillator.random_walk_ppb_per_sqrt_s = 1e9;
+  s.hosts.clock.oscillator.wander_step_ms = 1000;
+  s.cameras.oscillator.ramp_ppm_per_hour = -1e9;
+  Collector result;
+  const std::vector<std::string> notes =
+      make_simulation(s)->record({.seed = 1, .pipeline = "none"}, result).notes;
+  ASSERT_EQ(notes.size(), 2u);
+  const auto all = [](std::int64_t count, const std::string& devices) {
+    const std::string number = std::to_string(count);
+    return "the clocks of " + number + " of " + number + " " + devices +
+           " reached a frequency error of 5 %: their random walk or ramp goes no further";
+  };
+  EXPECT_EQ(notes[0], all(s.hosts.count, "hosts"));
+  EXPECT_EQ(notes[1], all(s.cameras.count, "cameras"));
+}
+
 TEST(Simulation, AWorldTooLargeForTheEngineIsRefusedInOneLine) {
   const scenarios::Scenario s = ideal_scenario();
   Collector result;

@@ -1,0 +1,39 @@
+// Warnings about settings that are possible but suspicious; those of the distribution's scenarios
+// are tested beside them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scenarios/loader.h"
+
+namespace simbench::scenarios {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(OscillatorWarnings, AWalkOrARampThatMayGetToItsLimit) {
+  const auto warned = [](const char* pointer, const char* value, const char* frames) {
+    return warnings(
+        load_scenario("18cam_6host_45fps", {{pointer, value}, {"/timeline/frames", frames}}));
+  };
+  // 1e6 ppb in the first second, its root of time times as much later: 2.7 % after 727 s.
+  EXPECT_THAT(
+      warned("/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s", "1e6", "32000"),
+      ElementsAre(AllOf(HasSubstr("/hosts/clock/oscillator/random_walk_ppb_per_sqrt_s=1e6: the "
+                                  "walk's sigma moves the frequency by 2.7 % in the 728 s"),
+                        HasSubstr("no further than 5 %"))));
+  EXPECT_THAT(warned("/cameras/oscillator/random_walk_ppb_per_sqrt_s", "1e6", "480"), IsEmpty());
+  // 1000 ppm/h take 50 h.
+  EXPECT_THAT(
+      warned("/cameras/oscillator/ramp_ppm_per_hour", "-1000", "8200000"),
+      ElementsAre(HasSubstr("/cameras/oscillator/ramp_ppm_per_hour=-1000: the ramp moves")));
+  EXPECT_THAT(warned("/cameras/oscillator/ramp_ppm_per_hour", "-1000", "8000000"), IsEmpty());
+}
+
+}  // namespace
+}  // namespace simbench::scenarios
