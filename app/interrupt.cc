@@ -5,6 +5,7 @@
 
 #include "evaluation/sweep/task_farm.h"
 #include "recording/forwarding_sink.h"
+#include "sim/rig/clock_simulation.h"
 #include "sim/rig/simulation.h"
 
 namespace simbench::app {
@@ -72,6 +73,10 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario) {
   return interruptible(sim::make_simulation(scenario));
+}
+
+std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario) {
+  return sim::make_clock_simulation(scenario);
 }
 
 evaluation::TaskWorkerFactory simulated_sweep_workers() {

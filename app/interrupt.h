@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "evaluation/sweep/task_farm.h"
+#include "recording/clock_source.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
 
@@ -39,6 +40,9 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 
 // The simulator, interruptible: an evaluation::WorldFactory. `scenario` outlives the result.
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
+// The same of the hosts' clocks alone: an evaluation::ClockSourceFactory's work. Jobs poll
+// InterruptHandler::flag().
+std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
 // The workers of sweeps, in simulated worlds.
 evaluation::TaskWorkerFactory simulated_sweep_workers();
 

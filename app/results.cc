@@ -8,6 +8,7 @@
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/sweep/sweep_score.h"
+#include "reports/clocks/clock_report.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
@@ -93,6 +94,14 @@ std::string results_text(const evaluation::Results& results, const scenarios::Sc
   return format == "markdown" ? markdown(document) : plain(document);
 }
 
+std::string clock_text(const evaluation::ClockResults& results, const scenarios::Scenario& scenario,
+                       const std::string& format) {
+  if (format == "json") return reports::clock_json(results);
+  if (format == "csv") return reports::clock_csv(results);
+  const reports::Document document = reports::clock_document(results, scenario.summary);
+  return format == "markdown" ? markdown(document) : plain(document);
+}
+
 RunArchive::RunArchive(std::vector<std::string> command) {
   provenance_.command = std::move(command);
   provenance_.started = std::chrono::system_clock::now();
@@ -106,6 +115,14 @@ bool RunArchive::write(const evaluation::Results& results, const scenarios::Scen
   if (!folder_) return false;
   provenance_.finished = std::chrono::system_clock::now();
   reports::write_archive(*folder_, results, scenario, provenance_);
+  return true;
+}
+
+bool RunArchive::write(const evaluation::ClockResults& results,
+                       const scenarios::Scenario& scenario) {
+  if (!folder_) return false;
+  provenance_.finished = std::chrono::system_clock::now();
+  reports::write_clock_archive(*folder_, results, scenario, provenance_);
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/clock_run/clock_evaluation.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "reports/archive/archive.h"
@@ -26,6 +27,10 @@ namespace simbench::app {
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, const std::vector<reports::Block>& more = {});
 
+// The same of `simbench clocks`.
+std::string clock_text(const evaluation::ClockResults& results, const scenarios::Scenario& scenario,
+                       const std::string& format);
+
 // The result archive of a run; none if no folder is opened.
 class RunArchive {
  public:
@@ -35,6 +40,7 @@ class RunArchive {
   void open(const std::string& folder);
   // False if there is no folder. Throws reports::OutputError.
   bool write(const evaluation::Results& results, const scenarios::Scenario& scenario);
+  bool write(const evaluation::ClockResults& results, const scenarios::Scenario& scenario);
 
  private:
   reports::Provenance provenance_;

@@ -15,6 +15,8 @@ struct CommandLine;
 void add_run_command(CommandLine& line);
 // The response of every pipeline to parameters of the scenario.
 void add_sweep_command(CommandLine& line);
+// The hosts' clocks alone, for hours: time error and stability.
+void add_clocks_command(CommandLine& line);
 // What desynchronisation costs a 3D reconstruction, the paper's Table 4. Goes on as
 // simbench-reconstruct if this program lacks the libraries.
 void add_reconstruct_command(CommandLine& line);
@@ -37,6 +39,8 @@ void add_record_command(CommandLine& line);
 void add_replay_command(CommandLine& line);
 // Whether the hardware sync of a recorded rig works.
 void add_diagnose_command(CommandLine& line);
+// How stable a measured clock is, from the logs of other programs.
+void add_stability_command(CommandLine& line);
 // A scenario made of a recording.
 void add_fit_command(CommandLine& line);
 // Recordings of the IBL camera rigs as CSV for `simbench replay`.

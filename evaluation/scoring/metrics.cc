@@ -11,9 +11,10 @@
 namespace simbench::evaluation {
 namespace {
 
-std::vector<Metric>& registered() {
-  static std::vector<Metric> all(std::begin(kMetricTable), std::end(kMetricTable));
-  return all;
+std::vector<Metric>& registered(ResultKind kind) {
+  static std::vector<Metric> captures(std::begin(kMetricTable), std::end(kMetricTable));
+  static std::vector<Metric> clocks(std::begin(kClockMetricTable), std::end(kClockMetricTable));
+  return kind == ResultKind::kCaptures ? captures : clocks;
 }
 
 // The count in a row, const or not.
@@ -68,27 +69,27 @@ double Metric::table_value(const std::vector<double>& values) const {
   return is_share() ? mean_of_existing(values) : median(values);
 }
 
-std::span<const Metric> metrics() { return registered(); }
+std::span<const Metric> metrics(ResultKind kind) { return registered(kind); }
 
-const Metric& metric(std::string_view id) {
-  const auto all = metrics();
+const Metric& metric(std::string_view id, ResultKind kind) {
+  const auto all = metrics(kind);
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Metric& each) { return each.id == id; });
   SIMBENCH_ASSERT(found != all.end(), "a metric that there is");
   return *found;
 }
 
-std::vector<const Metric*> judged_metrics() {
+std::vector<const Metric*> judged_metrics(ResultKind kind) {
   std::vector<const Metric*> judged;
-  for (const Metric& each : metrics()) {
+  for (const Metric& each : metrics(kind)) {
     if (each.judged) judged.push_back(&each);
   }
   return judged;
 }
 
-std::vector<const Metric*> sweep_metrics() {
+std::vector<const Metric*> sweep_metrics(ResultKind kind) {
   std::vector<const Metric*> columns;
-  for (const Metric& each : metrics()) {
+  for (const Metric& each : metrics(kind)) {
     if (each.sweep != nullptr) columns.push_back(&each);
   }
   std::stable_partition(columns.begin(), columns.end(),
@@ -96,9 +97,9 @@ std::vector<const Metric*> sweep_metrics() {
   return columns;
 }
 
-std::vector<const Metric*> table_metrics(int TablePlaces::*table) {
+std::vector<const Metric*> table_metrics(int TablePlaces::*table, ResultKind kind) {
   std::vector<const Metric*> columns;
-  for (const Metric& each : metrics()) {
+  for (const Metric& each : metrics(kind)) {
     if (each.tables.*table > 0) columns.push_back(&each);
   }
   std::stable_sort(columns.begin(), columns.end(), [table](const Metric* a, const Metric* b) {
@@ -107,7 +108,9 @@ std::vector<const Metric*> table_metrics(int TablePlaces::*table) {
   return columns;
 }
 
-ScopedMetric::ScopedMetric(const Metric& metric) { registered().push_back(metric); }
-ScopedMetric::~ScopedMetric() { registered().pop_back(); }
+ScopedMetric::ScopedMetric(const Metric& metric) {
+  registered(ResultKind::kCaptures).push_back(metric);
+}
+ScopedMetric::~ScopedMetric() { registered(ResultKind::kCaptures).pop_back(); }
 
 }  // namespace simbench::evaluation

@@ -1,8 +1,10 @@
 // The metrics: what each is, where a score keeps it, and where results show it.
 //
-// This is the only list. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
-// reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
-// entry of kMetricTable (both here), the line that computes it (pulse_scores.cc, set_counter.cc,
+// There is a list for each kind of result: captures of cameras, and runs of the hosts' clocks
+// alone. These are the only lists. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the
+// archive reader, tables and figures go through metrics(). A new metric is a member of MetricValues
+// and an entry of kMetricTable or kClockMetricTable (all here), the line that computes it
+// (pulse_scores.cc, set_counter.cc,
 // ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
@@ -27,6 +29,11 @@
 namespace simbench::evaluation {
 
 struct Row;
+
+enum class ResultKind : std::uint8_t {
+  kCaptures,
+  kClockRuns,  // evaluation/clock_run
+};
 
 // The initial value: NaN for a seed, an empty series for a row.
 template <class Value>
@@ -54,6 +61,24 @@ struct MetricValues {
   Value set_absolute_error_ms = no_value<Value>();
   // From the arrival of the last member to that of the frame on which the gatherer emitted.
   Value emission_latency_ms = no_value<Value>();  // mean over these sets
+  // Time error (TE) of the hosts: system clock minus the master's. Over the evaluated pulses of a
+  // capture, or the seconds of a clock run.
+  Value max_te_ms = no_value<Value>();       // largest |TE| of any host
+  Value rms_te_ms = no_value<Value>();       // over all slaves
+  Value constant_te_ms = no_value<Value>();  // largest |mean TE| of any host
+  Value dynamic_te_ms = no_value<Value>();   // largest range (peak to peak) of any host's TE
+  // Of clock runs only (evaluation/clock_run/clock_score.h).
+  Value clock_spread_ms = no_value<Value>();  // mean in time: largest minus smallest clock
+  Value clock_spread_median_ms = no_value<Value>();
+  Value clock_spread_p95_ms = no_value<Value>();
+  Value clock_spread_max_ms = no_value<Value>();
+  Value below_1_ms_s = no_value<Value>();  // after this time the spread stays below 1 ms
+  Value below_0_1_ms_s = no_value<Value>();
+  Value below_0_01_ms_s = no_value<Value>();
+  Value holdover_60_ms = no_value<Value>();  // largest |TE| 60 s after the master was lost
+  Value holdover_600_ms = no_value<Value>();
+  Value recovery_s = no_value<Value>();  // from its return until the spread is as before
+  Value packets_per_s = no_value<Value>();
   // Without an entry below: only the claims of the paper use these.
   Value offline_amd_ms = no_value<Value>();     // AMD of regression_offline over the same recording
   Value spread_in_host_ms = no_value<Value>();  // mean over pulses and hosts of the range in a host
@@ -114,6 +139,7 @@ struct TablePlaces {
   int paper = 0;           // the paper's metrics
   int truth = 0;           // metrics that need true time
   int sets = 0;            // gathered sets
+  int clocks = 0;          // runs of the hosts' clocks
   int response = 0;        // the table of a sweep
   int response_panel = 0;  // the figure of a sweep
 };
@@ -141,7 +167,7 @@ using Place = std::variant<SeriesPlace, double PooledValues::*, std::int64_t Set
 struct Metric {
   const char* id = "";     // its name in JSON and CSV, with the unit last
   const char* title = "";  // in a sentence
-  const char* unit = "";   // "ms", "share", or "" of a count
+  const char* unit = "";   // "ms", "s", "1/s", "share", or "" of a count
   Better better = Better::kLower;
   Needs needs = Needs::kNothing;
   Place place;
@@ -159,6 +185,7 @@ struct Metric {
   const char* json_name = nullptr;
   CsvColumns csv = CsvColumns::kNone;
   const char* sweep = nullptr;
+  bool is_new = false;  // archives of simbench 0.1 lack it
 
   std::optional<Judged> judged{};
 
@@ -196,20 +223,21 @@ struct Metric {
   double table_value(const std::vector<double>& values) const;
 };
 
-// All metrics, in the order of the results' files.
-std::span<const Metric> metrics();
+// All metrics of a kind, in the order of the results' files.
+std::span<const Metric> metrics(ResultKind kind = ResultKind::kCaptures);
 // One of them, which must exist.
-const Metric& metric(std::string_view id);
+const Metric& metric(std::string_view id, ResultKind kind = ResultKind::kCaptures);
 
 // The metrics with `judged`, in order: those of comparisons and gates.
-std::vector<const Metric*> judged_metrics();
+std::vector<const Metric*> judged_metrics(ResultKind kind = ResultKind::kCaptures);
 // The columns of a sweep, in their order: series and numbers, then counts.
-std::vector<const Metric*> sweep_metrics();
+std::vector<const Metric*> sweep_metrics(ResultKind kind = ResultKind::kCaptures);
 // The columns of a table, in their order: table_metrics(&TablePlaces::truth).
-std::vector<const Metric*> table_metrics(int TablePlaces::*table);
+std::vector<const Metric*> table_metrics(int TablePlaces::*table,
+                                         ResultKind kind = ResultKind::kCaptures);
 
-// Adds a metric at the end during its lifetime. For tests; not while others use metrics(), whose
-// addresses change.
+// Adds a metric of captures at the end during its lifetime. For tests; not while others use
+// metrics(), whose addresses change.
 class ScopedMetric {
  public:
   explicit ScopedMetric(const Metric& metric);
@@ -224,6 +252,45 @@ inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit 
                                      .margin = {.relative = 0.02, .absolute = 0.001}};
 inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
                                         .margin = {.relative = 0.01, .absolute = 0.005}};
+
+inline constexpr Judged kJudgedClocks = {.smallest_step = 1e-6,  // a nanosecond
+                                         .margin = {.relative = 0.02, .absolute = 1e-6}};
+
+// Time errors are metrics of both kinds; only clock runs, which are long, are judged by them.
+constexpr Metric time_error(const char* id, const char* title, double MetricValues<double>::*seed,
+                            Series MetricValues<Series>::*row) {
+  Metric metric;
+  metric.id = id;
+  metric.title = title;
+  metric.unit = "ms";
+  metric.needs = Needs::kTruth;
+  metric.place = SeriesPlace{seed, row};
+  metric.sweep = id;
+  metric.is_new = true;
+  return metric;
+}
+inline constexpr Metric kMaxTe =
+    time_error("max_te_ms", "largest time error", &MetricValues<double>::max_te_ms,
+               &MetricValues<Series>::max_te_ms);
+inline constexpr Metric kRmsTe =
+    time_error("rms_te_ms", "RMS time error", &MetricValues<double>::rms_te_ms,
+               &MetricValues<Series>::rms_te_ms);
+inline constexpr Metric kConstantTe =
+    time_error("constant_te_ms", "constant time error", &MetricValues<double>::constant_te_ms,
+               &MetricValues<Series>::constant_te_ms);
+inline constexpr Metric kDynamicTe =
+    time_error("dynamic_te_ms", "dynamic time error", &MetricValues<double>::dynamic_te_ms,
+               &MetricValues<Series>::dynamic_te_ms);
+constexpr Metric in_clock_table(Metric metric, int place, const char* heading, const char* legend,
+                                bool is_judged) {
+  metric.tables.clocks = place;
+  metric.tables.response = place;
+  metric.heading = heading;
+  metric.legend = legend;
+  metric.legend_continues = *legend != '\0' && place > 1;
+  if (is_judged) metric.judged = kJudgedClocks;
+  return metric;
+}
 
 inline constexpr Metric kMetricTable[] = {
     {.id = "amd_ms",
@@ -286,6 +353,10 @@ inline constexpr Metric kMetricTable[] = {
      .legend = "host clock error: mean |slave - master|.",
      .csv = CsvColumns::kBand,
      .sweep = "host_error_ms"},
+    kMaxTe,
+    kRmsTe,
+    kConstantTe,
+    kDynamicTe,
     {.id = "exposure_spread_ms",
      .title = "exposure spread",
      .unit = "ms",
@@ -476,6 +547,103 @@ inline constexpr Metric kMetricTable[] = {
      .place = &RunCounts::unsynchronised_hosts,
      .csv = CsvColumns::kValue,
      .sweep = "unsynchronised_hosts"},
+};
+
+inline constexpr Metric kClockMetricTable[] = {
+    {.id = "clock_spread_ms",
+     .title = "spread of the clocks",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::clock_spread_ms,
+                          &MetricValues<Series>::clock_spread_ms},
+     .tables = {.clocks = 1, .response = 1, .response_panel = 1},
+     .heading = "spread\nmean ms",
+     .band_heading = "spread\n5-95 %",
+     .legend = "spread: largest minus smallest clock of all hosts, its mean in time;",
+     .sweep = "clock_spread_ms",
+     .judged = kJudgedClocks},
+    {.id = "clock_spread_median_ms",
+     .title = "median spread of the clocks",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::clock_spread_median_ms,
+                          &MetricValues<Series>::clock_spread_median_ms}},
+    {.id = "clock_spread_p95_ms",
+     .title = "95 % spread of the clocks",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::clock_spread_p95_ms,
+                          &MetricValues<Series>::clock_spread_p95_ms},
+     .tables = {.clocks = 2, .response = 2},
+     .heading = "spread\np95 ms",
+     .sweep = "clock_spread_p95_ms"},
+    {.id = "clock_spread_max_ms",
+     .title = "largest spread of the clocks",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::clock_spread_max_ms,
+                          &MetricValues<Series>::clock_spread_max_ms},
+     .sweep = "clock_spread_max_ms"},
+    in_clock_table(kMaxTe, 3, "max |TE|\nms",
+                   "TE: a host's clock minus the master's, over all slaves;", true),
+    in_clock_table(kRmsTe, 4, "RMS TE\nms", "", true),
+    in_clock_table(kConstantTe, 5, "constant\nTE ms", "constant: largest mean of a host;", false),
+    in_clock_table(kDynamicTe, 6, "dynamic\nTE ms", "dynamic: largest range of a host.", false),
+    {.id = "below_1_ms_s",
+     .title = "time until below 1 ms",
+     .unit = "s",
+     .place = SeriesPlace{&MetricValues<double>::below_1_ms_s, &MetricValues<Series>::below_1_ms_s},
+     .tables = {.clocks = 7},
+     .heading = "below\n1 ms: s",
+     .legend = "below: when the spread is below for good.",
+     .sweep = "below_1_ms_s"},
+    {.id = "below_0_1_ms_s",
+     .title = "time until below 0.1 ms",
+     .unit = "s",
+     .place =
+         SeriesPlace{&MetricValues<double>::below_0_1_ms_s, &MetricValues<Series>::below_0_1_ms_s},
+     .tables = {.clocks = 8},
+     .heading = "below\n0.1 ms: s",
+     .sweep = "below_0_1_ms_s"},
+    {.id = "below_0_01_ms_s",
+     .title = "time until below 0.01 ms",
+     .unit = "s",
+     .place = SeriesPlace{&MetricValues<double>::below_0_01_ms_s,
+                          &MetricValues<Series>::below_0_01_ms_s},
+     .tables = {.clocks = 9},
+     .heading = "below\n0.01 ms: s",
+     .sweep = "below_0_01_ms_s"},
+    {.id = "holdover_60_ms",
+     .title = "error after 60 s without the master",
+     .unit = "ms",
+     .place =
+         SeriesPlace{&MetricValues<double>::holdover_60_ms, &MetricValues<Series>::holdover_60_ms},
+     .tables = {.clocks = 10},
+     .heading = "holdover\n60 s: ms",
+     .legend = "holdover: largest |TE| so long after the master was lost;",
+     .sweep = "holdover_60_ms"},
+    {.id = "holdover_600_ms",
+     .title = "error after 600 s without the master",
+     .unit = "ms",
+     .place = SeriesPlace{&MetricValues<double>::holdover_600_ms,
+                          &MetricValues<Series>::holdover_600_ms},
+     .tables = {.clocks = 11},
+     .heading = "holdover\n600 s: ms",
+     .sweep = "holdover_600_ms",
+     .judged = kJudgedClocks},
+    {.id = "recovery_s",
+     .title = "recovery",
+     .unit = "s",
+     .place = SeriesPlace{&MetricValues<double>::recovery_s, &MetricValues<Series>::recovery_s},
+     .tables = {.clocks = 12},
+     .heading = "recovery\ns",
+     .legend = "recovery: from its return until the spread stays within the largest before.",
+     .legend_continues = true,
+     .sweep = "recovery_s"},
+    {.id = "packets_per_s",
+     .title = "packets per second",
+     .unit = "1/s",
+     .place =
+         SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s},
+     .tables = {.clocks = 13, .response = 7},
+     .heading = "packets\nper s",
+     .sweep = "packets_per_s"},
 };
 
 }  // namespace simbench::evaluation

@@ -249,6 +249,7 @@ SeedScore PipelineScorer::finish() {
   score.ground_truth = ground_truth();
   score.sets.discarded_frames = static_cast<std::int64_t>(gatherer_->discarded());
   score.host_error_ms = host_errors_->mean_absolute_ms();
+  host_errors_->time_errors().add_to(score);
   score.host_errors_ms = host_errors_->signed_means_ms();
   score.offline_amd_ms = second_deferred_ ? second_amd_ms() : kNan;
   score.genlock_index_errors = genlock_index_errors_;

@@ -135,6 +135,7 @@ void HostErrors::add(std::span<const Nanoseconds> errors) {
   for (std::size_t host = 0; host < errors.size(); ++host) {
     const double error_ms = to_ms(errors[host]);
     sum_ms_[host] += error_ms;
+    if (host > 0) errors_.add(host, error_ms);
     if (host > 0) absolute_sum_ms_ += std::abs(error_ms);
   }
   ++pulses_;

@@ -26,6 +26,7 @@
 #include "algorithms/ports/time.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
+#include "evaluation/scoring/time_errors.h"
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
@@ -119,18 +120,20 @@ class PulseTable {
 // pulse with truth.
 class HostErrors {
  public:
-  explicit HostErrors(std::size_t hosts) : sum_ms_(hosts) {}
+  explicit HostErrors(std::size_t hosts) : sum_ms_(hosts), errors_(hosts) {}
 
   // One value per host.
   void add(std::span<const Nanoseconds> errors);
 
   double mean_absolute_ms() const;              // over pulses and slaves
   std::vector<double> signed_means_ms() const;  // over pulses, by host
+  const TimeErrors& time_errors() const { return errors_; }
 
  private:
   std::vector<double> sum_ms_;
   double absolute_sum_ms_ = 0;
   std::int64_t pulses_ = 0;
+  TimeErrors errors_;
 };
 
 // The input of the scores besides the table.

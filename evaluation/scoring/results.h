@@ -103,7 +103,16 @@ inline const Row* find_row(std::span<const Row> rows, std::string_view pipeline)
   return nullptr;
 }
 
+// What part of a clock run is measured.
+struct ClockPeriod {
+  std::uint64_t from_s = 0;
+  std::uint64_t duration_s = 0;
+  friend bool operator==(const ClockPeriod&, const ClockPeriod&) = default;
+};
+
 struct Results {
+  ResultKind kind = ResultKind::kCaptures;
+  ClockPeriod clock_period{};  // of clock runs
   std::string scenario;
   scenarios::Derivation derivation{};  // of that scenario
   std::uint64_t first_seed = 1;

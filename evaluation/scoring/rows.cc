@@ -122,7 +122,9 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   row.device_time = pipeline.device_time;
   row.gathering = pipeline.gathering;
   add_shares(seeds);
-  for (const Metric& metric : metrics()) std::visit(Summary{seeds, row}, metric.place);
+  for (const Metric& metric : metrics(setting.kind)) {
+    std::visit(Summary{seeds, row}, metric.place);
+  }
   for (const SeedScore& seed : seeds) {
     row.emission_latency_max_ms =
         std::fmax(row.emission_latency_max_ms, seed.emission_latency_max_ms);

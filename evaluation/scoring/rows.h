@@ -21,6 +21,7 @@ struct RowSetting {
   double gathering_interval_ms = 0;  // T_int
   std::size_t sources = 0;
   MedianKind median = MedianKind::kUpperMiddle;
+  ResultKind kind = ResultKind::kCaptures;
 };
 
 RowSetting row_setting(const scenarios::Scenario& scenario);

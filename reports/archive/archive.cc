@@ -90,6 +90,21 @@ void write_archive(OutputFolder& output, const evaluation::Results& results,
   output.publish();
 }
 
+evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member) {
+  if (!root.has(member)) return evaluation::ResultKind::kCaptures;
+  const JsonNode kind = root[member];
+  if (kind.text() != kClockRunsName) {
+    kind.refuse(fmt::format("\"{}\", or no member \"{}\"", kClockRunsName, member));
+  }
+  return evaluation::ResultKind::kClockRuns;
+}
+
+evaluation::ClockPeriod read_clock_period(const JsonNode& root, evaluation::ResultKind kind) {
+  if (kind != evaluation::ResultKind::kClockRuns) return {};
+  return {.from_s = static_cast<std::uint64_t>(root["from_s"].count()),
+          .duration_s = static_cast<std::uint64_t>(root["duration_s"].count())};
+}
+
 namespace {
 
 using evaluation::Row;
@@ -133,6 +148,7 @@ void read_ground_truth(const JsonNode& node, Row& row) {
 
 void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::Metric& metric,
                  Row& row) {
+  if (metric.is_new && !row_node.has(metric.member())) return;
   const JsonNode node = *metric.json_in == '\0' ? row_node[metric.member()]
                                                 : row_node[metric.json_in][metric.member()];
   if (metric.is_series()) {
@@ -159,6 +175,20 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
   return row;
 }
 
+// A row of `simbench clocks` (reports/clocks/clock_report.h): its metrics alone.
+Row read_clock_row(const JsonNode& node, std::size_t seeds) {
+  Row row;
+  row.pipeline = node["pipeline"].text();
+  row.host_sync = node["host_sync"].text();
+  row.device_time = node["device_time"].text();
+  row.gathering = node["gathering"].text();
+  for (const evaluation::Metric& metric : evaluation::metrics(evaluation::ResultKind::kClockRuns)) {
+    const JsonNode values = node["metrics"][metric.id]["values"];
+    metric.series(row) = evaluation::make_series(values.values_of(metric, seeds));
+  }
+  return row;
+}
+
 evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   evaluation::Claim claim;
   claim.id = node["id"].text();
@@ -172,15 +202,8 @@ evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   return claim;
 }
 
-evaluation::Results read_results(const JsonNode& root) {
-  evaluation::Results results;
-  results.scenario = root["scenario"].text();
-  results.derivation = read_derivation(root);
-  results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
-  results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
-  for (const JsonNode& row : root["rows"].elements()) {
-    results.rows.push_back(read_row(row, results.seed_count));
-  }
+// The claims and the floor of captures.
+void read_paper_part(const JsonNode& root, evaluation::Results& results) {
   for (const JsonNode& claim : root["claims"].elements()) {
     results.claims.push_back(read_claim(claim, results.seed_count));
   }
@@ -190,6 +213,22 @@ evaluation::Results read_results(const JsonNode& root) {
                                    .host_error_ms = floor["host_error_ms"].number(),
                                    .amd_ms = floor["amd_ms"].number()};
   }
+}
+
+evaluation::Results read_results(const JsonNode& root) {
+  evaluation::Results results;
+  results.kind = read_result_kind(root, "kind");
+  results.clock_period = read_clock_period(root, results.kind);
+  const bool is_of_clocks = results.kind == evaluation::ResultKind::kClockRuns;
+  results.scenario = root["scenario"].text();
+  results.derivation = read_derivation(root);
+  results.first_seed = static_cast<std::uint64_t>(root["seeds"]["first"].count());
+  results.seed_count = static_cast<std::uint64_t>(root["seeds"]["count"].count());
+  for (const JsonNode& row : root["rows"].elements()) {
+    results.rows.push_back(is_of_clocks ? read_clock_row(row, results.seed_count)
+                                        : read_row(row, results.seed_count));
+  }
+  if (!is_of_clocks) read_paper_part(root, results);
   for (const JsonNode& warning : root["warnings"].elements()) {
     results.warnings.push_back(warning.text());
   }

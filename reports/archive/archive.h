@@ -50,6 +50,12 @@ std::string manifest_json(const Provenance& provenance, const Json& more);
 void write_archive(OutputFolder& output, const evaluation::Results& results,
                    const scenarios::Scenario& scenario, const Provenance& provenance);
 
+// What the results of a file are of: the member, which only files of clock runs have.
+inline constexpr const char* kClockRunsName = "clocks";
+evaluation::ResultKind read_result_kind(const JsonNode& root, const char* member);
+// The members from_s and duration_s; only such files have them.
+evaluation::ClockPeriod read_clock_period(const JsonNode& root, evaluation::ResultKind kind);
+
 struct Archive {
   std::string path;  // as the user stated it
   std::string version;

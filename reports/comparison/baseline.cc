@@ -33,7 +33,7 @@ Json pipelines_json(const Baseline& baseline) {
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
     Json entry = {{"pipeline", pipeline.name}};
     for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
-      entry[judged_metrics()[i]->id] = values_json(pipeline.values[i]);
+      entry[judged_metrics(baseline.kind)[i]->id] = values_json(pipeline.values[i]);
     }
     all.push_back(std::move(entry));
   }
@@ -44,7 +44,8 @@ Json margins_json(const Baseline& baseline) {
   Json all;
   for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
     const evaluation::GateMargin& margin = baseline.margins[i];
-    all[judged_metrics()[i]->id] = {{"relative", margin.relative}, {"absolute", margin.absolute}};
+    all[judged_metrics(baseline.kind)[i]->id] = {{"relative", margin.relative},
+                                                 {"absolute", margin.absolute}};
   }
   return all;
 }
@@ -66,9 +67,10 @@ evaluation::GateMargin read_margin(const JsonNode& node) {
   return margin;
 }
 
-BaselinePipeline read_pipeline(const JsonNode& node, std::size_t seeds) {
+BaselinePipeline read_pipeline(const JsonNode& node, std::size_t seeds,
+                               evaluation::ResultKind kind) {
   BaselinePipeline pipeline{.name = node["pipeline"].text(), .values = {}};
-  for (const evaluation::Metric* metric : judged_metrics()) {
+  for (const evaluation::Metric* metric : judged_metrics(kind)) {
     pipeline.values.push_back(node[metric->id].values_of(*metric, seeds));
   }
   return pipeline;
@@ -88,7 +90,9 @@ Baseline make_baseline(const Archive& archive) {
         "folder that `simbench run --output DIR` wrote",
         archive.path));
   }
-  Baseline baseline{.path = {},
+  Baseline baseline{.kind = archive.results.kind,
+                    .clock_period = archive.results.clock_period,
+                    .path = {},
                     .version = archive.version,
                     .commit = archive.commit,
                     .scenario = archive.results.scenario,
@@ -96,12 +100,12 @@ Baseline make_baseline(const Archive& archive) {
                     .seeds = seeds_of(archive.results),
                     .margins = {},
                     .pipelines = {}};
-  for (const evaluation::Metric* metric : judged_metrics()) {
+  for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
     baseline.margins.push_back(metric->judged->margin);
   }
   for (const evaluation::Row& row : archive.results.rows) {
     BaselinePipeline pipeline{.name = row.pipeline, .values = {}};
-    for (const evaluation::Metric* metric : judged_metrics()) {
+    for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
       pipeline.values.push_back(metric->series(row).values);
     }
     baseline.pipelines.push_back(std::move(pipeline));
@@ -112,14 +116,19 @@ Baseline make_baseline(const Archive& archive) {
 std::string baseline_json(const Baseline& baseline) {
   const Json scenario = Json::parse(baseline.scenario_json);
   const Json pipelines = pipelines_json(baseline);
-  const Json head = {{"schema_version", kBaselineSchemaVersion},
-                     {"kind", kKind},
-                     {"version", baseline.version},
-                     {"commit", baseline.commit},
-                     {"scenario", baseline.scenario},
-                     {"seeds", {{"first", baseline.seeds.first}, {"count", baseline.seeds.count}}},
-                     {"scenario_digest", digest_of_json(scenario.dump())},
-                     {"pipelines_digest", digest_of_json(pipelines.dump())}};
+  Json head = {{"schema_version", kBaselineSchemaVersion},
+               {"kind", kKind},
+               {"version", baseline.version},
+               {"commit", baseline.commit},
+               {"scenario", baseline.scenario},
+               {"seeds", {{"first", baseline.seeds.first}, {"count", baseline.seeds.count}}},
+               {"scenario_digest", digest_of_json(scenario.dump())},
+               {"pipelines_digest", digest_of_json(pipelines.dump())}};
+  if (baseline.kind == evaluation::ResultKind::kClockRuns) {
+    head.update({{"results", kClockRunsName},
+                 {"from_s", baseline.clock_period.from_s},
+                 {"duration_s", baseline.clock_period.duration_s}});
+  }
   std::vector<std::string> rows;
   for (const Json& pipeline : pipelines) {
     rows.push_back(fmt::format("    {{\n{}\n    }}", object_lines(pipeline, 6)));
@@ -142,6 +151,8 @@ Baseline read_baseline(const std::string& path) {
   root.check_schema_version(kBaselineSchemaVersion);
   Baseline baseline;
   baseline.path = path;
+  baseline.kind = read_result_kind(root, "results");
+  baseline.clock_period = read_clock_period(root, baseline.kind);
   baseline.version = root["version"].text();
   baseline.commit = root["commit"].text();
   baseline.scenario = root["scenario"].text();
@@ -149,12 +160,12 @@ Baseline read_baseline(const std::string& path) {
   baseline.seeds = {static_cast<std::uint64_t>(root["seeds"]["first"].count()),
                     static_cast<std::uint64_t>(root["seeds"]["count"].count())};
   if (baseline.seeds.count == 0) root["seeds"]["count"].refuse("a whole number from 1");
-  for (const evaluation::Metric* metric : judged_metrics()) {
+  for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
     baseline.margins.push_back(read_margin(root["margins"][metric->id]));
   }
   std::set<std::string> names;
   for (const JsonNode& node : root["pipelines"].elements()) {
-    baseline.pipelines.push_back(read_pipeline(node, baseline.seeds.count));
+    baseline.pipelines.push_back(read_pipeline(node, baseline.seeds.count, baseline.kind));
     if (!names.insert(baseline.pipelines.back().name).second) {
       node["pipeline"].refuse("each pipeline once");
     }

@@ -2,9 +2,10 @@
 // beside the sources.
 //
 //   {"schema_version": 1, "kind": "simbench baseline", "version": ..., "commit": ...,
-//    "scenario": "18cam_6host_45fps", "seeds": {"first": 1, "count": 32},
-//    "margins": {"amd_ms": {"relative": 0.02, "absolute": 0.001}, ... one for each metric},
-//    "scenario_digest": ..., "pipelines_digest": ...,
+//    "results": "clocks", "from_s", "duration_s": only of clock runs
+//    (reports/clocks/clock_report.h), which have other metrics, "scenario": "18cam_6host_45fps",
+//    "seeds": {"first": 1, "count": 32}, "margins": {"amd_ms": {"relative": 0.02, "absolute":
+//    0.001}, ... one for each metric}, "scenario_digest": ..., "pipelines_digest": ...,
 //    "resolved_scenario": {...},
 //    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,
 //                   seed_recall likewise}, ...]}
@@ -37,7 +38,9 @@ struct BaselinePipeline {
 };
 
 struct Baseline {
-  std::string path;  // as the user stated it; empty without a file
+  evaluation::ResultKind kind = evaluation::ResultKind::kCaptures;
+  evaluation::ClockPeriod clock_period{};  // of clock runs
+  std::string path;                        // as the user stated it; empty without a file
   std::string version;
   std::string commit;
   std::string scenario;

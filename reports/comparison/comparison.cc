@@ -28,9 +28,9 @@ const Row& row_of(const Archive& archive, const std::string& name, const char* o
 }
 
 ComparedPipeline compared(const Row& a, const Row& b, const SeedPairing& pairing,
-                          const ComparisonOptions& options) {
+                          const ComparisonOptions& options, evaluation::ResultKind kind) {
   ComparedPipeline result{.pipeline_a = a.pipeline, .pipeline_b = b.pipeline, .metrics = {}};
-  for (const evaluation::Metric* metric : evaluation::judged_metrics()) {
+  for (const evaluation::Metric* metric : evaluation::judged_metrics(kind)) {
     const evaluation::PairedValues values = evaluation::pair_up(
         pairing.of_a(metric->series(a).values), pairing.of_b(metric->series(b).values));
     result.metrics.push_back(
@@ -44,6 +44,7 @@ ComparedPipeline compared(const Row& a, const Row& b, const SeedPairing& pairing
 Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairing,
                     const ComparisonOptions& options) {
   Comparison comparison;
+  comparison.kind = a.results.kind;
   comparison.scenario = a.results.scenario;
   comparison.derivation = a.results.derivation;
   comparison.by_index = options.by_index;
@@ -71,6 +72,19 @@ std::string described(const Archive& archive) {
 // Refuses other worlds, or adds the differences to `notes`.
 void check_scenarios(const Archive& a, const Archive& b, const ComparisonOptions& options,
                      std::vector<std::string>& notes) {
+  if (a.results.kind != b.results.kind) {
+    throw InputError(
+        fmt::format("{} and {}: one is of `simbench clocks` and the other is not; they have no "
+                    "metric in common",
+                    a.path, b.path));
+  }
+  if (a.results.clock_period != b.results.clock_period) {
+    throw InputError(fmt::format(
+        "{} and {}: measured from {} to {} s and from {} to {} s; allowed: "
+        "the same --from-s and --duration-s",
+        a.path, b.path, a.results.clock_period.from_s, a.results.clock_period.duration_s,
+        b.results.clock_period.from_s, b.results.clock_period.duration_s));
+  }
   const std::string& name_a = a.results.scenario;
   const std::string& name_b = b.results.scenario;
   const std::string names = fmt::format("scenario {} against {}", name_a, name_b);
@@ -152,14 +166,15 @@ Comparison compare_archives(const Archive& a, const Archive& b, const Comparison
     for (const Row& row : a.results.rows) {
       const Row* other = evaluation::find_row(b.results.rows, row.pipeline);
       if (other == nullptr) continue;
-      comparison.pipelines.push_back(compared(row, *other, pairing, options));
+      comparison.pipelines.push_back(compared(row, *other, pairing, options, comparison.kind));
     }
     note_other_pipelines(a, b, notes);
     note_other_pipelines(b, a, notes);
   }
   for (const std::string& name : options.pipelines) {
-    comparison.pipelines.push_back(
-        compared(row_of(a, name, "--pipelines"), row_of(b, name, "--pipelines"), pairing, options));
+    comparison.pipelines.push_back(compared(row_of(a, name, "--pipelines"),
+                                            row_of(b, name, "--pipelines"), pairing, options,
+                                            comparison.kind));
   }
   if (comparison.pipelines.empty()) {
     throw InputError(fmt::format("no pipeline is in both: {} has {}, {} has {}", a.path,
@@ -177,7 +192,8 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
   comparison.a = fmt::format("pipeline {} of {}", a, described(archive));
   comparison.b = fmt::format("pipeline {} of {}", b, described(archive));
   comparison.pipelines.push_back(compared(row_of(archive, a, "--pipelines"),
-                                          row_of(archive, b, "--pipelines"), pairing, options));
+                                          row_of(archive, b, "--pipelines"), pairing, options,
+                                          comparison.kind));
   return comparison;
 }
 
@@ -191,7 +207,7 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
   const Row& against = row_of(archive, baseline, "--with-baseline");
   for (const Row& row : archive.results.rows) {
     if (row.pipeline == baseline) continue;
-    comparison.pipelines.push_back(compared(against, row, pairing, options));
+    comparison.pipelines.push_back(compared(against, row, pairing, options, comparison.kind));
   }
   if (comparison.pipelines.empty()) {
     throw InputError(
@@ -237,7 +253,7 @@ std::string comparison_json(const Comparison& comparison) {
                {"smallest_effect", comparison.smallest_effect},
                {"pipelines", Json::array()},
                {"notes", comparison.notes}});
-  const auto judged = evaluation::judged_metrics();
+  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     Json row = {{"a", pipeline.pipeline_a}, {"b", pipeline.pipeline_b}};
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
@@ -252,7 +268,7 @@ std::string comparison_csv(const Comparison& comparison) {
   std::string text =
       "pipeline_a,pipeline_b,metric,pairs,left_out,mean_a,mean_b,median_a,median_b,difference,"
       "difference_low,difference_high,ratio,ratio_low,ratio_high,verdict,seeds_needed\n";
-  const auto judged = evaluation::judged_metrics();
+  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
       const evaluation::PairedComparison& c = pipeline.metrics[i];

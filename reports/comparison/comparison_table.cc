@@ -101,8 +101,9 @@ std::string effect_words(const Metric& metric, const PairedComparison& compariso
                        share_text(comparison.mean_a));
   }
   if (std::isnan(comparison.ratio.low)) {
-    return fmt::format("{} {} {} in place of {} {}", metric.title, number_text(comparison.mean_b),
-                       metric.unit, number_text(comparison.mean_a), metric.unit);
+    return fmt::format("{} {} {} in place of {} {}", metric.title,
+                       judged_text(metric, comparison.mean_b), metric.unit,
+                       judged_text(metric, comparison.mean_a), metric.unit);
   }
   return fmt::format("{} {}", metric.title, factor_words(comparison.ratio));
 }
@@ -121,7 +122,7 @@ std::string interval_cell(const std::string& low, const std::string& high) {
 
 std::vector<std::string> cells(const std::string& pipeline, const Metric& metric,
                                const PairedComparison& c, double smallest_effect) {
-  const auto shown = [&](double value) { return number_text(shown_value(metric, value)); };
+  const auto shown = [&](double value) { return judged_text(metric, value); };
   return {pipeline,
           shown_title(metric),
           shown(c.median_a),
@@ -144,7 +145,7 @@ Table comparison_table(const Comparison& comparison) {
                {"B / A\n95 % interval"},
                {"B is", Align::kLeft}},
               2);
-  const auto judged = evaluation::judged_metrics();
+  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
                                  ? pipeline.pipeline_b
@@ -167,7 +168,7 @@ std::string pairing_text(const Comparison& comparison) {
 }
 
 Block words(const Comparison& comparison) {
-  const auto judged = evaluation::judged_metrics();
+  const auto judged = evaluation::judged_metrics(comparison.kind);
   Block block{.heading = "How much better"};
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     std::vector<std::string> effects;

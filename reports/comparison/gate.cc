@@ -22,6 +22,13 @@ constexpr const char* kAnew =
     "--save-baseline FILE`";
 
 void check_world(const Archive& result, const Baseline& baseline, GateReport& report) {
+  if (result.results.kind != baseline.kind ||
+      result.results.clock_period != baseline.clock_period) {
+    throw InputError(fmt::format(
+        "{} and the baseline {}: allowed: both of `simbench clocks` with the same --from-s and "
+        "--duration-s, or neither",
+        result.path, baseline.path));
+  }
   if (result.scenario_json.empty()) {
     if (result.results.scenario != baseline.scenario) {
       throw InputError(fmt::format("{} is of the scenario {}, the baseline {} of {}", result.path,
@@ -151,7 +158,7 @@ void end_statistically(const OpenCheck& open, const evaluation::HolmDecision& de
 
 void make_checks(const Archive& result, const Baseline& baseline, const SeedPairing& pairing,
                  GateReport& report) {
-  const auto judged = evaluation::judged_metrics();
+  const auto judged = evaluation::judged_metrics(baseline.kind);
   std::vector<OpenCheck> open;
   std::vector<double> p;
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
@@ -216,7 +223,9 @@ std::string run_command(const Archive& result) {
   if (!result.command.empty()) return simbench_line(result.command);
   std::vector<std::string> names;
   for (const evaluation::Row& row : result.results.rows) names.push_back(row.pipeline);
-  return shell_line({"simbench", "run", "--scenario", result.results.scenario, "--first-seed",
+  const bool is_of_clocks = result.results.kind == evaluation::ResultKind::kClockRuns;
+  return shell_line({"simbench", is_of_clocks ? "clocks" : "run", "--scenario",
+                     result.results.scenario, "--first-seed",
                      fmt::format("{}", result.results.first_seed), "--seeds",
                      fmt::format("{}", result.results.seed_count), "--pipelines",
                      fmt::format("{}", fmt::join(names, ",")), "--output", "results"});

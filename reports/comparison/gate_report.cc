@@ -22,7 +22,7 @@ const char* unit_of(const GateCheck& check) {
 
 std::string gate_value(const GateCheck& check, double value) {
   if (!std::isfinite(value)) return "none";
-  return fmt::format("{} {}", number_text(shown_value(*check.metric, value)), unit_of(check));
+  return fmt::format("{} {}", judged_text(*check.metric, value), unit_of(check));
 }
 
 const char* statistic_name(const GateReport& report, const GateCheck& check) {
@@ -62,10 +62,9 @@ std::string evidence_text(const GateReport& report, const GateCheck& check) {
                               counted(report.seeds.count, "seed"));
   }
   return text +
-         fmt::format(
-             "; {:.4g} % interval of the change [{}, {}], p {:.2g} after Holm's correction",
-             100 * check.confidence, number_text(shown_value(*check.metric, check.difference.low)),
-             number_text(shown_value(*check.metric, check.difference.high)), check.adjusted_p);
+         fmt::format("; {:.4g} % interval of the change [{}, {}], p {:.2g} after Holm's correction",
+                     100 * check.confidence, judged_text(*check.metric, check.difference.low),
+                     judged_text(*check.metric, check.difference.high), check.adjusted_p);
 }
 
 std::string outcome_text(GateOutcome outcome) {

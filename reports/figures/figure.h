@@ -59,6 +59,7 @@ struct FigurePanel {
   std::vector<FigureLine> lines{};
   std::vector<FigureSpan> spans{};
   std::vector<std::string> categories{};  // names on the x axis where bars stand
+  bool log_x = false;
   bool log_y = false;
   // The x axis counts trigger pulses: a reader can link to one of them.
   bool x_is_pulse = false;

@@ -301,6 +301,7 @@ std::string x_range(const FigurePanel& panel) {
   bool all_whole = true;
   for (const FigureSeries& series : panel.series) {
     for (const double x : series.x) {
+      if (panel.log_x && x <= 0) continue;
       range.cover(x);
       all_whole = all_whole && x == std::round(x);
     }
@@ -309,7 +310,11 @@ std::string x_range(const FigurePanel& panel) {
     range.cover(span.from);
     range.cover(span.to);
   }
-  if (range.empty()) return "set xrange [0:1]\n";
+  if (range.empty()) return panel.log_x ? "set xrange [0.1:1]\n" : "set xrange [0:1]\n";
+  if (panel.log_x) {
+    return fmt::format("set xrange [{}:{}]\nset xtics norotate autofreq\n", range.least / 1.3,
+                       range.greatest * 1.3);
+  }
   const double room = std::max((range.greatest - range.least) * 0.01, 1e-6);
   return fmt::format("set xrange [{}:{}]\nset xtics norotate {}\n", range.least - room,
                      range.greatest + room,
@@ -362,6 +367,7 @@ std::string panel_script(const FigurePanel& panel, const SpanColours& colours,
       std::back_inserter(script),
       "set title {} offset 0,-0.5\nset xlabel {} offset 0,0.8\nset ylabel {} offset 1,0\n",
       in_quotes(panel.title), in_quotes(panel.x_label), in_quotes(panel.y_label));
+  script += panel.log_x ? "set logscale x\n" : "unset logscale x\n";
   script += panel.log_y ? "set logscale y\n" : "unset logscale y\n";
   script += x_range(panel) + y_range(panel) + categories(panel);
   std::map<int, std::string> legend = legend_of(panel);

@@ -72,6 +72,15 @@ Json claim_json(const evaluation::Claim& claim) {
 
 }  // namespace
 
+Json performance_json(const evaluation::Performance& cost) {
+  return {{"events", cost.events},
+          {"events_per_second", cost.events_per_second},
+          {"simulated_seconds", cost.simulated_seconds},
+          {"simulated_seconds_per_second", cost.simulated_seconds_per_second},
+          {"cpu_seconds", cost.cpu_seconds},
+          {"wall_seconds", cost.wall_seconds}};
+}
+
 std::string json(const evaluation::Results& results) {
   Json root = {{"schema_version", kArchiveSchemaVersion},
                {"version", version()},
@@ -85,13 +94,7 @@ std::string json(const evaluation::Results& results) {
                {"warnings", results.warnings}});
   for (const evaluation::Row& row : results.rows) root["rows"].push_back(row_json(row));
   for (const evaluation::Claim& claim : results.claims) root["claims"].push_back(claim_json(claim));
-  const evaluation::Performance& cost = results.performance;
-  root["performance"] = {{"events", cost.events},
-                         {"events_per_second", cost.events_per_second},
-                         {"simulated_seconds", cost.simulated_seconds},
-                         {"simulated_seconds_per_second", cost.simulated_seconds_per_second},
-                         {"cpu_seconds", cost.cpu_seconds},
-                         {"wall_seconds", cost.wall_seconds}};
+  root["performance"] = performance_json(results.performance);
   return file_text(root);
 }
 

@@ -42,6 +42,8 @@ inline constexpr int kArchiveSchemaVersion = 1;
 // Whether a value at this percentile is inside; null with too few seeds to tell.
 Json inside_json(const evaluation::Percentile& percentile);
 
+Json performance_json(const evaluation::Performance& cost);
+
 // Indented by two, ends with a line feed.
 std::string json(const evaluation::Results& results);
 

@@ -16,6 +16,14 @@ std::string number_text(double value) {
   return fmt::format("{:.{}f}", value, size < 100 ? 3 : 1);
 }
 
+std::string significant_text(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  if (size != 0 && (size < 1e-4 || size >= 1e9)) return fmt::format("{:.2e}", value);
+  const int exponent = size == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
+  return fmt::format("{:.{}f}", value, std::max(0, 2 - exponent));
+}
+
 std::string band_text(const evaluation::Series& series) {
   if (!std::isfinite(series.p05) || !std::isfinite(series.p95)) return "-";
   return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
@@ -100,6 +108,12 @@ std::string scored_seeds_text(const ScoredSeeds& seeds) {
 
 double shown_value(const evaluation::Metric& metric, double value) {
   return metric.is_share() ? 100 * value : value;
+}
+
+std::string judged_text(const evaluation::Metric& metric, double value) {
+  const double shown = shown_value(metric, value);
+  const bool is_fine = metric.judged && metric.judged->smallest_step < 0.001;
+  return is_fine ? significant_text(shown) : number_text(shown);
 }
 
 std::string capitalised(std::string text) {

@@ -16,6 +16,9 @@ namespace simbench::reports {
 // finite, here and below.
 std::string number_text(double value);
 
+// Three significant digits, whatever the size: "0.00123", "36000", "1.23e-05".
+std::string significant_text(double value);
+
 // The 5-95 % band: "[1.802, 3.511]".
 std::string band_text(const evaluation::Series& series);
 
@@ -62,6 +65,9 @@ inline constexpr const char* kSingleCameraLegend =
 
 // A metric's value in the units of reports: milliseconds unchanged, shares in percent.
 double shown_value(const evaluation::Metric& metric, double value);
+
+// The same of a judged metric as text, with the digits that its smallest step needs.
+std::string judged_text(const evaluation::Metric& metric, double value);
 
 // "absolute error" as a title: "Absolute error".
 std::string capitalised(std::string text);

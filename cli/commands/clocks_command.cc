@@ -1,0 +1,101 @@
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/interrupt.h"
+#include "app/results.h"
+#include "cli/command.h"
+#include "cli/commands/commands.h"
+#include "cli/progress.h"
+#include "evaluation/clock_run/clock_evaluation.h"
+#include "reports/clocks/clock_report.h"
+#include "reports/figures/gnuplot.h"
+
+namespace simbench::cli {
+namespace {
+
+constexpr const char* kClocksExamples = R"(
+Examples:
+  simbench clocks --scenario 6host_star
+  simbench clocks --scenario 6host_star --pipelines chrony,ntp --seeds 32 --format json > ntp.json
+  simbench clocks --scenario 6host_lan_day --duration-s 86400 --figure day.svg
+  simbench clocks --scenario my_rig.json --output results/clocks
+
+There are no cameras and no trigger: only hosts, clocks and network, from a cold start. After
+--duration-s the master is unreachable for 600 s, then 3600 s show how the hosts recover.
+
+Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
+
+struct ClocksOptions {
+  std::string scenario;
+  evaluation::ClockOptions clocks;
+  std::vector<std::string> sets;
+  std::string format;
+  std::string output;
+  std::string figure;
+  std::vector<std::string> command;
+};
+
+reports::PlotFormat plot_format(const std::string& path) {
+  if (path.ends_with(".svg")) return reports::PlotFormat::kSvg;
+  if (path.ends_with(".pdf")) return reports::PlotFormat::kPdf;
+  throw scenarios::InputError("--figure: found '" + path +
+                              "', allowed: a name that ends in .svg or .pdf");
+}
+
+int clocks(const ClocksOptions& options) {
+  std::optional<reports::PlotFormat> plot;
+  if (!options.figure.empty()) plot = plot_format(options.figure);
+  app::RunArchive archive(options.command);
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  evaluation::check_clock_options(scenario, options.clocks);
+  print_warnings(scenarios::warnings(scenario));
+  archive.open(options.output);
+  const auto results = watched<evaluation::ClockResults>([&](const evaluation::Progress& progress) {
+    evaluation::ClockOptions run = options.clocks;
+    run.cancel = &app::InterruptHandler::flag();
+    return std::make_optional(evaluation::evaluate_clocks(
+        scenario, [&] { return app::simulated_clocks(scenario); }, run, progress));
+  });
+  if (!results) return kInterrupted;
+  print_warnings(results->results.warnings);
+  if (archive.write(*results, scenario)) print_note("results written to " + options.output);
+  if (plot) {
+    reports::draw(reports::clock_figure(*results), *plot, options.figure);
+    print_note(options.figure + " written");
+  }
+  print_result(app::clock_text(*results, scenario, options.format));
+  return kOk;
+}
+
+}  // namespace
+
+void add_clocks_command(CommandLine& line) {
+  auto options = std::make_shared<ClocksOptions>();
+  options->command = line.arguments;
+  evaluation::ClockOptions& clocks_options = options->clocks;
+  Command command(line, "clocks",
+                  "Run the hosts' clocks alone for hours: time error, stability, holdover");
+  command.scenario(options->scenario);
+  command.whole_number("--duration-s", "S", clocks_options.duration_s, 1,
+                       evaluation::kLongestClockRunS,
+                       "Seconds from the cold start to the loss of the master. Default: 36000");
+  command.whole_number("--from-s", "S", clocks_options.from_s, 0, evaluation::kLongestClockRunS,
+                       "The second from which spread, errors and stability count. Default: 300");
+  command.count("--seeds", clocks_options.seeds, "How many seeds. Default: 8");
+  command.seed("--first-seed", clocks_options.first_seed, "The first seed. Default: 1");
+  command.jobs(clocks_options.jobs);
+  command.pipelines(clocks_options.pipelines);
+  command.sets(options->sets);
+  command.format(options->format, {"table", "markdown", "csv", "json"});
+  command.text("--output", "DIR", options->output,
+               "Write a result archive to this folder: manifest.json, results.json, curves.csv,\n"
+               "series.csv (time errors of the first seed). Replaces an earlier archive there");
+  command.text("--figure", "FILE", options->figure,
+               "Draw ADEV, TDEV and MTIE over tau to this file (.svg or .pdf, by gnuplot)");
+  command.footer(kClocksExamples);
+  command.runs([options] { return clocks(*options); });
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,226 @@
+#include "evaluation/clock_run/clock_evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "evaluation/run/jobs.h"
+#include "evaluation/run/pipeline_choice.h"
+#include "evaluation/scoring/rows.h"
+#include "recording/version.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+using scenarios::Scenario;
+
+constexpr std::uint64_t kFewestReadings = 4;
+
+// What the host_sync needs that hosts without cameras do not have; null if nothing.
+const char* lacking_world(const PipelineChoice& choice) {
+  for (const Need need : choice.host_sync.info.needs) {
+    if (need == Need::kFrames) return "the frames of cameras";
+    if (need == Need::kTriggerLine) return "the trigger's pulses";
+  }
+  return nullptr;
+}
+
+struct Chosen {
+  std::vector<PipelineChoice> choices;
+  std::vector<std::string> left_out;
+};
+
+Chosen choose_clock_runs(const Scenario& scenario, const std::vector<std::string>& names) {
+  Chosen chosen;
+  for (PipelineChoice& choice : choose_pipelines(scenario, names)) {
+    const bool is_known =
+        std::any_of(chosen.choices.begin(), chosen.choices.end(), [&](const PipelineChoice& other) {
+          return other.pipeline.host_sync == choice.pipeline.host_sync;
+        });
+    if (names.empty() && is_known) continue;
+    if (const char* what = lacking_world(choice)) {
+      const std::string problem = fmt::format(
+          "pipeline {}: host_sync \"{}\" needs {}, which a run of the clocks alone does "
+          "not have",
+          choice.pipeline.name, choice.pipeline.host_sync, what);
+      if (!names.empty()) throw scenarios::InputError("--pipelines: " + problem);
+      chosen.left_out.push_back(problem + "; left out");
+      continue;
+    }
+    chosen.choices.push_back(std::move(choice));
+  }
+  return chosen;
+}
+
+ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
+  return {.duration = std::chrono::seconds(options.duration_s),
+          .from = std::chrono::seconds(options.from_s),
+          .hosts = static_cast<std::size_t>(scenario.hosts.count)};
+}
+
+class JobError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class ClockEvaluation {
+ public:
+  ClockEvaluation(const Scenario& scenario, const ClockSourceFactory& make_source,
+                  const ClockOptions& options, const Progress& progress)
+      : scenario_(scenario),
+        make_source_(make_source),
+        options_(options),
+        progress_(progress),
+        chosen_(choose_clock_runs(scenario, options.pipelines)),
+        jobs_(chosen_.choices.size() * options.seeds) {}
+
+  ClockResults run() {
+    const auto begin = std::chrono::steady_clock::now();
+    bool finished = false;
+    try {
+      finished = run_jobs_with_workers(
+          jobs_.size(), {.threads = options_.jobs, .cancel = options_.cancel}, [this]() -> Job {
+            return [this, source = std::shared_ptr<ClockSource>(make_source_())](std::size_t job) {
+              run_job(job, *source);
+            };
+          });
+    } catch (const JobError& error) {
+      throw EvaluationFailed(error.what(), {});
+    }
+    if (!finished) throw EvaluationCancelled("cancelled", {});
+    ClockResults all = results();
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    Performance& performance = all.results.performance;
+    performance.wall_seconds = wall.count();
+    performance.events_per_second = static_cast<double>(performance.events) / wall.count();
+    performance.simulated_seconds_per_second = performance.simulated_seconds / wall.count();
+    return all;
+  }
+
+ private:
+  struct Scored {
+    SeedScore seed;
+    StabilityCurves curves;
+    std::optional<ClockReadings> readings;  // of the first seed
+  };
+
+  void run_job(std::size_t job, ClockSource& source) {
+    const PipelineChoice& choice = chosen_.choices[job % chosen_.choices.size()];
+    const std::uint64_t seed = options_.first_seed + job / chosen_.choices.size();
+    try {
+      jobs_[job] = score_of(choice, seed, source);
+    } catch (const RecordingCancelled&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw JobError(fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})",
+                                 scenario_.name, choice.pipeline.name, seed, error.what(),
+                                 version(), commit()));
+    }
+    const std::lock_guard lock(mutex_);
+    if (progress_) progress_(++done_, jobs_.size());
+  }
+
+  Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source) const {
+    const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+    const ClockSpan span = span_of(scenario_, options_);
+    ClockScorer scorer(span);
+    const ClockCost cost = source.run({.seed = seed,
+                                       .pipeline = choice.pipeline.name,
+                                       .host_sync = host_sync.get(),
+                                       .duration = span.duration,
+                                       .interval = kReadingInterval,
+                                       .master_lost_for = kMasterLostFor,
+                                       .recovery = kRecovery,
+                                       .cancel = options_.cancel},
+                                      scorer);
+    ClockScore score = scorer.finish(cost.messages);
+    Scored scored;
+    static_cast<MetricValues<double>&>(scored.seed) = score.values;
+    scored.seed.seed = seed;
+    scored.seed.cost = {.events = cost.events,
+                        .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
+                        .trace_hash = cost.trace_hash};
+    scored.curves = std::move(score.curves);
+    if (seed == options_.first_seed) scored.readings = std::move(score.readings);
+    return scored;
+  }
+
+  ClockResults results() {
+    ClockResults all;
+    Results& results = all.results;
+    results.kind = ResultKind::kClockRuns;
+    results.clock_period = {.from_s = options_.from_s, .duration_s = options_.duration_s};
+    results.scenario = scenario_.name;
+    results.derivation = scenario_.derivation;
+    results.first_seed = options_.first_seed;
+    results.seed_count = options_.seeds;
+    results.warnings = chosen_.left_out;
+    RowSetting setting = row_setting(scenario_);
+    setting.kind = ResultKind::kClockRuns;
+    for (std::size_t pipeline = 0; pipeline < chosen_.choices.size(); ++pipeline) {
+      std::vector<SeedScore> seeds;
+      std::vector<StabilityCurves> curves;
+      for (std::size_t job = pipeline; job < jobs_.size(); job += chosen_.choices.size()) {
+        results.performance.events += jobs_[job].seed.cost.events;
+        results.performance.simulated_seconds += jobs_[job].seed.cost.simulated_seconds;
+        seeds.push_back(std::move(jobs_[job].seed));
+        curves.push_back(std::move(jobs_[job].curves));
+      }
+      all.readings.push_back(std::move(*jobs_[pipeline].readings));
+      all.curves.push_back(pooled(curves));
+      results.rows.push_back(
+          make_row(chosen_.choices[pipeline].pipeline, std::move(seeds), setting));
+    }
+    return all;
+  }
+
+  const Scenario& scenario_;
+  const ClockSourceFactory& make_source_;
+  const ClockOptions& options_;
+  const Progress& progress_;
+  const Chosen chosen_;
+  std::vector<Scored> jobs_;  // each written by one worker
+  std::mutex mutex_;          // guards what follows
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace
+
+ClockResults evaluate_clocks(const Scenario& scenario, const ClockSourceFactory& make_source,
+                             const ClockOptions& options, const Progress& progress) {
+  check_clock_options(scenario, options);
+  return ClockEvaluation(scenario, make_source, options, progress).run();
+}
+
+void check_clock_options(const Scenario& scenario, const ClockOptions& options) {
+  if (options.duration_s > kLongestClockRunS) {
+    throw scenarios::InputError(fmt::format("--duration-s: found {}, allowed: at most {}",
+                                            options.duration_s, kLongestClockRunS));
+  }
+  if (options.from_s >= options.duration_s) {
+    throw scenarios::InputError(
+        fmt::format("--from-s: found {}, allowed: less than --duration-s, {}", options.from_s,
+                    options.duration_s));
+  }
+  if (options.duration_s - options.from_s < kFewestReadings) {
+    throw scenarios::InputError(
+        fmt::format("--duration-s: found {}, allowed: at least {}, {} readings of a second behind "
+                    "--from-s",
+                    options.duration_s, options.from_s + kFewestReadings, kFewestReadings));
+  }
+  if (choose_clock_runs(scenario, options.pipelines).choices.empty()) {
+    throw scenarios::InputError("the scenario has no pipeline whose hosts run without cameras");
+  }
+  if (scenario.hosts.count < 2) {
+    throw scenarios::InputError(
+        "/hosts/count: found 1, allowed with `clocks`: at least 2, a master "
+        "and a slave");
+  }
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,65 @@
+// Runs of the hosts' clocks alone, of many pipelines and seeds: `simbench clocks`.
+//
+// A row has the metrics of ResultKind::kClockRuns over the seeds, and the curves of stability
+// pooled over slaves and seeds (clock_score.h). Without stated pipelines there is a row for each
+// host_sync of the scenario, under the name of the first pipeline that has it; those that need
+// frames or the trigger are left out, with a note.
+//
+// Results depend neither on the number of threads nor on other runs beside them.
+//
+// Errors: scenarios::InputError for what choose_pipelines() refuses, a span without four readings,
+// an unknown pipeline, one that needs frames or the trigger; EvaluationFailed and
+// EvaluationCancelled as of evaluate().
+//
+//   const ClockResults results = evaluate_clocks(
+//       scenario, [&] { return sim::make_clock_simulation(scenario); },
+//       {.duration_s = 36000, .from_s = 300, .seeds = 8}, nullptr);
+#ifndef SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_
+#define SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evaluation/clock_run/clock_score.h"
+#include "evaluation/run/evaluate.h"
+#include "evaluation/scoring/results.h"
+#include "recording/clock_source.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::evaluation {
+
+// A year, the longest that the world runs, less what follows the loss of the master.
+inline constexpr std::uint64_t kLongestClockRunS = 31'000'000;
+
+struct ClockOptions {
+  std::uint64_t duration_s = 36'000;
+  std::uint64_t from_s = 300;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 8;
+  unsigned jobs = 0;
+  std::vector<std::string> pipelines{};
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+struct ClockResults {
+  Results results;                        // of ResultKind::kClockRuns
+  std::vector<StabilityCurves> curves{};  // by row
+  std::vector<ClockReadings> readings{};  // by row, of the first seed
+};
+
+using ClockSourceFactory = std::function<std::unique_ptr<ClockSource>()>;
+
+ClockResults evaluate_clocks(const scenarios::Scenario& scenario,
+                             const ClockSourceFactory& make_source, const ClockOptions& options,
+                             const Progress& progress);
+
+// Refuses options as evaluate_clocks() does, before any work.
+void check_clock_options(const scenarios::Scenario& scenario, const ClockOptions& options);
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_EVALUATION_H_

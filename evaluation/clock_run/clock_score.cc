@@ -1,0 +1,170 @@
+#include "evaluation/clock_run/clock_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+#include "evaluation/statistics/statistics.h"
+
+namespace simbench::evaluation {
+namespace {
+
+constexpr std::array<double, 3> kBoundsMs = {1, 0.1, 0.01};
+
+// The curve over all clocks: combine() adds a clock's value to the sum so far, finish() makes the
+// value of the sum over so many clocks.
+template <class Combine, class Finish>
+std::vector<StabilityPoint> pool(std::span<const StabilityCurves> clocks,
+                                 std::vector<StabilityPoint> StabilityCurves::*curve,
+                                 Combine combine, Finish finish) {
+  std::vector<StabilityPoint> all;
+  std::vector<double> counts;
+  for (const StabilityCurves& clock : clocks) {
+    const std::vector<StabilityPoint>& points = clock.*curve;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i == all.size()) {
+        all.push_back({.tau_s = points[i].tau_s});
+        counts.push_back(0);
+      }
+      all[i].value = combine(all[i].value, points[i].value);
+      all[i].terms += points[i].terms;
+      ++counts[i];
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].value = finish(all[i].value, counts[i]);
+  return all;
+}
+
+std::vector<StabilityPoint> rms(std::span<const StabilityCurves> clocks,
+                                std::vector<StabilityPoint> StabilityCurves::*curve) {
+  return pool(
+      clocks, curve, [](double sum, double value) { return sum + value * value; },
+      [](double sum, double count) { return std::sqrt(sum / count); });
+}
+
+// Every slave's clock over the readings.
+StabilityCurves curves_of(const ClockReadings& readings) {
+  std::vector<StabilityCurves> slaves;
+  for (std::size_t host = 1; host < readings.errors_s.size(); ++host) {
+    const TimeErrorSeries series{
+        .interval_s = readings.interval_s,
+        .pieces = {{.start_s = readings.start_s, .x_s = readings.errors_s[host]}}};
+    Stability found = stability_of(series);
+    slaves.push_back({.adev = std::move(found.adev),
+                      .mdev = std::move(found.mdev),
+                      .hdev = std::move(found.hdev),
+                      .tdev_ms = std::move(found.tdev_ms),
+                      .mtie_ms = std::move(found.mtie_ms)});
+  }
+  return pooled(slaves);
+}
+
+double spread_of(std::span<const double> errors_s) {
+  const auto [least, greatest] = std::minmax_element(errors_s.begin(), errors_s.end());
+  return (*greatest - *least) * 1e3;
+}
+
+double largest_ms(std::span<const double> errors_s) {
+  double largest = 0;
+  for (const double error : errors_s) largest = std::max(largest, std::abs(error));
+  return largest * 1e3;
+}
+
+}  // namespace
+
+StabilityCurves pooled(std::span<const StabilityCurves> curves) {
+  return {.adev = rms(curves, &StabilityCurves::adev),
+          .mdev = rms(curves, &StabilityCurves::mdev),
+          .hdev = rms(curves, &StabilityCurves::hdev),
+          .tdev_ms = rms(curves, &StabilityCurves::tdev_ms),
+          .mtie_ms = pool(
+              curves, &StabilityCurves::mtie_ms,
+              [](double largest, double value) { return std::max(largest, value); },
+              [](double largest, double) { return largest; })};
+}
+
+ClockScorer::ClockScorer(const ClockSpan& span) : span_(span), errors_(span.hosts) {
+  SIMBENCH_ASSERT(span.duration >= span.from + kReadingInterval, "two readings at least");
+  kept_.start_s = to_seconds(span.from);
+  kept_.interval_s = to_seconds(kReadingInterval);
+  kept_.errors_s.resize(span.hosts);
+}
+
+void ClockScorer::on_errors(TrueTime at, std::span<const double> errors_s) {
+  const Nanoseconds since_start = at - TrueTime{};
+  const double spread_ms = spread_of(errors_s);
+  if (since_start > span_.duration) {
+    watch_loss(since_start - span_.duration, errors_s, spread_ms);
+    return;
+  }
+  last_ = at;
+  for (std::size_t i = 0; i < kBoundsMs.size(); ++i) {
+    if (spread_ms >= kBoundsMs[i]) last_above_[i] = at;
+  }
+  if (since_start >= span_.from) measure(errors_s, spread_ms);
+}
+
+void ClockScorer::measure(std::span<const double> errors_s, double spread_ms) {
+  spread_sum_ms_ += spread_ms;
+  spread_max_ms_ = std::max(spread_max_ms_, spread_ms);
+  for (std::size_t host = 1; host < errors_s.size(); ++host) {
+    errors_.add(host, errors_s[host] * 1e3);
+  }
+  if (measured_++ % stride_ != 0) return;
+  if (spreads_ms_.size() == kMostReadings) halve();
+  if ((measured_ - 1) % stride_ != 0) return;
+  spreads_ms_.push_back(spread_ms);
+  for (std::size_t host = 0; host < errors_s.size(); ++host) {
+    kept_.errors_s[host].push_back(errors_s[host]);
+  }
+}
+
+// Keeps every second reading from now on, and of those kept.
+void ClockScorer::halve() {
+  const auto every_second = [](std::vector<double>& values) {
+    for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+    values.resize((values.size() + 1) / 2);
+  };
+  every_second(spreads_ms_);
+  for (std::vector<double>& errors_s : kept_.errors_s) every_second(errors_s);
+  stride_ *= 2;
+  kept_.interval_s *= 2;
+}
+
+void ClockScorer::watch_loss(Nanoseconds since_loss, std::span<const double> errors_s,
+                             double spread_ms) {
+  if (since_loss == std::chrono::seconds(60)) holdover_60_ms_ = largest_ms(errors_s);
+  if (since_loss == kMasterLostFor) holdover_600_ms_ = largest_ms(errors_s);
+  if (since_loss < kMasterLostFor) return;
+  if (!last_apart_) last_apart_ = Nanoseconds(0);
+  if (spread_ms > spread_max_ms_) last_apart_ = since_loss - kMasterLostFor + kReadingInterval;
+}
+
+ClockScore ClockScorer::finish(std::uint64_t messages) {
+  ClockScore score;
+  MetricValues<double>& values = score.values;
+  values.clock_spread_ms = spread_sum_ms_ / static_cast<double>(measured_);
+  std::sort(spreads_ms_.begin(), spreads_ms_.end());
+  values.clock_spread_median_ms = quantile_of_sorted(spreads_ms_, 0.5);
+  values.clock_spread_p95_ms = quantile_of_sorted(spreads_ms_, 0.95);
+  values.clock_spread_max_ms = spread_max_ms_;
+  errors_.add_to(values);
+  const auto below_s = [&](std::size_t bound) {
+    if (!last_above_[bound]) return 0.0;
+    if (*last_above_[bound] == last_) return kNan;
+    return to_seconds(*last_above_[bound] + kReadingInterval - TrueTime{});
+  };
+  values.below_1_ms_s = below_s(0);
+  values.below_0_1_ms_s = below_s(1);
+  values.below_0_01_ms_s = below_s(2);
+  values.holdover_60_ms = holdover_60_ms_;
+  values.holdover_600_ms = holdover_600_ms_;
+  if (last_apart_ && *last_apart_ <= kRecovery) values.recovery_s = to_seconds(*last_apart_);
+  values.packets_per_s = static_cast<double>(messages) / to_seconds(span_.duration);
+  score.curves = curves_of(kept_);
+  score.readings = std::move(kept_);
+  return score;
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,110 @@
+// The score of one run of the hosts' clocks: how far apart they are over hours, how fast they come
+// together, how they hold over without their master, and how stable they are.
+//
+// From `from` to `duration` the run is measured: spread, time errors (evaluation/scoring/
+// time_errors.h) and stability (evaluation/stability). The times until the spread is below a bound
+// for good count from the start of the run to `duration`. Then the master is lost for
+// kMasterLostFor, and the clocks are watched for kRecovery more:
+//
+//   spread      largest minus smallest clock of all hosts, the master included
+//   holdover    largest |TE| of any slave 60 s and 600 s after the loss
+//   recovery    from the master's return until the spread stays within its largest while measured
+//
+// A value that does not exist (never below, never recovered) is NaN. Deviations are the RMS over
+// the slaves, MTIE is the largest of any slave.
+//
+// Memory: two readings a second of each host up to kMostReadings; longer runs keep every second,
+// fourth ... reading for stability alone, so that memory is constant in time.
+//
+//   ClockScorer scorer({.duration = 3600s, .from = 300s, .hosts = 6});
+//   source.run(scorer.request(...), scorer);
+//   const ClockScore score = scorer.finish();
+#ifndef SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
+#define SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/time_errors.h"
+#include "evaluation/stability/stability.h"
+#include "recording/clock_source.h"
+
+namespace simbench::evaluation {
+
+inline constexpr Nanoseconds kReadingInterval = std::chrono::seconds(1);
+inline constexpr Nanoseconds kMasterLostFor = std::chrono::seconds(600);
+inline constexpr Nanoseconds kRecovery = std::chrono::seconds(3600);
+inline constexpr std::size_t kMostReadings = std::size_t{1} << 17U;  // of each host: 36 hours
+
+struct ClockSpan {
+  Nanoseconds duration{};
+  Nanoseconds from{};
+  std::size_t hosts = 0;
+};
+
+// The curves of a run, of a pipeline over all its runs.
+struct StabilityCurves {
+  std::vector<StabilityPoint> adev{};
+  std::vector<StabilityPoint> mdev{};
+  std::vector<StabilityPoint> hdev{};
+  std::vector<StabilityPoint> tdev_ms{};
+  std::vector<StabilityPoint> mtie_ms{};
+};
+
+// The curves of several clocks as one: deviations are the RMS over those that have the tau, MTIE
+// the largest. Terms add up.
+StabilityCurves pooled(std::span<const StabilityCurves> curves);
+
+// Readings of all hosts, `interval_s` apart from `start_s` on.
+struct ClockReadings {
+  double start_s = 0;
+  double interval_s = 1;
+  std::vector<std::vector<double>> errors_s{};  // by host, the master's first
+};
+
+struct ClockScore {
+  MetricValues<double> values{};
+  StabilityCurves curves{};
+  ClockReadings readings{};
+};
+
+class ClockScorer final : public ClockSink {
+ public:
+  // The span measured holds at least two readings.
+  explicit ClockScorer(const ClockSpan& span);
+
+  void on_errors(TrueTime at, std::span<const double> errors_s) override;
+
+  // After the run, once. `messages`: those sent in `duration`.
+  ClockScore finish(std::uint64_t messages);
+
+ private:
+  void measure(std::span<const double> errors_s, double spread_ms);
+  void keep(TrueTime at, std::span<const double> errors_s);
+  void halve();
+  void watch_loss(Nanoseconds since_loss, std::span<const double> errors_s, double spread_ms);
+
+  ClockSpan span_;
+  ClockReadings kept_;
+  std::size_t stride_ = 1;
+  std::size_t measured_ = 0;
+  std::vector<double> spreads_ms_;  // while measured, up to kMostReadings, every stride_th
+  double spread_sum_ms_ = 0;
+  double spread_max_ms_ = 0;
+  TimeErrors errors_;
+  std::array<std::optional<TrueTime>, 3> last_above_{};
+  TrueTime last_{};
+  double holdover_60_ms_ = kNan;
+  double holdover_600_ms_ = kNan;
+  std::optional<Nanoseconds> last_apart_;  // since the master's return
+};
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_

@@ -1,0 +1,254 @@
+#include "reports/clocks/clock_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "recording/version.h"
+#include "reports/clocks/clock_curves.h"
+#include "reports/results/csv.h"
+#include "reports/results/derivation_json.h"
+#include "reports/results/results_document.h"
+#include "reports/text/json_node.h"
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::ClockResults;
+using evaluation::kNan;
+using evaluation::Metric;
+using evaluation::ResultKind;
+using evaluation::Row;
+using evaluation::TablePlaces;
+
+std::vector<double> existing(const std::vector<double>& values) {
+  std::vector<double> found;
+  for (const double value : values) {
+    if (std::isfinite(value)) found.push_back(value);
+  }
+  return found;
+}
+
+double largest(const std::vector<double>& values) {
+  const std::vector<double> found = existing(values);
+  return found.empty() ? kNan : *std::max_element(found.begin(), found.end());
+}
+
+double rms(const std::vector<double>& values) {
+  double squares = 0;
+  const std::vector<double> found = existing(values);
+  for (const double value : found) squares += value * value;
+  return found.empty() ? kNan : std::sqrt(squares / static_cast<double>(found.size()));
+}
+
+// The median, where a seed without a value is later than all others.
+double median_time(std::vector<double> values) {
+  for (double& value : values) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  }
+  std::sort(values.begin(), values.end());
+  const double high = values.empty() ? kNan : values[values.size() / 2];
+  if (!std::isfinite(high)) return kNan;
+  return evaluation::quantile_of_sorted(values, 0.5);
+}
+
+Field<Row> clock_field(const Metric& metric) {
+  return {{metric.heading, Align::kRight, metric.legend}, [metric](const Row& row) {
+            const bool is_time = std::string_view(metric.unit) == "s";
+            return significant_text(is_time ? median_time(metric.series(row).values)
+                                            : metric.series(row).median);
+          }};
+}
+
+Table metrics_table(const ClockResults& results) {
+  std::vector<Field<Row>> fields = {pipeline_field<Row>()};
+  for (const Metric* metric :
+       evaluation::table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
+    fields.push_back(clock_field(*metric));
+  }
+  return table_of(fields, results.results.rows);
+}
+
+// A line for each tau, a column for each pipeline.
+Table over_tau_table(const ClockResults& results, const ClockCurve& curve) {
+  std::vector<Column> columns = {{"tau s"}};
+  const std::vector<evaluation::StabilityPoint>* longest = nullptr;
+  for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
+    columns.push_back({results.results.rows[row].pipeline});
+    const auto& points = results.curves[row].*curve.points;
+    if (longest == nullptr || points.size() > longest->size()) longest = &points;
+  }
+  Table table(std::move(columns));
+  for (std::size_t i = 0; longest != nullptr && i < longest->size(); ++i) {
+    std::vector<std::string> cells = {significant_text((*longest)[i].tau_s)};
+    for (const evaluation::StabilityCurves& curves : results.curves) {
+      const auto& points = curves.*curve.points;
+      cells.push_back(i < points.size() ? significant_text(points[i].value) : "-");
+    }
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+std::vector<std::string> legend(const ClockResults& results) {
+  std::vector<std::string> lines = {
+      fmt::format("Hosts alone, without cameras, read once a second; measured from {} to {} s. A "
+                  "value is the median over the seeds.",
+                  results.results.clock_period.from_s, results.results.clock_period.duration_s)};
+  for (const Metric* metric :
+       evaluation::table_metrics(&TablePlaces::clocks, ResultKind::kClockRuns)) {
+    if (*metric->legend == '\0') continue;
+    if (metric->legend_continues) {
+      lines.back().append(" ").append(metric->legend);
+    } else {
+      lines.emplace_back(metric->legend);
+    }
+  }
+  lines.emplace_back(
+      "ADEV and TDEV: RMS over slaves and seeds. MTIE: the largest of any slave and seed.");
+  return lines;
+}
+
+}  // namespace
+
+Document clock_document(const ClockResults& results, const std::string& summary) {
+  Document document{.title = results_title(results.results),
+                    .head = results_head(results.results, summary)};
+  std::vector<Block>& blocks = document.blocks;
+  blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
+  for (const ClockCurve& curve : clock_curves()) {
+    if (!curve.in_text) continue;
+    blocks.push_back({.heading = curve.title, .table = over_tau_table(results, curve)});
+  }
+  blocks.push_back({.heading = "How to read it", .items = legend(results)});
+  Block syncs{.heading = "Pipelines and their host_sync"};
+  for (const Row& row : results.results.rows) {
+    syncs.items.push_back(row.pipeline + " = " + row.host_sync);
+  }
+  blocks.push_back(std::move(syncs));
+  return document;
+}
+
+namespace {
+
+Json points_json(const std::vector<evaluation::StabilityPoint>& points) {
+  Json all = Json::array();
+  for (const evaluation::StabilityPoint& point : points) {
+    all.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
+  }
+  return all;
+}
+
+Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
+  Json all = {{"pipeline", row.pipeline},
+              {"host_sync", row.host_sync},
+              {"device_time", row.device_time},
+              {"gathering", row.gathering},
+              {"spread_ms",
+               {{"mean", evaluation::mean_of_existing(row.clock_spread_ms.values)},
+                {"median", evaluation::mean_of_existing(row.clock_spread_median_ms.values)},
+                {"p95", evaluation::mean_of_existing(row.clock_spread_p95_ms.values)},
+                {"max", largest(row.clock_spread_max_ms.values)},
+                {"values", row.clock_spread_ms.values}}}};
+  for (const ClockCurve& curve : clock_curves()) all[curve.id] = points_json(curves.*curve.points);
+  all["max_te_ms"] = largest(row.max_te_ms.values);
+  all["rms_te_ms"] = rms(row.rms_te_ms.values);
+  all["constant_te_ms"] = largest(row.constant_te_ms.values);
+  all["dynamic_te_ms"] = largest(row.dynamic_te_ms.values);
+  all["below_ms"] = {{"1", median_time(row.below_1_ms_s.values)},
+                     {"0.1", median_time(row.below_0_1_ms_s.values)},
+                     {"0.01", median_time(row.below_0_01_ms_s.values)}};
+  all["holdover_ms"] = {{"60", row.holdover_60_ms.median}, {"600", row.holdover_600_ms.median}};
+  all["recovery_s"] = median_time(row.recovery_s.values);
+  all["packets_per_s"] = row.packets_per_s.median;
+  for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
+    all["metrics"][metric.id] = series_json(metric.series(row));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string clock_json(const ClockResults& results) {
+  const evaluation::Results& of = results.results;
+  Json root = {{"schema_version", kArchiveSchemaVersion},
+               {"kind", kClockRunsName},
+               {"version", version()},
+               {"commit", commit()},
+               {"scenario", of.scenario}};
+  state_derivation(of.derivation, root);
+  root.update({{"seeds", {{"first", of.first_seed}, {"count", of.seed_count}}},
+               {"duration_s", of.clock_period.duration_s},
+               {"from_s", of.clock_period.from_s},
+               {"interval_s", to_seconds(evaluation::kReadingInterval)},
+               {"rows", Json::array()},
+               {"warnings", of.warnings}});
+  for (std::size_t row = 0; row < of.rows.size(); ++row) {
+    root["rows"].push_back(clock_row_json(of.rows[row], results.curves[row]));
+  }
+  root["performance"] = performance_json(of.performance);
+  return file_text(root);
+}
+
+std::string clock_csv(const ClockResults& results) {
+  const bool changed = !results.results.derivation.changes.empty();
+  const std::string changes =
+      changed ? "," + csv_cell(scenarios::changed_text(results.results.derivation)) : "";
+  std::string text = fmt::format("pipeline,measure,tau_s,value{}\n", changed ? ",changed" : "");
+  for (std::size_t i = 0; i < results.results.rows.size(); ++i) {
+    const Row& row = results.results.rows[i];
+    const std::string name = csv_cell(std::string_view(row.pipeline));
+    for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
+      text += fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(metric.series(row).median),
+                          changes);
+    }
+    for (const ClockCurve& curve : clock_curves()) {
+      for (const evaluation::StabilityPoint& point : results.curves[i].*curve.points) {
+        text += fmt::format("{},{},{},{}{}\n", name, curve.id, csv_cell(point.tau_s),
+                            csv_cell(point.value), changes);
+      }
+    }
+  }
+  return text;
+}
+
+void write_series_csv(const ClockResults& results, std::ostream& out) {
+  out << "pipeline,seed,time_s,host,error_s\n";
+  for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
+    const evaluation::ClockReadings& readings = results.readings[row];
+    const std::string start =
+        fmt::format("{},{}", csv_cell(std::string_view(results.results.rows[row].pipeline)),
+                    results.results.first_seed);
+    for (std::size_t i = 0; i < readings.errors_s.front().size(); ++i) {
+      const double at_s = readings.start_s + static_cast<double>(i) * readings.interval_s;
+      for (std::size_t host = 1; host < readings.errors_s.size(); ++host) {
+        out << fmt::format("{},{},{},{:.4e}\n", start, at_s, host, readings.errors_s[host][i]);
+      }
+    }
+  }
+}
+
+void write_clock_archive(OutputFolder& output, const ClockResults& results,
+                         const scenarios::Scenario& scenario, const Provenance& provenance) {
+  const evaluation::Results& of = results.results;
+  Json more = {{"kind", kClockRunsName},
+               {"seeds", {{"first", of.first_seed}, {"count", of.seed_count}}},
+               {"duration_s", of.clock_period.duration_s},
+               {"from_s", of.clock_period.from_s},
+               {"pipelines", Json::array()}};
+  state_derivation(of.derivation, more);
+  more["scenario"] = Json::parse(scenario.resolved_json);
+  for (const Row& row : of.rows) more["pipelines"].push_back(row.pipeline);
+  output.file("manifest.json") << manifest_json(provenance, more);
+  output.file("results.json") << clock_json(results);
+  output.file("curves.csv") << clock_csv(results);
+  write_series_csv(results, output.file("series.csv"));
+  output.publish();
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,59 @@
+// Runs of the hosts' clocks for people and programs: the output of `simbench clocks`.
+//
+// JSON, schema_version 1; members are only ever added; null: the value does not exist.
+//
+//   {"schema_version": 1, "kind": "clocks", "version", "commit", "scenario",
+//    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
+//    "seeds": {"first", "count"}, "duration_s", "from_s", "interval_s": of the readings,
+//    "rows": [{"pipeline", "host_sync", "device_time", "gathering",
+//              "spread_ms": {"mean", "median", "p95", "max": in time, of that the mean over the
+//                seeds and of "max" the largest; "values": the mean in time of each seed},
+//              "adev", "mdev", "hdev": [{"tau_s", "value", "terms"}], RMS over slaves and seeds,
+//              "tdev_ms" likewise, "mtie_ms": the largest of any slave and seed,
+//              "max_te_ms": the largest of all seeds, "rms_te_ms": over all,
+//              "constant_te_ms", "dynamic_te_ms": the largest of all seeds,
+//              "below_ms": {"1", "0.1", "0.01"}: seconds until the spread stays below, the median
+//                over the seeds; null if half of them never do,
+//              "holdover_ms": {"60", "600"}, "recovery_s", "packets_per_s": median over the seeds,
+//              "metrics": {each metric of a clock run by its id: {"median", "p05", "p95",
+//                "values": [in seed order]}}}],
+//    "warnings", "performance"}
+//
+// What it means: evaluation/clock_run/clock_score.h, evaluation/stability/stability.h.
+#ifndef SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_
+#define SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_
+
+#include <ostream>
+#include <string>
+
+#include "evaluation/clock_run/clock_evaluation.h"
+#include "reports/archive/archive.h"
+#include "reports/figures/figure.h"
+#include "reports/text/block.h"
+#include "reports/text/output_file.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::reports {
+
+Document clock_document(const evaluation::ClockResults& results, const std::string& summary);
+
+std::string clock_json(const evaluation::ClockResults& results);
+
+// pipeline,measure,tau_s,value: the metrics without a tau (medians over the seeds), then the
+// curves.
+std::string clock_csv(const evaluation::ClockResults& results);
+
+// pipeline,seed,time_s,host,error_s: the time errors of the first seed's slaves.
+void write_series_csv(const evaluation::ClockResults& results, std::ostream& out);
+
+// ADEV, TDEV and MTIE of all pipelines over tau, with masks of ITU-T as lines for reference.
+Figure clock_figure(const evaluation::ClockResults& results);
+
+// manifest.json, results.json, curves.csv (clock_csv) and series.csv, which read_archive() reads
+// for comparisons and gates. Publishes.
+void write_clock_archive(OutputFolder& output, const evaluation::ClockResults& results,
+                         const scenarios::Scenario& scenario, const Provenance& provenance);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_CLOCKS_CLOCK_REPORT_H_
