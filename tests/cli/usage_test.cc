@@ -32,8 +32,8 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
   EXPECT_EQ(all.status, 0);
   EXPECT_EQ(all.err, "");
   for (const char* command :
-       {"run", "list", "describe", "validate", "replay", "diagnose", "convert-ibl", "record", "fit",
-        "node", "keygen", "relay", "validate-model", "reconstruct"}) {
+       {"run", "list", "describe", "validate", "replay", "diagnose", "stability", "convert-ibl",
+        "record", "fit", "node", "keygen", "relay", "validate-model", "reconstruct"}) {
     EXPECT_THAT(all.out, HasSubstr(command));
     const ProgramResult result = run({command, "--help"});
     EXPECT_EQ(result.status, 0) << command;
@@ -72,11 +72,13 @@ TEST_F(Usage, ListsWhatThereIs) {
   EXPECT_THAT(run({"list", "scenarios"}).out, HasSubstr("18cam_6host_15fps"));
   EXPECT_THAT(run({"list", "cameras"}).out, HasSubstr("d455: RealSense D455"));
   EXPECT_THAT(run({"list", "cameras", "--format", "json"}).out, HasSubstr("\"model\": \"d435\""));
+  EXPECT_THAT(run({"list", "oscillators"}).out,
+              AllOf(HasSubstr("tcxo: Temperature-compensated"), HasSubstr("Vig, Introduction")));
   refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
   for (const auto& [what, name] :
        {std::pair{"scenarios", "18cam_6host_45fps"}, std::pair{"pipelines", "genlock"},
         std::pair{"algorithms", "regression_30"}, std::pair{"cameras", "d455"},
-        std::pair{"studies", "scalability"}}) {
+        std::pair{"oscillators", "ocxo"}, std::pair{"studies", "scalability"}}) {
     EXPECT_THAT(
         run({"list", what, "--format", "names"}).out,
         AllOf(HasSubstr(std::string(name) + "\n"), Not(StartsWith("\n")), Not(HasSubstr(" "))))

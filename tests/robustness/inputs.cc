@@ -102,6 +102,17 @@ void Inputs::add_files() {
   }
   add({"ibl", 4, files_of("ibl"), {{"convert-ibl", "%"}}});
 
+  fs::create_directories(fs::path(folder_) / kGood / "clock_log");
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(SIMBENCH_SOURCE_DIR) / "tests/fuzz/corpus/stability_log")) {
+    const std::string name = entry.path().filename();
+    copy("tests/fuzz/corpus/stability_log/" + name, "clock_log/" + name);
+  }
+  add({"clock_log",
+       4,
+       files_of("clock_log"),
+       {{"stability", "%"}, {"stability", "%", "--remove-frequency", "--format", "json"}}});
+
   fs::create_directories(fs::path(folder_) / kGood / "rig");
   put(folder_ + "/" + kGood + "/rig/rig.json", kRig);
   add({"rig",

@@ -1,0 +1,210 @@
+#include "reports/stability/stability_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "recording/counted.h"
+#include "recording/version.h"
+#include "reports/results/csv.h"
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::LogStability;
+using evaluation::Stability;
+using evaluation::StabilityPoint;
+
+constexpr std::size_t kStepsInText = 10;
+
+struct Curve {
+  const char* name;
+  const char* header;
+  std::vector<StabilityPoint> Stability::*points;
+};
+constexpr std::array<Curve, 5> kCurves = {{{"adev", "ADEV", &Stability::adev},
+                                           {"mdev", "MDEV", &Stability::mdev},
+                                           {"hdev", "HDEV", &Stability::hdev},
+                                           {"tdev_ms", "TDEV\nms", &Stability::tdev_ms},
+                                           {"mtie_ms", "MTIE\nms", &Stability::mtie_ms}}};
+
+struct Size {
+  const char* name;
+  const char* header;
+  double evaluation::TimeErrorSummary::*value;
+};
+constexpr std::array<Size, 5> kSizes = {
+    {{"max_te_ms", "max |TE|\nms", &evaluation::TimeErrorSummary::max_te_ms},
+     {"rms_te_ms", "RMS TE\nms", &evaluation::TimeErrorSummary::rms_te_ms},
+     {"constant_te_ms", "constant\nTE ms", &evaluation::TimeErrorSummary::constant_te_ms},
+     {"dynamic_te_ms", "dynamic TE\nRMS ms", &evaluation::TimeErrorSummary::dynamic_te_ms},
+     {"dynamic_te_p2p_ms", "dynamic TE\np-p ms",
+      &evaluation::TimeErrorSummary::dynamic_te_p2p_ms}}};
+
+// Three digits, of nanoseconds as of seconds.
+std::string three_digits(double value) { return value == 0 ? "0" : fmt::format("{:.3g}", value); }
+
+std::int64_t gaps_of(const LogStability& file) {
+  return std::max<std::int64_t>(file.stability.pieces - 1, 0);
+}
+
+std::string offset_text(const LogStability& file) {
+  return file.frequency_offset ? fmt::format("{:.6g}", 1e9 * *file.frequency_offset) : "-";
+}
+
+Table files_table(const std::vector<LogStability>& files) {
+  std::vector<Column> columns = {{"file", Align::kLeft},
+                                 {"format", Align::kLeft},
+                                 {"points"},
+                                 {"interval\ns"},
+                                 {"gaps"},
+                                 {"steps"},
+                                 {"removed\nppb"}};
+  for (const Size& size : kSizes) columns.push_back({size.header});
+  Table table(columns);
+  for (const LogStability& file : files) {
+    const Stability& stability = file.stability;
+    std::vector<std::string> cells = {file.file,
+                                      file.format,
+                                      count_text(stability.points),
+                                      fmt::format("{:.6g}", stability.interval_s),
+                                      count_text(gaps_of(file)),
+                                      count_text(static_cast<std::int64_t>(stability.steps.size())),
+                                      offset_text(file)};
+    for (const Size& size : kSizes) cells.push_back(three_digits(stability.time_error.*size.value));
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+std::vector<std::string> step_items(const Stability& stability) {
+  std::vector<std::string> items;
+  for (const evaluation::TimeErrorStep& step : stability.steps) {
+    if (items.size() == kStepsInText) {
+      items.push_back(fmt::format("{} more: JSON has all", stability.steps.size() - kStepsInText));
+      break;
+    }
+    items.push_back(fmt::format("step of {} ms at {:.9g} s after the first point",
+                                three_digits(1e3 * step.step_s), step.at_s));
+  }
+  return items;
+}
+
+Json points_json(const std::vector<StabilityPoint>& points) {
+  Json list = Json::array();
+  for (const StabilityPoint& point : points) {
+    list.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
+  }
+  return list;
+}
+
+Json file_json(const LogStability& file) {
+  Json object = {{"file", file.file},
+                 {"format", file.format},
+                 {"first_s", file.first_s},
+                 {"interval_s", file.stability.interval_s},
+                 {"points", file.stability.points},
+                 {"left_out", file.left_out},
+                 {"gaps", gaps_of(file)},
+                 {"longest_gap_s", file.longest_gap_s},
+                 {"frequency_offset_ppb", nullptr}};
+  if (file.frequency_offset) object["frequency_offset_ppb"] = 1e9 * *file.frequency_offset;
+  add_stability(object, file.stability);
+  object["steps"] = Json::array();
+  for (const evaluation::TimeErrorStep& step : file.stability.steps) {
+    object["steps"].push_back({{"at_s", step.at_s}, {"step_ms", 1e3 * step.step_s}});
+  }
+  object["notes"] = file.notes;
+  return object;
+}
+
+}  // namespace
+
+Table stability_table(const Stability& stability) {
+  std::vector<Column> columns = {{"tau s"}};
+  for (const Curve& curve : kCurves) columns.push_back({curve.header});
+  Table table(columns);
+  // MTIE reaches farthest, and all begin at one interval and go on by octaves.
+  std::size_t octaves = 0;
+  for (const Curve& curve : kCurves) octaves = std::max(octaves, (stability.*curve.points).size());
+  for (std::size_t i = 0; i < octaves; ++i) {
+    std::vector<std::string> cells = {
+        fmt::format("{:.6g}", std::ldexp(stability.interval_s, static_cast<int>(i)))};
+    for (const Curve& curve : kCurves) {
+      const std::vector<StabilityPoint>& points = stability.*curve.points;
+      cells.push_back(i < points.size() ? three_digits(points[i].value) : "-");
+    }
+    table.add(std::move(cells));
+  }
+  return table;
+}
+
+void add_stability(Json& object, const Stability& stability) {
+  for (const Size& size : kSizes) object[size.name] = stability.time_error.*size.value;
+  for (const Curve& curve : kCurves) object[curve.name] = points_json(stability.*curve.points);
+}
+
+Document stability_document(const std::vector<LogStability>& files) {
+  Document document{.title = "stability of " + counted(files.size(), "measured clock")};
+  document.blocks.push_back({.heading = "Time error (TE)", .table = files_table(files)});
+  for (const LogStability& file : files) {
+    Block block{.heading = file.file};
+    if (!file.stability.mtie_ms.empty()) block.table = stability_table(file.stability);
+    block.items = step_items(file.stability);
+    document.blocks.push_back(std::move(block));
+  }
+  document.blocks.push_back(
+      {.heading = "How to read it",
+       .items = {"TE: the clock minus its reference. Constant: the mean; dynamic: without it, not "
+                 "filtered.",
+                 "ADEV, HDEV: overlapping Allan and Hadamard deviation, MDEV: modified Allan "
+                 "deviation, without a unit; TDEV: time deviation; MTIE: the largest change of TE "
+                 "within tau. None reaches over a gap.",
+                 "A log has what the program estimates against its own source: an error that both "
+                 "share (an asymmetric path) is not in it."}});
+  return document;
+}
+
+std::string stability_csv(const std::vector<LogStability>& files) {
+  std::string text = "file,format,quantity,tau_s,value,terms\n";
+  for (const LogStability& file : files) {
+    const std::string head = csv_cell(file.file) + "," + file.format + ",";
+    const auto add = [&](const char* quantity, double value) {
+      text += fmt::format("{}{},,{},\n", head, quantity, csv_cell(value));
+    };
+    const Stability& stability = file.stability;
+    add("first_s", file.first_s);
+    add("interval_s", stability.interval_s);
+    add("points", static_cast<double>(stability.points));
+    add("left_out", static_cast<double>(file.left_out));
+    add("gaps", static_cast<double>(gaps_of(file)));
+    add("longest_gap_s", file.longest_gap_s);
+    if (file.frequency_offset) add("frequency_offset_ppb", 1e9 * *file.frequency_offset);
+    for (const Size& size : kSizes) add(size.name, stability.time_error.*size.value);
+    for (const Curve& curve : kCurves) {
+      for (const StabilityPoint& point : stability.*curve.points) {
+        text += fmt::format("{}{},{},{},{}\n", head, curve.name, csv_cell(point.tau_s),
+                            csv_cell(point.value), point.terms);
+      }
+    }
+    add("steps", static_cast<double>(stability.steps.size()));
+  }
+  return text;
+}
+
+std::string stability_json(const std::vector<LogStability>& files) {
+  Json root = {{"schema_version", 1},
+               {"version", version()},
+               {"commit", commit()},
+               {"files", Json::array()}};
+  for (const LogStability& file : files) root["files"].push_back(file_json(file));
+  return file_text(root);
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,41 @@
+// The findings of `simbench stability` as text, CSV and JSON; the JSON of stability also for other
+// results.
+//
+// JSON, schema_version 1 (what does not exist is left out of a list, or null):
+//   {"schema_version", "version", "commit",
+//    "files": [{"file", "format", "first_s", "interval_s", "points", "left_out", "gaps",
+//               "longest_gap_s", "frequency_offset_ppb",
+//               "max_te_ms", "rms_te_ms", "constant_te_ms", "dynamic_te_ms", "dynamic_te_p2p_ms",
+//               "adev", "mdev", "hdev", "tdev_ms", "mtie_ms": [{"tau_s", "value", "terms"}],
+//               "steps": [{"at_s", "step_ms"}], "notes": [...]}]}
+// frequency_offset_ppb is null unless it was removed; at_s counts from the first point, which is
+// first_s on the log's own scale. Definitions: evaluation/stability/stability.h, time_error.h and
+// log_stability.h.
+//
+// CSV: file,format,quantity,tau_s,value,terms, a line for each value; quantities are the members of
+// the JSON that are numbers, without tau_s and terms, and its lists.
+#ifndef SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_
+#define SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/stability/log_stability.h"
+#include "reports/text/block.h"
+#include "reports/text/json_node.h"
+
+namespace simbench::reports {
+
+// A section for all files, and one for each.
+Document stability_document(const std::vector<evaluation::LogStability>& files);
+std::string stability_csv(const std::vector<evaluation::LogStability>& files);
+std::string stability_json(const std::vector<evaluation::LogStability>& files);
+
+// The members "max_te_ms" to "mtie_ms" above.
+void add_stability(Json& object, const evaluation::Stability& stability);
+// A line for each tau.
+Table stability_table(const evaluation::Stability& stability);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_STABILITY_STABILITY_REPORT_H_

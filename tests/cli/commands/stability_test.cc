@@ -1,0 +1,92 @@
+// `simbench stability` through the real program.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class StabilityCommand : public ProgramTest {
+ protected:
+  // A clock that is `ppb` fast, once a second.
+  static std::string csv(int points, double ppb, const std::string& heading = "") {
+    std::string text = heading;
+    for (int i = 0; i < points; ++i) {
+      text += fmt::format("{},{:.12f}\n", i, 1e-9 * ppb * i + 1e-6 * (i * 7919 % 11));
+    }
+    return text;
+  }
+
+  void expect_refused(const std::string& text, const std::string& message) const {
+    const ProgramResult result = run({"stability", file("log.txt", text)});
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_THAT(result.err, AllOf(StartsWith("error: log.txt"), HasSubstr(message)));
+  }
+};
+
+TEST_F(StabilityCommand, PrintsATableOfEveryFile) {
+  file("a.csv", csv(100, 5));
+  file("b.csv", csv(50, 0));
+  const ProgramResult result = run({"stability", "a.csv", "b.csv"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(result.out, AllOf(StartsWith("stability of 2 measured clocks"), HasSubstr("MTIE"),
+                                HasSubstr("\nb.csv\n")));
+}
+
+TEST_F(StabilityCommand, JsonIsAllThatIsOnStandardOutput) {
+  file("a.csv", csv(100, 5000, "t,error_s\n") + "200,0\n201");
+  const ProgramResult result =
+      run({"stability", "a.csv", "--remove-frequency", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("note: a.csv:103: the last line has no line end"),
+                                HasSubstr("note: a.csv: 1 gap, the longest of 101 s")));
+  const Json root = Json::parse(result.out);
+  EXPECT_EQ(root["files"][0]["points"], 101);
+  EXPECT_TRUE(root["files"][0]["frequency_offset_ppb"].is_number());
+}
+
+TEST_F(StabilityCommand, TakesUnitSeriesAndInterval) {
+  file("a.csv", "t,a,b\n0,1,2\n1,1,3\n2,1,2\n3,1,3\n4,1,2\n");
+  const ProgramResult result =
+      run({"stability", "a.csv", "--series", "b", "--unit", "us", "--interval-s", "2", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out)["files"][0];
+  EXPECT_EQ(found["interval_s"], 2);
+  EXPECT_EQ(found["left_out"], 2);
+  EXPECT_DOUBLE_EQ(found["max_te_ms"].get<double>(), 2e-3);
+  EXPECT_THAT(run({"stability", "a.csv", "--series", "b", "--format", "csv"}).out,
+              StartsWith("file,format,quantity,tau_s,value,terms\n"));
+}
+
+TEST_F(StabilityCommand, BadInputIsNamed) {
+  expect_refused("", "log.txt:1: the file is empty");
+  expect_refused("0,1\n", "log.txt: found a single time error, allowed: two or more");
+  expect_refused("0,1\n1,nan\n", "log.txt:2: time error: found 'nan', allowed: a number up to");
+  expect_refused("0,1\n2,1\n1,1\n", "log.txt:3: found a time 1 s before");
+  expect_refused("GET / HTTP/1.1\n", "log.txt:1: found 'GET / HTTP/1.1', allowed: CSV");
+  expect_refused(std::string("\0\1\2\n", 4), "log.txt:1: found '\\x00\\x01\\x02'");
+  const ProgramResult none = run({"stability", "absent.csv"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("absent.csv: cannot be read"));
+  const ProgramResult unit = run({"stability", file("a.csv", csv(9, 0)), "--unit", "h"});
+  EXPECT_EQ(unit.status, 2);
+  EXPECT_THAT(unit.err, HasSubstr("--unit: found 'h', allowed: "));
+  const ProgramResult interval = run({"stability", "a.csv", "--interval-s", "0"});
+  EXPECT_EQ(interval.status, 2);
+  EXPECT_THAT(interval.err, HasSubstr("--interval-s: found '0', allowed: a number from"));
+}
+
+}  // namespace
+}  // namespace simbench

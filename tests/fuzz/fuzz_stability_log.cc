@@ -1,0 +1,38 @@
+// The reader of clock logs and what is calculated from them: any bytes are either refused with an
+// InputError or have finite results.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "evaluation/stability/log_stability.h"
+#include "scenarios/loader.h"
+
+namespace {
+
+using simbench::evaluation::Stability;
+
+void expect_finite(const Stability& stability) {
+  if (!std::isfinite(stability.time_error.rms_te_ms)) std::abort();
+  for (const auto* curve : {&stability.adev, &stability.mdev, &stability.hdev, &stability.tdev_ms,
+                            &stability.mtie_ms}) {
+    for (const auto& point : *curve) {
+      if (!std::isfinite(point.value) || point.terms < 1) std::abort();
+    }
+  }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const auto log = simbench::evaluation::parse_clock_log(text, "fuzz.log");
+    const auto found = simbench::evaluation::stability_of_log(log, {.remove_frequency = true});
+    expect_finite(found.stability);
+  } catch (const simbench::scenarios::InputError&) {
+  }
+  return 0;
+}
