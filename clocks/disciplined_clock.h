@@ -174,6 +174,9 @@ class DisciplinedClock {
   void set(Instant at, HostTime value);
   // The same, at rate 0.
   void restart(Instant at, HostTime value);
+  // Adds `offset` at once and leaves an unfinished slew as it is, as the kernel takes a leap
+  // second.
+  void leap(Instant at, Nanoseconds offset);
   // Rate against the oscillator, replacing the one before. |ppb| < 5e8.
   void adjust_frequency(Instant at, double ppb);
   // Adds `offset` gradually by a rate of +-max_rate_ppb, which is > 0 and < 5e8. An offset of 0
@@ -307,6 +310,13 @@ void DisciplinedClock<O>::restart(Instant at, HostTime value) {
   Setting next = next_setting(at);
   next.base = limited(value);
   next.base_part_ns = next.frequency = next.slew_rate = next.slew_left_ns = 0;
+  add(next);
+}
+
+template <Oscillator O>
+void DisciplinedClock<O>::leap(Instant at, Nanoseconds offset) {
+  Setting next = next_setting(at);
+  next.base = limited(next.base + limited(offset));
   add(next);
 }
 

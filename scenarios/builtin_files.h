@@ -1,5 +1,5 @@
-// The files of scenarios/*.json, scenarios/cameras/*.json and scenarios/studies/*.json, built into
-// the program by embed.cmake.
+// The files of scenarios/*.json and of its folders cameras, oscillators and studies, built into the
+// program by embed.cmake.
 #ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 #define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 
@@ -24,6 +24,12 @@ const std::vector<BuiltinFile>& camera_files();
 
 // scenarios/cameras/schema.json.
 std::string_view camera_schema_text();
+
+// The classes of oscillators in alphabetical order; their schema is not among them.
+const std::vector<BuiltinFile>& oscillator_files();
+
+// scenarios/oscillators/schema.json.
+std::string_view oscillator_schema_text();
 
 // The studies in alphabetical order; their schema is not among them.
 const std::vector<BuiltinFile>& study_files();

@@ -228,6 +228,14 @@ void check_below(const Scenario& scenario, const std::string& pointer, std::int6
       fmt::format("found {}, allowed 0 to {} ({} is {})", found, count - 1, count_pointer, count));
 }
 
+// A clock must run forward while it takes a second.
+void check_smear(const Scenario& scenario, const std::string& pointer, double smear_ms) {
+  constexpr double kShortestSmearMs = 10'000;
+  if (smear_ms == 0 || smear_ms >= kShortestSmearMs) return;
+  fail_at(scenario, pointer,
+          fmt::format("found {}, allowed 0 (a step) or at least {}", smear_ms, kShortestSmearMs));
+}
+
 void check_faults(const Scenario& scenario) {
   const auto stated = nlohmann::json::parse(scenario.resolved_json).at("faults");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
@@ -240,9 +248,11 @@ void check_faults(const Scenario& scenario) {
           if constexpr (requires { fault.camera; }) {
             check_below(scenario, pointer + "/camera", fault.camera, "/cameras/count",
                         scenario.cameras.count);
-          } else {
+          } else if constexpr (requires { fault.host; }) {
             check_below(scenario, pointer + "/host", fault.host, "/hosts/count",
                         scenario.hosts.count);
+          } else {
+            check_smear(scenario, pointer + "/smear_ms", fault.smear_ms);
           }
         },
         scenario.faults[i]);

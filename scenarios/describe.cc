@@ -20,10 +20,11 @@ using nlohmann::ordered_json;
 
 // Units stand last in names; an ending comes before the shorter ones that it ends in.
 std::string unit_of(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kUnits = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 32> kUnits = {{
       {"_rad_per_s", "rad/s"},
       {"_m_per_s", "m/s"},
       {"_ppb_per_sqrt_s", "ppb/sqrt(s)"},
+      {"_ppb_per_k", "ppb/K"},
       {"_mbit_per_s", "Mbit/s"},
       {"_mb_per_s", "MB/s"},
       {"_ppm_per_hour", "ppm/h"},
@@ -34,6 +35,8 @@ std::string unit_of(std::string_view name) {
       {"_us", "us"},
       {"_ns", "ns"},
       {"_s", "s"},
+      {"_k", "K"},
+      {"_h", "h"},
       {"_hours", "h"},
       {"hours_ago", "h"},
       {"minutes_since_baseline", "min"},
@@ -110,6 +113,10 @@ class Walker {
     }
     const std::string profile = profile_source(cameras_, pointer);
     if (!profile.empty()) line.source = profile;
+    if (!places_.nearest(pointer).profile_source.empty()) {
+      line.source = places_.nearest(pointer).profile_source;
+      return lines_.push_back(std::move(line));
+    }
     // The distribution's source does not hold for the user's values.
     const Place& place = places_.nearest(pointer);
     if (!place.is_builtin) {

@@ -51,8 +51,9 @@ bool is_utf8(const std::string& text);
 
 // The source of a value: a file and line, or a --set.
 struct Place {
-  std::string label{};        // "FILE:LINE" or "--set /pointer=value"
-  std::string set_pointer{};  // of a --set: the pointer it names
+  std::string label{};           // "FILE:LINE" or "--set /pointer=value"
+  std::string set_pointer{};     // of a --set: the pointer it names
+  std::string profile_source{};  // of a value that an oscillator's class gives: the profile's
   bool is_set = false;
   bool is_builtin = false;  // a file of the distribution
   std::size_t level = 0;    // later sources have higher levels

@@ -50,6 +50,23 @@ void for_each_member(Kind& fault, Visit visit) {
   if constexpr (requires { fault.at_ms; }) visit("at_ms", fault.at_ms);
   if constexpr (requires { fault.duration_ms; }) visit("duration_ms", fault.duration_ms);
   if constexpr (requires { fault.step_ms; }) visit("step_ms", fault.step_ms);
+  if constexpr (requires { fault.smear_ms; }) visit("smear_ms", fault.smear_ms);
+  if constexpr (requires { fault.inserted; }) visit("inserted", fault.inserted);
+}
+
+// The same for an oscillator, whose class has a key that C++ keeps for itself.
+template <class AnyOscillator, class Visit>
+void for_each_member_of_oscillator(AnyOscillator& oscillator, Visit visit) {
+  visit("class", oscillator.class_name);
+  visit("skew_sigma_ppm", oscillator.skew_sigma_ppm);
+  visit("white_frequency_ppb", oscillator.white_frequency_ppb);
+  visit("random_walk_ppb_per_sqrt_s", oscillator.random_walk_ppb_per_sqrt_s);
+  visit("wander_step_ms", oscillator.wander_step_ms);
+  visit("flicker_floor_ppb", oscillator.flicker_floor_ppb);
+  visit("ramp_ppm_per_hour", oscillator.ramp_ppm_per_hour);
+  visit("self_heating_ppm", oscillator.self_heating_ppm);
+  visit("self_heating_time_constant_s", oscillator.self_heating_time_constant_s);
+  visit("temperature_coefficient_ppb_per_k", oscillator.temperature_coefficient_ppb_per_k);
 }
 
 }  // namespace simbench::scenarios
@@ -83,6 +100,21 @@ struct nlohmann::adl_serializer<simbench::scenarios::Fault> {
   }
 };
 
+template <>
+struct nlohmann::adl_serializer<simbench::scenarios::Oscillator> {
+  static void to_json(json& out, const simbench::scenarios::Oscillator& oscillator) {
+    simbench::scenarios::for_each_member_of_oscillator(
+        oscillator, [&out](const char* name, const auto& member) { out[name] = member; });
+  }
+  static void from_json(const json& in, simbench::scenarios::Oscillator& oscillator) {
+    simbench::scenarios::for_each_member_of_oscillator(oscillator,
+                                                       [&in](const char* name, auto& member) {
+                                                         if (in.contains(name))
+                                                           in.at(name).get_to(member);
+                                                       });
+  }
+};
+
 // What a scenario does without has null, or no member.
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
@@ -103,10 +135,6 @@ namespace simbench::scenarios {
 // Members "with default" may be missing where the schema lets them; it requires all else.
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timeline, wait_before_capture_ms, warm_up_ms, frames)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Oscillator, skew_sigma_ppm, white_frequency_ppb,
-                                   random_walk_ppb_per_sqrt_s, wander_step_ms, flicker_floor_ppb,
-                                   ramp_ppm_per_hour, self_heating_ppm,
-                                   self_heating_time_constant_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LastSet, hours_ago, skew_sigma_ppm, minutes_since_baseline)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HostClock, oscillator, initial_offset_sigma_ms,
                                                 skew_of_host_ppm, initial_offset_of_host_ms,
@@ -119,11 +147,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Nic, hardware_stamps, skew_sigma_ppm, stamp_r
                                    stamp_jitter_sigma_ns, cross_stamp_cost_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PulseLines, pps, gnss, trigger, pps_jitter_sigma_us,
                                    interrupt_latency_us, interrupt_latency_exponential_us)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Temperature, day_amplitude_k, day_period_h, load_amplitude_k,
+                                   load_period_s, load_time_constant_s, fan_amplitude_k,
+                                   fan_period_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftFile, age_h, error_ppb)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Hosts, count, master_is_exact, clock, send_cost_ms,
                                                 send_cost_exponential_ms,
                                                 send_cost_session_exponential_ms,
                                                 receive_wake_up_ms, load_log_sigma, nic,
-                                                pulse_lines, load_burst)
+                                                pulse_lines, load_burst, temperature, drift_file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Link, host, latency_fixed_ms,
                                                 latency_exponential_ms, asymmetry_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(

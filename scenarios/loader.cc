@@ -16,6 +16,7 @@
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
+#include "scenarios/oscillator_class.h"
 #include "scenarios/schema.h"
 
 namespace simbench::scenarios {
@@ -345,7 +346,8 @@ void drop_outlived_results(Resolved& resolved) {
 void derive(Resolved& resolved);
 
 // Validates every file by itself, merges it over its base (RFC 7386: objects are merged, anything
-// else is replaced, null removes), applies the overrides in their order and validates the whole.
+// else is replaced, null removes), applies the overrides in their order, then the classes of
+// oscillators, and validates the whole.
 // Drops inherited published results whose pipelines or worlds are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
   Resolved resolved;
@@ -354,13 +356,17 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
     layer.root.erase("$schema");
     merge("", layer.root, layer.places, resolved.document, *resolved.places);
     const Place& file = layer.places.nearest("");
+    json document = resolved.document;
+    Places places = *resolved.places;
+    apply_oscillator_classes(document, places);
     resolved.stages.push_back(
-        {.level = file.level, .is_builtin = file.is_builtin, .document = resolved.document});
+        {.level = file.level, .is_builtin = file.is_builtin, .document = std::move(document)});
   }
   std::size_t level = resolved.places->latest_level("");
   for (const Override& setting : overrides) {
     apply_override(setting, ++level, resolved.document, *resolved.places);
   }
+  apply_oscillator_classes(resolved.document, *resolved.places);
   validate(resolved.document, Completeness::kResolved, *resolved.places);
   for (Stage& stage : resolved.stages) {
     const bool is_all = &stage == &resolved.stages.back() && overrides.empty();

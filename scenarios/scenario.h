@@ -39,9 +39,10 @@ struct Timeline {
 };
 
 // A free-running oscillator. Its frequency error is skew + white noise + flicker + random walk +
-// ramp + self-heating.
+// ramp + self-heating + temperature.
 struct Oscillator {
-  double skew_sigma_ppm = 0;              // one draw per oscillator and seed
+  std::string class_name{};   // "class": the profile it has (scenarios/oscillator_class.h; else "")
+  double skew_sigma_ppm = 0;  // one draw per oscillator and seed
   double white_frequency_ppb = 0;         // Allan deviation of the white part at tau = 1 s
   double random_walk_ppb_per_sqrt_s = 0;  // random walk: Allan deviation = this * sqrt(tau / 3)
   double wander_step_ms = 0;              // fixed grid on which the noise is sampled
@@ -49,6 +50,25 @@ struct Oscillator {
   double ramp_ppm_per_hour = 0;           // from true zero
   double self_heating_ppm = 0;            // approached exponentially after switching on
   double self_heating_time_constant_s = 0;
+  double temperature_coefficient_ppb_per_k = 0;
+};
+
+// The temperature of each host about its mean: a sine, a square wave behind a first-order lag and a
+// triangle, each with a start phase of its own.
+struct Temperature {
+  double day_amplitude_k = 0;
+  double day_period_h = 0;
+  double load_amplitude_k = 0;
+  double load_period_s = 0;
+  double load_time_constant_s = 0;
+  double fan_amplitude_k = 0;
+  double fan_period_s = 0;
+};
+
+// The frequency that a host's clock service has kept from its last run.
+struct DriftFile {
+  double age_h = 0;      // since that run ended
+  double error_ppb = 0;  // standard deviation, when it was written
 };
 
 // A system clock that was set long ago and has run free since (host_sync "ntp_last_set").
@@ -113,6 +133,8 @@ struct Hosts {
   Nic nic;
   PulseLines pulse_lines;
   Burst load_burst;  // frames are delivered and messages noticed later
+  std::optional<Temperature> temperature{};
+  std::optional<DriftFile> drift_file{};
 };
 
 // The link of a host with the master. What it does not state is the network's.
@@ -292,7 +314,15 @@ struct LinkStops {
   double at_ms = 0;
   double duration_ms = 0;
 };
-using Fault = std::variant<CameraVanishes, LateFirstFrame, ClockStep, HostStops, LinkStops>;
+// Every host's clock takes it when it reads the instant itself.
+struct LeapSecond {
+  static constexpr std::string_view kKind = "leap_second";
+  double at_ms = 0;
+  double smear_ms = 0;    // spread evenly over this (0: a step)
+  bool inserted = false;  // the clock goes back by a second; else it skips one
+};
+using Fault =
+    std::variant<CameraVanishes, LateFirstFrame, ClockStep, HostStops, LinkStops, LeapSecond>;
 
 // One choice for each stage, by the names under which algorithms are registered.
 struct Pipeline {

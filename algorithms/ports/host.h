@@ -153,6 +153,12 @@ class FrameFeed {
   virtual Task<std::optional<FrameArrival>> next(SteadyTime deadline) = 0;
 };
 
+// What a drift file says: the rate correction in use when it was written, and its likely error.
+struct StoredFrequency {
+  double ppb = 0;
+  double error_ppb = 0;
+};
+
 class Host {
  public:
   virtual ~Host() = default;
@@ -164,6 +170,9 @@ class Host {
   virtual HardwareClock* hardware_clock() { return nullptr; }
   virtual PulseInput* pulse_input(PulseLine /*line*/) { return nullptr; }
   virtual FrameFeed* frame_feed() { return nullptr; }
+  // What the clock service's last run on this host left behind; nothing on its first run, and on
+  // real hosts, whose clock services begin anew with each capture.
+  virtual std::optional<StoredFrequency> stored_frequency() { return std::nullopt; }
   // The channel to `peer`; both ends open it. Each call returns the same channel.
   virtual MessageChannel& open_channel(PeerId peer, Transport transport) = 0;
   virtual Task<void> sleep_for(Nanoseconds interval) = 0;

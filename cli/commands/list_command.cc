@@ -12,6 +12,7 @@
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
+#include "scenarios/oscillator_class.h"
 #include "scenarios/study.h"
 
 namespace simbench::cli {
@@ -25,6 +26,7 @@ Examples:
   simbench list                                       everything by name
   simbench list algorithms                            with parameters and sources
   simbench list cameras                               what each camera model can do
+  simbench list oscillators                           classes of oscillators and their sources
   simbench list scenarios --format names              for scripts: one name a line
   simbench list pipelines --scenario 18cam_6host_45fps)";
 
@@ -90,6 +92,9 @@ std::string bare_names(const ListOptions& options) {
   }
   if (options.what == "cameras") {
     for (const auto& camera : scenarios::camera_profiles()) names.push_back(camera.model);
+  }
+  if (options.what == "oscillators") {
+    for (const auto& each : scenarios::oscillator_classes()) names.push_back(each.class_name);
   }
   if (options.what == "studies") {
     for (const scenarios::Study& study : scenarios::studies()) names.push_back(study.name);
@@ -195,12 +200,26 @@ std::string camera_list_text() {
   return text;
 }
 
+// The classes of oscillators, with their values and sources.
+std::string oscillator_list_text() {
+  std::string text;
+  for (const scenarios::OscillatorClass& each : scenarios::oscillator_classes()) {
+    text += fmt::format("{}{}: {}\n", text.empty() ? "" : "\n", each.class_name, each.name);
+    for (const scenarios::OscillatorValue& value : each.values) {
+      text += reports::wrapped(fmt::format("{} = {} [{}]", value.member, value.value, value.source),
+                               kListIndent);
+    }
+  }
+  return text;
+}
+
 std::string listing(const ListOptions& options) {
   if (options.format == "names") return bare_names(options);
   if (options.what == "scenarios") return scenarios_text();
   if (options.what == "cameras") {
     return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
   }
+  if (options.what == "oscillators") return oscillator_list_text();
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "studies") return study_list();
   if (options.what == "algorithms") {
@@ -225,11 +244,12 @@ std::string study_list() {
 
 void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  Command command(line, "list", "List scenarios, algorithms, pipelines, cameras or studies");
+  Command command(line, "list",
+                  "List scenarios, algorithms, pipelines, cameras, oscillators or studies");
   command.word("what", "WHAT", options->what,
-               {"scenarios", "pipelines", "algorithms", "cameras", "studies"},
-               "scenarios, pipelines, algorithms (with parameters and sources), cameras or "
-               "studies.\nDefault: scenarios and algorithms by name");
+               {"scenarios", "pipelines", "algorithms", "cameras", "oscillators", "studies"},
+               "scenarios, pipelines, algorithms (with parameters and sources), cameras, "
+               "oscillators or studies.\nDefault: scenarios and algorithms by name");
   command.text("--scenario", "SCENARIO", options->scenario,
                "The scenario whose pipelines to list. Default: " + options->scenario);
   command.format(options->format, {"text", "names", "json"});

@@ -102,6 +102,26 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
   is_steady_ = walk_.step_ns() == 0 && !flicker_ && ramp_per_s_ == 0 && heating_ == 0;
 }
 
+void OscillatorModel::set_temperature(const TemperatureCourse& course,
+                                      double coefficient_ppb_per_k) {
+  temperature_ = std::make_unique<const TemperatureCourse>(course);
+  coefficient_ppb_per_k_ = coefficient_ppb_per_k;
+  is_steady_ = false;
+}
+
+double OscillatorModel::mean_frequency(TrueTime from, TrueTime to) const {
+  return (deviation_ns(to) - deviation_ns(from)) / static_cast<double>((to - from).count());
+}
+
+double OscillatorModel::mean_frequency_by_temperature(TrueTime from, TrueTime to) const {
+  return (temperature_ns(to) - temperature_ns(from)) / static_cast<double>((to - from).count());
+}
+
+// 1 ppb for 1 s is 1 ns.
+double OscillatorModel::temperature_ns(TrueTime t) const {
+  return temperature_ ? coefficient_ppb_per_k_ * temperature_->integral_ks(t) : 0;
+}
+
 double OscillatorModel::unsteady_ns(TrueTime t) const {
   const std::int64_t since_zero_ns = t.time_since_epoch().count();
   double ns = 0;
@@ -120,7 +140,7 @@ double OscillatorModel::unsteady_ns(TrueTime t) const {
     ns +=
         heating_ * (s + heating_time_constant_s_ * std::expm1(-s / heating_time_constant_s_)) * 1e9;
   }
-  return ns;
+  return ns + temperature_ns(t);
 }
 
 double OscillatorModel::ramp_end_s() const {

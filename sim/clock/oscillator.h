@@ -2,7 +2,7 @@
 //
 // An oscillator counts true time with a frequency error
 //
-//   y(t) = skew + white noise + flicker + random walk + ramp + self-heating
+//   y(t) = skew + white noise + flicker + random walk + ramp + self-heating + temperature
 //
 // A clock built on it needs the phase, the integral of y:
 //
@@ -20,7 +20,8 @@
 // got there can be asked.
 //
 // The ramp R begins at true zero: R t^2 / 2. Self-heating of H with time constant T begins when the
-// device is switched on, s seconds before t: y = H (1 - exp(-s / T)).
+// device is switched on, s seconds before t: y = H (1 - exp(-s / T)). The temperature's part is its
+// coefficient times the kelvin above the mean (sim/clock/temperature.h).
 //
 // Units: nanoseconds; skew as a fraction. The phase is exact to well below 1 ns over days: a rate
 // of 1e-9 survives. Complexity: O(1) without noise; otherwise a look-up, after each step of the
@@ -43,6 +44,7 @@
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
 #include "sim/clock/grid_walk.h"
+#include "sim/clock/temperature.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
@@ -101,6 +103,13 @@ class OscillatorModel {
 
   // A measured skew in place of the drawn one.
   void set_skew(double skew) { skew_ = skew; }
+  // From now on the frequency follows that temperature.
+  void set_temperature(const TemperatureCourse& course, double coefficient_ppb_per_k);
+
+  // The mean frequency error between two instants, as a fraction: all of it, and the temperature's
+  // part.
+  double mean_frequency(TrueTime from, TrueTime to) const;
+  double mean_frequency_by_temperature(TrueTime from, TrueTime to) const;
 
   // Local minus true time elapsed since true zero.
   double deviation_ns(TrueTime t) const {
@@ -115,6 +124,7 @@ class OscillatorModel {
   double unsteady_ns(TrueTime t) const;
   double ramp_end_s() const;
   double ramp_ns(double since_zero_s) const;
+  double temperature_ns(TrueTime t) const;
   // White noise and random walk over one step of their grid, for GridWalk.
   double step(double& frequency_ppb, std::int64_t index, double sign) const;
 
@@ -133,6 +143,8 @@ class OscillatorModel {
   double heating_ = 0;
   double heating_time_constant_s_ = 0;
   TrueTime switched_on_{};
+  std::unique_ptr<const TemperatureCourse> temperature_;
+  double coefficient_ppb_per_k_ = 0;
 };
 
 }  // namespace simbench::sim

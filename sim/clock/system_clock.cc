@@ -31,11 +31,23 @@ void SystemClock::set(TrueTime at, HostTime value) {
 }
 
 void SystemClock::adjust_frequency(TrueTime at, double ppb) {
-  if (!is_follower()) own_.adjust_frequency(at, ppb);
+  if (is_follower()) return;
+  own_.adjust_frequency(at, ppb + smear_ppb_);
+  frequency_ppb_ = ppb;
 }
 
 void SystemClock::slew(TrueTime at, Nanoseconds offset, double max_rate_ppb) {
   if (!is_follower()) own_.slew(at, offset, max_rate_ppb);
+}
+
+void SystemClock::leap(TrueTime at, Nanoseconds offset) {
+  if (!is_follower()) own_.leap(at, offset);
+}
+
+void SystemClock::smear(TrueTime at, double ppb) {
+  if (is_follower()) return;
+  smear_ppb_ = ppb;
+  own_.adjust_frequency(at, frequency_ppb_ + smear_ppb_);
 }
 
 ClockAdjustment SystemClock::present(TrueTime now) const {

@@ -83,6 +83,11 @@ class SystemClock {
   void adjust_frequency(TrueTime at, double ppb);
   void slew(TrueTime at, Nanoseconds offset, double max_rate_ppb);
 
+  // A leap second: adds `offset` at once, whatever else is under way.
+  void leap(TrueTime at, Nanoseconds offset);
+  // A rate on top of what programs set; 0 ends it.
+  void smear(TrueTime at, double ppb);
+
   // The planned end of a slew, if there is one that was not yet reported.
   std::optional<TrueTime> settles_at() const { return own_.settles_at(); }
   // Reports the end of a slew that was reached at or before `now`.
@@ -105,6 +110,8 @@ class SystemClock {
   Clock own_;
   const Clock* clock_ = &own_;  // the master's, if this one follows it
   bool is_adjusted_ = false;
+  double frequency_ppb_ = 0;  // as set by programs
+  double smear_ppb_ = 0;
   Observer observer_;
   std::vector<SystemClock*> followers_;
 };

@@ -1,9 +1,13 @@
 #include "sim/host/host_group.h"
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "algorithms/ports/assert.h"
+#include "sim/host/leap_second.h"
 
 namespace simbench::sim {
 namespace {
@@ -22,6 +26,12 @@ OscillatorModel host_oscillator(const scenarios::Hosts& hosts, std::uint64_t run
   OscillatorModel oscillator(hosts.clock.oscillator, run_seed, host_component(host, "oscillator"));
   const std::vector<double>& skews_ppm = hosts.clock.skew_of_host_ppm;
   if (!skews_ppm.empty()) oscillator.set_skew(skews_ppm[host] * 1e-6);
+  const double coefficient_ppb_per_k = hosts.clock.oscillator.temperature_coefficient_ppb_per_k;
+  if (hosts.temperature && coefficient_ppb_per_k != 0) {
+    oscillator.set_temperature(
+        TemperatureCourse(*hosts.temperature, run_seed, host_component(host, "temperature")),
+        coefficient_ppb_per_k);
+  }
   return oscillator;
 }
 
@@ -44,12 +54,15 @@ double offset_ms(const scenarios::HostClock& clock, std::uint64_t run_seed,
 HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed,
                      std::string_view load_key, InitialClocks initial_clocks,
                      VirtualContext& context, RecordingSink& sink)
-    : engine_(context.engine()),
+    : context_(context),
+      engine_(context.engine()),
+      faults_(scenario.faults),
       sink_(sink),
       load_(run_seed, load_key, scenario.hosts, scenario.network),
       outages_(scenario.faults),
       network_(engine_, scenario.network, run_seed, static_cast<std::size_t>(scenario.hosts.count),
-               load_, outages_) {
+               load_, outages_),
+      drift_files_(scenario.hosts, run_seed, clocks_) {
   SIMBENCH_ASSERT(scenario.hosts.count >= 1, "a rig has a master");
   const HostWorld world{.context = context,
                         .hosts = scenario.hosts,
@@ -58,6 +71,7 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .load = load_,
                         .outages = outages_,
                         .trigger_line = trigger_line_,
+                        .drift_files = drift_files_,
                         .sink = sink,
                         .run_seed = run_seed};
   const std::vector<std::size_t> cameras = scenario.cameras_by_host();
@@ -87,6 +101,20 @@ std::vector<SystemClock*> HostGroup::clocks() {
   std::vector<SystemClock*> all;
   for (SystemClock& clock : clocks_) all.push_back(&clock);
   return all;
+}
+
+void HostGroup::begin_faults() {
+  outages_.start(engine_.now());
+  for (const scenarios::Fault& fault : faults_) {
+    const auto* leap = std::get_if<scenarios::LeapSecond>(&fault);
+    if (leap == nullptr) continue;
+    for (std::size_t host = 0; host < hosts_.size(); ++host) {
+      boost::asio::co_spawn(context_,
+                            take_leap_second(*leap, HostTime(engine_.now().time_since_epoch()),
+                                             hosts_[host], clocks_[host]),
+                            boost::asio::detached);
+    }
+  }
 }
 
 void HostGroup::on_capture_start(const TriggerTree& trigger, std::int64_t last) {

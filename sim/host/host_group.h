@@ -36,6 +36,7 @@
 #include "sim/clock/system_clock.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/faults/faults.h"
+#include "sim/host/drift_files.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_host.h"
 #include "sim/network/load.h"
@@ -58,8 +59,8 @@ class HostGroup {
   SystemClock& clock(std::size_t index) { return clocks_[index]; }
   std::vector<SystemClock*> clocks();
 
-  // The times of faults count from now.
-  void begin_faults() { outages_.start(engine_.now()); }
+  // The times of faults count from now; leap seconds come as the clocks read their instants.
+  void begin_faults();
   // The capture begins now, with its faults: its trigger has pulses up to slot `last`.
   void on_capture_start(const TriggerTree& trigger, std::int64_t last);
 
@@ -73,13 +74,16 @@ class HostGroup {
   void make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,
                   InitialClocks initial_clocks);
 
+  VirtualContext& context_;
   Engine& engine_;
+  const std::vector<scenarios::Fault>& faults_;
   RecordingSink& sink_;
   RunLoad load_;
   Outages outages_;
   Network network_;
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;
+  DriftFiles drift_files_;
   std::deque<SimHost> hosts_;
 };
 

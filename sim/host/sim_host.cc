@@ -73,6 +73,10 @@ FrameFeed* SimHost::frame_feed() {
   return frame_feed_.get();
 }
 
+std::optional<StoredFrequency> SimHost::stored_frequency() {
+  return world_.drift_files.read(id_, true_now());
+}
+
 MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {
   std::unique_ptr<SimChannel>& channel = channels_[{peer, transport}];
   if (channel == nullptr) channel = std::make_unique<SimChannel>(*this, peer, transport);

@@ -21,6 +21,7 @@
 //                         .load = load,
 //                         .outages = outages,
 //                         .trigger_line = trigger_line,
+//                         .drift_files = drift_files,
 //                         .sink = sink,
 //                         .run_seed = 1};
 //   SimHost host(world, 3, clock, true);
@@ -46,6 +47,7 @@
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/faults/faults.h"
+#include "sim/host/drift_files.h"
 #include "sim/host/host_clocks.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/network/load.h"
@@ -86,6 +88,7 @@ struct HostWorld {
   const RunLoad& load;
   const Outages& outages;
   const TriggerLine& trigger_line;
+  const DriftFiles& drift_files;
   RecordingSink& sink;
   std::uint64_t run_seed;
 };
@@ -104,6 +107,7 @@ class SimHost final : public Host {
   HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
   FrameFeed* frame_feed() override;
+  std::optional<StoredFrequency> stored_frequency() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
   Task<void> sleep_for(Nanoseconds interval) override;
   Task<void> sleep_until(HostTime at) override;

@@ -33,6 +33,7 @@ const std::vector<std::vector<std::string>>& commands() {
       {"list"},
       {"list", "pipelines"},
       {"list", "cameras"},
+      {"list", "oscillators"},
       {"list", "algorithms"}};
   return all_commands;
 }

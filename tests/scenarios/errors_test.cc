@@ -142,6 +142,45 @@ std::string error_of_links(const std::string& links, const std::string& others =
   return error_of("\"network\": {" + others + "\"links\": [\n" + links + "]}");
 }
 
+TEST(Checks, TemperaturesAndDriftFiles) {
+  const std::string temperature =
+      R"("day_amplitude_k": 3, "day_period_h": 24, "load_amplitude_k": 5, "load_period_s": 1200,
+         "load_time_constant_s": 180, "fan_amplitude_k": 0.5)";
+  const auto stated = [&](const std::string& more) {
+    return R"("hosts": {"temperature": {)" + temperature + more + "}}";
+  };
+  EXPECT_EQ(error_of(stated(R"(, "fan_period_s": 90)")), "");
+  EXPECT_EQ(error_of(stated("")),
+            "my.json:3: /hosts/temperature/fan_period_s: found nothing, allowed a number from "
+            "0.001 to 100000000");
+  EXPECT_EQ(error_of(stated(R"(, "fan_period_s": 0)")),
+            "my.json:4: /hosts/temperature/fan_period_s: found 0, allowed a number from 0.001 to "
+            "100000000");
+  EXPECT_EQ(error_of(R"("hosts": {"temperature": 3})"),
+            "my.json:3: /hosts/temperature: found 3, allowed an object");
+  EXPECT_EQ(error_of(R"("hosts": {"drift_file": {"age_h": -1, "error_ppb": 1}})"),
+            "my.json:3: /hosts/drift_file/age_h: found -1, allowed a number from 0 to 100000");
+  EXPECT_EQ(error_of(R"("hosts": {"drift_file": {"age_h": 1}})"),
+            "my.json:3: /hosts/drift_file/error_ppb: found nothing, allowed a number from 0 to "
+            "500000");
+}
+
+TEST(Checks, LeapSeconds) {
+  const auto fault = [](const std::string& members) {
+    return R"("faults": [{"kind": "leap_second", )" + members + "}]";
+  };
+  EXPECT_EQ(error_of(fault(R"("at_ms": 1, "smear_ms": 0, "inserted": true)")), "");
+  EXPECT_EQ(error_of(fault(R"("at_ms": 1, "smear_ms": 10000, "inserted": false)")), "");
+  EXPECT_EQ(error_of(fault(R"("at_ms": 1, "smear_ms": 9999, "inserted": false)")),
+            "my.json:3: /faults/0/smear_ms: found 9999, allowed 0 (a step) or at least 10000");
+  EXPECT_EQ(error_of(fault(R"("at_ms": 1, "smear_ms": 0)")),
+            "my.json:3: /faults/0/inserted: found nothing, \"leap_second\" needs at_ms, smear_ms, "
+            "inserted");
+  EXPECT_EQ(error_of(fault(R"("at_ms": 1, "smear_ms": 0, "inserted": true, "host": 2)")),
+            "my.json:3: /faults/0/host: found 2, \"leap_second\" uses at_ms, smear_ms, inserted "
+            "alone");
+}
+
 TEST(Checks, LinksOfSlavesWithTheMaster) {
   EXPECT_EQ(error_of_links(R"({"host": 1}, {"host": 5, "asymmetry_ms": -0.2})"), "");
   for (const std::string host : {"0", "6", "999999"}) {

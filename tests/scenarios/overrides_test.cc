@@ -125,7 +125,8 @@ TEST(Set, WrongValues) {
   EXPECT_EQ(
       error_of_set("/faults", R"([{"kind": "flood"}])"),
       "--set /faults=[{\"kind\": \"flood\"}]: /faults/0/kind: found \"flood\", allowed "
-      "\"camera_vanishes\", \"late_first_frame\", \"clock_step\", \"host_stops\", \"link_stops\"");
+      "\"camera_vanishes\", \"late_first_frame\", \"clock_step\", \"host_stops\", \"link_stops\", "
+      "\"leap_second\"");
   EXPECT_EQ(error_of_set("/faults", std::string(70, '[')),
             "--set /faults=" + std::string(70, '[') + ": nested more than 64 levels deep");
   EXPECT_LT(error_of_set("/faults", std::string(100000, 'x')).size(), 600U);

@@ -115,6 +115,10 @@ ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& sett
       outcome_(host) {}
 
 Task<void> ChronyClient::run() {
+  if (const auto stored = host_.stored_frequency()) {
+    reference_.start_with(stored->ppb * 1e-9, stored->error_ppb * 1e-9);
+    co_await host_.clock().adjust_frequency(reference_.frequency() * 1e9);
+  }
   // Clients that start together do not stay together.
   co_await host_.sleep_for(from_seconds(host_.random_uniform() * to_seconds(kBurstSpacing)));
   while (true) {

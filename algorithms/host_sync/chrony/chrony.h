@@ -6,6 +6,8 @@
 // frequency at once, the offset by a slew, never by a step. The poll adapts (ChronyPoll). Samples
 // with a delay above 3 s, and those that are not good (ChronySourceStats::is_good), are discarded.
 //
+// Where the host has a drift file, the clock starts with its frequency and its error as the skew.
+//
 // Stamps are taken while the system clock slews. Offsets are therefore kept for the clock as it
 // would read if what is left of the slew had been added at once.
 //
@@ -104,8 +106,15 @@ struct ChronyCorrection {
 class ChronyReference {
  public:
   static constexpr double kMaxFrequency = 500e-6;
+  static constexpr double kMinSkew = 1e-12;
 
   explicit ChronyReference(const ChronyReferenceSettings& settings) : settings_(settings) {}
+
+  // Begins with a known frequency, as a drift file has it; both as fractions.
+  void start_with(double frequency, double skew) {
+    frequency_ = std::clamp(frequency, -kMaxFrequency, kMaxFrequency);
+    skew_ = std::max(skew, kMinSkew);
+  }
 
   // `left_s` is what an unfinished slew has still to add.
   ChronyCorrection update(const ChronyEstimate& estimate, double now_s, double left_s);

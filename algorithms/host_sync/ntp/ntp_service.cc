@@ -20,6 +20,13 @@ constexpr double kMaxDelay = 16;
 
 std::string text(double seconds) { return std::to_string(seconds) + " s"; }
 
+// The discipline begins with the frequency of a drift file, if there is one.
+NtpDisciplineSettings started(NtpDisciplineSettings settings,
+                              const std::optional<StoredFrequency>& stored) {
+  if (stored) settings.frequency = stored->ppb * 1e-9;
+  return settings;
+}
+
 // The client on one slave. The host must outlive the client, and the client its coroutines.
 class NtpClient {
  public:
@@ -76,12 +83,14 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
       settings_(settings),
       association_(host, server, settings.stamps),
       filter_(settings.discipline.precision_s),
-      discipline_(settings.discipline),
+      discipline_(started(settings.discipline, host.stored_frequency())),
       start_(host.steady_clock().now()),
       broadcast_delay_s_(settings.broadcast_delay_s),
       outcome_(host) {}
 
 Task<void> NtpClient::run() {
+  // From a drift file, or 0.
+  if (discipline_.frequency() != 0) co_await correct_frequency();
   if (settings_.mode == NtpMode::kUnicast) {
     co_await run_unicast();
   } else {

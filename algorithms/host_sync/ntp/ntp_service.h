@@ -18,6 +18,9 @@
 // into the filter. A server whose distance exceeds 1.5 s is not used. There is one server, so no
 // selection, clustering or combining.
 //
+// Where the host has a drift file, the clock starts with its frequency, which is then not measured
+// first.
+//
 // A service: warm_up() is how long it has run when the capture starts. On a slave it ends only by
 // panic. The outcome is "synchronised" at the first update of the clock, and a failure after eight
 // polls (or broadcast intervals) without a reply or by panic.

@@ -108,6 +108,22 @@ TEST(EvaluateTest, KeepsPulsesIfAsked) {
               IsEmpty());
 }
 
+// The floor is that of links which are drawn, each by itself.
+TEST(EvaluateTest, HasNoFloorWhereAsymmetriesAreStatedOrOfPorts) {
+  const auto has_floor = [](const Scenario& scenario) {
+    return evaluate(scenario, test_source, {.seeds = 1}, nullptr).asymmetry_floor.has_value();
+  };
+  Scenario scenario = test_scenario();
+  scenario.network.asymmetry_sigma_ms = 0.01;
+  scenario.network.links = {{.host = 1, .latency_fixed_ms = 3}};
+  EXPECT_TRUE(has_floor(scenario));
+  Scenario ports = scenario;
+  ports.network.port_asymmetry_sigma_ms = 0.01;
+  EXPECT_FALSE(has_floor(ports));
+  scenario.network.links[0].asymmetry_ms = 0;
+  EXPECT_FALSE(has_floor(scenario));
+}
+
 TEST(EvaluateTest, ProgressCountsEveryJob) {
   std::vector<std::uint64_t> done;
   evaluate(test_scenario(), test_source, {.seeds = 8, .jobs = 3},

@@ -279,11 +279,11 @@ TEST(Stability, AnOffsetCostsNoDigits) {
 
 TEST(Stability, RollingSumsForgetWhatHasLeftThem) {
   // A huge error early on: the windows behind it are those of the quiet rest alone.
-  constexpr std::size_t kPoints = 4000;
+  constexpr std::size_t kSamples = 4000;
   constexpr std::size_t m = 64;
   boost::random::mt19937 random(11);
   boost::random::normal_distribution<double> normal(0, 1e-9);
-  std::vector<double> x(kPoints);
+  std::vector<double> x(kSamples);
   for (double& value : x) value = normal(random);
   const std::vector<double> quiet(x.begin() + 1, x.end());
   x[0] = 1e9;
@@ -294,7 +294,7 @@ TEST(Stability, RollingSumsForgetWhatHasLeftThem) {
   const auto terms = static_cast<double>(loud->terms);
   EXPECT_NEAR(loud->value, 1e9 / m / std::sqrt(2 * terms) / m, 1);
   // Later windows alone: a constant with one huge outlier has no other term.
-  std::vector<double> constant(kPoints, 0);
+  std::vector<double> constant(kSamples, 0);
   constant[0] = 1e9 + 0.1;
   const auto outlier = deviation_at(series_of(constant), Deviation::kMdev, m);
   EXPECT_DOUBLE_EQ(outlier->value, (1e9 + 0.1) / m / std::sqrt(2 * terms) / m);

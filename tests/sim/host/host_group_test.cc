@@ -66,6 +66,62 @@ TEST(HostGroupTest, AnOraclesSlavesHaveTheMastersClock) {
   }
 }
 
+TEST(HostGroupTest, StatedSkewsAndOffsetsAreExact) {
+  scenarios::Scenario scenario = scattered(3);
+  scenario.hosts.clock.skew_of_host_ppm = {2, -7.5, 40};
+  scenario.hosts.clock.initial_offset_of_host_ms = {0, 12.5, -300};
+  SimWorld world(scenario, 5);
+  SimWorld drawn(scattered(3), 5);
+  const double hours = 10;
+  for (std::size_t host = 0; host < 3; ++host) {
+    const double offset_ms = scenario.hosts.clock.initial_offset_of_host_ms[host];
+    const double ahead_ms = scenario.hosts.clock.skew_of_host_ppm[host] * 1e-6 * hours * 3.6e6;
+    const TrueTime then = at_ms(hours * 3.6e6);
+    EXPECT_NEAR(ms_of(world.hosts.clock(host).read(then)) - hours * 3.6e6, offset_ms + ahead_ms,
+                2e-6);
+    EXPECT_EQ(world.hosts.clock(host).steady(TrueTime{}),
+              drawn.hosts.clock(host).steady(TrueTime{}));
+  }
+}
+
+TEST(HostGroupTest, StatedSkewsLeaveTheNoiseAsDrawn) {
+  scenarios::Scenario drawn = scattered(2);
+  drawn.hosts.clock.oscillator.random_walk_ppb_per_sqrt_s = 3;
+  drawn.hosts.clock.oscillator.wander_step_ms = 100;
+  scenarios::Scenario stated = drawn;
+  stated.hosts.clock.skew_of_host_ppm = {5, -5};
+  SimWorld with_draws(drawn, 5);
+  SimWorld with_skews(stated, 5);
+  for (std::size_t host = 0; host < 2; ++host) {
+    const OscillatorModel& a = with_draws.hosts.clock(host).oscillator();
+    const OscillatorModel& b = with_skews.hosts.clock(host).oscillator();
+    const TrueTime then = at_ms(1e6);
+    EXPECT_NEAR(a.deviation_ns(then) - a.skew() * 1e12, b.deviation_ns(then) - b.skew() * 1e12,
+                1e-3);
+  }
+}
+
+TEST(HostGroupTest, AnExactMasterCountsTrueTime) {
+  scenarios::Scenario scenario = scattered(3);
+  scenario.hosts.clock.oscillator = {.skew_sigma_ppm = 10,
+                                     .white_frequency_ppb = 5,
+                                     .random_walk_ppb_per_sqrt_s = 5,
+                                     .wander_step_ms = 100,
+                                     .flicker_floor_ppb = 5,
+                                     .ramp_ppm_per_hour = 1,
+                                     .self_heating_ppm = 2,
+                                     .self_heating_time_constant_s = 100};
+  SimWorld noisy(scenario, 5);
+  scenario.hosts.master_is_exact = true;
+  SimWorld exact(scenario, 5);
+  for (const double ms : {0.0, 1.0, 1e4, 36e6}) {
+    EXPECT_EQ(ms_of(exact.hosts.clock(0).read(at_ms(ms))), ms);
+    for (std::size_t slave = 1; slave < 3; ++slave) {
+      EXPECT_EQ(exact.hosts.clock(slave).read(at_ms(ms)), noisy.hosts.clock(slave).read(at_ms(ms)));
+    }
+  }
+}
+
 // What the load key must not move: oscillators and offsets pair the pipelines of a seed.
 TEST(HostGroupTest, ClocksDoNotDependOnTheLoadKey) {
   scenarios::Scenario scenario = scattered(4);

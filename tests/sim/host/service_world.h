@@ -46,6 +46,7 @@ class ServiceWorld {
       if (failure) std::rethrow_exception(failure);
     });
   }
+  void begin_faults() { hosts_.begin_faults(); }
   void run_until(double at_s) { engine_.run_until(TrueTime(from_ms(at_s * 1e3))); }
   // Runs on to `end_s` and calls `look` every `step_s`.
   void watch(double end_s, double step_s, const std::function<void(double at_s)>& look) {

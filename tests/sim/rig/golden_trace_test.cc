@@ -92,6 +92,8 @@ const std::vector<Golden>& goldens() {
       {"18cam_6host_90fps_full_slave", "yoon2021_both", 9116, 0x6377f1b1d0d25795},
       {"3cam_1host_30fps", "free_running", 285, 0xde38689be5f6844d},
       {"6cam_2host_30fps", "yoon2021_both", 1356, 0x506639a0bc9baeb1},
+      {"6host_lan_day", "chrony", 23396, 0xc9781f7845a43044},
+      {"6host_star", "chrony", 3978, 0x28a82b00ca163c81},
       {"6node_relay", "yoon2021_both", 5505, 0xf91ed55a486c02a9},
       {"pulse_index_off_by_two", "yoon2021_both", 6668, 0x750fa152f1cf685e},
       {"scale_18000cam_6000host_45fps", "yoon2021_both", 77848, 0x8f4296d0b4f6785f},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -153,6 +154,36 @@ TEST(WorldObserver, MessagesAreToldWithBothEnds) {
       EXPECT_FALSE(message.lost);
     }
   }
+}
+
+// Both hosts send each other a message every 2 ms.
+Service many_messages(int count) {
+  return Service([count](Host& host) -> Task<void> {
+    MessageChannel& channel = host.open_channel(1 - host.id(), Transport::kDatagram);
+    for (int i = 0; i < count; ++i) {
+      co_await channel.send(Bytes(5));
+      co_await host.sleep_for(from_ms(2));
+    }
+  });
+}
+
+TEST(WorldObserver, MessagesShowTheAsymmetryOfTheirLink) {
+  constexpr int kMessages = 1'500;
+  constexpr double kExponentialMs = 0.05;
+  scenarios::Scenario scenario = ideal_scenario();
+  scenario.network.links = {
+      {.host = 1, .latency_exponential_ms = kExponentialMs, .asymmetry_ms = 0.06}};
+  Service service = many_messages(kMessages);
+  const KeptWorld observed = observe(scenario, &service);
+  double forward_ms = 0;
+  double backward_ms = 0;
+  for (const ObservedMessage& message : observed.messages) {
+    (message.from == 0 ? forward_ms : backward_ms) += to_ms(message.arrived - message.left);
+  }
+  ASSERT_EQ(observed.messages.size(), 2U * kMessages);
+  const double sigma_ms = kExponentialMs * std::sqrt(2.0 / kMessages);
+  EXPECT_NEAR((forward_ms - backward_ms) / kMessages, 0.06, 5 * sigma_ms);
+  EXPECT_NEAR((forward_ms + backward_ms) / kMessages / 2, 0.1 + kExponentialMs, 5 * sigma_ms);
 }
 
 TEST(WorldObserver, LostMessagesAreToldAndRetransmissionsAreNot) {
