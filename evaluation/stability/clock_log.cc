@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"

@@ -1,6 +1,8 @@
 // What ptp4l and phc2sys print, alone or behind the head of a syslog or a journal.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "evaluation/stability/log_lines.h"
 #include "recording/counted.h"
 

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <system_error>
+#include <vector>
 
 #include "recording/text_fields.h"
 #include "scenarios/loader.h"

@@ -1,12 +1,14 @@
 // The lines of each kind of clock log (evaluation/stability/clock_log.h), one at a time.
 //
+//   const std::string path = "errors.csv";
 //   const LogPlace place{path, 1};
-//   const std::unique_ptr<LogLines> lines = lines_of_format(line, place, options);
-//   if (lines) const std::optional<LogLine> point = lines->read(line, place);
+//   const std::unique_ptr<LogLines> lines = lines_of_format("0,1e-6", place, {});
+//   const std::optional<LogLine> point = lines->read("0,1e-6", place);
 #ifndef SIMBENCH_EVALUATION_STABILITY_LOG_LINES_H_
 #define SIMBENCH_EVALUATION_STABILITY_LOG_LINES_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/statistics/statistics.h"

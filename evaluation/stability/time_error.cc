@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/stability/compensated_sum.h"
