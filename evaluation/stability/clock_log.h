@@ -34,8 +34,8 @@
 // unit that the file contradicts, no point at all. Complexity: linear in the text. Memory: 16 bytes
 // a point.
 //
-// Sources: chrony.conf(5) of chrony 4.5, log directive; linuxptp 4.2, clock.c and phc2sys.c; ntpd
-// 4.2.8, monitoring options.
+// Sources: chrony.conf(5), the log directive; clock.c and phc2sys.c of linuxptp; monitoring options
+// of ntpd's documentation.
 //
 //   const ClockLog log = read_clock_log("/var/log/chrony/tracking.log");
 //   const double first_s = log.points.front().error_s;

@@ -1,5 +1,5 @@
 // Series of noise of known kind and level: slopes and levels of the deviations against theory
-// (NIST SP 1065, section 5.2 and table 4; IEEE Std 1139-2008, annex B), over many seeds.
+// (power-law noise in NIST SP 1065 and IEEE Std 1139), over many seeds.
 #include <gmock/gmock.h>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -33,7 +33,7 @@ std::vector<double> sums(std::vector<double> noise) {
 }
 
 // Power over frequency: white noise behind the filter (1 - 1/z)^(-1/2). Source: Kasdin 1995,
-// "Discrete simulation of colored noise", Proc. IEEE 83(5), section III.
+// "Discrete simulation of colored noise", Proc. IEEE 83(5).
 std::vector<double> flicker(boost::random::mt19937& random) {
   std::vector<double> response = {1};
   for (std::size_t k = 1; k < kPoints; ++k) {
