@@ -127,6 +127,14 @@ void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
   }
 }
 
+void warn_about_temperature(Lines& lines, const Scenario& scenario) {
+  if (!scenario.hosts.temperature) return;
+  if (scenario.hosts.clock.oscillator.temperature_coefficient_ppb_per_k != 0) return;
+  warn(lines, scenario, "/hosts/temperature",
+       "changes nothing: /hosts/clock/oscillator/temperature_coefficient_ppb_per_k is 0 or not "
+       "stated");
+}
+
 void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
   const std::vector<std::size_t> counts = scenario.cameras_by_host();
   const std::int64_t idle = std::count(counts.begin(), counts.end(), 0U);
@@ -210,6 +218,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
+  warn_about_temperature(lines, scenario);
   warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);
   return lines;

@@ -56,6 +56,15 @@ TYPED_TEST(DisciplinedClockTest, PerfectClockReadsItsInstantsPlusItsOffset) {
   }
 }
 
+TYPED_TEST(DisciplinedClockTest, ALeapIsAddedToAnUnfinishedSlew) {
+  auto clock = this->make(0, 250);
+  clock.slew(this->at_ms(1000), from_ms(2), 500'000);  // takes 4 s
+  clock.leap(this->at_ms(3000), from_ms(-1000));
+  EXPECT_NEAR(this->reads_ms(clock, this->at_ms(2999)), 3249 + 0.9995, 2e-6);
+  EXPECT_NEAR(this->reads_ms(clock, this->at_ms(3000)), 2250 + 1, 2e-6);
+  EXPECT_NEAR(this->reads_ms(clock, this->at_ms(9000)), 8250 + 2, 2e-6);
+}
+
 TYPED_TEST(DisciplinedClockTest, LinearClockGainsItsSkew) {
   const auto clock = this->make(10, 250);
   EXPECT_EQ(clock.read(this->at_ms(1e6)), host_ms(1e6 + 250 + 10));

@@ -57,7 +57,8 @@ Worlds::Worlds() {
        {"3cam_1host_30fps", "6cam_2host_30fps", "18cam_6host_45fps", "18cam_6host_45fps_lan",
         "9cam_3host_30fps_azure_kinect", "leaderboard_lan", "leaderboard_gathering",
         "18cam_6host_45fps_lan_hardware_clocks", "18cam_6host_45fps_wander_and_ramp",
-        "18cam_6host_45fps_clock_step_during_capture", "18cam_6host_45fps_auto_exposure"}) {
+        "18cam_6host_45fps_clock_step_during_capture", "18cam_6host_45fps_auto_exposure",
+        "6host_star", "6host_lan_day"}) {
     const scenarios::Scenario scenario = scenarios::load_scenario(name);
     World& world = worlds_.emplace_back(World{.name = name, .pipelines = {}, .parameters = {}});
     for (const auto& pipeline : scenario.pipelines) world.pipelines.push_back(pipeline.name);

@@ -162,6 +162,13 @@ TEST(Warnings, EarlyEvaluationAndIdleHosts) {
                           "--set /hosts/count=8: 2 of 8 hosts have no camera"));
 }
 
+TEST(Warnings, ATemperatureThatChangesNothing) {
+  EXPECT_THAT(
+      warnings(load_scenario("6host_lan_day",
+                             {{"/hosts/clock/oscillator/temperature_coefficient_ppb_per_k", "0"}})),
+      ElementsAre(HasSubstr("/hosts/temperature: changes nothing")));
+}
+
 TEST(Describe, ALineForEveryParameter) {
   const Scenario scenario =
       load_derived(R"("hosts": {"clock": {"tick_ms": 15.6}})", {{"/timeline/frames", "100"}});

@@ -59,6 +59,16 @@ TEST(Base, NullForgets) {
   EXPECT_EQ(scenario.algorithms.at("yoon2021").count("clock_calls"), 1U);
 }
 
+TEST(Base, NullForgetsTemperatureAndDriftFile) {
+  const Scenario day = load_scenario_text(over("6host_lan_day"), "my.json");
+  EXPECT_EQ(day.hosts.temperature->day_amplitude_k, 3);
+  EXPECT_EQ(day.hosts.drift_file->age_h, 8);
+  const Scenario still = load_scenario_text(
+      over("6host_lan_day", R"(, "hosts": {"temperature": null, "drift_file": null})"), "my.json");
+  EXPECT_FALSE(still.hosts.temperature.has_value());
+  EXPECT_FALSE(still.hosts.drift_file.has_value());
+}
+
 TEST(Base, PublishedResultsDoNotOutliveItsPipelines) {
   const Scenario scenario = load_derived(
       R"("pipelines": [{"name": "yoon2021_both", "host_sync": "yoon2021_both",

@@ -122,6 +122,31 @@ TEST(HostGroupTest, AnExactMasterCountsTrueTime) {
   }
 }
 
+TEST(HostGroupTest, FrequenciesFollowTheTemperaturesOfTheirHosts) {
+  scenarios::Scenario scenario = scattered(3);
+  scenario.hosts.master_is_exact = true;
+  scenario.hosts.clock.skew_of_host_ppm = {0, 4, -8};
+  scenario.hosts.clock.oscillator.temperature_coefficient_ppb_per_k = 480;
+  scenario.hosts.temperature = scenarios::Temperature{.day_amplitude_k = 3,
+                                                      .day_period_h = 24,
+                                                      .load_amplitude_k = 5,
+                                                      .load_period_s = 1200,
+                                                      .load_time_constant_s = 180,
+                                                      .fan_amplitude_k = 0.5,
+                                                      .fan_period_s = 90};
+  SimWorld world(scenario, 5);
+  EXPECT_EQ(ms_of(world.hosts.clock(0).read(at_ms(36e6))), 36e6);
+  for (std::size_t slave = 1; slave < 3; ++slave) {
+    const TemperatureCourse course(*scenario.hosts.temperature, 5,
+                                   "host" + std::to_string(slave) + ": temperature");
+    for (const double ms : {-1e7, 500.0, 36e6}) {
+      const double expected_ns =
+          scenario.hosts.clock.skew_of_host_ppm[slave] * ms + 480 * course.integral_ks(at_ms(ms));
+      EXPECT_NEAR(world.hosts.clock(slave).oscillator().deviation_ns(at_ms(ms)), expected_ns, 1e-3);
+    }
+  }
+}
+
 // What the load key must not move: oscillators and offsets pair the pipelines of a seed.
 TEST(HostGroupTest, ClocksDoNotDependOnTheLoadKey) {
   scenarios::Scenario scenario = scattered(4);
