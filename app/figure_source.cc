@@ -15,6 +15,7 @@
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
 #include "recording/version.h"
+#include "reports/clocks/clock_report.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/result_figures.h"
 #include "reports/figures/run_figures.h"
@@ -225,6 +226,11 @@ bool has_seed_details(const Archive& archive) {
 
 ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
                                const evaluation::Progress& progress) {
+  if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    throw scenarios::InputError(archive.path +
+                                ": found an archive of `simbench clocks`, allowed: of `simbench "
+                                "run`; `simbench report` draws the figure of this one");
+  }
   FigureOptions chosen = options;
   if (chosen.seeds.empty()) chosen.seeds = {archive.results.first_seed};
   check_seeds(archive, chosen);
@@ -360,6 +366,10 @@ ReportDetail bounded(const ReportDetail& detail, const Archive& archive, std::si
 ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
                              const evaluation::Progress& progress) {
   ReportedArchive reported{.archive = std::move(archive)};
+  if (reported.archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    reported.figures = {reports::clock_figure(reports::clock_results_of(reported.archive))};
+    return reported;
+  }
   const std::vector<Step> steps = steps_of(reported.archive, detail);
   if (reported.archive.scenario_json.empty()) {
     reported.notes = {fmt::format(
@@ -387,6 +397,7 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
 
 std::string detail_note(const Archive& archive, const ReportDetail& detail) {
   std::string note;
+  if (archive.results.kind == evaluation::ResultKind::kClockRuns) return note;
   if (detail.seeds < archive.results.seed_count) {
     note = fmt::format(
         "Tables and distributions cover all {} seeds; stamps, clocks and single pulses are shown "

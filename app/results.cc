@@ -108,7 +108,8 @@ RunArchive::RunArchive(std::vector<std::string> command) {
 }
 
 void RunArchive::open(const std::string& folder) {
-  if (!folder.empty()) folder_ = std::make_unique<reports::OutputFolder>(folder);
+  if (folder.empty()) return;
+  folder_ = std::make_unique<reports::OutputFolder>(folder, reports::clock_archive_files());
 }
 
 bool RunArchive::write(const evaluation::Results& results, const scenarios::Scenario& scenario) {

@@ -78,9 +78,10 @@ inline constexpr double kFarEndNs = 8.64e13;
 template <Oscillator O>
 typename O::Instant instant_after(const O& oscillator, typename O::Instant anchor,
                                   double anchor_deviation_ns, double local_ns) {
-  // Each pass multiplies what is wrong by the frequency error, which is far below 1e-2.
-  constexpr int kPasses = 6;
-  typename O::Instant t = anchor;
+  // Each pass multiplies what is wrong by the frequency error, which is far below 1e-2. The first
+  // guess needs no look at the anchor, which an oscillator may find far from where it is used.
+  constexpr int kPasses = 5;
+  typename O::Instant t = anchor + from_ns(local_ns);
   for (int pass = 0; pass < kPasses; ++pass) {
     const double ahead_ns = oscillator.deviation_ns(t) - anchor_deviation_ns;
     t = anchor + from_ns(local_ns - ahead_ns);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 
+#include "evaluation/clock_run/clock_curves.h"
 #include "recording/line_reader.h"
 #include "recording/version.h"
 #include "reports/results/csv.h"
@@ -189,6 +190,21 @@ Row read_clock_row(const JsonNode& node, std::size_t seeds) {
   return row;
 }
 
+evaluation::StabilityCurves read_curves(const JsonNode& row) {
+  evaluation::StabilityCurves curves;
+  for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
+    for (const JsonNode& point : row[curve.id].elements()) {
+      const double tau_s = point["tau_s"].number();
+      const double value = point["value"].number();
+      if (!(tau_s > 0)) point["tau_s"].refuse("a number above 0");
+      if (!(value >= 0)) point["value"].refuse("a number from 0");
+      (curves.*curve.points)
+          .push_back({.tau_s = tau_s, .value = value, .terms = point["terms"].count()});
+    }
+  }
+  return curves;
+}
+
 evaluation::Claim read_claim(const JsonNode& node, std::uint64_t seeds) {
   evaluation::Claim claim;
   claim.id = node["id"].text();
@@ -269,6 +285,9 @@ Archive read_archive(const std::string& path) {
   archive.version = root["version"].text();
   archive.commit = root["commit"].text();
   archive.results = read_results(root);
+  if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    for (const JsonNode& row : root["rows"].elements()) archive.curves.push_back(read_curves(row));
+  }
   if (is_folder) {
     read_manifest(read_json_file((folder / "manifest.json").string(), kAdvice), archive);
   }

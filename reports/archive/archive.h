@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/clock_run/clock_score.h"
 #include "evaluation/scoring/results.h"
 #include "reports/text/json_node.h"
 #include "reports/text/output_file.h"
@@ -64,6 +65,7 @@ struct Archive {
   std::string started{};
   std::string finished{};
   std::string scenario_json{};  // resolved; load it with scenarios::load_scenario_text
+  std::vector<evaluation::StabilityCurves> curves{};  // of clock runs, by row
   // As evaluate() returned them, without Row::seeds: the values of the row's series have the scores
   // of the seeds, in seed order.
   evaluation::Results results;

@@ -2,8 +2,8 @@
 #include <string>
 #include <utility>
 
+#include "evaluation/clock_run/clock_curves.h"
 #include "recording/version.h"
-#include "reports/clocks/clock_curves.h"
 #include "reports/clocks/clock_report.h"
 
 namespace simbench::reports {
@@ -41,7 +41,7 @@ FigureSeries curve_series(const std::string& label, int colour,
   return series;
 }
 
-void add_masks(const ClockCurve& curve, double first_tau_s, FigurePanel& panel) {
+void add_masks(const evaluation::ClockCurve& curve, double first_tau_s, FigurePanel& panel) {
   int colour = static_cast<int>(panel.series.size());
   for (const Mask& mask : masks()) {
     if (mask.curve != std::string(curve.id)) continue;
@@ -73,7 +73,7 @@ Figure clock_figure(const evaluation::ClockResults& results) {
                    .seeds = of.seed_count,
                    .version = std::string(version()),
                    .commit = std::string(commit())};
-  for (const ClockCurve& curve : clock_curves()) {
+  for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
     FigurePanel panel{.title = curve.title, .x_label = "tau, s", .y_label = curve.axis};
     panel.log_x = panel.log_y = true;

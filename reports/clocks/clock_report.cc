@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/clock_run/clock_curves.h"
 #include "recording/version.h"
-#include "reports/clocks/clock_curves.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
 #include "reports/results/results_document.h"
@@ -75,7 +75,7 @@ Table metrics_table(const ClockResults& results) {
 }
 
 // A line for each tau, a column for each pipeline.
-Table over_tau_table(const ClockResults& results, const ClockCurve& curve) {
+Table over_tau_table(const ClockResults& results, const evaluation::ClockCurve& curve) {
   std::vector<Column> columns = {{"tau s"}};
   const std::vector<evaluation::StabilityPoint>* longest = nullptr;
   for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
@@ -116,12 +116,16 @@ std::vector<std::string> legend(const ClockResults& results) {
 
 }  // namespace
 
+ClockResults clock_results_of(const Archive& archive) {
+  return {.results = archive.results, .curves = archive.curves};
+}
+
 Document clock_document(const ClockResults& results, const std::string& summary) {
   Document document{.title = results_title(results.results),
                     .head = results_head(results.results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
-  for (const ClockCurve& curve : clock_curves()) {
+  for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
     blocks.push_back({.heading = curve.title, .table = over_tau_table(results, curve)});
   }
@@ -136,7 +140,7 @@ Document clock_document(const ClockResults& results, const std::string& summary)
 
 namespace {
 
-Json points_json(const std::vector<evaluation::StabilityPoint>& points) {
+Json curve_points_json(const std::vector<evaluation::StabilityPoint>& points) {
   Json all = Json::array();
   for (const evaluation::StabilityPoint& point : points) {
     all.push_back({{"tau_s", point.tau_s}, {"value", point.value}, {"terms", point.terms}});
@@ -155,7 +159,8 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
                 {"p95", evaluation::mean_of_existing(row.clock_spread_p95_ms.values)},
                 {"max", largest(row.clock_spread_max_ms.values)},
                 {"values", row.clock_spread_ms.values}}}};
-  for (const ClockCurve& curve : clock_curves()) all[curve.id] = points_json(curves.*curve.points);
+  for (const evaluation::ClockCurve& curve : evaluation::clock_curves())
+    all[curve.id] = curve_points_json(curves.*curve.points);
   all["max_te_ms"] = largest(row.max_te_ms.values);
   all["rms_te_ms"] = rms(row.rms_te_ms.values);
   all["constant_te_ms"] = largest(row.constant_te_ms.values);
@@ -207,7 +212,7 @@ std::string clock_csv(const ClockResults& results) {
       text += fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(metric.series(row).median),
                           changes);
     }
-    for (const ClockCurve& curve : clock_curves()) {
+    for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
       for (const evaluation::StabilityPoint& point : results.curves[i].*curve.points) {
         text += fmt::format("{},{},{},{}{}\n", name, curve.id, csv_cell(point.tau_s),
                             csv_cell(point.value), changes);
@@ -232,6 +237,8 @@ void write_series_csv(const ClockResults& results, std::ostream& out) {
     }
   }
 }
+
+std::vector<std::string> clock_archive_files() { return {"curves.csv", "series.csv"}; }
 
 void write_clock_archive(OutputFolder& output, const ClockResults& results,
                          const scenarios::Scenario& scenario, const Provenance& provenance) {

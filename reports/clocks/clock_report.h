@@ -25,6 +25,7 @@
 
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/archive/archive.h"
@@ -34,6 +35,9 @@
 #include "scenarios/scenario.h"
 
 namespace simbench::reports {
+
+// What an archive holds: without the readings.
+evaluation::ClockResults clock_results_of(const Archive& archive);
 
 Document clock_document(const evaluation::ClockResults& results, const std::string& summary);
 
@@ -51,6 +55,7 @@ Figure clock_figure(const evaluation::ClockResults& results);
 
 // manifest.json, results.json, curves.csv (clock_csv) and series.csv, which read_archive() reads
 // for comparisons and gates. Publishes.
+std::vector<std::string> clock_archive_files();  // besides those of any archive
 void write_clock_archive(OutputFolder& output, const evaluation::ClockResults& results,
                          const scenarios::Scenario& scenario, const Provenance& provenance);
 

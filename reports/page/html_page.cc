@@ -108,10 +108,11 @@ Json figure_series_json(const FigureSeries& series, bool log_y, HtmlColumns& col
 }
 
 Json panel_json(const FigurePanel& panel, HtmlColumns& columns) {
-  Json json = {
-      {"title", panel.title},    {"x_label", panel.x_label},       {"y_label", panel.y_label},
-      {"log_y", panel.log_y},    {"x_is_pulse", panel.x_is_pulse}, {"categories", panel.categories},
-      {"series", Json::array()}, {"lines", Json::array()},         {"spans", Json::array()}};
+  Json json = {{"title", panel.title},           {"x_label", panel.x_label},
+               {"y_label", panel.y_label},       {"log_x", panel.log_x},
+               {"log_y", panel.log_y},           {"x_is_pulse", panel.x_is_pulse},
+               {"categories", panel.categories}, {"series", Json::array()},
+               {"lines", Json::array()},         {"spans", Json::array()}};
   for (const FigureSeries& series : panel.series) {
     json["series"].push_back(figure_series_json(series, panel.log_y, columns));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "algorithms/ports/assert.h"
+#include "reports/clocks/clock_report.h"
 #include "reports/page/html_page.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/leaderboard_report.h"
@@ -44,7 +45,7 @@ std::string commands_of(const ReportedArchive& reported, const ReportInput& inpu
   if (!archive.command.empty())
     lines += html_command("The results", simbench_line(archive.command));
   lines += html_command("This report", simbench_line(input.command));
-  if (!reported.figures.empty()) {
+  if (!reported.figures.empty() && archive.results.kind == evaluation::ResultKind::kCaptures) {
     lines +=
         html_command("One figure alone, for a paper",
                      fmt::format("simbench figure {} {} -o {}.svg", reported.figures.front().id,
@@ -53,19 +54,27 @@ std::string commands_of(const ReportedArchive& reported, const ReportInput& inpu
   return fmt::format("<dl>\n{}</dl>\n", lines);
 }
 
+// The words that a command line for these results begins with.
+std::string repeating_command(const evaluation::Results& results) {
+  if (results.kind == evaluation::ResultKind::kCaptures) return "run";
+  return fmt::format("clocks --duration-s {} --from-s {}", results.clock_period.duration_s,
+                     results.clock_period.from_s);
+}
+
 std::string scenario_details(const Archive& archive) {
   if (archive.scenario_json.empty()) {
     return "<p>A results.json alone holds neither the scenario nor the command that ran it.</p>\n";
   }
   return fmt::format(
       "<details><summary>The resolved scenario</summary>\n<p>Saved to a file, it repeats the run: "
-      "<code>simbench run --scenario FILE --seeds {} --first-seed {}</code></p>\n"
+      "<code>simbench {} --scenario FILE --seeds {} --first-seed {}</code></p>\n"
       "<pre class=\"scroll\" tabindex=\"0\">{}</pre>\n</details>\n",
-      archive.results.seed_count, archive.results.first_seed,
+      repeating_command(archive.results), archive.results.seed_count, archive.results.first_seed,
       html_escaped(Json::parse(archive.scenario_json).dump(2)));
 }
 
-// The warnings and tables of a run or a leaderboard, as `simbench run` prints them.
+// The warnings and tables of a run, a leaderboard or the clocks alone, as their commands print
+// them.
 std::vector<Block> blocks_of(const Archive& archive) {
   std::vector<Block> blocks;
   const auto append = [&blocks](const std::vector<Block>& more) {
@@ -77,7 +86,11 @@ std::vector<Block> blocks_of(const Archive& archive) {
   if (scenario_text(archive, "/evaluation/table") == to_text(scenarios::TableKind::kLeaderboard)) {
     append(board_blocks(archive.results));
   }
-  append(results_document(archive.results, "").blocks);
+  if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    append(clock_document(clock_results_of(archive), "").blocks);
+  } else {
+    append(results_document(archive.results, "").blocks);
+  }
   return blocks;
 }
 

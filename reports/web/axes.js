@@ -68,6 +68,7 @@ function xRange(panel) {
     }
     const ends = x.length ? [x[0], x[x.length - 1]] : [];
     const [low, high] = extent(ends, panel.lines.filter(({vertical}) => vertical));
+    if (panel.log_x) return [low / 1.3, high * 1.3];
     const room = (high - low) * 0.015;
     return [low - room, high + room];
   };
@@ -107,6 +108,11 @@ function tickTexts(chart, splits, axis, space, step) {
   return splits.map((value) => value == null ? '' : text(+value.toPrecision(12)));
 }
 
+// Of a logarithmic axis.
+function powerTexts(_, splits) {
+  return splits.map((value) => value == null ? '' : numberText(value));
+}
+
 function widestText(texts) {
   return Math.max(20, ...(texts ?? []).map((text) => textWidth(String(text))));
 }
@@ -132,6 +138,7 @@ function steps(values) {
 
 function xAxis(panel, data) {
   if (panel.categories.length) return categoryAxis(panel);
+  if (panel.log_x) return {...kAxisLook, label: panel.x_label, size: 26, values: powerTexts};
   return {...kAxisLook, label: panel.x_label, size: 26, values: tickTexts, ...steps(data[0])};
 }
 
@@ -141,7 +148,7 @@ function yAxis(panel, data) {
   return {
     ...kAxisLook,
     ...(lying ? {side: 2, label: panel.y_label} : {side: 3}),
-    values: panel.log_y ? (_, splits) => splits.map((v) => v == null ? '' : numberText(v)) : tickTexts,
+    values: panel.log_y ? powerTexts : tickTexts,
     space: lying ? 60 : 36,
     ...(panel.log_y ? {} : steps(data.slice(1).flat())),
     // A second answer would only start another round of the layout.

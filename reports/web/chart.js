@@ -96,7 +96,7 @@ function makeChart(host, panel, columns, marked) {
     height: chartHeight(panel, host.clientWidth),
     padding: [8, 14, 0, 0],
     scales: {
-      x: {time: false, range: xRange(panel), ...(lying ? {ori: 1, dir: -1} : {})},
+      x: {time: false, range: xRange(panel), distr: panel.log_x ? 3 : 1, ...(lying ? {ori: 1, dir: -1} : {})},
       y: {range: yRange(panel), distr: panel.log_y ? 3 : 1, ...(lying ? {ori: 0} : {})},
     },
     axes: [xAxis(panel, data), yAxis(panel, data)],
