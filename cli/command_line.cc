@@ -66,8 +66,9 @@ struct CommandGroup {
 // All commands, as the help lists them.
 const std::vector<CommandGroup>& command_groups() {
   static const std::vector<CommandGroup> groups = {
-      {"Run", {cli::add_run_command, cli::add_sweep_command, cli::add_clocks_command,
-             cli::add_reconstruct_command}},
+      {"Run",
+       {cli::add_run_command, cli::add_sweep_command, cli::add_clocks_command,
+        cli::add_reconstruct_command}},
       {"Look at results",
        {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/scoring/clock_metrics.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
 

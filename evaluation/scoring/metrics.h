@@ -3,8 +3,8 @@
 // There is a list for each kind of result: captures of cameras, and runs of the hosts' clocks
 // alone. These are the only lists. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the
 // archive reader, tables and figures go through metrics(). A new metric is a member of MetricValues
-// and an entry of kMetricTable or kClockMetricTable (all here), the line that computes it
-// (pulse_scores.cc, set_counter.cc,
+// and an entry of kMetricTable (both here) or of kClockMetricTable (clock_metrics.h), the line that
+// computes it (pulse_scores.cc, set_counter.cc,
 // ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
@@ -253,9 +253,6 @@ inline constexpr Judged kJudgedMs = {.smallest_step = 0.001,  // the last digit 
 inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
                                         .margin = {.relative = 0.01, .absolute = 0.005}};
 
-inline constexpr Judged kJudgedClocks = {.smallest_step = 1e-6,  // a nanosecond
-                                         .margin = {.relative = 0.02, .absolute = 1e-6}};
-
 // Time errors are metrics of both kinds; only clock runs, which are long, are judged by them.
 constexpr Metric time_error(const char* id, const char* title, double MetricValues<double>::*seed,
                             Series MetricValues<Series>::*row) {
@@ -281,17 +278,6 @@ inline constexpr Metric kConstantTe =
 inline constexpr Metric kDynamicTe =
     time_error("dynamic_te_ms", "dynamic time error", &MetricValues<double>::dynamic_te_ms,
                &MetricValues<Series>::dynamic_te_ms);
-constexpr Metric in_clock_table(Metric metric, int place, const char* heading, const char* legend,
-                                bool is_judged) {
-  metric.tables.clocks = place;
-  metric.tables.response = place;
-  metric.heading = heading;
-  metric.legend = legend;
-  metric.legend_continues = *legend != '\0' && place > 1;
-  if (is_judged) metric.judged = kJudgedClocks;
-  return metric;
-}
-
 inline constexpr Metric kMetricTable[] = {
     {.id = "amd_ms",
      .title = "AMD",
@@ -547,103 +533,6 @@ inline constexpr Metric kMetricTable[] = {
      .place = &RunCounts::unsynchronised_hosts,
      .csv = CsvColumns::kValue,
      .sweep = "unsynchronised_hosts"},
-};
-
-inline constexpr Metric kClockMetricTable[] = {
-    {.id = "clock_spread_ms",
-     .title = "spread of the clocks",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::clock_spread_ms,
-                          &MetricValues<Series>::clock_spread_ms},
-     .tables = {.clocks = 1, .response = 1, .response_panel = 1},
-     .heading = "spread\nmean ms",
-     .band_heading = "spread\n5-95 %",
-     .legend = "spread: largest minus smallest clock of all hosts, its mean in time;",
-     .sweep = "clock_spread_ms",
-     .judged = kJudgedClocks},
-    {.id = "clock_spread_median_ms",
-     .title = "median spread of the clocks",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::clock_spread_median_ms,
-                          &MetricValues<Series>::clock_spread_median_ms}},
-    {.id = "clock_spread_p95_ms",
-     .title = "95 % spread of the clocks",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::clock_spread_p95_ms,
-                          &MetricValues<Series>::clock_spread_p95_ms},
-     .tables = {.clocks = 2, .response = 2},
-     .heading = "spread\np95 ms",
-     .sweep = "clock_spread_p95_ms"},
-    {.id = "clock_spread_max_ms",
-     .title = "largest spread of the clocks",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::clock_spread_max_ms,
-                          &MetricValues<Series>::clock_spread_max_ms},
-     .sweep = "clock_spread_max_ms"},
-    in_clock_table(kMaxTe, 3, "max |TE|\nms",
-                   "TE: a host's clock minus the master's, over all slaves;", true),
-    in_clock_table(kRmsTe, 4, "RMS TE\nms", "", true),
-    in_clock_table(kConstantTe, 5, "constant\nTE ms", "constant: largest mean of a host;", false),
-    in_clock_table(kDynamicTe, 6, "dynamic\nTE ms", "dynamic: largest range of a host.", false),
-    {.id = "below_1_ms_s",
-     .title = "time until below 1 ms",
-     .unit = "s",
-     .place = SeriesPlace{&MetricValues<double>::below_1_ms_s, &MetricValues<Series>::below_1_ms_s},
-     .tables = {.clocks = 7},
-     .heading = "below\n1 ms: s",
-     .legend = "below: when the spread is below for good.",
-     .sweep = "below_1_ms_s"},
-    {.id = "below_0_1_ms_s",
-     .title = "time until below 0.1 ms",
-     .unit = "s",
-     .place =
-         SeriesPlace{&MetricValues<double>::below_0_1_ms_s, &MetricValues<Series>::below_0_1_ms_s},
-     .tables = {.clocks = 8},
-     .heading = "below\n0.1 ms: s",
-     .sweep = "below_0_1_ms_s"},
-    {.id = "below_0_01_ms_s",
-     .title = "time until below 0.01 ms",
-     .unit = "s",
-     .place = SeriesPlace{&MetricValues<double>::below_0_01_ms_s,
-                          &MetricValues<Series>::below_0_01_ms_s},
-     .tables = {.clocks = 9},
-     .heading = "below\n0.01 ms: s",
-     .sweep = "below_0_01_ms_s"},
-    {.id = "holdover_60_ms",
-     .title = "error after 60 s without the master",
-     .unit = "ms",
-     .place =
-         SeriesPlace{&MetricValues<double>::holdover_60_ms, &MetricValues<Series>::holdover_60_ms},
-     .tables = {.clocks = 10},
-     .heading = "holdover\n60 s: ms",
-     .legend = "holdover: largest |TE| so long after the master was lost;",
-     .sweep = "holdover_60_ms"},
-    {.id = "holdover_600_ms",
-     .title = "error after 600 s without the master",
-     .unit = "ms",
-     .place = SeriesPlace{&MetricValues<double>::holdover_600_ms,
-                          &MetricValues<Series>::holdover_600_ms},
-     .tables = {.clocks = 11},
-     .heading = "holdover\n600 s: ms",
-     .sweep = "holdover_600_ms",
-     .judged = kJudgedClocks},
-    {.id = "recovery_s",
-     .title = "recovery",
-     .unit = "s",
-     .place = SeriesPlace{&MetricValues<double>::recovery_s, &MetricValues<Series>::recovery_s},
-     .tables = {.clocks = 12},
-     .heading = "recovery\ns",
-     .legend = "recovery: from its return until the spread stays within the largest before.",
-     .legend_continues = true,
-     .sweep = "recovery_s"},
-    {.id = "packets_per_s",
-     .title = "packets per second",
-     .unit = "1/s",
-     .place =
-         SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s},
-     .tables = {.clocks = 13, .response = 7},
-     .heading = "packets\nper s",
-     .sweep = "packets_per_s"},
 };
 
 }  // namespace simbench::evaluation
