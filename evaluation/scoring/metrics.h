@@ -1,11 +1,11 @@
 // The metrics: what each is, where a score keeps it, and where results show it.
 //
-// There is a list for each kind of result: captures of cameras, and runs of the hosts' clocks
-// alone. These are the only lists. Rows, sweeps, comparisons, gates, baselines, JSON, CSV, the
-// archive reader, tables and figures go through metrics(). A new metric is a member of MetricValues
-// and an entry of kMetricTable (both here) or of kClockMetricTable (clock_metrics.h), the line that
-// computes it (pulse_scores.cc, set_counter.cc,
-// ...), and its tests. Definitions: docs/design.md section 8.
+// There is a list for each kind of result, captures of cameras and runs of the hosts' clocks alone,
+// and there are no others: rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
+// reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
+// entry of kMetricTable (both here) or of kClockMetricTable (clock_metrics.h), the line that
+// computes it (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md
+// section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
 // 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
