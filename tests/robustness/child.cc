@@ -153,8 +153,7 @@ Ending call(const Call& call) {
   return ending;
 }
 
-std::optional<std::string> problem_of(const Ending& ending, const std::string& input,
-                                      std::uint64_t most_bytes) {
+std::optional<std::string> problem_of(const Ending& ending, const std::string& input) {
   const bool interrupted = ending.seconds_after_interrupt.has_value();
   if (interrupted && *ending.seconds_after_interrupt > kInterruptSeconds) {
     return fmt::format("ended {:.1f} s after Ctrl-C, allowed: {} s",
@@ -165,7 +164,7 @@ std::optional<std::string> problem_of(const Ending& ending, const std::string& i
   const bool ended_by_ctrl_c = interrupted && ending.signal == SIGINT;
   if (ending.signal != 0 && !ended_by_ctrl_c) return fmt::format("signal {}", ending.signal);
   if (ending.status == 1) return "status 1, an internal error";
-  if (ending.peak_bytes > most_bytes) {
+  if (ending.peak_bytes > kMostBytes) {
     return fmt::format("took {} MB", ending.peak_bytes >> 20U);
   }
   if (ending.status == 2 && ending.messages.find("error: ") == std::string::npos) {

@@ -16,8 +16,6 @@ namespace simbench::robustness {
 inline constexpr double kMostSeconds = 10;
 inline constexpr double kInterruptSeconds = 1;  // from Ctrl-C to the end
 inline constexpr std::uint64_t kMostBytes = 1U << 30U;
-// A million hosts, each with its clock and channels.
-inline constexpr std::uint64_t kMostBytesOfAWorld = 3 * kMostBytes;
 
 // Reading below this folder fails with EIO after so many bytes.
 struct ReadFault {
@@ -48,8 +46,7 @@ Ending call(const Call& call);
 // What is wrong with an ending: a signal, an internal error, too long, too large, an error without
 // a message, a Ctrl-C that was not heard, a failed read that was taken for the end of a file, and
 // nan or inf in the output unless `input` has them as well. Nothing: it is fine.
-std::optional<std::string> problem_of(const Ending& ending, const std::string& input = "",
-                                      std::uint64_t most_bytes = kMostBytes);
+std::optional<std::string> problem_of(const Ending& ending, const std::string& input = "");
 
 }  // namespace simbench::robustness
 

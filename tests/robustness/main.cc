@@ -5,9 +5,8 @@
 //            after a second
 //   faults   lets reading a good file fail after so many bytes
 //
-// Whatever the input, a command ends in 10 s, within 1 GB (a world: 3 GB), without a signal or an
-// internal error, prints neither nan nor inf, and hears Ctrl-C within 1 s
-// (tests/robustness/child.h). Attempts are numbered; with INDEX only that one is made, and its
+// Whatever the input, a command ends in 10 s, within 1 GB, without a signal or an internal error,
+// prints neither nan nor inf, and hears Ctrl-C within 1 s (tests/robustness/child.h). Attempts are numbered; with INDEX only that one is made, and its
 // command line and messages are printed.
 // Exit status: 0 all fine, 1 a problem (each is printed with the command that repeats it), 2 usage.
 #include <fmt/format.h>
@@ -80,7 +79,7 @@ Result try_world(const Worlds& worlds, Random& random) {
   const double interrupt_after_s =
       random.one_in(3) ? random.log_between(1e-3, kLatestInterruptS) : kLatestInterruptS;
   const Ending ending = call({.arguments = arguments, .interrupt_after_s = interrupt_after_s});
-  return {arguments, ending, problem_of(ending, "", kMostBytesOfAWorld)};
+  return {arguments, ending, problem_of(ending)};
 }
 
 // "--set '/a=b'": arguments as a shell takes them.

@@ -33,7 +33,7 @@ TEST(SchemaErrors, TypeRangeAndChoice) {
             "my.json:3: /network/nagle: found 1, allowed true or false");
   EXPECT_EQ(error_of(R"("hosts": 6)"), "my.json:3: /hosts: found 6, allowed an object");
   EXPECT_EQ(error_of(R"("hosts": {"count": null})"),
-            "my.json:3: /hosts/count: found null, allowed a whole number from 1 to 1000000");
+            "my.json:3: /hosts/count: found null, allowed a whole number from 1 to 100000");
   EXPECT_EQ(error_of(R"("pipelines": [])"),
             "my.json:3: /pipelines: found an array of 0, allowed an array of 1 to 1000");
   EXPECT_EQ(error_of(R"("algorithms": {"a": {"b": []}})"),
