@@ -11,9 +11,11 @@
 //   struct Last : ClockSink {
 //     void on_errors(TrueTime, std::span<const double> errors_s) override { at_end = errors_s[1]; }
 //     double at_end = 0;
-//   } last;
-//   source.run({.seed = 1, .pipeline = "chrony", .host_sync = sync.get(),
-//               .duration = from_ms(3.6e6), .interval = from_ms(1000)}, last);
+//   };
+//
+//   Last last;
+//   clock_source.run({.seed = 1, .pipeline = "chrony", .host_sync = sync.get(),
+//                     .duration = from_ms(3.6e6), .interval = from_ms(1000)}, last);
 #ifndef SIMBENCH_RECORDING_CLOCK_SOURCE_H_
 #define SIMBENCH_RECORDING_CLOCK_SOURCE_H_
 
@@ -31,7 +33,7 @@ class HostSync;
 
 struct ClockRequest {
   std::uint64_t seed = 1;
-  std::string pipeline;           // whose load is drawn
+  std::string pipeline{};         // whose load is drawn
   HostSync* host_sync = nullptr;  // outlives the call; null: none runs
   Nanoseconds duration{};         // with the master
   Nanoseconds interval{};         // between readings

@@ -11,7 +11,7 @@
 // Errors: RecordingCancelled, EngineLimitReached, the exceptions of algorithms.
 //
 //   const auto source = make_clock_simulation(scenario);
-//   source->run(request, sink);
+//   source->run(clock_request, clock_sink);
 #ifndef SIMBENCH_SIM_RIG_CLOCK_SIMULATION_H_
 #define SIMBENCH_SIM_RIG_CLOCK_SIMULATION_H_
 
