@@ -149,7 +149,10 @@ void read_ground_truth(const JsonNode& node, Row& row) {
 
 void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::Metric& metric,
                  Row& row) {
-  if (metric.is_new && !row_node.has(metric.member())) return;
+  if (metric.is_new && !row_node.has(metric.member())) {
+    metric.series(row) = evaluation::make_series(std::vector<double>(seeds, evaluation::kNan));
+    return;
+  }
   const JsonNode node = *metric.json_in == '\0' ? row_node[metric.member()]
                                                 : row_node[metric.json_in][metric.member()];
   if (metric.is_series()) {

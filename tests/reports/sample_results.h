@@ -40,6 +40,10 @@ inline evaluation::Row full_row() {
   both.absolute_error_ms = series(28, 30);
   both.bias_ms = series(-28, -30);
   both.host_error_ms = series(0.25, 0.75);
+  both.max_te_ms = series(1, 2);
+  both.rms_te_ms = series(0.5, 0.75);
+  both.constant_te_ms = series(0.25, 0.5);
+  both.dynamic_te_ms = series(1.5, 2.5);
   both.exposure_spread_ms = series(0, 0.125);
   both.precision = 1;
   both.recall = 0.75;
@@ -80,6 +84,8 @@ inline evaluation::Row bare_row() {
   none.absolute_error_ms = no_series();
   none.bias_ms = no_series();
   none.host_error_ms = no_series();
+  none.max_te_ms = none.rms_te_ms = no_series();
+  none.constant_te_ms = none.dynamic_te_ms = no_series();
   none.exposure_spread_ms = no_series();
   none.precision = kNaN;
   none.recall = 0;

@@ -3,13 +3,16 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "recording/version.h"
 #include "reports/archive/archive.h"
 #include "reports/results/json.h"
 #include "scenarios/loader.h"
+#include "tests/nonempty.h"
 #include "tests/read_fault.h"
 #include "tests/reports/sample_results.h"
 #include "tests/scratch_folder.h"
@@ -104,15 +107,42 @@ TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
     // The sample's bands are made up; those of an archive are computed from its values.
     for (auto series :
          {&evaluation::Row::amd_ms, &evaluation::Row::rmdv_ms, &evaluation::Row::absolute_error_ms,
-          &evaluation::Row::bias_ms, &evaluation::Row::host_error_ms,
-          &evaluation::Row::exposure_spread_ms, &evaluation::Row::seed_precision,
-          &evaluation::Row::seed_recall, &evaluation::Row::set_amd_ms,
-          &evaluation::Row::set_absolute_error_ms, &evaluation::Row::emission_latency_ms}) {
+          &evaluation::Row::bias_ms, &evaluation::Row::host_error_ms, &evaluation::Row::max_te_ms,
+          &evaluation::Row::rms_te_ms, &evaluation::Row::constant_te_ms,
+          &evaluation::Row::dynamic_te_ms, &evaluation::Row::exposure_spread_ms,
+          &evaluation::Row::seed_precision, &evaluation::Row::seed_recall,
+          &evaluation::Row::set_amd_ms, &evaluation::Row::set_absolute_error_ms,
+          &evaluation::Row::emission_latency_ms}) {
       (read.*series).p05 = (row.*series).p05;
       (read.*series).p95 = (row.*series).p95;
     }
   }
   EXPECT_EQ(json(archive.results), json(written_));
+}
+
+// As of simbench 0.1: they are as of a row that does not know them, and can be written again.
+TEST_F(ArchiveReader, WithoutTheNewMetricsTheirValuesDoNotExist) {
+  auto root = nlohmann::ordered_json::parse(content("results.json"));
+  std::vector<const evaluation::Metric*> absent;
+  for (const evaluation::Metric& metric : evaluation::metrics()) {
+    if (metric.is_new) absent.push_back(&metric);
+  }
+  for (auto& row : root["rows"]) {
+    for (const evaluation::Metric* metric : nonempty(absent)) {
+      EXPECT_EQ(row.erase(metric->member()), 1U) << metric->id;
+    }
+  }
+  write("results.json", root.dump(2));
+  const Archive old = read_archive(folder_.path().string());
+  for (const evaluation::Row& row : nonempty(old.results.rows)) {
+    for (const evaluation::Metric* metric : absent) {
+      EXPECT_TRUE(std::isnan(metric->value(row))) << metric->id;
+      EXPECT_THAT(metric->series(row).values,
+                  testing::ElementsAre(testing::IsNan(), testing::IsNan()));
+    }
+  }
+  write("results.json", json(old.results));
+  EXPECT_EQ(problem(), "nothing");
 }
 
 TEST_F(ArchiveReader, MediansAreComputedNotRead) {
