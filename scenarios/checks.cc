@@ -40,6 +40,18 @@ void check_size(const Scenario& scenario, const std::string& pointer, std::size_
                       count, things));
 }
 
+// Scores keep some 20 bytes of each evaluated frame: half a gigabyte.
+constexpr std::int64_t kMostEvaluatedFrames = 25'000'000;
+
+void check_frames(const Scenario& scenario) {
+  const std::int64_t most = kMostEvaluatedFrames / scenario.cameras.count;
+  if (scenario.timeline.frames <= most) return;
+  fail_at(
+      scenario, "/timeline/frames",
+      fmt::format("found {}, allowed at most {} of {} cameras (of all together {})",
+                  scenario.timeline.frames, most, scenario.cameras.count, kMostEvaluatedFrames));
+}
+
 void check_hosts(const Scenario& scenario) {
   const Cameras& cameras = scenario.cameras;
   const std::int64_t hosts = scenario.hosts.count;
@@ -460,6 +472,7 @@ void check_studio(const Scenario& scenario) {
 void check(const Scenario& scenario) {
   check_name(scenario, "/name", scenario.name);
   check_hosts(scenario);
+  check_frames(scenario);
   check_host_clocks(scenario);
   check_skews(scenario);
   check_tables(scenario);

@@ -6,8 +6,10 @@
 //   faults   lets reading a good file fail after so many bytes
 //
 // Whatever the input, a command ends in 10 s, within 1 GB, without a signal or an internal error,
-// prints neither nan nor inf, and hears Ctrl-C within 1 s (tests/robustness/child.h). Attempts are numbered; with INDEX only that one is made, and its
-// command line and messages are printed.
+// prints neither nan nor inf, and hears Ctrl-C within 1 s (tests/robustness/child.h).
+//
+// Attempts are numbered; with INDEX only that one is made, and its command line and messages are
+// printed.
 // Exit status: 0 all fine, 1 a problem (each is printed with the command that repeats it), 2 usage.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -95,6 +95,9 @@ TEST(Errors, TablesAscendAndAreWhole) {
   EXPECT_EQ(error_of(R"("usb": {"delivery_correlation": 0.5})"),
             "my.json:3: /usb/delivery_correlation: found 0.5, allowed 0 without "
             "/usb/delivery_quantiles_ms");
+  EXPECT_EQ(error_of(R"("timeline": {"frames": 2000000})"),
+            "my.json:3: /timeline/frames: found 2000000, allowed at most 1388888 of 18 cameras (of "
+            "all together 25000000)");
   EXPECT_EQ(error_of(R"("cameras": {"skew_of_camera_ppm": [1, 2]})"),
             "my.json:3: /cameras/skew_of_camera_ppm: found 2 skews, allowed none or one for each "
             "of the 18 cameras");

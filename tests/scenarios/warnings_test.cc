@@ -28,11 +28,11 @@ TEST(OscillatorWarnings, AWalkOrARampThatMayGetToItsLimit) {
                                   "walk's sigma moves the frequency by 2.7 % in the 728 s"),
                         HasSubstr("no further than 5 %"))));
   EXPECT_THAT(warned("/cameras/oscillator/random_walk_ppb_per_sqrt_s", "1e6", "480"), IsEmpty());
-  // 1000 ppm/h take 50 h.
+  // 6000 ppm/h take 8.3 h.
   EXPECT_THAT(
-      warned("/cameras/oscillator/ramp_ppm_per_hour", "-1000", "8200000"),
-      ElementsAre(HasSubstr("/cameras/oscillator/ramp_ppm_per_hour=-1000: the ramp moves")));
-  EXPECT_THAT(warned("/cameras/oscillator/ramp_ppm_per_hour", "-1000", "8000000"), IsEmpty());
+      warned("/cameras/oscillator/ramp_ppm_per_hour", "-6000", "1370000"),
+      ElementsAre(HasSubstr("/cameras/oscillator/ramp_ppm_per_hour=-6000: the ramp moves")));
+  EXPECT_THAT(warned("/cameras/oscillator/ramp_ppm_per_hour", "-6000", "1330000"), IsEmpty());
 }
 
 }  // namespace
