@@ -28,11 +28,16 @@ TEST(OscillatorWarnings, AWalkOrARampThatMayGetToItsLimit) {
                                   "walk's sigma moves the frequency by 2.7 % in the 728 s"),
                         HasSubstr("no further than 5 %"))));
   EXPECT_THAT(warned("/cameras/oscillator/random_walk_ppb_per_sqrt_s", "1e6", "480"), IsEmpty());
-  // 6000 ppm/h take 8.3 h.
+  // 1000 ppm/h take 50 h.
+  const auto ramp_warned = [](const char* frames) {
+    return warnings(load_scenario(
+        "3cam_1host_30fps",
+        {{"/cameras/oscillator/ramp_ppm_per_hour", "-1000"}, {"/timeline/frames", frames}}));
+  };
   EXPECT_THAT(
-      warned("/cameras/oscillator/ramp_ppm_per_hour", "-6000", "1370000"),
-      ElementsAre(HasSubstr("/cameras/oscillator/ramp_ppm_per_hour=-6000: the ramp moves")));
-  EXPECT_THAT(warned("/cameras/oscillator/ramp_ppm_per_hour", "-6000", "1330000"), IsEmpty());
+      ramp_warned("5500000"),
+      ElementsAre(HasSubstr("/cameras/oscillator/ramp_ppm_per_hour=-1000: the ramp moves")));
+  EXPECT_THAT(ramp_warned("5300000"), IsEmpty());
 }
 
 }  // namespace
