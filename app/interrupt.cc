@@ -48,6 +48,21 @@ class InterruptibleSource : public RecordingSource {
   std::unique_ptr<RecordingSource> source_;
 };
 
+// The simulation polls the flag itself.
+class InterruptibleClocks : public ClockSource {
+ public:
+  explicit InterruptibleClocks(std::unique_ptr<ClockSource> source) : source_(std::move(source)) {}
+  ClockCost run(const ClockRequest& request, ClockSink& sink) override {
+    throw_if_interrupted();
+    ClockRequest cancellable = request;
+    cancellable.cancel = &interrupt_flag;
+    return source_->run(cancellable, sink);
+  }
+
+ private:
+  std::unique_ptr<ClockSource> source_;
+};
+
 }  // namespace
 
 InterruptHandler::InterruptHandler() {
@@ -76,11 +91,11 @@ std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scen
 }
 
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario) {
-  return sim::make_clock_simulation(scenario);
+  return std::make_unique<InterruptibleClocks>(sim::make_clock_simulation(scenario));
 }
 
 evaluation::TaskWorkerFactory simulated_sweep_workers() {
-  return evaluation::sweep_workers(simulated_world);
+  return evaluation::sweep_workers(simulated_world, simulated_clocks);
 }
 
 }  // namespace simbench::app

@@ -40,8 +40,7 @@ std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> 
 
 // The simulator, interruptible: an evaluation::WorldFactory. `scenario` outlives the result.
 std::unique_ptr<RecordingSource> simulated_world(const scenarios::Scenario& scenario);
-// The same of the hosts' clocks alone: an evaluation::ClockSourceFactory's work. Jobs poll
-// InterruptHandler::flag().
+// The same of the hosts' clocks alone: an evaluation::ClockWorldFactory.
 std::unique_ptr<ClockSource> simulated_clocks(const scenarios::Scenario& scenario);
 // The workers of sweeps, in simulated worlds.
 evaluation::TaskWorkerFactory simulated_sweep_workers();

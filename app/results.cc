@@ -30,7 +30,7 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
   std::vector<SweepScore> scores;
   scores.reserve(plan.runs());
   for (std::size_t run = 0; run < plan.runs(); ++run) {
-    std::optional<SweepScore> score = evaluation::score_of(log.text(run));
+    std::optional<SweepScore> score = evaluation::score_of(log.text(run), plan.kind);
     SIMBENCH_ASSERT(score.has_value(), "the log's checksums hold, so its texts are scores");
     scores.push_back(std::move(*score));
   }

@@ -12,6 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
+#include "evaluation/clock_run/clock_evaluation.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/task_farm.h"
 #include "recording/counted.h"
@@ -35,6 +36,8 @@ Examples:
                  --sweep /hosts/count=2:6:2+/cameras/count=6:18:6 -o results/hosts
   simbench sweep --study scalability -o results/scalability
   mpirun -n 64 simbench sweep --study seeds_needed --seeds 100000 -o results/seeds
+  simbench sweep --clocks --scenario 6host_star --pipelines chrony,ntp --duration-s 7200
+                 --sweep /network/latency_exponential_ms=0.02,0.06,0.2 -o results/clocks
 
 A sweep that was interrupted, killed or ran out of disk space goes on when the same command is given
 again: no finished run is lost or repeated, and the results are the same.
@@ -49,6 +52,9 @@ constexpr std::size_t kManyPoints = 1000;
 
 struct SweepOptions {
   std::string study;
+  bool clocks = false;
+  std::optional<std::uint64_t> duration_s;
+  std::optional<std::uint64_t> from_s;
   evaluation::SweepRequest request;
   std::vector<std::string> sets;
   std::optional<std::uint64_t> seeds;
@@ -86,6 +92,26 @@ const Study* study_of(SweepOptions& options) {
   }
   add_study(*study, options);
   return study;
+}
+
+// What the runs are: captures, or with --clocks clock runs.
+void set_kind(const SweepOptions& options, const Study* study, evaluation::SweepRequest& request) {
+  if (!options.clocks) {
+    if (!options.duration_s && !options.from_s) return;
+    throw scenarios::InputError(
+        fmt::format("{}: found without --clocks; captures are as long as the scenario's /timeline",
+                    options.duration_s ? "--duration-s" : "--from-s"));
+  }
+  if (study != nullptr && study->tables != std::vector{scenarios::StudyTable::kResponse}) {
+    throw scenarios::InputError(
+        fmt::format("--clocks: the study {} shows what only captures have; leave out --clocks, or "
+                    "name --scenario and --sweep in place of --study",
+                    study->name));
+  }
+  const evaluation::ClockOptions defaults;
+  request.kind = evaluation::ResultKind::kClockRuns;
+  request.clock_period = {.from_s = options.from_s.value_or(defaults.from_s),
+                          .duration_s = options.duration_s.value_or(defaults.duration_s)};
 }
 
 // Runs what the log lacks. False if it was interrupted.
@@ -130,10 +156,12 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   }
   options.request.overrides = overrides_of(options.sets);
   if (options.seeds) options.request.seeds = *options.seeds;
+  set_kind(options, study, options.request);
   const SweepPlan plan = evaluation::make_plan(options.request);
   if (plan.points() >= kManyPoints) {
     print_note("checking " + counted(plan.points(), "point"));
   }
+  print_warnings(plan.left_out);
   print_warnings(evaluation::check_points(plan, options.request, options.jobs));
 
   reports::SweepFolder folder(options.output, reports::sweep_manifest(plan, options.study),
@@ -166,6 +194,14 @@ void add_sweep_command(CommandLine& line) {
                 "together are joined: /hosts/count=2:6:2+/cameras/count=6:18:6");
   command.text("--study", "STUDY", options->study,
                "A ready-made sweep in place of --scenario and --sweep; `list` lists them");
+  command.flag("--clocks", options->clocks,
+               "The hosts' clocks alone, as `simbench clocks` runs them, in place of captures");
+  command.whole_number("--duration-s", "S", options->duration_s, 1, evaluation::kLongestClockRunS,
+                       "With --clocks: seconds from the cold start to the loss of the master.\n"
+                       "Default: 36000");
+  command.whole_number("--from-s", "S", options->from_s, 0, evaluation::kLongestClockRunS,
+                       "With --clocks: the second from which spread, errors and stability count.\n"
+                       "Default: 300");
   command.count("--seeds", options->seeds, "How many seeds at each point. Default: 32");
   command.seed("--first-seed", request.first_seed, "The first seed. Default: 1");
   command.pipelines(request.pipelines);

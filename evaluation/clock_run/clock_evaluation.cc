@@ -166,6 +166,7 @@ class ClockEvaluation {
       std::vector<SeedScore> seeds;
       std::vector<StabilityCurves> curves;
       for (std::size_t job = pipeline; job < jobs_.size(); job += chosen_.choices.size()) {
+    scored.seed.host_errors_ms = std::move(score.host_errors_ms);
         results.performance.events += jobs_[job].seed.cost.events;
         results.performance.simulated_seconds += jobs_[job].seed.cost.simulated_seconds;
         seeds.push_back(std::move(jobs_[job].seed));
@@ -224,3 +225,13 @@ void check_clock_options(const Scenario& scenario, const ClockOptions& options) 
 }
 
 }  // namespace simbench::evaluation
+ClockPipelines clock_pipelines(const Scenario& scenario, const ClockOptions& options) {
+  check_clock_options(scenario, options);
+  Chosen chosen = choose_clock_runs(scenario, options.pipelines);
+  ClockPipelines pipelines{.left_out = std::move(chosen.left_out)};
+  for (const PipelineChoice& choice : chosen.choices) {
+    pipelines.names.push_back(choice.pipeline.name);
+  }
+  return pipelines;
+}
+

@@ -52,6 +52,8 @@ struct ClockResults {
 };
 
 using ClockSourceFactory = std::function<std::unique_ptr<ClockSource>()>;
+// For a scenario, which outlives it; called from worker threads.
+using ClockWorldFactory = std::function<std::unique_ptr<ClockSource>(const scenarios::Scenario&)>;
 
 ClockResults evaluate_clocks(const scenarios::Scenario& scenario,
                              const ClockSourceFactory& make_source, const ClockOptions& options,
@@ -59,6 +61,14 @@ ClockResults evaluate_clocks(const scenarios::Scenario& scenario,
 
 // Refuses options as evaluate_clocks() does, before any work.
 void check_clock_options(const scenarios::Scenario& scenario, const ClockOptions& options);
+
+struct ClockPipelines {
+  std::vector<std::string> names{};     // of the rows, in their order
+  std::vector<std::string> left_out{};  // a note on each
+};
+
+// Which pipelines evaluate_clocks() runs. Throws as check_clock_options().
+ClockPipelines clock_pipelines(const scenarios::Scenario& scenario, const ClockOptions& options);
 
 }  // namespace simbench::evaluation
 

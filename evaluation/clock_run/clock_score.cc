@@ -150,6 +150,7 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
   values.clock_spread_p95_ms = quantile_of_sorted(spreads_ms_, 0.95);
   values.clock_spread_max_ms = spread_max_ms_;
   errors_.add_to(values);
+  score.host_errors_ms = errors_.means_ms();
   const auto below_s = [&](std::size_t bound) {
     if (!last_above_[bound]) return 0.0;
     if (*last_above_[bound] == last_) return kNan;

@@ -70,6 +70,7 @@ struct ClockReadings {
 
 struct ClockScore {
   MetricValues<double> values{};
+  std::vector<double> host_errors_ms{};  // mean TE while measured, by host
   StabilityCurves curves{};
   ClockReadings readings{};
 };

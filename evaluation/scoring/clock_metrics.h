@@ -21,6 +21,11 @@ constexpr Metric in_clock_table(Metric metric, int place, const char* heading, c
   return metric;
 }
 
+constexpr Metric on_panel(Metric metric, int place) {
+  metric.tables.response_panel = place;
+  return metric;
+}
+
 inline constexpr Metric kClockMetricTable[] = {
     {.id = "clock_spread_ms",
      .title = "spread of the clocks",
@@ -52,8 +57,9 @@ inline constexpr Metric kClockMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::clock_spread_max_ms,
                           &MetricValues<Series>::clock_spread_max_ms},
      .sweep = "clock_spread_max_ms"},
-    in_clock_table(kMaxTe, 3, "max |TE|\nms",
-                   "TE: a host's clock minus the master's, over all slaves;", true),
+    on_panel(in_clock_table(kMaxTe, 3, "max |TE|\nms",
+                            "TE: a host's clock minus the master's, over all slaves;", true),
+             2),
     in_clock_table(kRmsTe, 4, "RMS TE\nms", "", true),
     in_clock_table(kConstantTe, 5, "constant\nTE ms", "constant: largest mean of a host;", false),
     in_clock_table(kDynamicTe, 6, "dynamic\nTE ms", "dynamic: largest range of a host.", false),
@@ -88,15 +94,15 @@ inline constexpr Metric kClockMetricTable[] = {
          SeriesPlace{&MetricValues<double>::holdover_60_ms, &MetricValues<Series>::holdover_60_ms},
      .tables = {.clocks = 10},
      .heading = "holdover\n60 s: ms",
-     .legend = "holdover: largest |TE| so long after the master was lost;",
      .sweep = "holdover_60_ms"},
     {.id = "holdover_600_ms",
      .title = "error after 600 s without the master",
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::holdover_600_ms,
                           &MetricValues<Series>::holdover_600_ms},
-     .tables = {.clocks = 11},
+     .tables = {.clocks = 11, .response = 7, .response_panel = 3},
      .heading = "holdover\n600 s: ms",
+     .legend = "holdover: largest |TE| so long after the master was lost;",
      .sweep = "holdover_600_ms",
      .judged = kJudgedClocks},
     {.id = "recovery_s",
@@ -113,7 +119,7 @@ inline constexpr Metric kClockMetricTable[] = {
      .unit = "1/s",
      .place =
          SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s},
-     .tables = {.clocks = 13, .response = 7},
+     .tables = {.clocks = 13, .response = 8},
      .heading = "packets\nper s",
      .sweep = "packets_per_s"},
 };

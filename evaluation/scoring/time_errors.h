@@ -40,6 +40,15 @@ class TimeErrors {
     ++of.count;
   }
 
+  // The mean of each host; 0 of one without instants, as the master.
+  std::vector<double> means_ms() const {
+    std::vector<double> means;
+    for (const Host& host : hosts_) {
+      means.push_back(host.count == 0 ? 0 : host.sum / static_cast<double>(host.count));
+    }
+    return means;
+  }
+
   // Sets the score's max_te_ms, rms_te_ms, constant_te_ms and dynamic_te_ms.
   void add_to(MetricValues<double>& score) const {
     double squares = 0;

@@ -10,7 +10,9 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
+#include "evaluation/clock_run/clock_evaluation.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "scenarios/loader.h"
@@ -174,6 +176,21 @@ std::string as_sweep(std::string message) {
   return message;
 }
 
+// The pipelines of the request that its runs have at a scenario.
+ClockPipelines pipelines_of(const Scenario& scenario, const SweepRequest& request,
+                            const std::vector<std::string>& names) {
+  if (request.kind == ResultKind::kClockRuns) {
+    return clock_pipelines(scenario, {.duration_s = request.clock_period.duration_s,
+                                      .from_s = request.clock_period.from_s,
+                                      .pipelines = names});
+  }
+  ClockPipelines pipelines;
+  for (const PipelineChoice& choice : choose_pipelines(scenario, names)) {
+    pipelines.names.push_back(choice.pipeline.name);
+  }
+  return pipelines;
+}
+
 // Returns the warnings of the scenario at a point. Throws InputError if the point is invalid.
 std::vector<std::string> check_point(const SweepPlan& plan, const SweepRequest& request,
                                      std::size_t point) {
@@ -182,7 +199,7 @@ std::vector<std::string> check_point(const SweepPlan& plan, const SweepRequest& 
     const std::vector<scenarios::Override> swept = plan.overrides(point);
     overrides.insert(overrides.end(), swept.begin(), swept.end());
     const Scenario scenario = scenarios::load_scenario(request.scenario, overrides);
-    choose_pipelines(scenario, plan.pipelines);
+    pipelines_of(scenario, request, plan.pipelines);
     return scenarios::warnings(scenario);
   } catch (const InputError& error) {
     throw InputError(fmt::format("point {} of {} of the sweep ({}) is refused: {}", point + 1,
@@ -270,15 +287,17 @@ SweepPlan make_plan(const SweepRequest& request) {
   SweepPlan plan;
   plan.first_seed = request.first_seed;
   plan.seeds = request.seeds;
+  plan.kind = request.kind;
+  plan.clock_period = request.clock_period;
   for (const std::string& axis : request.axes) plan.axes.push_back(parse_axis(axis));
   check_pointers(plan);
   const Scenario scenario = scenarios::load_scenario(request.scenario, request.overrides);
   plan.scenario = scenario.name;
   plan.derivation = scenario.derivation;
   plan.scenario_json = scenario.resolved_json;
-  for (const PipelineChoice& choice : choose_pipelines(scenario, request.pipelines)) {
-    plan.pipelines.push_back(choice.pipeline.name);
-  }
+  ClockPipelines chosen = pipelines_of(scenario, request, request.pipelines);
+  plan.pipelines = std::move(chosen.names);
+  plan.left_out = std::move(chosen.left_out);
   check_size(plan);
   return plan;
 }

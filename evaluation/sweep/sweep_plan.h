@@ -12,8 +12,9 @@
 // reads back as the same number.
 //
 // A point is one combination; the first axis varies slowest. A run is one pipeline at one point
-// with one seed. Runs are numbered point by point, pipeline by pipeline, seed by seed. The results
-// depend on the plan and the program alone, so the plan identifies a sweep.
+// with one seed: a capture, or a run of the hosts' clocks alone (evaluation/clock_run). Runs are
+// numbered point by point, pipeline by pipeline, seed by seed. The results depend on the plan and
+// the program alone, so the plan identifies a sweep.
 //
 //   const SweepRequest request = {.scenario = "18cam_6host_45fps",
 //                                 .axes = {"/trigger/rate_hz=15,30,45"}, .seeds = 32};
@@ -28,6 +29,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/scoring/results.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -56,6 +58,8 @@ struct SweepRequest {
   std::vector<std::string> pipelines{};          // empty: all of the scenario
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 32;
+  ResultKind kind = ResultKind::kCaptures;
+  ClockPeriod clock_period{};  // of clock runs
 };
 
 struct SweepRun {
@@ -70,8 +74,11 @@ struct SweepPlan {
   std::string scenario_json;           // resolved, with the overrides for all points
   std::vector<SweepAxis> axes;
   std::vector<std::string> pipelines;
+  std::vector<std::string> left_out{};  // notes on pipelines that clock runs leave out
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 0;
+  ResultKind kind = ResultKind::kCaptures;
+  ClockPeriod clock_period{};  // of clock runs
 
   std::size_t points() const;
   std::size_t runs() const { return points() * pipelines.size() * seeds; }
@@ -87,7 +94,8 @@ struct SweepPlan {
 };
 
 // Throws scenarios::InputError for a scenario that is invalid without the sweep, an invalid axis,
-// an unknown pipeline, a pointer swept twice, more than kMostRuns runs.
+// an unknown pipeline, a pointer swept twice, more than kMostRuns runs; for clock runs also what
+// clock_pipelines() refuses.
 SweepPlan make_plan(const SweepRequest& request);
 
 // Loads the scenario of every point. Throws an InputError that names the first refused point.

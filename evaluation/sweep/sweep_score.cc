@@ -16,8 +16,8 @@
 namespace simbench::evaluation {
 namespace {
 
-std::size_t place_of(std::string_view column) {
-  const auto columns = sweep_metrics();
+std::size_t place_of(std::string_view column, ResultKind kind) {
+  const auto columns = sweep_metrics(kind);
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const Metric* metric) { return metric->sweep == column; });
   SIMBENCH_ASSERT(found != columns.end(), "a column of sweep.csv");
@@ -53,15 +53,15 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
 
 }  // namespace
 
-SweepScore::SweepScore() : values(sweep_metrics().size(), 0.0) {}
+SweepScore::SweepScore(ResultKind of) : kind(of), values(sweep_metrics(of).size(), 0.0) {}
 
-double& SweepScore::at(std::string_view column) { return values[place_of(column)]; }
+double& SweepScore::at(std::string_view column) { return values[place_of(column, kind)]; }
 
-SweepScore sweep_score(const Row& row) {
+SweepScore sweep_score(const Row& row, ResultKind kind) {
   SIMBENCH_ASSERT(row.seeds.size() == 1, "a run has one seed");
-  SweepScore score;
+  SweepScore score(kind);
   score.values.clear();
-  for (const Metric* metric : sweep_metrics()) {
+  for (const Metric* metric : sweep_metrics(kind)) {
     score.values.push_back(metric->is_series() ? metric->series(row).values.front()
                                                : metric->value(row));
   }
@@ -73,11 +73,11 @@ std::string text_of(const SweepScore& score) {
   return fmt::format("{};{}", list_of(score.values), list_of(score.host_errors_ms));
 }
 
-std::optional<SweepScore> score_of(std::string_view text) {
+std::optional<SweepScore> score_of(std::string_view text, ResultKind kind) {
   const std::size_t semicolon = text.find(';');
   if (semicolon == std::string_view::npos) return std::nullopt;
   const auto cells = numbers_of(text.substr(0, semicolon));
-  SweepScore score;
+  SweepScore score(kind);
   if (!cells || cells->size() != score.values.size()) return std::nullopt;
   score.values = *cells;
   const std::string_view hosts = text.substr(semicolon + 1);
@@ -100,7 +100,7 @@ Series score_series(std::span<const SweepScore> seeds, std::size_t column) {
 }
 
 double sum_of(std::span<const SweepScore> seeds, std::string_view column) {
-  const std::size_t place = place_of(column);
+  const std::size_t place = place_of(column, ResultKind::kCaptures);
   double sum = 0;
   for (const SweepScore& seed : seeds) sum += seed.values[place];
   return sum;
@@ -121,9 +121,18 @@ std::vector<Series> host_series(std::span<const SweepScore> seeds) {
   return all;
 }
 
+PooledValues pooled_values(std::span<const SweepScore> seeds, const ResponseRow& row) {
+  const double pure = sum_of(seeds, "pure_sets");
+  return {.precision = pure / sum_of(seeds, "emitted_sets"),
+          .recall = pure / sum_of(seeds, "complete_pulses"),
+          .margin_ms = row.of("margin_ms").median};
+}
+
 }  // namespace
 
-const Series& ResponseRow::of(std::string_view column) const { return series[place_of(column)]; }
+const Series& ResponseRow::of(std::string_view column) const {
+  return series[place_of(column, kind)];
+}
 
 double ResponseRow::value(const Metric& metric) const {
   const auto* number = std::get_if<double PooledValues::*>(&metric.place);
@@ -132,17 +141,14 @@ double ResponseRow::value(const Metric& metric) const {
 
 std::vector<ResponseRow> response(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
   SIMBENCH_ASSERT(scores.size() == plan.runs(), "a score for every run");
-  const std::size_t columns = sweep_metrics().size();
+  const std::size_t columns = sweep_metrics(plan.kind).size();
   std::vector<ResponseRow> rows;
   for (std::size_t first = 0; first < scores.size(); first += plan.seeds) {
     const std::span<const SweepScore> seeds = std::span(scores).subspan(first, plan.seeds);
     const SweepRun run = plan.run(first);
-    const double pure = sum_of(seeds, "pure_sets");
-    ResponseRow row{.point = run.point, .pipeline = run.pipeline};
+    ResponseRow row{.point = run.point, .pipeline = run.pipeline, .kind = plan.kind};
     for (std::size_t i = 0; i < columns; ++i) row.series.push_back(score_series(seeds, i));
-    row.pooled = {.precision = pure / sum_of(seeds, "emitted_sets"),
-                  .recall = pure / sum_of(seeds, "complete_pulses"),
-                  .margin_ms = row.of("margin_ms").median};
+    if (plan.kind == ResultKind::kCaptures) row.pooled = pooled_values(seeds, row);
     row.hosts = host_series(seeds);
     rows.push_back(std::move(row));
   }

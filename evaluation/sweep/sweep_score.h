@@ -20,21 +20,24 @@ namespace simbench::evaluation {
 
 // NaN: the value does not exist.
 struct SweepScore {
-  std::vector<double> values;            // by sweep_metrics() (evaluation/scoring/metrics.h)
+  ResultKind kind = ResultKind::kCaptures;
+  std::vector<double> values;            // by sweep_metrics(kind) (evaluation/scoring/metrics.h)
   std::vector<double> host_errors_ms{};  // signed mean, by host
 
-  SweepScore();  // zero in every column
+  // Zero in every column.
+  SweepScore() : SweepScore(ResultKind::kCaptures) {}
+  explicit SweepScore(ResultKind of);
 
   // The value of a column, which must exist: "amd_ms", "emitted_sets".
   double& at(std::string_view column);
 };
 
 // Returns the score of a row with one seed.
-SweepScore sweep_score(const Row& row);
+SweepScore sweep_score(const Row& row, ResultKind kind = ResultKind::kCaptures);
 
 std::string text_of(const SweepScore& score);
 // Returns nothing for another text.
-std::optional<SweepScore> score_of(std::string_view text);
+std::optional<SweepScore> score_of(std::string_view text, ResultKind kind = ResultKind::kCaptures);
 // Returns the part of the text before the semicolon: cells for a CSV.
 std::string_view cells_of(std::string_view text);
 
@@ -42,9 +45,11 @@ std::string_view cells_of(std::string_view text);
 struct ResponseRow {
   std::size_t point = 0;
   std::size_t pipeline = 0;
+  ResultKind kind = ResultKind::kCaptures;
   std::vector<Series> series{};  // of every column of sweep.csv, over the seeds
-  PooledValues pooled{};         // over all seeds; margin_ms is the median of the seeds'
-  std::vector<Series> hosts{};   // |mean clock error| of each host; the master's is first
+  // Of captures, over all seeds; margin_ms is the median of the seeds'.
+  PooledValues pooled{};
+  std::vector<Series> hosts{};  // |mean clock error| of each host; the master's is first
 
   // The series of a column, which must exist: of("amd_ms").median.
   const Series& of(std::string_view column) const;

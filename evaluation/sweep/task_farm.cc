@@ -17,17 +17,27 @@ namespace {
 using nlohmann::json;
 using scenarios::Scenario;
 
+// The period in a setup; none of captures.
+std::optional<ClockPeriod> clock_period_in(const json& setup) {
+  const auto clocks = setup.find("clocks");
+  if (clocks == setup.end()) return std::nullopt;
+  return ClockPeriod{.from_s = clocks->at("from_s"), .duration_s = clocks->at("duration_s")};
+}
+
 class SweepWorker {
  public:
-  SweepWorker(const json& setup, WorldFactory make_world)
+  SweepWorker(const json& setup, WorldFactory make_world, ClockWorldFactory make_clocks)
       : name_(setup.at("name")),
         scenario_json_(setup.at("scenario")),
-        make_world_(std::move(make_world)) {}
+        clock_period_(clock_period_in(setup)),
+        make_world_(std::move(make_world)),
+        make_clocks_(std::move(make_clocks)) {}
 
   std::string work(const std::string& text) {
     const json task = json::parse(text);
     try {
-      return score(load(task.at("values")), task);
+      const Scenario& scenario = load(task.at("values"));
+      return text_of(clock_period_ ? score_of_clocks(scenario, task) : score(scenario, task));
     } catch (const scenarios::InputError& error) {
       throw scenarios::InputError(with_place(task, error));
     } catch (const std::exception& error) {
@@ -40,7 +50,7 @@ class SweepWorker {
     return fmt::format("{} {}: {}", name_, task.dump(), error.what());
   }
 
-  std::string score(const Scenario& scenario, const json& task) {
+  SweepScore score(const Scenario& scenario, const json& task) {
     EvaluationOptions options;
     options.first_seed = task.at("seed");
     options.seeds = 1;
@@ -48,7 +58,19 @@ class SweepWorker {
     options.pipelines = {task.at("pipeline")};
     const Results results = evaluate(
         scenario, [&] { return make_world_(scenario); }, options, nullptr);
-    return text_of(sweep_score(results.rows.front()));
+    return sweep_score(results.rows.front());
+  }
+
+  SweepScore score_of_clocks(const Scenario& scenario, const json& task) {
+    const ClockOptions options = {.duration_s = clock_period_->duration_s,
+                                  .from_s = clock_period_->from_s,
+                                  .first_seed = task.at("seed"),
+                                  .seeds = 1,
+                                  .jobs = 1,
+                                  .pipelines = {task.at("pipeline")}};
+    const ClockResults all = evaluate_clocks(
+        scenario, [&] { return make_clocks_(scenario); }, options, nullptr);
+    return sweep_score(all.results.rows.front(), ResultKind::kClockRuns);
   }
 
   const Scenario& load(const json& values) {
@@ -62,7 +84,9 @@ class SweepWorker {
 
   std::string name_;
   std::string scenario_json_;
+  std::optional<ClockPeriod> clock_period_;
   WorldFactory make_world_;
+  ClockWorldFactory make_clocks_;
   std::optional<Scenario> scenario_;
   json values_;
 };
@@ -94,7 +118,12 @@ void ThreadFarm::run(const Tasks& tasks, const AnswerKeeper& keep) {
 
 Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs) {
   Tasks tasks;
-  tasks.setup = json{{"name", plan.scenario}, {"scenario", plan.scenario_json}}.dump();
+  json setup = {{"name", plan.scenario}, {"scenario", plan.scenario_json}};
+  if (plan.kind == ResultKind::kClockRuns) {
+    setup["clocks"] = {{"from_s", plan.clock_period.from_s},
+                       {"duration_s", plan.clock_period.duration_s}};
+  }
+  tasks.setup = setup.dump();
   tasks.count = runs.size();
   tasks.task = [&plan, &runs](std::size_t task) {
     const SweepRun run = plan.run(runs[task]);
@@ -108,10 +137,11 @@ Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs) {
   return tasks;
 }
 
-TaskWorkerFactory sweep_workers(WorldFactory make_world) {
-  return [make_world = std::move(make_world)](const std::string& setup) -> TaskWorker {
+TaskWorkerFactory sweep_workers(WorldFactory make_world, ClockWorldFactory make_clocks) {
+  return [make_world = std::move(make_world),
+          make_clocks = std::move(make_clocks)](const std::string& setup) -> TaskWorker {
     // Shared: std::function copies what it holds.
-    auto worker = std::make_shared<SweepWorker>(json::parse(setup), make_world);
+    auto worker = std::make_shared<SweepWorker>(json::parse(setup), make_world, make_clocks);
     return [worker](const std::string& task) { return worker->work(task); };
   };
 }

@@ -5,9 +5,9 @@
 // A worker is made once for each thread, from `setup`, which all tasks share. Order, errors and
 // threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
-//   ThreadFarm farm(sweep_workers(make_world));
+//   ThreadFarm farm(sweep_workers(make_world, make_clocks));
 //   farm.run(sweep_tasks(plan, missing), [&](std::size_t task, const std::string& answer) {
-//     scores[missing[task]] = score_of(answer);               // evaluation/sweep/sweep_score.h
+//     scores[missing[task]] = score_of(answer, plan.kind);    // evaluation/sweep/sweep_score.h
 //   });
 #ifndef SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 #define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/clock_run/clock_evaluation.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/sweep/sweep_plan.h"
@@ -65,8 +66,8 @@ WorkerFactory task_workers(const Tasks& tasks, const TaskWorkerFactory& make_wor
 Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs);
 
 // A worker keeps the scenario of its last task, which the next one mostly shares. It throws what
-// evaluate() throws.
-TaskWorkerFactory sweep_workers(WorldFactory make_world);
+// evaluate() and evaluate_clocks() throw.
+TaskWorkerFactory sweep_workers(WorldFactory make_world, ClockWorldFactory make_clocks);
 
 }  // namespace simbench::evaluation
 

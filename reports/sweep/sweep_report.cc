@@ -15,6 +15,7 @@
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
+#include "reports/archive/archive.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
@@ -30,6 +31,8 @@ using evaluation::SweepPlan;
 using evaluation::SweepRun;
 using evaluation::SweepScore;
 using evaluation::TablePlaces;
+
+bool of_clocks(const SweepPlan& plan) { return plan.kind == evaluation::ResultKind::kClockRuns; }
 
 // The columns that identify the run.
 std::string run_header(const SweepPlan& plan) {
@@ -87,13 +90,14 @@ std::vector<std::string> point_cells(const SweepPlan& plan, const ResponseRow& r
 }
 
 std::string heading(const SweepPlan& plan) {
-  return fmt::format("{}: {}, {}, {}", scenarios::named(plan.scenario, plan.derivation),
+  return fmt::format("{}: {}, {}, {}{}", scenarios::named(plan.scenario, plan.derivation),
                      counted(plan.points(), "point"), counted(plan.pipelines.size(), "pipeline"),
-                     counted(plan.seeds, "seed"));
+                     counted(plan.seeds, "seed"),
+                     of_clocks(plan) ? ", the hosts' clocks alone" : "");
 }
 
 bool is_of_single_camera(const ResponseRow& row) {
-  return row.of("complete_pulses").median > 0 &&
+  return row.kind == evaluation::ResultKind::kCaptures && row.of("complete_pulses").median > 0 &&
          evaluation::count_of_existing(row.of("amd_ms").values) == 0;
 }
 
@@ -110,6 +114,25 @@ ScoredSeeds scored_seeds_at(const ResponseRow& row, const std::vector<const Metr
 
 std::string percent_text(double share) {
   return std::isnan(share) ? "-" : fmt::format("{:.1f} %", share * 100);
+}
+
+// Clock runs have values of nanoseconds.
+auto number_style(const SweepPlan& plan) {
+  return of_clocks(plan) ? significant_text : number_text;
+}
+
+std::string response_legend(const SweepPlan& plan, const std::vector<const Metric*>& metrics) {
+  if (!of_clocks(plan)) {
+    return "Medians over the seeds; precision and recall over all of them. Margin: the gathering "
+           "interval less the 99.9 % quantile of a seed's spreads.";
+  }
+  std::string text = fmt::format("Medians over the seeds, measured from {} to {} s.",
+                                 plan.clock_period.from_s, plan.clock_period.duration_s);
+  for (const Metric* metric : metrics) {
+    if (*metric->legend != '\0') text.append(" ").append(metric->legend);
+  }
+  if (text.back() == ';') text.back() = '.';
+  return text;
 }
 
 constexpr std::size_t kMostCurves = 24;
@@ -176,8 +199,10 @@ FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark)
       FigureSeries{.label = label, .mark = mark, .x = {}, .y = {}, .colour = colour});
 }
 
-std::string axis_label(const Metric& metric) {
+std::string axis_label(const SweepPlan& plan, const Metric& metric) {
   if (metric.is_share()) return fmt::format("{}, %", metric.title);
+  // Names of clock metrics are longer than an axis; the panel's title has them.
+  if (of_clocks(plan)) return fmt::format("median [5-95 %], {}", metric.unit);
   return fmt::format("median {} [5-95 %], {}", metric.title, metric.unit);
 }
 
@@ -211,7 +236,7 @@ FigurePanel response_panel(const SweepPlan& plan, const std::vector<ResponseRow>
     curves[label][x.at[plan.steps(row.point).front()]] = &row;
   }
   FigurePanel panel = {
-      .title = capitalised(metric.title), .x_label = x.label, .y_label = axis_label(metric)};
+      .title = capitalised(metric.title), .x_label = x.label, .y_label = axis_label(plan, metric)};
   panel.categories = x.categories;
   for (const std::string& label : labels) {
     FigureSeries* series =
@@ -259,6 +284,11 @@ std::string sweep_manifest(const SweepPlan& plan, const std::string& study) {
                    {"version", version()},
                    {"commit", commit()}};
   if (!study.empty()) manifest["study"] = study;
+  if (of_clocks(plan)) {
+    manifest["results"] = kClockRunsName;
+    manifest["from_s"] = plan.clock_period.from_s;
+    manifest["duration_s"] = plan.clock_period.duration_s;
+  }
   manifest["axes"] = std::move(axes);
   manifest["pipelines"] = plan.pipelines;
   manifest["seeds"] = {{"first", plan.first_seed}, {"count", plan.seeds}};
@@ -269,7 +299,7 @@ std::string sweep_manifest(const SweepPlan& plan, const std::string& study) {
 
 std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
   std::string csv = run_header(plan);
-  for (const evaluation::Metric* metric : evaluation::sweep_metrics()) {
+  for (const evaluation::Metric* metric : evaluation::sweep_metrics(plan.kind)) {
     csv.append(",").append(metric->sweep);
   }
   csv += changed_header(plan);
@@ -296,7 +326,8 @@ std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>
 }
 
 Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  const std::vector<const Metric*> metrics = evaluation::table_metrics(&TablePlaces::response);
+  const std::vector<const Metric*> metrics =
+      evaluation::table_metrics(&TablePlaces::response, plan.kind);
   std::vector<Column> columns = point_columns(plan);
   const std::size_t keys = columns.size();
   const bool lack_seeds = std::any_of(rows.begin(), rows.end(), [&](const ResponseRow& row) {
@@ -308,20 +339,20 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
     if (metric == metrics.front()) columns.push_back({metric->band_heading});
   }
   Table table(std::move(columns), keys);
+  const auto number = number_style(plan);
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     if (lack_seeds) cells.push_back(scored_seeds_text(scored_seeds_at(row, metrics)));
     for (const Metric* metric : metrics) {
       const double value = row.value(*metric);
-      cells.push_back(metric->is_share() ? share_text(value) : number_text(value));
-      if (metric == metrics.front()) cells.push_back(band_text(row.of(metric->sweep)));
+      cells.push_back(metric->is_share() ? share_text(value) : number(value));
+      if (metric == metrics.front()) cells.push_back(band_text(row.of(metric->sweep), number));
     }
     table.add(std::move(cells));
   }
   Block block{.heading = heading(plan),
               .table = std::move(table),
-              .prose = {"Medians over the seeds; precision and recall over all of them. Margin: "
-                        "the gathering interval less the 99.9 % quantile of a seed's spreads."}};
+              .prose = {response_legend(plan, metrics)}};
   if (lack_seeds) block.prose.emplace_back(kScoredSeedsLegend);
   if (std::any_of(rows.begin(), rows.end(), is_of_single_camera)) {
     block.prose.emplace_back(kSingleCameraLegend);
@@ -394,7 +425,7 @@ Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& ro
     return figure;
   }
   const XAxis x = x_axis(plan);
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::response_panel)) {
+  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::response_panel, plan.kind)) {
     figure.panels.push_back(response_panel(plan, rows, x, *metric));
     const bool may_be_log = metric->better == evaluation::Better::kLower;
     if (may_be_log) use_log_scale_if_wide(figure.panels.back());

@@ -24,9 +24,9 @@ std::string significant_text(double value) {
   return fmt::format("{:.{}f}", value, std::max(0, 2 - exponent));
 }
 
-std::string band_text(const evaluation::Series& series) {
+std::string band_text(const evaluation::Series& series, std::string (*value)(double)) {
   if (!std::isfinite(series.p05) || !std::isfinite(series.p95)) return "-";
-  return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
+  return fmt::format("[{}, {}]", value(series.p05), value(series.p95));
 }
 
 std::string share_text(double share) {

@@ -20,7 +20,7 @@ std::string number_text(double value);
 std::string significant_text(double value);
 
 // The 5-95 % band: "[1.802, 3.511]".
-std::string band_text(const evaluation::Series& series);
+std::string band_text(const evaluation::Series& series, std::string (*value)(double) = number_text);
 
 // A share in percent: "97.3 %". Only exactly 0 and 1 are written as 0 % and 100 %.
 std::string share_text(double share);

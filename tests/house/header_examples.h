@@ -118,8 +118,9 @@ using scenarios::Scenario;
 using sim::make_simulation;
 std::string task_text(std::size_t task);
 std::string answer_in(const std::string& setup, const std::string& task);
-extern const Whatever pipeline, make_world, base, fit, simulated, measured, stream, choice,
-    make_estimator, workspace, layout, arrival, shift, before, after, keep, results, truth, global;
+extern const Whatever pipeline, make_world, make_clocks, base, fit, simulated, measured, stream,
+    choice, make_estimator, workspace, layout, arrival, shift, before, after, keep, results, truth,
+    global;
 extern CsvRecordingReader reader;
 extern const FitInput input;
 extern const std::unique_ptr<RecordingSource> own_source;

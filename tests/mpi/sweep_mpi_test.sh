@@ -31,6 +31,13 @@ ranks 2 "$simbench" "${small[@]}" --jobs 2 -o threads > threads.txt 2> threads.e
   fail "two ranks with two threads each"
 same one threads
 
+clocks=(sweep --clocks --scenario 6host_star --pipelines chrony,free_running --duration-s 400
+  --from-s 100 --seeds 3 --sweep /network/latency_exponential_ms=0.02,0.2)
+"$simbench" "${clocks[@]}" -o clocks --jobs 1 > clocks.txt 2> clocks.err || fail "clocks alone"
+ranks 3 "$simbench" "${clocks[@]}" -o clocks3 > clocks3.txt 2> clocks3.err || fail "clocks, 3 ranks"
+same clocks clocks3
+same clocks.txt clocks3.txt
+
 # A launch on one rank, and a batch job without MPI, are no MPI jobs.
 for variable in OMPI_COMM_WORLD_SIZE=1 SLURM_NTASKS=4 PMI_SIZE=1; do
   env "$variable" OMPI_COMM_WORLD_RANK=0 "$simbench" "${small[@]}" -o one > /dev/null 2> one.err ||

@@ -253,6 +253,85 @@ TEST_F(SweepTest, WrongInputLeavesNothing) {
   EXPECT_TRUE(names_in().empty());
 }
 
+// 2 points, 2 pipelines, 2 seeds of six hosts' clocks.
+std::vector<std::string> clock_sweep(const std::string& folder,
+                                     const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {
+      "sweep",      "--clocks",    "--scenario",
+      "6host_star", "--pipelines", "chrony,free_running",
+      "--seeds",    "2",           "--from-s",
+      "100",        "--sweep",     "/network/latency_exponential_ms=0.02,0.2",
+      "--output",   folder};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST_F(SweepTest, APointOfAClockSweepIsAClockRun) {
+  const ProgramResult swept = run(clock_sweep("out", {"--duration-s", "400"}));
+  ASSERT_EQ(swept.status, 0) << swept.err;
+  EXPECT_THAT(swept.out, HasSubstr("6host_star: 2 points, 2 pipelines, 2 seeds"));
+  EXPECT_EQ(lines_of("out/hosts.csv"), 1U + 8 * 6);
+  const ProgramResult clocks =
+      run({"clocks", "--scenario", "6host_star", "--pipelines", "chrony", "--seeds", "2",
+           "--from-s", "100", "--duration-s", "400", "--set", "/network/latency_exponential_ms=0.2",
+           "--format", "json"});
+  ASSERT_EQ(clocks.status, 0) << clocks.err;
+  const std::string csv = content("out/sweep.csv");
+  for (const std::string start : {"\n0.2,chrony,1,", "\n0.2,chrony,2,"}) {
+    const std::size_t line = csv.find(start);
+    ASSERT_NE(line, std::string::npos);
+    const std::size_t cell = line + start.size();
+    const std::string spread = csv.substr(cell, csv.find(',', cell) - cell);
+    EXPECT_GT(spread.size(), 4U);
+    EXPECT_THAT(clocks.out, HasSubstr(spread));
+  }
+}
+
+TEST_F(SweepTest, AnInterruptedClockSweepGoesOnWithItsOwnPeriodOnly) {
+  ASSERT_EQ(run(clock_sweep("whole", {"--duration-s", "400"})).status, 0);
+  ASSERT_EQ(run(clock_sweep("out", {"--duration-s", "400", "--jobs", "1"})).status, 0);
+  EXPECT_EQ(all_of("out"), all_of("whole"));
+  std::string log = content("out/runs.log");
+  log.resize(log.size() / 2);
+  file("out/runs.log", log);
+  const ProgramResult other = run(clock_sweep("out", {"--duration-s", "401"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("/duration_s is 400 there and 401 here"));
+  const ProgramResult again = run(clock_sweep("out", {"--duration-s", "400"}));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("of 8 runs finished already"));
+  EXPECT_EQ(all_of("out"), all_of("whole"));
+}
+
+TEST_F(SweepTest, ClockSweepsEndAtOnceWhenInterrupted) {
+  ProgramOptions options;
+  options.interrupt_after = std::chrono::milliseconds(200);
+  const ProgramResult result = run(clock_sweep("out", {"--duration-s", "30000000"}), options);
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the same command goes on"));
+}
+
+TEST_F(SweepTest, ClockSweepsRefuseWhatMeansNothing) {
+  const auto problem = [this](const std::vector<std::string>& arguments) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    return result.err;
+  };
+  EXPECT_THAT(problem(command("out", {"--duration-s", "100"})),
+              HasSubstr("--duration-s: found without --clocks"));
+  EXPECT_THAT(problem(command("out", {"--from-s", "100"})),
+              HasSubstr("--from-s: found without --clocks"));
+  EXPECT_THAT(problem({"sweep", "--clocks", "--study", "seeds_needed", "-o", "out"}),
+              HasSubstr("--clocks: the study seeds_needed shows what only captures have"));
+  EXPECT_THAT(problem(clock_sweep("out", {"--duration-s", "100"})),
+              HasSubstr("--from-s: found 100, allowed: less than --duration-s, 100"));
+  EXPECT_THAT(
+      problem({"sweep", "--clocks", "--scenario", "leaderboard_lan", "--pipelines",
+               "host.trigger_wired", "--sweep", "/hosts/count=6", "-o", "out"}),
+      HasSubstr("needs the trigger's pulses, which a run of the clocks alone does not have"));
+  EXPECT_TRUE(names_in().empty());
+}
+
 TEST_F(SweepTest, Studies) {
   const ProgramResult list = run({"sweep", "--study", "list"});
   EXPECT_EQ(list.status, 0);

@@ -98,6 +98,32 @@ TEST(SweepPlan, RefusesWhatMakesNoSweep) {
   EXPECT_THAT(problem_of(unknown), HasSubstr("did you mean genlock"));
 }
 
+TEST(SweepPlan, ClockRunsAreOfPipelinesThatNeedNoCameras) {
+  SweepRequest request = {.scenario = "18cam_6host_45fps", .seeds = 2};
+  const std::size_t of_captures = make_plan(request).pipelines.size();
+  request.kind = ResultKind::kClockRuns;
+  request.clock_period = {.from_s = 10, .duration_s = 100};
+  const SweepPlan plan = make_plan(request);
+  EXPECT_EQ(plan.kind, ResultKind::kClockRuns);
+  EXPECT_EQ(plan.clock_period, request.clock_period);
+  EXPECT_GT(plan.pipelines.size(), 0U);
+  EXPECT_LT(plan.pipelines.size(), of_captures);  // one for each host_sync
+  EXPECT_TRUE(plan.left_out.empty());
+  SweepRequest some_need_more = request;
+  some_need_more.scenario = "leaderboard_lan";
+  EXPECT_THAT(
+      make_plan(some_need_more).left_out,
+      testing::Contains(HasSubstr("host.trigger_wired: host_sync \"trigger_wired\" needs")));
+  request.clock_period.from_s = 100;
+  EXPECT_THAT(problem_of(request), HasSubstr("--from-s: found 100, allowed: less than"));
+  request.clock_period.from_s = 98;
+  EXPECT_THAT(problem_of(request), HasSubstr("--duration-s: found 100, allowed: at least 102"));
+  request.clock_period.from_s = 10;
+  request.axes = {"/hosts/count=6,1+/cameras/cameras_per_host=3,18"};
+  EXPECT_THAT(problem_of(request), HasSubstr("point 2 of 2"));
+  EXPECT_THAT(problem_of(request), HasSubstr("a master and a slave"));
+}
+
 TEST(SweepPlan, OverridesHoldAtEveryPoint) {
   SweepRequest request = two_axes();
   request.overrides = {{"/timeline/frames", "77"}};

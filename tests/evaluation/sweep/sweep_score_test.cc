@@ -50,6 +50,19 @@ TEST(SweepScore, WhatDoesNotExistIsAnEmptyCell) {
   EXPECT_TRUE(std::isnan(score_of(text)->at("amd_ms")));
 }
 
+TEST(SweepScore, OfClockRunsHasTheirColumns) {
+  SweepScore score(ResultKind::kClockRuns);
+  ASSERT_EQ(score.values.size(), sweep_metrics(ResultKind::kClockRuns).size());
+  score.at("clock_spread_ms") = 0.125;
+  score.at("recovery_s") = std::numeric_limits<double>::quiet_NaN();
+  const std::string text = text_of(score);
+  EXPECT_FALSE(score_of(text)) << "not of a capture";
+  auto read = score_of(text, ResultKind::kClockRuns);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->at("clock_spread_ms"), 0.125);
+  EXPECT_TRUE(std::isnan(read->at("recovery_s")));
+}
+
 TEST(SweepScore, RefusesOtherTexts) {
   const std::string text = text_of({});
   EXPECT_TRUE(score_of(text));

@@ -188,5 +188,68 @@ TEST(SweepFigure, HostsAndSeeds) {
   EXPECT_EQ(series.y.back(), 0);
 }
 
+SweepPlan clock_plan() {
+  SweepPlan clocks = plan();
+  clocks.axes = {evaluation::parse_axis("/hosts/count=4,2")};
+  clocks.kind = evaluation::ResultKind::kClockRuns;
+  clocks.clock_period = {.from_s = 300, .duration_s = 7200};
+  return clocks;
+}
+
+// Spreads of nanoseconds, times 10 from run to run.
+std::vector<SweepScore> clock_scores() {
+  std::vector<SweepScore> scores;
+  double spread_ms = 1.25e-6;
+  for (std::size_t run = 0; run < clock_plan().runs(); ++run, spread_ms *= 10) {
+    SweepScore score(evaluation::ResultKind::kClockRuns);
+    score.at("clock_spread_ms") = spread_ms;
+    score.at("max_te_ms") = 2 * spread_ms;
+    score.at("holdover_600_ms") = 3;
+    score.at("below_0_01_ms_s") = std::numeric_limits<double>::quiet_NaN();
+    score.host_errors_ms = {0, spread_ms};
+    scores.push_back(score);
+  }
+  return scores;
+}
+
+TEST(ClockSweep, TheManifestSaysWhichClockRuns) {
+  const auto manifest = nlohmann::json::parse(sweep_manifest(clock_plan(), ""));
+  EXPECT_EQ(manifest["results"], "clocks");
+  EXPECT_EQ(manifest["from_s"], 300);
+  EXPECT_EQ(manifest["duration_s"], 7200);
+  EXPECT_FALSE(nlohmann::json::parse(sweep_manifest(plan(), "")).contains("results"));
+}
+
+TEST(ClockSweep, CsvHasTheMetricsOfClocks) {
+  const std::string csv = sweep_csv(clock_plan(), clock_scores());
+  EXPECT_THAT(csv, testing::StartsWith("/hosts/count,pipeline,seed,clock_spread_ms,"));
+  EXPECT_THAT(csv, testing::Not(HasSubstr("amd_ms")));
+  EXPECT_THAT(csv, HasSubstr("\n4,fast,7,1.25e-06,"));
+  EXPECT_THAT(sweep_hosts_csv(clock_plan(), clock_scores()), HasSubstr("\n4,fast,7,1,1.25e-06\n"));
+}
+
+TEST(ClockSweep, TheTableShowsNanoseconds) {
+  const std::vector<ResponseRow> all = evaluation::response(clock_plan(), clock_scores());
+  const std::string table = plain({.blocks = {response_block(clock_plan(), all)}});
+  EXPECT_THAT(table, HasSubstr("2 seeds, the hosts' clocks alone"));
+  EXPECT_THAT(table, testing::ContainsRegex("4 +fast +6.88e-06 +.1.81e-06, 1.19e-05. "));
+  EXPECT_THAT(table, HasSubstr("measured from 300 to 7200 s"));
+  EXPECT_THAT(table, testing::Not(HasSubstr("precision")));
+  EXPECT_THAT(table, testing::Not(HasSubstr("single one")));
+}
+
+TEST(ClockSweep, TheFigureIsLogarithmicWhereWide) {
+  const Figure figure =
+      response_figure(clock_plan(), evaluation::response(clock_plan(), clock_scores()));
+  ASSERT_EQ(figure.panels.size(), 3U);
+  EXPECT_EQ(figure.panels[0].title, "Spread of the clocks");
+  EXPECT_EQ(figure.panels[0].y_label, "median [5-95 %], ms");
+  EXPECT_TRUE(figure.panels[0].log_y);
+  EXPECT_TRUE(figure.panels[1].log_y);
+  EXPECT_FALSE(figure.panels[2].log_y);
+  ASSERT_EQ(figure.panels[1].series.size(), 2U);
+  EXPECT_NEAR(figure.panels[1].series[0].y[1], 1.375e-5, 1e-12);
+}
+
 }  // namespace
 }  // namespace simbench::reports
