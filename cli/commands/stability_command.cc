@@ -15,8 +15,8 @@ constexpr double kLongestIntervalS = 1e9;
 constexpr const char* kStabilityExamples = R"(
 Takes what other programs have measured, and recognises it by content: CSV (seconds, time error),
 tracking.log and statistics.log of chrony, the output of ptp4l and phc2sys, loopstats of ntpd. Gives
-Allan, modified Allan, Hadamard and time deviation, MTIE and the size of the time error, over octaves
-of tau. Gaps are kept apart, never interpolated; steps are named.
+Allan, modified Allan, Hadamard and time deviation, MTIE and the size of the time error, over
+octaves of tau. Gaps are kept apart, never interpolated; steps are named.
 
 Examples:
   simbench stability /var/log/chrony/tracking.log

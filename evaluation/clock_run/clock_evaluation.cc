@@ -85,10 +85,12 @@ class ClockEvaluation {
     try {
       finished = run_jobs_with_workers(
           jobs_.size(), {.threads = options_.jobs, .cancel = options_.cancel}, [this]() -> Job {
-            return [this, source = std::shared_ptr<ClockSource>(make_source_())](std::size_t job) {
-              run_job(job, *source);
+            return [this, worker = std::make_shared<Worker>(*this)](std::size_t job) {
+              run_job(job, *worker->source);
             };
           });
+    } catch (const RecordingCancelled&) {
+      finished = false;
     } catch (const JobError& error) {
       throw EvaluationFailed(error.what(), {});
     }
@@ -96,6 +98,7 @@ class ClockEvaluation {
     ClockResults all = results();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     Performance& performance = all.results.performance;
+    performance.cpu_seconds = cpu_seconds_;
     performance.wall_seconds = wall.count();
     performance.events_per_second = static_cast<double>(performance.events) / wall.count();
     performance.simulated_seconds_per_second = performance.simulated_seconds / wall.count();
@@ -109,6 +112,22 @@ class ClockEvaluation {
     std::optional<ClockReadings> readings;  // of the first seed
   };
 
+  // One thread's backend and CPU time.
+  struct Worker {
+    explicit Worker(ClockEvaluation& all) : evaluation(all), source(all.make_source_()) {}
+    ~Worker() {
+      source.reset();
+      const std::lock_guard lock(evaluation.mutex_);
+      evaluation.cpu_seconds_ += thread_cpu_seconds() - begin;
+    }
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    const double begin = thread_cpu_seconds();
+    ClockEvaluation& evaluation;
+    std::unique_ptr<ClockSource> source;
+  };
+
   void run_job(std::size_t job, ClockSource& source) {
     const PipelineChoice& choice = chosen_.choices[job % chosen_.choices.size()];
     const std::uint64_t seed = options_.first_seed + job / chosen_.choices.size();
@@ -116,13 +135,18 @@ class ClockEvaluation {
       jobs_[job] = score_of(choice, seed, source);
     } catch (const RecordingCancelled&) {
       throw;
+    } catch (const scenarios::InputError& error) {
+      throw scenarios::InputError(fmt::format("{}: {}", job_name(choice, seed), error.what()));
     } catch (const std::exception& error) {
-      throw JobError(fmt::format("{}, pipeline {}, seed {}: {} (simbench {}, commit {})",
-                                 scenario_.name, choice.pipeline.name, seed, error.what(),
-                                 version(), commit()));
+      throw JobError(fmt::format("{}: {} (simbench {}, commit {})", job_name(choice, seed),
+                                 error.what(), version(), commit()));
     }
     const std::lock_guard lock(mutex_);
     if (progress_) progress_(++done_, jobs_.size());
+  }
+
+  std::string job_name(const PipelineChoice& choice, std::uint64_t seed) const {
+    return fmt::format("{}, pipeline {}, seed {}", scenario_.name, choice.pipeline.name, seed);
   }
 
   Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source) const {
@@ -142,6 +166,7 @@ class ClockEvaluation {
     Scored scored;
     static_cast<MetricValues<double>&>(scored.seed) = score.values;
     scored.seed.seed = seed;
+    scored.seed.host_errors_ms = std::move(score.host_errors_ms);
     scored.seed.cost = {.events = cost.events,
                         .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
                         .trace_hash = cost.trace_hash};
@@ -166,7 +191,6 @@ class ClockEvaluation {
       std::vector<SeedScore> seeds;
       std::vector<StabilityCurves> curves;
       for (std::size_t job = pipeline; job < jobs_.size(); job += chosen_.choices.size()) {
-    scored.seed.host_errors_ms = std::move(score.host_errors_ms);
         results.performance.events += jobs_[job].seed.cost.events;
         results.performance.simulated_seconds += jobs_[job].seed.cost.simulated_seconds;
         seeds.push_back(std::move(jobs_[job].seed));
@@ -188,6 +212,7 @@ class ClockEvaluation {
   std::vector<Scored> jobs_;  // each written by one worker
   std::mutex mutex_;          // guards what follows
   std::uint64_t done_ = 0;
+  double cpu_seconds_ = 0;
 };
 
 }  // namespace
@@ -224,7 +249,6 @@ void check_clock_options(const Scenario& scenario, const ClockOptions& options) 
   }
 }
 
-}  // namespace simbench::evaluation
 ClockPipelines clock_pipelines(const Scenario& scenario, const ClockOptions& options) {
   check_clock_options(scenario, options);
   Chosen chosen = choose_clock_runs(scenario, options.pipelines);
@@ -235,3 +259,4 @@ ClockPipelines clock_pipelines(const Scenario& scenario, const ClockOptions& opt
   return pipelines;
 }
 
+}  // namespace simbench::evaluation

@@ -60,6 +60,9 @@ StabilityCurves curves_of(const ClockReadings& readings) {
   return pooled(slaves);
 }
 
+// Whole seconds are whole, which a product with 1e-9 does not give.
+double exact_seconds(Nanoseconds span) { return to_ns(span) / 1e9; }
+
 double spread_of(std::span<const double> errors_s) {
   const auto [least, greatest] = std::minmax_element(errors_s.begin(), errors_s.end());
   return (*greatest - *least) * 1e3;
@@ -86,8 +89,8 @@ StabilityCurves pooled(std::span<const StabilityCurves> curves) {
 
 ClockScorer::ClockScorer(const ClockSpan& span) : span_(span), errors_(span.hosts) {
   SIMBENCH_ASSERT(span.duration >= span.from + kReadingInterval, "two readings at least");
-  kept_.start_s = to_seconds(span.from);
-  kept_.interval_s = to_seconds(kReadingInterval);
+  kept_.start_s = exact_seconds(span.from);
+  kept_.interval_s = exact_seconds(kReadingInterval);
   kept_.errors_s.resize(span.hosts);
 }
 
@@ -154,15 +157,15 @@ ClockScore ClockScorer::finish(std::uint64_t messages) {
   const auto below_s = [&](std::size_t bound) {
     if (!last_above_[bound]) return 0.0;
     if (*last_above_[bound] == last_) return kNan;
-    return to_seconds(*last_above_[bound] + kReadingInterval - TrueTime{});
+    return exact_seconds(*last_above_[bound] + kReadingInterval - TrueTime{});
   };
   values.below_1_ms_s = below_s(0);
   values.below_0_1_ms_s = below_s(1);
   values.below_0_01_ms_s = below_s(2);
   values.holdover_60_ms = holdover_60_ms_;
   values.holdover_600_ms = holdover_600_ms_;
-  if (last_apart_ && *last_apart_ <= kRecovery) values.recovery_s = to_seconds(*last_apart_);
-  values.packets_per_s = static_cast<double>(messages) / to_seconds(span_.duration);
+  if (last_apart_ && *last_apart_ <= kRecovery) values.recovery_s = exact_seconds(*last_apart_);
+  values.packets_per_s = static_cast<double>(messages) / exact_seconds(span_.duration);
   score.curves = curves_of(kept_);
   score.readings = std::move(kept_);
   return score;

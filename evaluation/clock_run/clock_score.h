@@ -13,12 +13,12 @@
 // A value that does not exist (never below, never recovered) is NaN. Deviations are the RMS over
 // the slaves, MTIE is the largest of any slave.
 //
-// Memory: two readings a second of each host up to kMostReadings; longer runs keep every second,
-// fourth ... reading for stability alone, so that memory is constant in time.
+// Memory: a reading a second of each host up to kMostReadings; of longer runs every second, fourth
+// ... reading, for stability and the quantiles of the spread, so that memory is constant in time.
 //
-//   ClockScorer scorer({.duration = 3600s, .from = 300s, .hosts = 6});
-//   source.run(scorer.request(...), scorer);
-//   const ClockScore score = scorer.finish();
+//   ClockScorer scorer({.duration = from_seconds(3600), .from = from_seconds(300), .hosts = 6});
+//   const ClockCost cost = clock_source.run(clock_request, scorer);
+//   const ClockScore score = scorer.finish(cost.messages);
 #ifndef SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
 #define SIMBENCH_EVALUATION_CLOCK_RUN_CLOCK_SCORE_H_
 
@@ -87,7 +87,6 @@ class ClockScorer final : public ClockSink {
 
  private:
   void measure(std::span<const double> errors_s, double spread_ms);
-  void keep(TrueTime at, std::span<const double> errors_s);
   void halve();
   void watch_loss(Nanoseconds since_loss, std::span<const double> errors_s, double spread_ms);
 

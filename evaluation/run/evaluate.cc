@@ -1,7 +1,6 @@
 #include "evaluation/run/evaluate.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,12 +23,6 @@ namespace simbench::evaluation {
 namespace {
 
 using scenarios::Scenario;
-
-double thread_cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
-}
 
 bool is_offline(const PipelineChoice& choice) {
   return choice.device_time.make &&

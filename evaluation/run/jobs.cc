@@ -1,5 +1,7 @@
 #include "evaluation/run/jobs.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <system_error>
 #include <thread>
@@ -7,6 +9,12 @@
 #include <vector>
 
 namespace simbench::evaluation {
+
+double thread_cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
 
 bool JobQueue::stopped() const {
   return error_ != nullptr || (cancel_ != nullptr && cancel_->load());

@@ -44,6 +44,9 @@ bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
                            const WorkerFactory& make_worker);
 
+// The CPU time of the calling thread.
+double thread_cpu_seconds();
+
 // The remaining jobs, for callers that give some of them to other processes. Thread-safe.
 class JobQueue {
  public:

@@ -11,7 +11,7 @@
 //
 //   TimeErrors errors(/*hosts=*/6);
 //   errors.add(/*host=*/1, -0.003);
-//   errors.add_to(score);
+//   errors.add_to(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_TIME_ERRORS_H_
 #define SIMBENCH_EVALUATION_SCORING_TIME_ERRORS_H_
 
