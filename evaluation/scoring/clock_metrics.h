@@ -10,13 +10,9 @@ namespace simbench::evaluation {
 inline constexpr Judged kJudgedClocks = {.smallest_step = 1e-6,  // a nanosecond
                                          .margin = {.relative = 0.02, .absolute = 1e-6}};
 
-constexpr Metric in_clock_table(Metric metric, int place, const char* heading, const char* legend,
-                                bool is_judged) {
-  metric.tables.clocks = place;
-  metric.tables.response = place;
-  metric.heading = heading;
-  metric.legend = legend;
-  metric.legend_continues = *legend != '\0' && place > 1;
+constexpr Metric in_clock_table(Metric metric, int place, bool is_judged) {
+  metric.tables = {.clocks = place, .response = place};
+  metric.legend_continues = *metric.legend != '\0';
   if (is_judged) metric.judged = kJudgedClocks;
   return metric;
 }
@@ -57,12 +53,10 @@ inline constexpr Metric kClockMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::clock_spread_max_ms,
                           &MetricValues<Series>::clock_spread_max_ms},
      .sweep = "clock_spread_max_ms"},
-    on_panel(in_clock_table(kMaxTe, 3, "max |TE|\nms",
-                            "TE: a host's clock minus the master's, over all slaves;", true),
-             2),
-    in_clock_table(kRmsTe, 4, "RMS TE\nms", "", true),
-    in_clock_table(kConstantTe, 5, "constant\nTE ms", "constant: largest mean of a host;", false),
-    in_clock_table(kDynamicTe, 6, "dynamic\nTE ms", "dynamic: largest range of a host.", false),
+    on_panel(in_clock_table(kMaxTe, 3, true), 2),
+    in_clock_table(kRmsTe, 4, true),
+    in_clock_table(kConstantTe, 5, false),
+    in_clock_table(kDynamicTe, 6, false),
     {.id = "below_1_ms_s",
      .title = "time until below 1 ms",
      .unit = "s",

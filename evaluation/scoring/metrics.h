@@ -138,6 +138,7 @@ enum class CsvColumns : std::uint8_t {
 struct TablePlaces {
   int paper = 0;           // the paper's metrics
   int truth = 0;           // metrics that need true time
+  int time_errors = 0;     // the hosts' time errors
   int sets = 0;            // gathered sets
   int clocks = 0;          // runs of the hosts' clocks
   int response = 0;        // the table of a sweep
@@ -254,30 +255,37 @@ inline constexpr Judged kJudgedShare = {.smallest_step = 0.001,
                                         .margin = {.relative = 0.01, .absolute = 0.005}};
 
 // Time errors are metrics of both kinds; only clock runs, which are long, are judged by them.
-constexpr Metric time_error(const char* id, const char* title, double MetricValues<double>::*seed,
-                            Series MetricValues<Series>::*row) {
+constexpr Metric time_error(const char* id, const char* title, SeriesPlace kept, int place,
+                            const char* heading, const char* legend) {
   Metric metric;
   metric.id = id;
   metric.title = title;
   metric.unit = "ms";
   metric.needs = Needs::kTruth;
-  metric.place = SeriesPlace{seed, row};
+  metric.place = kept;
+  metric.tables.time_errors = place;
+  metric.heading = heading;
+  metric.legend = legend;
+  metric.legend_continues = place > 1;
   metric.sweep = id;
   metric.is_new = true;
   return metric;
 }
 inline constexpr Metric kMaxTe =
-    time_error("max_te_ms", "largest time error", &MetricValues<double>::max_te_ms,
-               &MetricValues<Series>::max_te_ms);
-inline constexpr Metric kRmsTe =
-    time_error("rms_te_ms", "RMS time error", &MetricValues<double>::rms_te_ms,
-               &MetricValues<Series>::rms_te_ms);
+    time_error("max_te_ms", "largest time error",
+               {&MetricValues<double>::max_te_ms, &MetricValues<Series>::max_te_ms}, 1,
+               "max |TE|\nms", "TE: a host's clock minus the master's, over all slaves;");
+inline constexpr Metric kRmsTe = time_error(
+    "rms_te_ms", "RMS time error",
+    {&MetricValues<double>::rms_te_ms, &MetricValues<Series>::rms_te_ms}, 2, "RMS TE\nms", "");
 inline constexpr Metric kConstantTe =
-    time_error("constant_te_ms", "constant time error", &MetricValues<double>::constant_te_ms,
-               &MetricValues<Series>::constant_te_ms);
+    time_error("constant_te_ms", "constant time error",
+               {&MetricValues<double>::constant_te_ms, &MetricValues<Series>::constant_te_ms}, 3,
+               "constant\nTE ms", "constant: largest mean of a host;");
 inline constexpr Metric kDynamicTe =
-    time_error("dynamic_te_ms", "dynamic time error", &MetricValues<double>::dynamic_te_ms,
-               &MetricValues<Series>::dynamic_te_ms);
+    time_error("dynamic_te_ms", "dynamic time error",
+               {&MetricValues<double>::dynamic_te_ms, &MetricValues<Series>::dynamic_te_ms}, 4,
+               "dynamic\nTE ms", "dynamic: largest range of a host.");
 inline constexpr Metric kMetricTable[] = {
     {.id = "amd_ms",
      .title = "AMD",

@@ -106,6 +106,21 @@ Table truth_table(const Results& results) {
   return table_of(fields, results.rows);
 }
 
+// Whether there are slaves and true time.
+bool has_time_errors(const Results& results) {
+  return std::any_of(results.rows.begin(), results.rows.end(), [](const Row& row) {
+    return evaluation::scored_seeds(row, evaluation::metric("max_te_ms")) > 0;
+  });
+}
+
+Table time_errors_table(const Results& results) {
+  const auto metrics = evaluation::table_metrics(&TablePlaces::time_errors);
+  RowFields fields = {pipeline_field<Row>()};
+  append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
+  for (const Metric* metric : metrics) append(fields, metric_fields(*metric));
+  return table_of(fields, results.rows);
+}
+
 // Adds the legends of a table's metrics.
 void append_legends(int TablePlaces::*table, std::vector<std::string>& lines) {
   for (const Metric* metric : evaluation::table_metrics(table)) {
@@ -142,6 +157,7 @@ std::vector<std::string> results_legend(const Results& results) {
   }
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
+  if (has_time_errors(results)) append_legends(&TablePlaces::time_errors, lines);
   if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
   }
@@ -285,6 +301,9 @@ Document results_document(const Results& results, const std::string& summary) {
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
   blocks.push_back({.heading = "Metrics that need true time", .table = truth_table(results)});
+  if (has_time_errors(results)) {
+    blocks.push_back({.heading = "Time error of the hosts", .table = time_errors_table(results)});
+  }
   if (gatherings_differ(results)) {
     blocks.push_back({.heading = "Gathered sets, over all seeds",
                       .table = sets_table(pointers_to(results.rows))});

@@ -129,7 +129,7 @@ inline constexpr std::uint32_t kTraceCsvPlaces = 100;
 // `time_s`, seconds of true time, and a cell only where a series has a value.
 //
 //   trigger/pulse                number of the pulse
-//   hostN/clock_error_us         system clock minus the master's (N > 0)
+//   hostN/clock_error_us         system clock minus the master's, its TE (N > 0)
 //   hostN/clock_step_us          step of the clock
 //   cameraN/latency_ms           middle of the exposure to delivery, at the delivery
 //                                (cameraN/colour/latency_ms: of the colour stream)

@@ -135,7 +135,7 @@ class ChromeWriter {
       add(R"(,"cat":"set","name":"{}","args":{{"frames":{},"stamps_range_us":{:.3f}}})",
           set.complete ? "set" : "partial set", set.members, us(set.range));
     } else if (event.what == TraceWhat::kClock) {
-      add(R"(,"cat":"clock","name":"clock error","args":{{"us":{:.3f}}})",
+      add(R"(,"cat":"clock","name":"clock error, TE","args":{{"us":{:.3f}}})",
           us(trace_.clocks[event.subject].error));
     } else {
       const TraceAdjustment& adjustment = trace_.adjustments[event.subject];

@@ -214,6 +214,7 @@ TEST(ChromeTrace, ClocksAreCountersWhereTheyChangeAndInstantsWhereTheyAreSet) {
   EXPECT_EQ(json["otherData"]["ts_0_is_true_time_us"], -2000.0) << "shifted: none is negative";
   const std::vector<Json> counters = of_phase(json, "C");
   ASSERT_EQ(counters.size(), 2U);
+  EXPECT_EQ(counters[0]["name"], "clock error, TE");
   EXPECT_EQ(counters[0]["ts"], 0.0);
   EXPECT_EQ(counters[0]["args"]["us"], 0.5);
   EXPECT_EQ(counters[1]["ts"], 2000.0);
