@@ -52,17 +52,21 @@ double median_time(std::vector<double> values) {
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
   }
   std::sort(values.begin(), values.end());
-  const double high = values.empty() ? kNan : values[values.size() / 2];
-  if (!std::isfinite(high)) return kNan;
-  return evaluation::quantile_of_sorted(values, 0.5);
+  if (values.empty()) return kNan;
+  const double high = values[values.size() / 2];
+  const double median = (values[(values.size() - 1) / 2] + high) / 2;
+  return std::isfinite(median) ? median : kNan;
+}
+
+// Over the seeds.
+double median_of(const Metric& metric, const Row& row) {
+  const evaluation::Series& series = metric.series(row);
+  return std::string_view(metric.unit) == "s" ? median_time(series.values) : series.median;
 }
 
 Field<Row> clock_field(const Metric& metric) {
-  return {{metric.heading, Align::kRight, metric.legend}, [metric](const Row& row) {
-            const bool is_time = std::string_view(metric.unit) == "s";
-            return significant_text(is_time ? median_time(metric.series(row).values)
-                                            : metric.series(row).median);
-          }};
+  return {{metric.heading, Align::kRight, metric.legend},
+          [metric](const Row& row) { return significant_text(median_of(metric, row)); }};
 }
 
 Table metrics_table(const ClockResults& results) {
@@ -209,8 +213,8 @@ std::string clock_csv(const ClockResults& results) {
     const Row& row = results.results.rows[i];
     const std::string name = csv_cell(std::string_view(row.pipeline));
     for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
-      text += fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(metric.series(row).median),
-                          changes);
+      text +=
+          fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(median_of(metric, row)), changes);
     }
     for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
       for (const evaluation::StabilityPoint& point : results.curves[i].*curve.points) {
@@ -232,7 +236,7 @@ void write_series_csv(const ClockResults& results, std::ostream& out) {
     for (std::size_t i = 0; i < readings.errors_s.front().size(); ++i) {
       const double at_s = readings.start_s + static_cast<double>(i) * readings.interval_s;
       for (std::size_t host = 1; host < readings.errors_s.size(); ++host) {
-        out << fmt::format("{},{},{},{:.4e}\n", start, at_s, host, readings.errors_s[host][i]);
+        out << fmt::format("{},{},{},{:.12f}\n", start, at_s, host, readings.errors_s[host][i]);
       }
     }
   }
