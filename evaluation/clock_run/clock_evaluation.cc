@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "evaluation/run/jobs.h"
+#include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/rows.h"
-#include "recording/version.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -63,11 +63,6 @@ ClockSpan span_of(const Scenario& scenario, const ClockOptions& options) {
           .hosts = static_cast<std::size_t>(scenario.hosts.count)};
 }
 
-class JobError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 class ClockEvaluation {
  public:
   ClockEvaluation(const Scenario& scenario, const ClockSourceFactory& make_source,
@@ -91,7 +86,7 @@ class ClockEvaluation {
           });
     } catch (const RecordingCancelled&) {
       finished = false;
-    } catch (const JobError& error) {
+    } catch (const JobFailed& error) {
       throw EvaluationFailed(error.what(), {});
     }
     if (!finished) throw EvaluationCancelled("cancelled", {});
@@ -131,22 +126,10 @@ class ClockEvaluation {
   void run_job(std::size_t job, ClockSource& source) {
     const PipelineChoice& choice = chosen_.choices[job % chosen_.choices.size()];
     const std::uint64_t seed = options_.first_seed + job / chosen_.choices.size();
-    try {
-      jobs_[job] = score_of(choice, seed, source);
-    } catch (const RecordingCancelled&) {
-      throw;
-    } catch (const scenarios::InputError& error) {
-      throw scenarios::InputError(fmt::format("{}: {}", job_name(choice, seed), error.what()));
-    } catch (const std::exception& error) {
-      throw JobError(fmt::format("{}: {} (simbench {}, commit {})", job_name(choice, seed),
-                                 error.what(), version(), commit()));
-    }
+    run_named({scenario_.name, choice.pipeline.name, seed},
+              [&] { jobs_[job] = score_of(choice, seed, source); });
     const std::lock_guard lock(mutex_);
     if (progress_) progress_(++done_, jobs_.size());
-  }
-
-  std::string job_name(const PipelineChoice& choice, std::uint64_t seed) const {
-    return fmt::format("{}, pipeline {}, seed {}", scenario_.name, choice.pipeline.name, seed);
   }
 
   Scored score_of(const PipelineChoice& choice, std::uint64_t seed, ClockSource& source) const {

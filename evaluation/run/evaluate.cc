@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "evaluation/run/jobs.h"
+#include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/claims.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/rows.h"
 #include "recording/counted.h"
-#include "recording/version.h"
 #include "scenarios/loader.h"
 
 namespace simbench::evaluation {
@@ -35,12 +35,6 @@ double drawn_asymmetry_ms(const scenarios::Network& network) {
       network.links, [](const scenarios::Link& link) { return link.asymmetry_ms.has_value(); });
   return is_stated || network.port_asymmetry_sigma_ms > 0 ? 0 : network.asymmetry_sigma_ms;
 }
-
-// A job that failed: scenario, pipeline, seed, version and reason.
-class JobFailed : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 // The jobs of one evaluation and their results.
 class Evaluation {
@@ -67,6 +61,8 @@ class Evaluation {
             };
           });
       if (!finished) throw EvaluationCancelled("cancelled", results(wall_seconds()));
+    } catch (const RecordingCancelled&) {
+      throw EvaluationCancelled("cancelled", results(wall_seconds()));
     } catch (const JobFailed& failure) {
       throw EvaluationFailed(failure.what(), results(wall_seconds()));
     }
@@ -101,24 +97,16 @@ class Evaluation {
   void run_job(std::size_t job, RecordingSource& source) {
     const PipelineChoice& choice = choices_[pipeline_of(job)];
     const std::uint64_t seed = seed_of(job);
-    try {
-      scores_[job] = score_of(choice, seed, source);
-    } catch (const RecordingFailed& failure) {
-      scores_[job] = missing_score(seed, failure.what());
-    } catch (const scenarios::InputError& error) {
-      throw scenarios::InputError(fmt::format("{}: {}", job_name(job), error.what()));
-    } catch (const std::exception& error) {
-      throw JobFailed(fmt::format("{}: {} (simbench {}, commit {})", job_name(job), error.what(),
-                                  version(), commit()));
-    }
+    run_named({scenario_.name, choice.pipeline.name, seed}, [&] {
+      try {
+        scores_[job] = score_of(choice, seed, source);
+      } catch (const RecordingFailed& failure) {
+        scores_[job] = missing_score(seed, failure.what());
+      }
+    });
     const std::lock_guard lock(mutex_);
     ++done_;
     if (progress_) progress_(done_, scores_.size());
-  }
-
-  std::string job_name(std::size_t job) const {
-    return fmt::format("{}, pipeline {}, seed {}", scenario_.name,
-                       choices_[pipeline_of(job)].pipeline.name, seed_of(job));
   }
 
   SeedScore score_of(const PipelineChoice& choice, std::uint64_t seed,

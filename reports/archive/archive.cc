@@ -164,12 +164,17 @@ void read_metric(const JsonNode& row_node, std::size_t seeds, const evaluation::
   }
 }
 
-Row read_row(const JsonNode& node, std::size_t seeds) {
+Row read_stages(const JsonNode& node) {
   Row row;
   row.pipeline = node["pipeline"].text();
   row.host_sync = node["host_sync"].text();
   row.device_time = node["device_time"].text();
   row.gathering = node["gathering"].text();
+  return row;
+}
+
+Row read_row(const JsonNode& node, std::size_t seeds) {
+  Row row = read_stages(node);
   row.offline = node["offline"].flag();
   for (const evaluation::Metric& metric : evaluation::metrics()) {
     read_metric(node, seeds, metric, row);
@@ -181,11 +186,7 @@ Row read_row(const JsonNode& node, std::size_t seeds) {
 
 // A row of `simbench clocks` (reports/clocks/clock_report.h): its metrics alone.
 Row read_clock_row(const JsonNode& node, std::size_t seeds) {
-  Row row;
-  row.pipeline = node["pipeline"].text();
-  row.host_sync = node["host_sync"].text();
-  row.device_time = node["device_time"].text();
-  row.gathering = node["gathering"].text();
+  Row row = read_stages(node);
   for (const evaluation::Metric& metric : evaluation::metrics(evaluation::ResultKind::kClockRuns)) {
     const JsonNode values = node["metrics"][metric.id]["values"];
     metric.series(row) = evaluation::make_series(values.values_of(metric, seeds));
