@@ -48,6 +48,7 @@ Inputs::Inputs(std::string folder) : folder_(std::move(folder)) {
   scenarios::load_scenario("3cam_1host_30fps");  // compiles the schema, for all children
   add_files();
   add_archives();
+  add_clock_archive();
   fs::copy(fs::path(folder_) / kGood, fs::path(folder_) / kTried, fs::copy_options::recursive);
   fs::create_directory(fs::path(folder_) / kWritten);
   add_arguments();
@@ -185,6 +186,17 @@ void Inputs::add_archives() {
   add({"sweep", 1, files_of("sweep"), {continued}});
 }
 
+void Inputs::add_clock_archive() {
+  make({"clocks", "--scenario", "6host_star", "--duration-s", "400", "--from-s", "100", "--seeds",
+        "2", "--jobs", "1", "--pipelines", "chrony,oracle", "--output", "@/clocks"});
+  add({"clocks",
+       2,
+       {"clocks/manifest.json", "clocks/results.json"},
+       {{"compare", "@tried/clocks", "--with-baseline", "oracle"},
+        {"compare", "@tried/clocks", "@good/clocks", "--format", "json"},
+        {"report", "@tried/clocks", "--output", "@written/report.html"}}});
+}
+
 void Inputs::add_arguments() {
   add({"arguments",
        4,
@@ -197,6 +209,8 @@ void Inputs::add_arguments() {
          "/timeline/frames=10", "--format", "csv", "--pipelines", "genlock,oracle"},
         {"sweep", "--scenario", "3cam_1host_30fps", "--sweep", "/trigger/rate_hz=15:30:5", "--set",
          "/timeline/frames=5", "--seeds", "1", "--jobs", "1"},
+        {"clocks", "--scenario", "6host_star", "--duration-s", "400", "--from-s", "100", "--seeds",
+         "1", "--jobs", "1", "--pipelines", "chrony,free_running", "--format", "json"},
         {"trace", "--scenario", "3cam_1host_30fps", "--set", "/timeline/frames=5", "--pipeline",
          "genlock", "--seed", "3", "--format", "csv", "--output", "@written/trace.csv"},
         {"diagnose", "@good/csv/camera0.csv", "@good/csv/camera1.csv", "--rate-hz", "30"},

@@ -56,6 +56,7 @@ class Inputs {
                                     const std::string& file) const;
   void add_files();
   void add_archives();
+  void add_clock_archive();
   void add_arguments();
 
   std::string folder_;

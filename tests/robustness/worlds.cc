@@ -87,7 +87,8 @@ void Worlds::collect(const std::string& pointer, const json& value, const ordere
 
 std::vector<std::string> Worlds::next(Random& random) const {
   const World& world = random.of(worlds_);
-  std::vector<std::string> arguments = {"simbench",     "run",
+  const bool is_of_clocks = random.one_in(5);
+  std::vector<std::string> arguments = {"simbench",     is_of_clocks ? "clocks" : "run",
                                         "--scenario",   world.name,
                                         "--seeds",      "1",
                                         "--jobs",       "1",
@@ -95,6 +96,11 @@ std::vector<std::string> Worlds::next(Random& random) const {
                                         "--pipelines",  random.of(world.pipelines),
                                         "--first-seed", std::to_string(1 + random.below(1000)),
                                         "--set",        "/timeline/frames=20"};
+  if (is_of_clocks) {
+    for (const char* const word : {"--duration-s", "60", "--from-s", "10"}) {
+      arguments.emplace_back(word);
+    }
+  }
   const std::size_t changes = 1 + random.below(6);
   for (std::size_t i = 0; i < changes; ++i) {
     const Parameter& parameter = random.of(world.parameters);

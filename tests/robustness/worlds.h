@@ -17,8 +17,8 @@ class Worlds {
  public:
   Worlds();
 
-  // `simbench run` of a built-in scenario and one of its pipelines, with one to six parameters
-  // anywhere in their ranges.
+  // `simbench run` or `simbench clocks` of a built-in scenario and one of its pipelines, with one
+  // to six parameters anywhere in their ranges.
   std::vector<std::string> next(Random& random) const;
 
  private:
