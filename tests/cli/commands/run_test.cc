@@ -191,7 +191,8 @@ TEST_F(Run, CtrlCEndsEveryWorld) {
        "/hosts/load_burst/duration_exponential_ms=1000000", "--seeds", "100000"},
       {"--set", "/hosts/clock/oscillator/wander_step_ms=1", "--set",
        "/timeline/wait_before_capture_ms=1000000000"},
-      {"--set", "/hosts/count=100000", "--set", "/cameras/count=100000"}};
+      {"--set", "/hosts/count=100000", "--set", "/cameras/count=100000", "--set",
+       "/timeline/frames=200"}};
   for (std::vector<std::string> world : worlds) {
     SCOPED_TRACE(testing::PrintToString(world));
     world.insert(world.begin(), {"--scenario", "18cam_6host_45fps_lan"});
