@@ -1,7 +1,7 @@
 // A job of an evaluation, whose errors name it.
 //
 //   run_named({.scenario = "3cam_1host_30fps", .pipeline = "oracle", .seed = 7},
-//             [&] { scores[job] = score_of(job); });
+//             [&] { use(seed_score); });
 #ifndef SIMBENCH_EVALUATION_RUN_NAMED_JOB_H_
 #define SIMBENCH_EVALUATION_RUN_NAMED_JOB_H_
 
