@@ -12,6 +12,7 @@
 #include "recording/version.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
+#include "reports/results/json.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -211,7 +212,7 @@ std::string clock_csv(const ClockResults& results) {
   std::string text = fmt::format("pipeline,measure,tau_s,value{}\n", changed ? ",changed" : "");
   for (std::size_t i = 0; i < results.results.rows.size(); ++i) {
     const Row& row = results.results.rows[i];
-    const std::string name = csv_cell(std::string_view(row.pipeline));
+    const std::string name = csv_cell(row.pipeline);
     for (const Metric& metric : evaluation::metrics(ResultKind::kClockRuns)) {
       text +=
           fmt::format("{},{},,{}{}\n", name, metric.id, csv_cell(median_of(metric, row)), changes);
@@ -230,9 +231,8 @@ void write_series_csv(const ClockResults& results, std::ostream& out) {
   out << "pipeline,seed,time_s,host,error_s\n";
   for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
     const evaluation::ClockReadings& readings = results.readings[row];
-    const std::string start =
-        fmt::format("{},{}", csv_cell(std::string_view(results.results.rows[row].pipeline)),
-                    results.results.first_seed);
+    const std::string start = fmt::format("{},{}", csv_cell(results.results.rows[row].pipeline),
+                                          results.results.first_seed);
     for (std::size_t i = 0; i < readings.errors_s.front().size(); ++i) {
       const double at_s = readings.start_s + static_cast<double>(i) * readings.interval_s;
       for (std::size_t host = 1; host < readings.errors_s.size(); ++host) {

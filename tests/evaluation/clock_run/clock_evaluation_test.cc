@@ -18,7 +18,6 @@ namespace {
 using scenarios::InputError;
 using scenarios::Scenario;
 using testing::AllOf;
-using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
