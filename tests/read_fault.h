@@ -21,7 +21,7 @@ namespace simbench {
 class ReadFault {
  public:
   explicit ReadFault(std::size_t after_bytes) : before_(exchange_read_function(&read_until)) {
-    left_ = after_bytes;
+    left = after_bytes;
   }
   ~ReadFault() { exchange_read_function(before_); }
   ReadFault(const ReadFault&) = delete;
@@ -29,16 +29,16 @@ class ReadFault {
 
  private:
   static ssize_t read_until(int file, void* to, std::size_t most) {
-    if (left_ == 0) {
+    if (left == 0) {
       errno = EIO;
       return -1;
     }
-    const ssize_t size = ::read(file, to, std::min(most, left_));
-    if (size > 0) left_ -= static_cast<std::size_t>(size);
+    const ssize_t size = ::read(file, to, std::min(most, left));
+    if (size > 0) left -= static_cast<std::size_t>(size);
     return size;
   }
 
-  static inline std::size_t left_ = 0;
+  static inline std::size_t left = 0;
   ReadFunction before_;
 };
 

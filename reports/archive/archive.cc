@@ -111,7 +111,8 @@ namespace {
 using evaluation::Row;
 
 constexpr const char* kAdvice =
-    "`simbench run --output DIR` writes a result archive, and `simbench run --format json > FILE` "
+    "`simbench run --output DIR` (and `clocks`) writes a result archive, and `simbench run "
+    "--format json > FILE` "
     "a result without one";
 
 evaluation::Percentile percentile(const JsonNode& published, const char* name) {

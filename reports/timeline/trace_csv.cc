@@ -17,12 +17,20 @@ std::string seconds_text(TrueTime at) {
 }
 
 // The columns in their order; only those with a value are written.
-enum class Series : std::uint8_t { kPulse, kClock, kStep, kLatency, kStampError, kRange, kFrames };
+enum class TraceSeries : std::uint8_t {
+  kPulse,
+  kClock,
+  kStep,
+  kLatency,
+  kStampError,
+  kRange,
+  kFrames
+};
 struct TraceColumn {
   std::uint8_t group = 0;
   std::uint32_t place = 0;
   bool colour = false;
-  Series series = Series::kPulse;
+  TraceSeries series = TraceSeries::kPulse;
   friend bool operator<(const TraceColumn& a, const TraceColumn& b) {
     return std::tie(a.group, a.place, a.colour, a.series) <
            std::tie(b.group, b.place, b.colour, b.series);
@@ -32,19 +40,19 @@ struct TraceColumn {
 std::string column_name(const TraceColumn& column) {
   const char* colour = column.colour ? "/colour" : "";
   switch (column.series) {
-    case Series::kPulse:
+    case TraceSeries::kPulse:
       return "trigger/pulse";
-    case Series::kClock:
+    case TraceSeries::kClock:
       return fmt::format("host{}/clock_error_us", column.place);
-    case Series::kStep:
+    case TraceSeries::kStep:
       return fmt::format("host{}/clock_step_us", column.place);
-    case Series::kLatency:
+    case TraceSeries::kLatency:
       return fmt::format("camera{}{}/latency_ms", column.place, colour);
-    case Series::kStampError:
+    case TraceSeries::kStampError:
       return fmt::format("camera{}{}/stamp_error_us", column.place, colour);
-    case Series::kRange:
+    case TraceSeries::kRange:
       return "gathering/stamps_range_us";
-    case Series::kFrames:
+    case TraceSeries::kFrames:
       break;
   }
   return "gathering/frames";
@@ -94,11 +102,12 @@ class TraceTable {
 void add_hosts(const Trace& trace, TraceTable& table) {
   for (const TraceClock& clock : trace.clocks) {
     if (clock.host == 0) continue;
-    table.add(clock.at, {1, clock.host, false, Series::kClock}, to_us(clock.error));
+    table.add(clock.at, {1, clock.host, false, TraceSeries::kClock}, to_us(clock.error));
   }
   for (const TraceAdjustment& adjustment : trace.adjustments) {
     if (adjustment.step.count() == 0) continue;
-    table.add(adjustment.at, {1, adjustment.host, false, Series::kStep}, to_us(adjustment.step));
+    table.add(adjustment.at, {1, adjustment.host, false, TraceSeries::kStep},
+              to_us(adjustment.step));
   }
 }
 
@@ -108,10 +117,10 @@ void add_frames(const Trace& trace, TraceTable& table) {
     if (way.fate != FrameFate::kDelivered) continue;
     const bool colour = way.stream == StreamKind::kColour;
     const TrueTime middle = way.exposure_start + (way.exposure_end - way.exposure_start) / 2;
-    table.add(way.delivered, {2, way.camera, colour, Series::kLatency},
+    table.add(way.delivered, {2, way.camera, colour, TraceSeries::kLatency},
               to_ms(way.delivered - middle));
     if (!frame.stamp) continue;
-    table.add(way.delivered, {2, way.camera, colour, Series::kStampError},
+    table.add(way.delivered, {2, way.camera, colour, TraceSeries::kStampError},
               to_us(frame.stamp->time_since_epoch() - frame.reference.time_since_epoch()));
   }
 }
@@ -121,13 +130,13 @@ void add_frames(const Trace& trace, TraceTable& table) {
 void write_trace_csv(const Trace& trace, std::ostream& out) {
   TraceTable table;
   for (const ObservedPulse& pulse : trace.pulses) {
-    table.add(pulse.at, {0, 0, false, Series::kPulse}, static_cast<double>(pulse.pulse));
+    table.add(pulse.at, {0, 0, false, TraceSeries::kPulse}, static_cast<double>(pulse.pulse));
   }
   add_hosts(trace, table);
   add_frames(trace, table);
   for (const TraceSet& set : trace.sets) {
-    table.add(set.end, {3, 0, false, Series::kRange}, to_us(set.range));
-    table.add(set.end, {3, 0, false, Series::kFrames}, static_cast<double>(set.members));
+    table.add(set.end, {3, 0, false, TraceSeries::kRange}, to_us(set.range));
+    table.add(set.end, {3, 0, false, TraceSeries::kFrames}, static_cast<double>(set.members));
   }
   table.write(out);
 }

@@ -76,7 +76,9 @@ void Worlds::collect(const std::string& pointer, const json& value, const ordere
   if (value.is_structured()) {
     for (const auto& [key, member] : value.items()) {
       const ordered_json* const child = scenarios::schema_of_child(schema, key);
-      if (child != nullptr) collect(pointer + "/" + key, member, *child, parameters);
+      if (child != nullptr) {
+        collect(fmt::format("{}/{}", pointer, key), member, *child, parameters);
+      }
     }
     return;
   }
