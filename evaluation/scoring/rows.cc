@@ -81,6 +81,7 @@ std::vector<std::string> notes_of(const std::vector<SeedScore>& seeds) {
     }
   }
   std::vector<std::string> notes;
+  notes.reserve(noted.size());
   for (const auto& [text, seed, more] : noted) {
     notes.push_back(more == 0 ? fmt::format("repetition {}: {}", seed, text)
                               : fmt::format("repetition {} and {} more: {}", seed, more, text));

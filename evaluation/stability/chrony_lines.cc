@@ -26,7 +26,8 @@ std::optional<std::chrono::sys_days> day_of(std::string_view word) {
                                          std::chrono::month(static_cast<unsigned>(*month)),
                                          std::chrono::day(static_cast<unsigned>(*day))};
   if (!date.ok()) return std::nullopt;
-  return std::chrono::sys_days(date);
+  std::chrono::sys_days days{date};
+  return days;
 }
 
 std::optional<Microseconds> time_of_day(std::string_view word) {
