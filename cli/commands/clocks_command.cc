@@ -10,6 +10,7 @@
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -45,7 +46,11 @@ reports::PlotFormat plot_format(const std::string& path) {
 
 int clocks(const ClocksOptions& options) {
   std::optional<reports::PlotFormat> plot;
-  if (!options.figure.empty()) plot = plot_format(options.figure);
+  std::optional<reports::OutputFile> figure;  // refuses before the work what cannot be written
+  if (!options.figure.empty()) {
+    plot = plot_format(options.figure);
+    figure.emplace(options.figure);
+  }
   app::RunArchive archive(options.command);
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
@@ -61,11 +66,11 @@ int clocks(const ClocksOptions& options) {
   if (!results) return kInterrupted;
   print_warnings(results->results.warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
-  if (plot) {
+  print_result(app::clock_text(*results, scenario, options.format));
+  if (plot) {  // last: without gnuplot the results are there all the same
     reports::draw(reports::clock_figure(*results), *plot, options.figure);
     print_note(options.figure + " written");
   }
-  print_result(app::clock_text(*results, scenario, options.format));
   return kOk;
 }
 

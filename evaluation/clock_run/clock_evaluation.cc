@@ -93,7 +93,7 @@ class ClockEvaluation {
     ClockResults all = results();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     Performance& performance = all.results.performance;
-    performance.cpu_seconds = cpu_seconds_;
+    performance.cpu_seconds = cpu_time_.seconds();
     performance.wall_seconds = wall.count();
     performance.events_per_second = static_cast<double>(performance.events) / wall.count();
     performance.simulated_seconds_per_second = performance.simulated_seconds / wall.count();
@@ -107,19 +107,11 @@ class ClockEvaluation {
     std::optional<ClockReadings> readings;  // of the first seed
   };
 
-  // One thread's backend and CPU time.
+  // One thread's backend; its CPU time ends when that is gone.
   struct Worker {
-    explicit Worker(ClockEvaluation& all) : evaluation(all), source(all.make_source_()) {}
-    ~Worker() {
-      source.reset();
-      const std::lock_guard lock(evaluation.mutex_);
-      evaluation.cpu_seconds_ += thread_cpu_seconds() - begin;
-    }
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    explicit Worker(ClockEvaluation& all) : timer(all.cpu_time_), source(all.make_source_()) {}
 
-    const double begin = thread_cpu_seconds();
-    ClockEvaluation& evaluation;
+    CpuTimer timer;
     std::unique_ptr<ClockSource> source;
   };
 
@@ -195,7 +187,7 @@ class ClockEvaluation {
   std::vector<Scored> jobs_;  // each written by one worker
   std::mutex mutex_;          // guards what follows
   std::uint64_t done_ = 0;
-  double cpu_seconds_ = 0;
+  CpuTime cpu_time_;
 };
 
 }  // namespace

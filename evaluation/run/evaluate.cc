@@ -78,19 +78,11 @@ class Evaluation {
     return options_.first_seed + job / choices_.size();
   }
 
-  // One thread's backend and CPU time.
+  // One thread's backend; its CPU time ends when that is gone.
   struct Worker {
-    explicit Worker(Evaluation& all) : evaluation(all), source(all.make_source_()) {}
-    ~Worker() {
-      source.reset();
-      const std::lock_guard lock(evaluation.mutex_);
-      evaluation.cpu_seconds_ += thread_cpu_seconds() - begin;
-    }
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    explicit Worker(Evaluation& all) : timer(all.cpu_time_), source(all.make_source_()) {}
 
-    const double begin = thread_cpu_seconds();
-    Evaluation& evaluation;
+    CpuTimer timer;
     std::unique_ptr<RecordingSource> source;
   };
 
@@ -131,7 +123,7 @@ class Evaluation {
     }
     add_genlock_warning(results);
     Performance& performance = results.performance;
-    performance.cpu_seconds = cpu_seconds_;
+    performance.cpu_seconds = cpu_time_.seconds();
     performance.wall_seconds = wall_seconds;
     performance.events_per_second = static_cast<double>(performance.events) / wall_seconds;
     performance.simulated_seconds_per_second = performance.simulated_seconds / wall_seconds;
@@ -190,7 +182,7 @@ class Evaluation {
   std::vector<std::optional<SeedScore>> scores_;  // by job; each written by one worker
   std::mutex mutex_;                              // guards what follows
   std::size_t done_ = 0;
-  double cpu_seconds_ = 0;
+  CpuTime cpu_time_;
 };
 
 }  // namespace

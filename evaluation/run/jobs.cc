@@ -10,10 +10,26 @@
 
 namespace simbench::evaluation {
 
+namespace {
+
 double thread_cpu_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+}  // namespace
+
+double CpuTime::seconds() const {
+  const std::lock_guard lock(mutex_);
+  return seconds_;
+}
+
+CpuTimer::CpuTimer(CpuTime& total) : total_(total), begin_(thread_cpu_seconds()) {}
+
+CpuTimer::~CpuTimer() {
+  const std::lock_guard lock(total_.mutex_);
+  total_.seconds_ += thread_cpu_seconds() - begin_;
 }
 
 bool JobQueue::stopped() const {

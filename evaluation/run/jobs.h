@@ -44,8 +44,30 @@ bool run_jobs(std::size_t count, const JobOptions& options, const Job& job);
 bool run_jobs_with_workers(std::size_t count, const JobOptions& options,
                            const WorkerFactory& make_worker);
 
-// The CPU time of the calling thread.
-double thread_cpu_seconds();
+// The CPU time that threads have taken, added up.
+class CpuTime {
+ public:
+  double seconds() const;
+
+ private:
+  friend class CpuTimer;
+  mutable std::mutex mutex_;
+  double seconds_ = 0;
+};
+
+// Adds what its thread takes during its lifetime.
+class CpuTimer {
+ public:
+  // `total` must outlive this.
+  explicit CpuTimer(CpuTime& total);
+  ~CpuTimer();
+  CpuTimer(const CpuTimer&) = delete;
+  CpuTimer& operator=(const CpuTimer&) = delete;
+
+ private:
+  CpuTime& total_;
+  double begin_;
+};
 
 // The remaining jobs, for callers that give some of them to other processes. Thread-safe.
 class JobQueue {
