@@ -169,24 +169,32 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitte
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,
                                    start_delay_ms, daisy_chain_delay_us, missed_pulse_probability,
                                    pauses)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stream, kind, width, height, bytes_per_pixel, mode_rate_hz,
-                                   pipeline_latency_ms, latency_mode_periods, shutter, readout_ms,
-                                   calibrated_delay_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClockPoll, interval_ms, request_ms, request_exponential_ms,
-                                   reply_ms, reply_exponential_ms, tail_probability, tail_max_ms,
-                                   calibrated_asymmetry_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamMode, width, height, mode_rate_hz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Stream, kind, width, height, bytes_per_pixel,
+                                                mode_rate_hz, pipeline_latency_ms,
+                                                latency_mode_periods, shutter, readout_ms,
+                                                calibrated_delay_ms, calibrated_at)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PollDelays, request_ms, reply_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ClockPoll, interval_ms, request_ms,
+                                                request_exponential_ms, reply_ms,
+                                                reply_exponential_ms, tail_probability, tail_max_ms,
+                                                calibrated_asymmetry_ms, calibrated_at)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationError, delay_error_sigma_ms,
+                                   camera_delay_error_sigma_ms, poll_asymmetry_error_sigma_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     Cameras, count, cameras_per_host, host_of_camera, skew_of_camera_ppm, model, sync_mode,
     common_start, start_spread_ms, streams, oscillator, clock_epoch_max_ms, latency_camera_max_ms,
     exposure_ms, exposure_camera_periods, exposure_host_periods, trigger_to_exposure_us,
     genlock_guard_fraction, slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
-    drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Usb, bandwidth_mb_per_s, sharing, cameras_per_controller,
-                                   buffered_frames, kernel_copy_exponential_ms,
-                                   delivery_jitter_transfers, host_jitter_transfers,
-                                   host_jitter_correlation, spike_probability, spike_max_transfers,
-                                   delivery_quantiles_ms, delivery_correlation)
+    drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure,
+    calibration)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackendStamp, host_uptime_h, resolution_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
+    Usb, bandwidth_mb_per_s, sharing, cameras_per_controller, buffered_frames,
+    kernel_copy_exponential_ms, delivery_jitter_transfers, host_jitter_transfers,
+    host_jitter_correlation, spike_probability, spike_max_transfers, delivery_quantiles_ms,
+    delivery_correlation, backend_stamp)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathering)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)

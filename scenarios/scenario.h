@@ -194,6 +194,13 @@ struct Trigger {
   double pulse_rate_hz() const { return rate_hz * (1 + rate_error_ppm * 1e-6); }
 };
 
+// The mode in which a delay was measured: it holds for no other.
+struct StreamMode {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  double mode_rate_hz = 0;
+};
+
 // One image stream of a camera.
 struct Stream {
   StreamKind kind{};
@@ -204,10 +211,19 @@ struct Stream {
   double pipeline_latency_ms = 0;   // fixed, from end of exposure to the start of the transfer
   double latency_mode_periods = 0;  // plus this many mode periods
   ShutterKind shutter{};
-  double readout_ms = 0;           // rolling: from the first row's exposure to the last row's
-  double calibrated_delay_ms = 0;  // end of exposure to arrival, as a user measured it once
+  double readout_ms = 0;  // rolling: from the first row's exposure to the last row's
+  // End of exposure to arrival, as a user measured it once for this model, and where. Neither: as
+  // one would measure it in this world (scenarios/calibration.h).
+  std::optional<double> calibrated_delay_ms{};
+  std::optional<StreamMode> calibrated_at{};
 
   double image_bytes() const { return static_cast<double>(width * height) * bytes_per_pixel; }
+};
+
+// The delays of the polls whose asymmetry was measured: it holds for no others.
+struct PollDelays {
+  double request_ms = 0;
+  double reply_ms = 0;
 };
 
 // Readings of a camera's clock over its control interface.
@@ -219,7 +235,9 @@ struct ClockPoll {
   double reply_exponential_ms = 0;
   double tail_probability = 0;  // that a request takes U(0, tail_max_ms) longer
   double tail_max_ms = 0;
-  double calibrated_asymmetry_ms = 0;  // request minus reply, as a user measured it once
+  // Request minus reply, as a user measured it once, and of which polls. Neither: that of these.
+  std::optional<double> calibrated_asymmetry_ms{};
+  std::optional<PollDelays> calibrated_at{};
 
   bool is_on() const { return interval_ms > 0; }
 };
@@ -230,6 +248,14 @@ struct AutoExposure {
   double max_ms = 0;
 
   bool is_on() const { return step_interval_exponential_ms > 0; }
+};
+
+// By how much this rig's delays differ from what was measured for the model, one draw each per seed
+// and per camera and seed. The rig differs, not what the user knows.
+struct CalibrationError {
+  double delay_error_sigma_ms = 0;           // end of exposure to arrival, of all cameras
+  double camera_delay_error_sigma_ms = 0;    // the same, of each camera
+  double poll_asymmetry_error_sigma_ms = 0;  // request minus reply, of all cameras
 };
 
 struct Cameras {
@@ -258,12 +284,19 @@ struct Cameras {
   double unstable_start_jitter_sigma_ms = 0;
   ClockPoll clock_poll;
   AutoExposure auto_exposure;
+  CalibrationError calibration{};
 
   // Null if the cameras do not have that stream.
   const Stream* stream(StreamKind kind) const;
   // Whether the sync mode lets the trigger decide when the stream exposes, by the model's profile.
   // Throws std::invalid_argument if there is no such model, which a loaded scenario cannot have.
   bool follows_trigger(const Stream& stream) const;
+};
+
+// What librealsense makes of the kernel's stamp of a frame (sim/usb/backend_stamp.h).
+struct BackendStamp {
+  double host_uptime_h = 0;  // Windows: at the start of the capture; 0: no rounding to a float
+  double resolution_ms = 0;  // of the SDK's clocks and stamps (0: exact)
 };
 
 struct Usb {
@@ -281,6 +314,7 @@ struct Usb {
   // equally spaced probabilities 0 to 1.
   std::vector<double> delivery_quantiles_ms{};
   double delivery_correlation = 0;  // from frame to frame (Gaussian copula); 0 without the table
+  std::optional<BackendStamp> backend_stamp{};  // else in steps of the arrivals'
 };
 
 // Faults during the capture, one type for each kind. Times count from the start of the capture; a
