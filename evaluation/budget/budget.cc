@@ -44,6 +44,7 @@ void idealise_delivery(scenarios::Cameras& cameras) {
   const double interval_ms = cameras.clock_poll.interval_ms;
   cameras.clock_poll = {};
   cameras.clock_poll.interval_ms = interval_ms;
+  cameras.calibration = {};
 }
 
 template <class Time>

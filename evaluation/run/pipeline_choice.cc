@@ -11,6 +11,7 @@
 
 #include "algorithms/parameters.h"
 #include "evaluation/scoring/claims.h"
+#include "scenarios/calibration.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -180,9 +181,9 @@ void check_needs(const Scenario& scenario, std::size_t pipeline, const char* sta
 
 CalibratedDelays calibrated_delays(const Scenario& scenario) {
   CalibratedDelays delays;
-  delays.poll_asymmetry = from_ms(scenario.cameras.clock_poll.calibrated_asymmetry_ms);
+  delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
   if (const scenarios::Stream* scored = scenario.scored_stream()) {
-    delays.arrival = from_ms(scored->calibrated_delay_ms);
+    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored));
   }
   return delays;
 }
