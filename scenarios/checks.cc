@@ -163,6 +163,32 @@ void check_quantiles(const Scenario& scenario, const std::string& pointer,
                       *descent, *(descent - 1)));
 }
 
+void check_delay_law(const Scenario& scenario, const std::string& pointer, const DelayLaw& law) {
+  check_quantiles(scenario, pointer + "/quantiles_us", law.quantiles_us);
+  if (law.common_share == 0 || law.common_time_ms > 0) return;
+  fail_at(scenario, pointer + "/common_time_ms",
+          "found 0 or nothing, allowed more than 0 where common_share is above 0");
+}
+
+void check_stack(const Scenario& scenario) {
+  if (!scenario.hosts.stack) return;
+  const Stack& stack = *scenario.hosts.stack;
+  check_delay_law(scenario, "/hosts/stack/transmit", stack.transmit);
+  check_delay_law(scenario, "/hosts/stack/transmit_to_card", stack.transmit_to_card);
+  check_delay_law(scenario, "/hosts/stack/receive", stack.receive);
+  check_delay_law(scenario, "/hosts/stack/wake_up", stack.wake_up);
+}
+
+void check_switches(const Scenario& scenario) {
+  const Network& network = scenario.network;
+  check_size(scenario, "/network/switch_of_host", network.switch_of_host.size(), "switches",
+             scenario.hosts.count, "hosts");
+  if (network.cross_traffic_share == 0 || network.bandwidth_mbit_per_s > 0) return;
+  fail_at(scenario, "/network/cross_traffic_share",
+          fmt::format("found {}, allowed 0 where /network/bandwidth_mbit_per_s is 0 (infinite)",
+                      network.cross_traffic_share));
+}
+
 void check_tables(const Scenario& scenario) {
   check_quantiles(scenario, "/network/latency_quantiles_ms", scenario.network.latency_quantiles_ms);
   check_quantiles(scenario, "/usb/delivery_quantiles_ms", scenario.usb.delivery_quantiles_ms);
@@ -197,6 +223,52 @@ void check_shutters(const Scenario& scenario) {
             fmt::format("found {}, allowed 0: a global shutter exposes all rows at once",
                         streams[i].readout_ms));
   }
+}
+
+// A measured value and where it was measured belong together. `pointer` is of the object with both.
+void check_stated_together(const Scenario& scenario, const std::string& pointer,
+                           const std::string& value, bool is_stated, bool has_place) {
+  if (is_stated == has_place) return;
+  const std::string& missing = is_stated ? "calibrated_at" : value;
+  fail_at(scenario, pointer + '/' + (is_stated ? value : "calibrated_at"),
+          fmt::format("found no {} beside it, allowed both (a calibration holds where it was "
+                      "measured) or neither (it is computed for this world)",
+                      missing));
+}
+
+// `member` of the calibration's place, and of this world.
+template <class Number>
+void check_calibrated_at(const Scenario& scenario, const std::string& pointer,
+                         std::string_view member, Number calibrated, Number present) {
+  if (calibrated == present) return;
+  fail_at(
+      scenario, fmt::format("{}/calibrated_at/{}", pointer, member),
+      fmt::format("found {}, allowed {}, {}/{}: a calibration holds where it was measured; null "
+                  "in its place is computed for this world",
+                  calibrated, present, pointer, member));
+}
+
+void check_calibrations(const Scenario& scenario) {
+  const std::vector<Stream>& streams = scenario.cameras.streams;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const Stream& stream = streams[i];
+    const std::string pointer = fmt::format("/cameras/streams/{}", i);
+    const std::optional<StreamMode>& at = stream.calibrated_at;
+    check_stated_together(scenario, pointer, "calibrated_delay_ms",
+                          stream.calibrated_delay_ms.has_value(), at.has_value());
+    if (!at) continue;
+    check_calibrated_at(scenario, pointer, "width", at->width, stream.width);
+    check_calibrated_at(scenario, pointer, "height", at->height, stream.height);
+    check_calibrated_at(scenario, pointer, "mode_rate_hz", at->mode_rate_hz, stream.mode_rate_hz);
+  }
+  const ClockPoll& polls = scenario.cameras.clock_poll;
+  const std::string pointer = "/cameras/clock_poll";
+  check_stated_together(scenario, pointer, "calibrated_asymmetry_ms",
+                        polls.calibrated_asymmetry_ms.has_value(), polls.calibrated_at.has_value());
+  if (!polls.calibrated_at) return;
+  check_calibrated_at(scenario, pointer, "request_ms", polls.calibrated_at->request_ms,
+                      polls.request_ms);
+  check_calibrated_at(scenario, pointer, "reply_ms", polls.calibrated_at->reply_ms, polls.reply_ms);
 }
 
 void check_auto_exposure(const Scenario& scenario) {
@@ -477,9 +549,12 @@ void check(const Scenario& scenario) {
   check_skews(scenario);
   check_tables(scenario);
   check_links(scenario);
+  check_switches(scenario);
+  check_stack(scenario);
   check_streams(scenario);
   check_rates(scenario);
   check_shutters(scenario);
+  check_calibrations(scenario);
   check_auto_exposure(scenario);
   check_faults(scenario);
   check_pipelines(scenario);

@@ -151,11 +151,18 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Temperature, day_amplitude_k, day_period_h, l
                                    load_period_s, load_time_constant_s, fan_amplitude_k,
                                    fan_period_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftFile, age_h, error_ppb)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DelayLaw, fixed_us, exponential_us, quantiles_us,
+                                                spike_probability, spike_max_us, common_share,
+                                                common_time_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stack, transmit, transmit_to_card, receive, wake_up,
+                                   interrupt_moderation_us, interrupts_per_s, sleep_share,
+                                   sleep_exit_us, sleep_time_ms, speed_log_sigma)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Hosts, count, master_is_exact, clock, send_cost_ms,
                                                 send_cost_exponential_ms,
                                                 send_cost_session_exponential_ms,
                                                 receive_wake_up_ms, load_log_sigma, nic,
-                                                pulse_lines, load_burst, temperature, drift_file)
+                                                pulse_lines, load_burst, temperature, drift_file,
+                                                stack)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Link, host, latency_fixed_ms,
                                                 latency_exponential_ms, asymmetry_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
@@ -163,7 +170,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     asymmetry_sigma_ms, port_asymmetry_sigma_ms, spike_probability, spike_max_ms,
     latency_quantiles_ms, burst, bandwidth_mbit_per_s, overhead_bytes, loss_probability,
     duplicate_probability, reorder_probability, reorder_max_ms, retransmit_timeout_ms, nagle,
-    delayed_ack_ms, stamp_point, capture_traffic_share, switch_clock, switch_clock_error_ns, links)
+    delayed_ack_ms, stamp_point, capture_traffic_share, switch_clock, switch_clock_error_ns, links,
+    switch_of_host, switch_residence_ms, cross_traffic_share, switch_clock_wander_ppb_per_sqrt_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TriggerPause, at_ms, duration_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Trigger, rate_hz, rate_error_ppm, pulse_jitter_sigma_us,
                                    branch_delay_max_us, cable_delay_max_us, cameras_per_sub_trigger,

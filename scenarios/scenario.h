@@ -111,6 +111,34 @@ struct Nic {
   double cross_stamp_cost_ms = 0;
 };
 
+// How long one part of a message's way takes. Either fixed + Exp, or a table of quantiles; spikes
+// come on top. A share of the variance (of the normal score) is common to all that passes this part
+// of the host within about common_time_ms.
+struct DelayLaw {
+  double fixed_us = 0;
+  double exponential_us = 0;
+  std::vector<double> quantiles_us{};  // in place of fixed_us and exponential_us (else empty)
+  double spike_probability = 0;
+  double spike_max_us = 0;  // a spike adds U(0, this)
+  double common_share = 0;
+  double common_time_ms = 0;
+};
+
+// The way of a message through a host, between the calls of its program and the network card
+// (sim/host/stack.h).
+struct Stack {
+  DelayLaw transmit;                   // the call, until the software transmit stamp
+  DelayLaw transmit_to_card;           // from there until the card sends
+  DelayLaw receive;                    // from the interrupt to the software receive stamp
+  DelayLaw wake_up;                    // from there until the receiver's call returns
+  double interrupt_moderation_us = 0;  // least time between two interrupts
+  double interrupts_per_s = 0;         // of other traffic of the host
+  double sleep_share = 0;  // of the messages find the processor in an energy-saving sleep
+  double sleep_exit_us = 0;
+  double sleep_time_ms = 0;    // for how long a host stays awake or sleepy
+  double speed_log_sigma = 0;  // factor exp(N(0, this)) on all these delays, one draw per host
+};
+
 // Electrical pulses wired into every host.
 struct PulseLines {
   bool pps = false;
@@ -135,6 +163,7 @@ struct Hosts {
   Burst load_burst;  // frames are delivered and messages noticed later
   std::optional<Temperature> temperature{};
   std::optional<DriftFile> drift_file{};
+  std::optional<Stack> stack{};
 };
 
 // The link of a host with the master. What it does not state is the network's.
@@ -170,6 +199,12 @@ struct Network {
   SwitchClockKind switch_clock{};    // PTP
   double switch_clock_error_ns = 0;
   std::vector<Link> links{};
+  // The switches stand in a line, each wired to the next; the number of each host's (else empty:
+  // one switch for all).
+  std::vector<std::int64_t> switch_of_host{};
+  double switch_residence_ms = 0;  // fixed, in each switch on the way
+  double cross_traffic_share = 0;  // of each switch port's time, by full frames of others
+  double switch_clock_wander_ppb_per_sqrt_s = 0;  // random walk of a boundary switch's oscillator
 };
 
 struct TriggerPause {

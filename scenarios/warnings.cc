@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -127,6 +128,25 @@ void warn_about_evaluation(Lines& lines, const Scenario& scenario) {
   }
 }
 
+// Draws of the asymmetry that would leave one direction of a link less than nothing.
+void warn_about_wires(Lines& lines, const Scenario& scenario) {
+  const Network& network = scenario.network;
+  const double least_ms = network.latency_quantiles_ms.empty()
+                              ? network.latency_fixed_ms
+                              : network.latency_quantiles_ms.front();
+  const double sigma_ms =
+      std::hypot(network.asymmetry_sigma_ms, std::numbers::sqrt2 * network.port_asymmetry_sigma_ms);
+  if (sigma_ms == 0 || sigma_ms <= least_ms) return;
+  warn(lines, scenario,
+       network.asymmetry_sigma_ms >= network.port_asymmetry_sigma_ms
+           ? "/network/asymmetry_sigma_ms"
+           : "/network/port_asymmetry_sigma_ms",
+       fmt::format("links differ by {:.3g} ms between their directions (one sigma) around a least "
+                   "latency of {:.3g} ms: one link in twenty would be faster than light, and stops "
+                   "at 0",
+                   sigma_ms, least_ms));
+}
+
 void warn_about_temperature(Lines& lines, const Scenario& scenario) {
   if (!scenario.hosts.temperature) return;
   if (scenario.hosts.clock.oscillator.temperature_coefficient_ppb_per_k != 0) return;
@@ -218,6 +238,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_capture_traffic(lines, scenario);
   warn_about_evaluation(lines, scenario);
   warn_about_idle_hosts(lines, scenario);
+  warn_about_wires(lines, scenario);
   warn_about_temperature(lines, scenario);
   warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);

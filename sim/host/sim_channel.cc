@@ -1,6 +1,7 @@
 #include "sim/host/sim_channel.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -43,7 +44,8 @@ Nanoseconds SimChannel::occupancy(MessageId id) const {
 
 Task<MessageId> SimChannel::send(Bytes message) {
   const MessageId id = next_id_++;
-  const Cpu::Turn turn = host_.cpu().reserve(occupancy(id));
+  const Nanoseconds stack = host_.stack().transmit(host_.true_now(), key_to_peer(id));
+  const Cpu::Turn turn = host_.cpu().reserve(occupancy(id) + stack);
   if (turn.end > host_.true_now()) {
     co_await sleep_until(host_.world().context, turn.end, "send");
   }
@@ -54,27 +56,26 @@ Task<MessageId> SimChannel::send(Bytes message) {
 Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
   Inbox& inbox = host_.world().network.inbox(path_);
   SIMBENCH_ASSERT(!arrived_.waiting(), "one receive at a time on a channel");
+  const TrueTime called = host_.true_now();
   while (inbox.empty()) {
     if (host_.is_past(deadline)) co_return std::nullopt;
     co_await arrived_.wait(host_.next_look(deadline));
   }
-  const Nanoseconds wake_up =
-      from_ms(host_.world().hosts.receive_wake_up_ms) +
-      host_.load_delay(kLateWakeUp, direction_of(peer_, host_.id()), key_of(inbox.front().id));
-  if (wake_up.count() > 0) {
-    co_await sleep_until(host_.world().context, host_.true_now() + wake_up, "receive: wake up");
+  const TrueTime returns = returns_at(inbox.front(), called);
+  if (returns > host_.true_now()) {
+    co_await sleep_until(host_.world().context, returns, "receive: wake up");
   }
   // Taken only now, so that a receive cancelled during the wake-up loses no message.
   ArrivedMessage message = std::move(inbox.front());
   inbox.pop_front();
   const SystemClock& clock = host_.system_clock();
-  const TrueTime stamped = stamps_in_kernel_ ? message.at : host_.true_now();
-  const HostTime exact = clock.read(stamped);
   const ClockInterface& interface = host_.clock_interface();
+  const TrueTime stamped = stamps_in_kernel_ ? stamp_of(message) : host_.true_now();
+  const HostTime exact = clock.read(stamped);
   std::optional<HardwareTime> hardware;
   if (const NicClock* nic = host_.nic()) {
-    RandomStream draw(host_.world().run_seed, kHardwareReceipt, direction_of(peer_, host_.id()),
-                      key_of(message.id));
+    const MessageKey key = key_from_peer(message.id);
+    RandomStream draw(host_.world().run_seed, kHardwareReceipt, key.direction, key.message);
     hardware = nic->stamp(message.at, draw);
   }
   co_return ReceivedMessage{
@@ -82,6 +83,41 @@ Task<std::optional<ReceivedMessage>> SimChannel::receive(SteadyTime deadline) {
       .received = stamps_in_kernel_ ? interface.tick_of(exact) : interface.read(exact),
       .received_steady = clock.steady(stamped),
       .received_hardware = hardware};
+}
+
+void SimChannel::on_arrival() {
+  Inbox& inbox = host_.world().network.inbox(path_);
+  // The messages of one segment come up together.
+  auto first = inbox.end();
+  while (first != inbox.begin() && !std::prev(first)->stamped) --first;
+  if (first != inbox.end()) {
+    const TrueTime stamped = host_.stack().receive(first->at, key_from_peer(first->id));
+    for (; first != inbox.end(); ++first) first->stamped = stamped;
+  }
+  arrived_.notify();
+}
+
+Nanoseconds SimChannel::to_card(MessageId first) {
+  return host_.stack().to_card(host_.true_now(), key_to_peer(first));
+}
+
+// When a receive() that was called then, and has found the message, returns.
+TrueTime SimChannel::returns_at(const ArrivedMessage& message, TrueTime called) {
+  const TrueTime stamped = stamp_of(message);
+  const MessageKey key = key_from_peer(message.id);
+  const Nanoseconds wake_up = from_ms(host_.world().hosts.receive_wake_up_ms) +
+                              host_.load_delay(kLateWakeUp, key.direction, key.message);
+  const bool has_waited = called <= stamped;
+  return std::max(host_.true_now(), stamped) + wake_up +
+         (has_waited ? host_.stack().wake_up(stamped, key) : Nanoseconds(0));
+}
+
+MessageKey SimChannel::key_to_peer(MessageId id) const {
+  return {.direction = direction_of(host_.id(), peer_), .message = key_of(id)};
+}
+
+MessageKey SimChannel::key_from_peer(MessageId id) const {
+  return {.direction = direction_of(peer_, host_.id()), .message = key_of(id)};
 }
 
 Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {

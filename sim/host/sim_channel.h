@@ -1,21 +1,22 @@
 // A simulated host's channel to one peer.
 //
 // send() occupies the host's CPU for
-//   send_cost_ms + Exp(send_cost_exponential_ms) + the session's load:
-// the message leaves, and the call returns, at the end of that. The random part is keyed by (link,
-// direction, transport, number of the message).
+//   send_cost_ms + Exp(send_cost_exponential_ms) + the session's load + the transmit stack:
+// the message leaves the stack, and the call returns, at the end of that; the way to the card is
+// still to come. The random part is keyed by (link, direction, transport, number of the message).
 //
 // receive() returns receive_wake_up_ms after the message was available and the call was waiting for
-// it: a message that had arrived before the call costs the wake-up too. A message that arrives
-// before the deadline is returned even if the wake-up ends after it.
+// it: a message that had arrived before the call costs the wake-up too; that of the host's stack
+// (sim/host/message_stack.h) is of calls that wait. A message that reaches the card before the
+// deadline is returned even if the stack and the wake-up end after it.
 //
 // A send that is cancelled before the message has left sends nothing; a cancelled receive leaves
 // the message to the next one.
 //
 // Stamps: at "application", the receive stamp is the reading of the system clock, through its
 // interface, when receive() returns, and there are no transmit stamps; at "kernel", both are taken
-// when the message arrives and leaves, on the clock's ticks but not rounded to the interface's
-// resolution. Stamps of the last 4096 messages are kept.
+// by the host's stack, on the clock's ticks but not rounded to the interface's resolution. Stamps
+// of the last 4096 messages are kept.
 //
 // Hardware stamps are those of the host's card, if it stamps (sim/host/host_clocks.h). A burst of
 // load (sim/network/load.h) makes the wake-up longer.
@@ -31,6 +32,7 @@
 
 #include "algorithms/ports/host.h"
 #include "sim/engine/virtual_executor.h"
+#include "sim/host/message_stack.h"
 #include "sim/network/network.h"
 
 namespace simbench::sim {
@@ -55,13 +57,21 @@ class SimChannel final : public MessageChannel, private Endpoint {
     TrueTime passed{};      // when its last bit passes the card
   };
 
-  void on_arrival() override { arrived_.notify(); }
+  void on_arrival() override;
+  Nanoseconds to_card(MessageId first) override;
   void on_left(MessageId first, std::size_t count, TrueTime passed) override;
 
   Nanoseconds occupancy(MessageId id) const;
+  TrueTime returns_at(const ArrivedMessage& message, TrueTime called);
+  // By software. A message that came before the channel was opened has passed no stack.
+  static TrueTime stamp_of(const ArrivedMessage& message) {
+    return message.stamped.value_or(message.at);
+  }
   bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
   // A message that has left; null if it never did or is no longer kept.
   const Sent* sent(MessageId id) const;
+  MessageKey key_to_peer(MessageId id) const;
+  MessageKey key_from_peer(MessageId id) const;
   // The key of the message's own draws.
   std::uint64_t key_of(MessageId id) const {
     return 2 * id + (transport_ == Transport::kStream ? 1 : 0);

@@ -42,6 +42,7 @@ SimHost::SimHost(const HostWorld& world, PeerId id, SystemClock& system_clock, b
       has_cameras_(has_cameras),
       sleep_label_(name("sleep")),
       host_load_(world.hosts.load_burst, world.run_seed, id),
+      stack_(world.hosts, world.run_seed, id),
       receiver_(world.hosts.pulse_lines, world.run_seed, id) {
   if (world.hosts.nic.hardware_stamps) nic_ = std::make_unique<NicClock>(*this);
   system_clock_.observe([this](const ClockAdjustment& adjustment) { on_adjustment(adjustment); });

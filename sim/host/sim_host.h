@@ -49,6 +49,7 @@
 #include "sim/faults/faults.h"
 #include "sim/host/drift_files.h"
 #include "sim/host/host_clocks.h"
+#include "sim/host/message_stack.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/network/load.h"
 #include "sim/network/network.h"
@@ -126,6 +127,7 @@ class SimHost final : public Host {
   const SystemClock& system_clock() const { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
+  MessageStack& stack() { return stack_; }
   // Null if the card takes no stamps.
   const NicClock* nic() const { return nic_.get(); }
   // The delay that a burst of load adds to the wake-up for an event with the key (what, a, b).
@@ -166,6 +168,7 @@ class SimHost final : public Host {
   bool has_cameras_;
   std::string sleep_label_;
   HostLoad host_load_;
+  MessageStack stack_;
   std::unique_ptr<NicClock> nic_;
   PpsReceiver receiver_;
   std::unique_ptr<SimPulseInput> pps_;

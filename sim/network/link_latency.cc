@@ -1,6 +1,7 @@
 #include "sim/network/link_latency.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace simbench::sim {
 namespace {
@@ -14,6 +15,14 @@ const scenarios::Link* stated_link(const scenarios::Network& network, PeerId fro
   const auto found = std::ranges::find(network.links, static_cast<std::int64_t>(std::max(from, to)),
                                        &scenarios::Link::host);
   return found == network.links.end() ? nullptr : &*found;
+}
+
+// A frame of 1500 bytes with its headers, preamble and gap.
+constexpr double kForeignFrameBits = 8 * 1538;
+
+int switches_between(const scenarios::Network& network, PeerId from, PeerId to) {
+  const std::vector<std::int64_t>& switches = network.switch_of_host;
+  return switches.empty() ? 1 : 1 + static_cast<int>(std::abs(switches[from] - switches[to]));
 }
 
 // Of this direction against the other.
@@ -36,7 +45,11 @@ LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_se
                          PeerId to, double session_latency_ms)
     : network_(&network),
       table_ms_(network.latency_quantiles_ms),
-      bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)) {
+      bursts_(network.burst, run_seed, kLinkBursts, direction_of(from, to)),
+      switches_(switches_between(network, from, to)) {
+  if (network.cross_traffic_share > 0) {
+    foreign_frame_ms_ = kForeignFrameBits / (network.bandwidth_mbit_per_s * 1e3);
+  }
   const bool is_table = !table_ms_.empty();
   const scenarios::Link* const stated = stated_link(network, from, to);
   const scenarios::Link link = stated == nullptr ? scenarios::Link{} : *stated;
@@ -51,6 +64,7 @@ LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_se
 Nanoseconds LinkLatency::draw(RandomStream& draw, TrueTime left) {
   double latency_ms =
       table_ms_.empty() ? draw_parametric_ms(draw) : fixed_ms_ + table_ms_.value_at(draw.uniform());
+  latency_ms += draw_residence_ms(draw);
   if (bursts_.active(left)) latency_ms += network_->burst.latency_ms;
   return from_ms(std::max(0.0, latency_ms));
 }
@@ -61,6 +75,18 @@ double LinkLatency::draw_parametric_ms(RandomStream& draw) const {
   const bool has_spike = draw.chance(network_->spike_probability);
   const double spike_ms = draw.uniform(0, network_->spike_max_ms);
   return has_spike ? latency_ms + spike_ms : latency_ms;
+}
+
+double LinkLatency::draw_residence_ms(RandomStream& draw) const {
+  double residence_ms = switches_ * network_->switch_residence_ms;
+  for (int i = 1; i < switches_; ++i) residence_ms += draw.exponential(exponential_ms_);
+  if (foreign_frame_ms_ == 0) return residence_ms;
+  for (int i = 0; i < switches_; ++i) {
+    while (draw.chance(network_->cross_traffic_share)) {
+      residence_ms += draw.uniform(0, foreign_frame_ms_);
+    }
+  }
+  return residence_ms;
 }
 
 }  // namespace simbench::sim

@@ -1,6 +1,7 @@
-// The latency of one direction of a link, without the queues at the switch.
+// The latency of one direction of a link, without the queues of messages at the switches' ports.
 //
 //   fixed +- asymmetry / 2 + Exp + spike (with a probability) + burst (while one lasts) + session
+//   + for each switch on the way: residence + wait for foreign traffic, for each but the first: Exp
 //
 // or, where the scenario has a table of measured latencies (network/latency_quantiles_ms), which
 // takes the place of fixed, Exp and spike:
@@ -11,10 +12,15 @@
 // the fixed latency back: one draw per link, and that of the lower host's port less that of the
 // higher host's, one draw per host. A latency is never negative.
 //
+// The wait for foreign traffic is that of an M/D/1 queue, whose ports are busy for a share r with
+// frames that take S each (Pollaczek and Khinchine): a sum of N draws from U(0, S), where N is
+// geometric, P(N >= n) = r^n.
+//
 // What the scenario states of a slave's link with the master (network/links) takes the place of
 // fixed, of the mean of Exp and of the link's draw.
 //
-// Source: docs/reference/calibration.md section 2 ("lat()"); docs/reference/host_sync.md section 3.
+// Source: docs/reference/calibration.md section 2 ("lat()"); docs/reference/host_sync.md section 3;
+// ITU-T G.8261 appendix VI (load); Kleinrock, "Queueing Systems" vol. 1, section 5.7.
 #ifndef SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
 #define SIMBENCH_SIM_NETWORK_LINK_LATENCY_H_
 
@@ -43,7 +49,7 @@ class LinkLatency {
   LinkLatency(const scenarios::Network& network, std::uint64_t run_seed, PeerId from, PeerId to,
               double session_latency_ms);
 
-  // The cable's part: the fixed latency (the table's least) and the asymmetry.
+  // What no switch can know: the fixed latency (the table's least) and the asymmetry.
   Nanoseconds cable() const { return cable_; }
 
   // The latency of a message that leaves at `left`; `draw` is the message's own stream.
@@ -52,6 +58,8 @@ class LinkLatency {
  private:
   // Without bursts.
   double draw_parametric_ms(RandomStream& draw) const;
+  // In all switches on the way.
+  double draw_residence_ms(RandomStream& draw) const;
 
   const scenarios::Network* network_;
   QuantileTable table_ms_;
@@ -59,6 +67,8 @@ class LinkLatency {
   double exponential_ms_ = 0;
   Nanoseconds cable_{};
   BurstProcess bursts_;
+  int switches_ = 1;             // on the way
+  double foreign_frame_ms_ = 0;  // 0: no foreign traffic
 };
 
 }  // namespace simbench::sim

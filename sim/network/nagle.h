@@ -38,7 +38,8 @@ struct Segment {
   MessageId first = 0;  // number of the first message
   TrueTime left{};
   TrueTime at_switch{};
-  double bytes = 0;  // of the messages, without headers
+  std::int64_t switch_number = 0;  // where it is
+  double bytes = 0;                // of the messages, without headers
   boost::container::small_vector<Bytes, 1> messages{};
 };
 

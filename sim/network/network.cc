@@ -40,7 +40,11 @@ Network::Network(Engine& engine, const scenarios::Network& parameters, std::uint
       rate_(parameters.bandwidth_mbit_per_s),
       handler_id_(engine.attach(*this)),
       host_ports_(hosts),
-      switch_ports_(hosts) {}
+      switch_ports_(hosts) {
+  const std::vector<std::int64_t>& switches = parameters.switch_of_host;
+  if (switches.empty()) return;
+  trunk_ports_.resize(2 * static_cast<std::size_t>(*std::ranges::max_element(switches)) + 2);
+}
 
 PathId Network::open(PeerId from, PeerId to, Transport transport, Endpoint& endpoint) {
   SIMBENCH_ASSERT(from != to && std::max(from, to) < host_ports_.size(), "no such link");
@@ -73,12 +77,13 @@ void Network::send(PathId path_id, MessageId id, Bytes message) {
 void Network::send_segment(Segment segment) {
   const PathId path_id = segment.path;
   Path& path = paths_[path_id];
-  const TrueTime passed = rate_.is_infinite()
-                              ? engine_.now()
-                              : host_ports_[path.from].pass(engine_.now(), on_the_line(segment));
+  const MessageId first = segment.first;
+  const TrueTime at_card = engine_.now() + path.sender->to_card(first);
+  const TrueTime passed =
+      rate_.is_infinite() ? at_card : host_ports_[path.from].pass(at_card, on_the_line(segment));
   segment.left = engine_.now();
   segment.at_switch = passed;
-  const MessageId first = segment.first;
+  segment.switch_number = switch_of(path.from);
   const std::size_t count = segment.messages.size();
   const SegmentId id = keep(std::move(segment));
   if (path.nagle) {
@@ -103,12 +108,9 @@ void Network::send_capture_traffic(PeerId from, double bytes) {
 
 void Network::handle(const Event& event) {
   switch (static_cast<EventKind>(event.kind)) {
-    case kAtSwitch: {
-      const Segment& segment = segments_[event.subject];
-      Port& port = switch_ports_[paths_[segment.path].to];
-      travel(event.subject, port.pass(event.time, on_the_line(segment)));
+    case kAtSwitch:
+      pass_switch(event.subject, event.time);
       break;
-    }
     case kArrival:
       arrive(event.subject);
       break;
@@ -121,6 +123,20 @@ void Network::handle(const Event& event) {
       break;
     }
   }
+}
+
+void Network::pass_switch(SegmentId id, TrueTime at) {
+  Segment& segment = segments_[id];
+  const PeerId to = paths_[segment.path].to;
+  const Nanoseconds duration = on_the_line(segment);
+  if (segment.switch_number == switch_of(to)) {
+    travel(id, switch_ports_[to].pass(at, duration));
+    return;
+  }
+  const bool is_up = switch_of(to) > segment.switch_number;
+  const auto port = 2 * static_cast<std::size_t>(segment.switch_number) + (is_up ? 1 : 0);
+  segment.switch_number += is_up ? 1 : -1;
+  engine_.schedule(trunk_ports_[port].pass(at, duration), handler_id_, kAtSwitch, id);
 }
 
 void Network::travel(SegmentId id, TrueTime at) {

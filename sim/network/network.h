@@ -1,9 +1,15 @@
 // The network of the rig: every host on one switch, messages as datagrams or on streams.
 //
-// A message that leaves a host passes the host's port to the switch and the switch's port to the
-// receiver, each of which serves in order of arrival, and then takes the latency of its direction
-// of the link. All random numbers of a message are keyed by (link, direction, transport, number of
-// the message), so more messages change no other's numbers.
+// A message that leaves a host's stack reaches its card, passes the host's port to its switch, the
+// port of each switch on the way and that to the receiver, each of which serves in order of
+// arrival, and then takes the latency of its direction of the link: propagation, the residence in
+// the switches, and what the scenario adds. All this lies between the two cards; the way through
+// the hosts is theirs (sim/host/message_stack.h). All random numbers of a message are keyed by
+// (link, direction, transport, number of the message), so more messages change no other's numbers.
+//
+// Switches stand in a line (network/switch_of_host); a trunk between two neighbours has a port at
+// either end and no length. Foreign frames that load every switch port are not simulated one by
+// one: a message waits as a stationary M/D/1 queue lets it, drawn anew for each port.
 //
 // Datagrams may be lost, duplicated (the copy has a latency of its own) and reordered (delayed
 // while others pass); otherwise they keep their order. Streams are in order and complete: a lost
@@ -84,8 +90,9 @@ class Port {
 // An arrived message that was not received yet.
 struct ArrivedMessage {
   Bytes bytes;
-  TrueTime at;
+  TrueTime at;  // the card
   MessageId id = 0;
+  std::optional<TrueTime> stamped{};  // by software, once the receiving host knows when
 };
 using Inbox = std::deque<ArrivedMessage>;
 
@@ -95,7 +102,9 @@ class Endpoint {
   virtual ~Endpoint() = default;
   // A message has been added to the inbox.
   virtual void on_arrival() = 0;
-  // Messages `first` to `first + count - 1` have left the host; their last bit passes its port at
+  // How long a segment that leaves now, from message `first` on, takes to the card.
+  virtual Nanoseconds to_card(MessageId /*first*/) { return Nanoseconds(0); }
+  // Messages `first` to `first + count - 1` have left the stack; their last bit passes the card at
   // `passed`, now or later.
   virtual void on_left(MessageId first, std::size_t count, TrueTime passed) = 0;
 };
@@ -160,6 +169,11 @@ class Network : private EventHandler {
   bool is_cut(const Path& path, TrueTime left, TrueTime arrival) const {
     return outages_.unreachable(path.from, left) || outages_.unreachable(path.to, arrival);
   }
+  std::int64_t switch_of(PeerId host) const {
+    return parameters_.switch_of_host.empty() ? 0 : parameters_.switch_of_host[host];
+  }
+  // The segment, which is at switch `number` of its way, has come to its next port.
+  void pass_switch(SegmentId id, TrueTime at);
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
   // Reports to the observer that the segment's messages arrive then, or never.
   void report(const Segment& segment, std::optional<TrueTime> arrival) const;
@@ -186,6 +200,7 @@ class Network : private EventHandler {
   HandlerId handler_id_;
   std::vector<Port> host_ports_;
   std::vector<Port> switch_ports_;
+  std::vector<Port> trunk_ports_;  // of switch s: 2 s towards s - 1, 2 s + 1 towards s + 1
   std::deque<Path> paths_;
   std::unordered_map<std::uint64_t, PathId> path_ids_[2];  // by transport, then direction
   Slots<Segment> segments_;

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "sim/engine/normal_process.h"
 
 namespace simbench::sim {
-namespace {
-
-// The probability of a standard normal variate below z.
-double normal_probability(double z) { return std::erfc(-z / std::numbers::sqrt2) / 2; }
-
-}  // namespace
 
 HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
                        TrueTime capture_start, double period_ns)

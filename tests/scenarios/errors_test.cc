@@ -145,6 +145,33 @@ std::string error_of_links(const std::string& links, const std::string& others =
   return error_of("\"network\": {" + others + "\"links\": [\n" + links + "]}");
 }
 
+TEST(Checks, StacksAndSwitches) {
+  const auto error_on_lan = [](const std::string& members) {
+    return error_of_text(
+        "{\"base\": \"18cam_6host_45fps_lan\",\n \"name\": \"my\", \"summary\": "
+        "\"s\",\n " +
+        members + "}\n");
+  };
+  const auto error_of_receive = [&](const std::string& law) {
+    return error_on_lan(R"("hosts": {"stack": {"receive": {)" + law + "}}}");
+  };
+  EXPECT_EQ(error_of_receive(R"("quantiles_us": [1, -2])"),
+            "my.json:3: /hosts/stack/receive/quantiles_us/1: found -2, allowed a number from 0 to "
+            "1000000");
+  EXPECT_EQ(error_of_receive(R"("quantiles_us": [3, 2])"),
+            "my.json:3: /hosts/stack/receive/quantiles_us/1: found 2, allowed at least 3, the "
+            "number before it: a table of quantiles ascends");
+  EXPECT_EQ(error_of_receive(R"("common_share": 0.5, "common_time_ms": 0)"),
+            "my.json:3: /hosts/stack/receive/common_time_ms: found 0 or nothing, allowed more than "
+            "0 where common_share is above 0");
+  EXPECT_EQ(error_on_lan(R"("network": {"switch_of_host": [0, 1]})"),
+            "my.json:3: /network/switch_of_host: found 2 switches, allowed none or one for each of "
+            "the 6 hosts");
+  EXPECT_EQ(error_on_lan(R"("network": {"bandwidth_mbit_per_s": 0, "cross_traffic_share": 0.5})"),
+            "my.json:3: /network/cross_traffic_share: found 0.5, allowed 0 where "
+            "/network/bandwidth_mbit_per_s is 0 (infinite)");
+}
+
 TEST(Checks, TemperaturesAndDriftFiles) {
   const std::string temperature =
       R"("day_amplitude_k": 3, "day_period_h": 24, "load_amplitude_k": 5, "load_period_s": 1200,

@@ -49,6 +49,27 @@ TEST(LinkLatency, HasTheTablesDistribution) {
   EXPECT_LT(worst, 1.95 / std::sqrt(kDraws)) << "Kolmogorov-Smirnov, seed " << kLatencySeed;
 }
 
+// The mean wait in an M/D/1 queue is r S / (2 (1 - r)): Pollaczek and Khinchine.
+TEST(LinkLatency, WaitsForForeignTraffic) {
+  scenarios::Network network{};
+  network.bandwidth_mbit_per_s = 1000;
+  network.cross_traffic_share = 0.6;
+  network.switch_of_host = {0, 1};
+  LinkLatency latency(network, kLatencySeed, 0, 1, 0);
+  constexpr std::uint64_t kDraws = 50'000;
+  double sum_ms = 0;
+  int idle = 0;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const double ms = draw_ms(latency, i);
+    sum_ms += ms;
+    idle += ms == 0 ? 1 : 0;
+  }
+  const double frame_ms = 8 * 1538 / 1e6;
+  const double mean_ms = 2 * 0.6 * frame_ms / (2 * (1 - 0.6));
+  EXPECT_NEAR(sum_ms / kDraws / mean_ms, 1, 0.03) << "seed " << kLatencySeed;
+  EXPECT_NEAR(1.0 * idle / kDraws, 0.4 * 0.4, 0.01) << "seed " << kLatencySeed;
+}
+
 TEST(LinkLatency, AsymmetryAndSessionAreAddedToATable) {
   scenarios::Network network = tabled({1, 1});
   network.asymmetry_sigma_ms = 0.2;

@@ -100,6 +100,45 @@ std::vector<double> times(const std::vector<Seen>& seen) {
   return all;
 }
 
+// 1250 bytes at 100 Mbit/s: 0.1 ms on each of the wires to, between and from three switches.
+TEST(NetworkTest, SwitchesInALinePassMessagesOn) {
+  scenarios::Network parameters = plain_network();
+  parameters.bandwidth_mbit_per_s = 100;
+  parameters.switch_of_host = {0, 2, 0, 1, 2, 2, 2, 2};
+  parameters.switch_residence_ms = 0.01;
+  World world(parameters);
+  Probe& to_far = world.probe(0, 1);
+  Probe& far = world.probe(1, 0);
+  Probe& to_near = world.probe(0, 2);
+  Probe& near = world.probe(2, 0);
+  world.send_at(0, to_far, 1, 1250);
+  world.send_at(10, to_near, 2, 1250);
+  world.send_at(20, far, 3, 1250);
+  world.run();
+  ASSERT_EQ(far.arrived.size(), 1u);
+  EXPECT_NEAR(far.arrived[0].at_ms, 4 * 0.1 + 3 * 0.01 + 1, 1e-6);
+  ASSERT_EQ(near.arrived.size(), 1u);
+  EXPECT_NEAR(near.arrived[0].at_ms, 10 + 2 * 0.1 + 0.01 + 1, 1e-6);
+  ASSERT_EQ(to_far.arrived.size(), 1u);
+  EXPECT_NEAR(to_far.arrived[0].at_ms, 20 + 4 * 0.1 + 3 * 0.01 + 1, 1e-6);
+}
+
+TEST(NetworkTest, TrunksQueueWhatSharesThem) {
+  scenarios::Network parameters = plain_network();
+  parameters.bandwidth_mbit_per_s = 100;
+  parameters.switch_of_host = {0, 1, 0, 1, 1, 1, 1, 1};
+  World world(parameters);
+  Probe& first = world.probe(0, 1);
+  Probe& at_1 = world.probe(1, 0);
+  Probe& second = world.probe(2, 3);
+  Probe& at_3 = world.probe(3, 2);
+  world.send_at(0, first, 1, 1250);
+  world.send_at(0, second, 2, 1250);
+  world.run();
+  EXPECT_NEAR(at_1.arrived.at(0).at_ms, 3 * 0.1 + 1, 1e-6);
+  EXPECT_NEAR(at_3.arrived.at(0).at_ms, 4 * 0.1 + 1, 1e-6) << "behind the other on the trunk";
+}
+
 TEST(NetworkTest, FixedLatencyInBothDirections) {
   World world(plain_network());
   Probe& a = world.probe(0, 1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -83,30 +84,74 @@ TEST(SwitchClock, TheErrorIsDrawnPerMessage) {
   EXPECT_NEAR(std::sqrt(squares / kMessages), 40, 5 * 40 / std::sqrt(2.0 * kMessages)) << "seed 9";
 }
 
-TEST(SwitchClock, ABoundaryClocksErrorIsSlowAndOfTheSameSizeEverywhere) {
-  double squares[4] = {};
+// The stationary variance of the servo's error x for noise of variance 1, by iterating the
+// covariance of (x, integral) under x' = x - kp (x + n) - d', d' = d + ki (x + n).
+double servo_variance() {
+  constexpr double kProportional = 0.7;
+  constexpr double kIntegral = 0.3;
+  const double gain = kProportional + kIntegral;
+  double xx = 0;
+  double xd = 0;
+  double dd = 0;
+  for (int i = 0; i < 1000; ++i) {
+    // x' = (1 - gain) x - d - gain n; d' = d + ki x + ki n.
+    const double a = 1 - gain;
+    const double next_xx = a * a * xx - 2 * a * xd + dd + gain * gain;
+    const double next_xd = a * kIntegral * xx + (a - kIntegral) * xd - dd - gain * kIntegral;
+    dd = kIntegral * kIntegral * xx + 2 * kIntegral * xd + dd + kIntegral * kIntegral;
+    xx = next_xx;
+    xd = next_xd;
+  }
+  return xx;
+}
+
+TEST(BoundaryClock, HasTheVarianceOfItsServo) {
+  const scenarios::Network network = with_switch(SwitchClockKind::kBoundary, 40);
+  double squares = 0;
   constexpr int kSeeds = 4000;
-  double largest_change_ns = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const SwitchClock clock(with_switch(SwitchClockKind::kBoundary, 40), seed);
-    for (int i = 0; i < 4; ++i) {
-      const double error = clock.boundary_error_ns(at_ms(10'000 * i - 12'345));
-      squares[i] += error * error;
-    }
-    largest_change_ns = std::max(
-        largest_change_ns,
-        std::abs(clock.boundary_error_ns(at_ms(29'999)) - clock.boundary_error_ns(at_ms(30'001))));
+    const double error_ns = BoundaryClock(network, seed, 0).error_ns(at_ms(0));
+    squares += error_ns * error_ns;
   }
-  for (const double sum : squares) {
-    EXPECT_NEAR(std::sqrt(sum / kSeeds), 40, 5 * 40 / std::sqrt(2.0 * kSeeds)) << "seeds 1-4000";
+  EXPECT_NEAR(std::sqrt(squares / kSeeds) / (40 * std::sqrt(servo_variance())), 1,
+              5 / std::sqrt(2.0 * kSeeds))
+      << "seeds 1-4000";
+}
+
+TEST(BoundaryClock, FollowsAWalkingOscillatorAndDoesNotRunAway) {
+  scenarios::Network network = with_switch(SwitchClockKind::kBoundary, 0);
+  network.switch_clock_wander_ppb_per_sqrt_s = 1;
+  const BoundaryClock clock(network, 3, 0);
+  double largest_ns = 0;
+  for (int s = 0; s < 36'000; ++s) {
+    largest_ns = std::max(largest_ns, std::abs(clock.error_ns(at_ms(1e3 * s))));
   }
-  EXPECT_LT(largest_change_ns, 0.1) << "2 ms at a grid point, seeds 1-4000";
+  EXPECT_GT(largest_ns, 1) << "seed 3";
+  EXPECT_LT(largest_ns, 30) << "seed 3";
+}
+
+TEST(BoundaryClock, ReadingsDoNotDependOnTheirOrder) {
+  const scenarios::Network network = with_switch(SwitchClockKind::kBoundary, 40);
+  const BoundaryClock forward(network, 8, 2);
+  const BoundaryClock backward(network, 8, 2);
+  std::vector<double> errors_ns;
+  for (int s = 0; s < 100; ++s) errors_ns.push_back(forward.error_ns(at_ms(997 * s)));
+  for (int s = 100; s-- > 0;) {
+    EXPECT_EQ(backward.error_ns(at_ms(997 * s)), errors_ns[static_cast<std::size_t>(s)]) << s;
+  }
 }
 
 TEST(SwitchClock, SlavesOfABoundaryClockAreAheadOfTheMasterByItsError) {
-  SwitchClock clock(with_switch(SwitchClockKind::kBoundary, 1000), 5);
-  const double error_ns = clock.boundary_error_ns(at_ms(7));
-  const SwitchClock transparent(with_switch(SwitchClockKind::kTransparent, 1000), 5);
+  scenarios::Network network = with_switch(SwitchClockKind::kBoundary, 1000);
+  network.switch_of_host = {0, 0, 0, 1};
+  const SwitchClock clock(network, 5);
+  const double near_ns = clock.boundary_error_ns(2, at_ms(7));
+  const double far_ns = clock.boundary_error_ns(3, at_ms(7));
+  EXPECT_NE(near_ns, far_ns);
+  EXPECT_EQ(near_ns, BoundaryClock(network, 5, 0).error_ns(at_ms(7)));
+  EXPECT_EQ(far_ns, near_ns + BoundaryClock(network, 5, 1).error_ns(at_ms(7)));
+  network.switch_clock = SwitchClockKind::kTransparent;
+  const SwitchClock transparent(network, 5);
   const auto extra_ns = [&](PeerId from, PeerId to) {
     Bytes boundary = ptp(0);
     Bytes plain = ptp(0);
@@ -114,8 +159,9 @@ TEST(SwitchClock, SlavesOfABoundaryClockAreAheadOfTheMasterByItsError) {
     transparent.correct(plain, {.from = from, .to = to}, Nanoseconds(0), at_ms(7));
     return correction_ns(boundary) - correction_ns(plain);
   };
-  EXPECT_NEAR(extra_ns(0, 3), error_ns, 1e-4);
-  EXPECT_NEAR(extra_ns(3, 0), -error_ns, 1e-4);
+  EXPECT_NEAR(extra_ns(0, 2), near_ns, 1e-4);
+  EXPECT_NEAR(extra_ns(0, 3), far_ns, 1e-4);
+  EXPECT_NEAR(extra_ns(3, 0), -far_ns, 1e-4);
   EXPECT_EQ(extra_ns(2, 3), 0);
 }
 
@@ -161,6 +207,9 @@ scenarios::Network rough_network(SwitchClockKind kind) {
   network.spike_max_ms = 5;
   network.burst = {.rate_hz = 5, .duration_exponential_ms = 50, .latency_ms = 2};
   network.bandwidth_mbit_per_s = 100;
+  network.switch_of_host = {0, 2};
+  network.switch_residence_ms = 0.01;
+  network.cross_traffic_share = 0.5;
   network.overhead_bytes = 46;
   network.reorder_probability = 0.1;
   network.reorder_max_ms = 3;

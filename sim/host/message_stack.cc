@@ -1,0 +1,106 @@
+#include "sim/host/message_stack.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kSpeed("stack: speed of a host");
+constexpr ComponentKey kTransmit("stack: transmit");
+constexpr ComponentKey kToCard("stack: transmit to card");
+constexpr ComponentKey kReceive("stack: receive");
+constexpr ComponentKey kWakeUp("stack: wake up");
+constexpr ComponentKey kModeration("stack: interrupt moderation");
+constexpr ComponentKey kSleepiness("stack: sleep");
+
+double speed_of(const scenarios::Stack& stack, std::uint64_t run_seed, PeerId host) {
+  return RandomStream(run_seed, kSpeed, host).lognormal(stack.speed_log_sigma);
+}
+
+}  // namespace
+
+DelayProcess::DelayProcess(const scenarios::DelayLaw& law, std::uint64_t run_seed,
+                           ComponentKey name, PeerId host, double factor)
+    : law_(&law), run_seed_(run_seed), name_(name), factor_(factor), table_us_(law.quantiles_us) {
+  if (law.common_share > 0) common_.emplace(run_seed, name, host, from_ms(law.common_time_ms));
+}
+
+Nanoseconds DelayProcess::draw(TrueTime at, const MessageKey& key) {
+  RandomStream draw(run_seed_, name_, key.direction, key.message);
+  const double probability = quantile(at, draw);
+  double delay_us = table_us_.empty()
+                        ? law_->fixed_us - law_->exponential_us * std::log1p(-probability)
+                        : table_us_.value_at(probability);
+  if (draw.chance(law_->spike_probability)) delay_us += draw.uniform(0, law_->spike_max_us);
+  return from_us(factor_ * delay_us);
+}
+
+double DelayProcess::quantile(TrueTime at, RandomStream& draw) {
+  if (!common_) return draw.uniform();
+  // Below 1, whose exponential is infinite.
+  constexpr double kMost = 1 - 0x1p-53;
+  const double share = law_->common_share;
+  const double score = std::sqrt(share) * common_->at(at) + draw.normal(std::sqrt(1 - share));
+  return std::min(normal_probability(score), kMost);
+}
+
+MessageStack::Parts::Parts(const scenarios::Stack& stack, std::uint64_t run_seed, PeerId host,
+                           double speed)
+    : stated(stack),
+      factor(speed),
+      transmit(stack.transmit, run_seed, kTransmit, host, speed),
+      to_card(stack.transmit_to_card, run_seed, kToCard, host, speed),
+      receive(stack.receive, run_seed, kReceive, host, speed),
+      wake_up(stack.wake_up, run_seed, kWakeUp, host, speed),
+      sleepiness(run_seed, kSleepiness, host, from_ms(stack.sleep_time_ms)) {}
+
+MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed, PeerId host)
+    : run_seed_(run_seed) {
+  if (!hosts.stack) return;
+  parts_.emplace(*hosts.stack, run_seed, host, speed_of(*hosts.stack, run_seed, host));
+}
+
+Nanoseconds MessageStack::transmit(TrueTime at, const MessageKey& key) {
+  return parts_ ? parts_->transmit.draw(at, key) : Nanoseconds(0);
+}
+
+Nanoseconds MessageStack::to_card(TrueTime left, const MessageKey& key) {
+  if (!parts_) return Nanoseconds(0);
+  parts_->last_at_card = std::max(parts_->last_at_card, left + parts_->to_card.draw(left, key));
+  return parts_->last_at_card - left;
+}
+
+TrueTime MessageStack::receive(TrueTime at, const MessageKey& key) {
+  if (!parts_) return at;
+  TrueTime stamp = interrupt(at, key);
+  if (normal_probability(parts_->sleepiness.at(at)) < parts_->stated.sleep_share) {
+    stamp += from_us(parts_->factor * parts_->stated.sleep_exit_us);
+  }
+  stamp += parts_->receive.draw(at, key);
+  parts_->last_stamp = std::max(parts_->last_stamp, stamp);
+  return parts_->last_stamp;
+}
+
+TrueTime MessageStack::interrupt(TrueTime at, const MessageKey& key) {
+  const Nanoseconds period = from_us(parts_->stated.interrupt_moderation_us);
+  // The interrupt that is already due serves this message too.
+  if (parts_->last_interrupt >= at) return parts_->last_interrupt;
+  RandomStream draw(run_seed_, kModeration, key.direction, key.message);
+  const double load = parts_->stated.interrupts_per_s * 1e-9 * static_cast<double>(period.count());
+  const bool is_blocked = draw.chance(load / (1 + load));
+  const double wait = draw.uniform();
+  TrueTime interrupt = at;
+  if (is_blocked) interrupt += from_ns(wait * static_cast<double>(period.count()));
+  if (parts_->last_interrupt > TrueTime::min()) {
+    interrupt = std::max(interrupt, parts_->last_interrupt + period);
+  }
+  parts_->last_interrupt = interrupt;
+  return interrupt;
+}
+
+Nanoseconds MessageStack::wake_up(TrueTime stamped, const MessageKey& key) {
+  return parts_ ? parts_->wake_up.draw(stamped, key) : Nanoseconds(0);
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,114 @@
+// The way of a message through a host: between the calls of its program and its network card.
+//
+//   send call --transmit--> software stamp --transmit_to_card--> card, hardware stamp --> the wire
+//   the wire --> card, hardware stamp --> interrupt --receive--> software stamp --wake_up--> return
+//
+// Each part takes a time by a law of its own (scenarios::DelayLaw): fixed + Exp or a table of
+// quantiles, and rare spikes. A message's draw is keyed by (link, direction, transport, number of
+// the message), so more messages change no other's numbers. A share of the law's normal score may
+// be common to all that passes that part of the host, a process in true time: what is slow now is
+// slow for the next message too.
+//
+// The interrupt comes with the message, unless
+//  - the card moderates: interrupts are interrupt_moderation_us apart at least. The host's other
+//    traffic causes interrupts too, as a Poisson process of rate r; as each blocks for T, a message
+//    meets a blocked card with probability rT / (1 + rT) and then waits U(0, T);
+//  - the processor sleeps, for sleep_share of the time in a process in true time: waking it takes
+//    sleep_exit_us.
+// Parts keep the order of messages: none overtakes another on the same host.
+//
+// One factor exp(N(0, speed_log_sigma)) per host scales all of it but the moderation.
+//
+// Without /hosts/stack nothing takes time. Not modelled: which processor core serves, batches that
+// share one pass (NAPI), and the stack's own queue under overload.
+//
+// Source: docs/reference/host_sync.md section 3; scenario /hosts/stack. Cost: some 100 ns a
+// message.
+//
+//   MessageStack stack(scenario.hosts, seed, 3);
+//   const Nanoseconds in_the_call = stack.transmit(now, {direction, id});
+//   const Nanoseconds to_card = stack.to_card(left, {direction, id});
+//   const TrueTime stamped = stack.receive(at_card, {direction, id});
+//   const TrueTime returns = stamped + stack.wake_up(stamped, {direction, id});
+#ifndef SIMBENCH_SIM_HOST_MESSAGE_STACK_H_
+#define SIMBENCH_SIM_HOST_MESSAGE_STACK_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "algorithms/ports/exchange.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/engine/normal_process.h"
+#include "sim/engine/quantile_table.h"
+#include "sim/engine/random.h"
+
+namespace simbench::sim {
+
+// Tells messages apart: direction_of(from, to) and the key of the message on it.
+struct MessageKey {
+  std::uint64_t direction = 0;
+  std::uint64_t message = 0;
+};
+
+// One part of the way.
+class DelayProcess {
+ public:
+  // `law` must outlive this. `name` tells the parts apart, `factor` scales every delay.
+  DelayProcess(const scenarios::DelayLaw& law, std::uint64_t run_seed, ComponentKey name,
+               PeerId host, double factor);
+
+  // The delay of a message that begins this part at `at`.
+  Nanoseconds draw(TrueTime at, const MessageKey& key);
+
+ private:
+  // The quantile that the message meets, in (0, 1).
+  double quantile(TrueTime at, RandomStream& draw);
+
+  const scenarios::DelayLaw* law_;
+  std::uint64_t run_seed_;
+  ComponentKey name_;
+  double factor_;
+  QuantileTable table_us_;
+  std::optional<NormalProcess> common_;
+};
+
+class MessageStack {
+ public:
+  // `hosts` must outlive the stack.
+  MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed, PeerId host);
+
+  // CPU time of a send call that begins at `at`, beside the scenario's send cost.
+  Nanoseconds transmit(TrueTime at, const MessageKey& key);
+  // From the software transmit stamp at `left` to the card. In order of the calls.
+  Nanoseconds to_card(TrueTime left, const MessageKey& key);
+  // The software stamp of a message that reached the card at `at`. In order of the calls.
+  TrueTime receive(TrueTime at, const MessageKey& key);
+  // From the software stamp to the return of a receiver that waits.
+  Nanoseconds wake_up(TrueTime stamped, const MessageKey& key);
+
+ private:
+  struct Parts {
+    Parts(const scenarios::Stack& stated, std::uint64_t run_seed, PeerId host, double factor);
+    const scenarios::Stack& stated;
+    double factor;
+    DelayProcess transmit;
+    DelayProcess to_card;
+    DelayProcess receive;
+    DelayProcess wake_up;
+    NormalProcess sleepiness;
+    TrueTime last_at_card = TrueTime::min();
+    TrueTime last_interrupt = TrueTime::min();
+    TrueTime last_stamp = TrueTime::min();
+  };
+
+  // When the card interrupts for a message.
+  TrueTime interrupt(TrueTime at, const MessageKey& key);
+
+  std::uint64_t run_seed_;
+  std::optional<Parts> parts_;  // nothing without /hosts/stack
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_MESSAGE_STACK_H_
