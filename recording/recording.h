@@ -48,7 +48,7 @@ struct FrameRecord {
   std::uint32_t exposure_us = 0;
   DeviceStamp sensor;           // middle of the exposure, device clock
   DeviceStamp frame;            // start of readout and transmission, device clock
-  HostTime backend{};           // copied to the kernel, host's system clock
+  HostTime backend{};           // copied to the kernel, host's system clock, as the SDK has it
   HostTime arrival{};           // delivered, host's system clock, in steps of the arrival quantum
   SteadyTime arrival_steady{};  // the same instant on the host's steady clock
 };

@@ -3,17 +3,21 @@
 // world.
 //
 // Measured are a whole model's constants, never one camera's, to 0.01 ms. From the end of an
-// exposure to its arrival it is what a minimum over ten seconds of frames finds: jitter that is a
-// frame's own is not in it, jitter that all frames of a host share for long is.
+// exposure (of its middle row) to its arrival it is what a hull over some seconds of frames finds:
+// jitter that is a frame's own is not in it, jitter that all frames of a host share for long is.
 //
-//   delay = pipeline latency + mode periods + transfer while the controller's other cameras also
-//           transfer + half of latency_camera_max_ms - half of the arrivals' quantum
-//           + least delay of the table, or mean least common jitter in ten seconds
+//   delay = pipeline latency + mode periods + half of latency_camera_max_ms
+//           + transfer, while all the controller's frames of that time transfer
+//           + common jitter, its mean less a standard deviation
+//           + the least delay of a table - half of the arrivals' quantum
 //   asymmetry = request_ms - reply_ms
 //
-// Frames of a controller are taken to be offered at once, of streams without a readout of their
-// own. That is the mean delay but for cameras whose latencies or pulses differ: fair sharing then
-// delivers sooner.
+// The common jitter, AR(1) with mean m and coefficient r, thus counts as m (1 - sqrt((1-r)/(1+r))):
+// 0 where r = 0, as hulls take jitter off that is each frame's own, and m as r goes to 1. Frames
+// that fair sharing gets one after the other it delivers sooner, by twice their mean distance from
+// the first while they overlap; where they do not (latency_camera_max_ms above the transfer), the
+// result is a few tenths of a millisecond too small. A stream that runs free is taken to be alone
+// on its controller.
 //
 // Stated values name the world in which they were measured, and scenarios/checks.cc refuses them in
 // another. Calibrations have errors: /cameras/calibration changes the world, not these values.

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "scenarios/calibration.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/changes.h"
 #include "scenarios/document.h"
@@ -79,12 +81,34 @@ std::string profile_source(const Cameras& cameras, const std::string& pointer) {
   return "";
 }
 
+// Calibrations that are computed are parameters too: stated beside the others.
+std::set<std::string> state_calibrations(const Scenario& scenario, ordered_json& document) {
+  std::set<std::string> computed;
+  const auto state = [&](const std::string& parent, const char* member, double value) {
+    document[ordered_json::json_pointer(parent)][member] = value;
+    computed.insert(child_pointer(parent, member));
+  };
+  const std::vector<Stream>& streams = scenario.cameras.streams;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    if (streams[i].calibrated_delay_ms) continue;
+    state(fmt::format("/cameras/streams/{}", i), "calibrated_delay_ms",
+          calibrated_delay_ms(scenario, streams[i]));
+  }
+  const ClockPoll& polls = scenario.cameras.clock_poll;
+  if (!polls.calibrated_asymmetry_ms) {
+    state("/cameras/clock_poll", "calibrated_asymmetry_ms", calibrated_asymmetry_ms(polls));
+  }
+  return computed;
+}
+
 class Walker {
  public:
-  explicit Walker(const Scenario& scenario)
+  // `computed`: the pointers of values that are not stated.
+  Walker(const Scenario& scenario, std::set<std::string> computed)
       : cameras_(scenario.cameras),
         derivation_(scenario.derivation),
-        places_(dynamic_cast<const Places&>(*scenario.origin)) {}
+        places_(dynamic_cast<const Places&>(*scenario.origin)),
+        computed_(std::move(computed)) {}
 
   void walk(const std::string& pointer, std::string_view name, const ordered_json* node,
             const ordered_json& value) {
@@ -111,6 +135,10 @@ class Walker {
       line.meaning = node->value("description", "");
       line.source = node->value("x-source", "");
     }
+    if (computed_.contains(pointer)) {
+      line.source = "computed for this world (scenarios/calibration.h)";
+      return lines_.push_back(std::move(line));
+    }
     const std::string profile = profile_source(cameras_, pointer);
     if (!profile.empty()) line.source = profile;
     if (!places_.nearest(pointer).profile_source.empty()) {
@@ -130,6 +158,7 @@ class Walker {
   const Cameras& cameras_;
   const Derivation& derivation_;
   const Places& places_;
+  std::set<std::string> computed_;
   std::vector<ParameterLine> lines_;
 };
 
@@ -148,8 +177,9 @@ std::string world_text(const Scenario& scenario) {
 }
 
 std::vector<ParameterLine> describe(const Scenario& scenario) {
-  Walker walker(scenario);
-  walker.walk("", "", &ordered_schema(), ordered_json::parse(scenario.resolved_json));
+  ordered_json document = ordered_json::parse(scenario.resolved_json);
+  Walker walker(scenario, state_calibrations(scenario, document));
+  walker.walk("", "", &ordered_schema(), document);
   return walker.take();
 }
 

@@ -107,6 +107,19 @@ class DelayCorrected final : public Adapter {
   CalibratedDelays delays_;
 };
 
+class OnSdkStamps final : public Adapter {
+ public:
+  using Adapter::Adapter;
+
+ private:
+  DeviceSample adapted(const DeviceSample& sample) const override {
+    DeviceSample cut = sample;
+    const std::int64_t steps = floor_div(nanoseconds_of(sample.arrival), kSdkResolution.count());
+    cut.arrival = HostTime(Nanoseconds(saturate(Int128{steps} * kSdkResolution.count())));
+    return cut;
+  }
+};
+
 // Removes `suffix` from the end of `name`, once.
 bool take(std::string_view& name, std::string_view suffix, bool& taken) {
   if (taken || !name.ends_with(suffix)) return false;
@@ -118,6 +131,10 @@ bool take(std::string_view& name, std::string_view suffix, bool& taken) {
 
 std::unique_ptr<DeviceTimeEstimator> on_steady_clock(std::unique_ptr<DeviceTimeEstimator> inner) {
   return std::make_unique<OnSteadyClock>(std::move(inner));
+}
+
+std::unique_ptr<DeviceTimeEstimator> on_sdk_stamps(std::unique_ptr<DeviceTimeEstimator> inner) {
+  return std::make_unique<OnSdkStamps>(std::move(inner));
 }
 
 std::unique_ptr<DeviceTimeEstimator> exposure_corrected(
@@ -132,7 +149,8 @@ std::unique_ptr<DeviceTimeEstimator> delay_corrected(std::unique_ptr<DeviceTimeE
 
 DeviceTimeName parse_device_time_name(std::string_view name) {
   DeviceTimeName parsed;
-  while (take(name, "_steady", parsed.steady) ||
+  while ((!parsed.sdk && take(name, "_steady", parsed.steady)) ||
+         (!parsed.steady && take(name, "_sdk", parsed.sdk)) ||
          take(name, "_exposure_corrected", parsed.exposure_corrected) ||
          take(name, "_calibrated", parsed.calibrated)) {
   }
@@ -149,6 +167,7 @@ std::unique_ptr<DeviceTimeEstimator> make_variant(const DeviceTimeName& name,
   } else if (name.exposure_corrected) {
     inner = exposure_corrected(std::move(inner));
   }
+  if (name.sdk) return on_sdk_stamps(std::move(inner));
   return name.steady ? on_steady_clock(std::move(inner)) : std::move(inner);
 }
 

@@ -8,8 +8,12 @@
 //                               and profile: from exposure's end to arrival, and of a poll's
 //                               request minus that of its reply
 //
-// Suffixes combine in any order; "calibrated" includes the exposure. A wrapper passes everything
-// else on: learn(), polls, adjustments, offline(), relative() and from_first_frame().
+//   <base>_sdk                  gets the arrivals that librealsense gives (TIME_OF_ARRIVAL): on the
+//                               system clock, in whole milliseconds, rounded down
+//
+// Suffixes combine in any order; "calibrated" includes the exposure. "sdk" and "steady" exclude
+// each other, as the SDK knows no steady clock. A wrapper passes everything else on: learn(),
+// polls, adjustments, offline(), relative() and from_first_frame().
 //
 //   const DeviceTimeName name = parse_device_time_name("hull_300_steady_exposure_corrected");
 //   auto estimator = make_variant(name, find_device_time(name.base)->make(parameters), {});
@@ -33,6 +37,12 @@ std::unique_ptr<DeviceTimeEstimator> on_steady_clock(std::unique_ptr<DeviceTimeE
 // depend on the exposure if the camera stamps mid-exposure and delivers a fixed time after its end.
 std::unique_ptr<DeviceTimeEstimator> exposure_corrected(std::unique_ptr<DeviceTimeEstimator> inner);
 
+// The resolution of librealsense's time of arrival (docs/reference/d455.md section 1).
+inline constexpr Nanoseconds kSdkResolution{1'000'000};
+
+// Rounds the arrivals on the system clock down to kSdkResolution; polls stay as they are.
+std::unique_ptr<DeviceTimeEstimator> on_sdk_stamps(std::unique_ptr<DeviceTimeEstimator> inner);
+
 // Constants of a model and profile, never of one camera.
 struct CalibratedDelays {
   Nanoseconds arrival{};         // from the end of an exposure to the frame's arrival
@@ -49,11 +59,12 @@ struct DeviceTimeName {
   bool steady = false;
   bool exposure_corrected = false;  // true if calibrated is
   bool calibrated = false;
+  bool sdk = false;
   friend bool operator==(const DeviceTimeName&, const DeviceTimeName&) = default;
 };
 
 // Removes the suffixes from the end, each once: a second "_steady" stays in the base, which then is
-// no registered name.
+// no registered name, and so does "_sdk" with "_steady".
 DeviceTimeName parse_device_time_name(std::string_view name);
 
 // `inner` with the variants of `name`; `delays` count only if it is calibrated.

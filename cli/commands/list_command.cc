@@ -37,6 +37,7 @@ Any device_time but the oracle may be named with suffixes, as in hull_300_steady
   _exposure_corrected  arrivals less half of the exposure
   _calibrated          the same, less the delay (and polls' asymmetry) of the camera model,
                        /cameras/streams/N/calibrated_delay_ms, /cameras/clock_poll
+  _sdk                 on librealsense's arrivals: whole milliseconds of the system clock
 )";
 
 struct ListOptions {

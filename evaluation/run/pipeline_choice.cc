@@ -179,11 +179,18 @@ void check_needs(const Scenario& scenario, std::size_t pipeline, const char* sta
   }
 }
 
-CalibratedDelays calibrated_delays(const Scenario& scenario) {
+// Stamps that are rounded down to steps are half a step early on average.
+Nanoseconds earlier_by_sdk(const Scenario& scenario, const DeviceTimeName& variants) {
+  const Nanoseconds quantum = from_ms(scenario.hosts.clock.arrival_quantum_ms);
+  return variants.sdk && quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
+}
+
+CalibratedDelays calibrated_delays(const Scenario& scenario, const DeviceTimeName& variants) {
   CalibratedDelays delays;
   delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
   if (const scenarios::Stream* scored = scenario.scored_stream()) {
-    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored));
+    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored)) -
+                     earlier_by_sdk(scenario, variants);
   }
   return delays;
 }
@@ -269,11 +276,12 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.make) {
-    setup.make_estimator =
-        [make = choice.device_time.make, parameters = choice.device_time_parameters,
-         variants = choice.device_time_variants, delays = calibrated_delays(scenario)] {
-          return make_variant(variants, make(parameters), delays);
-        };
+    setup.make_estimator = [make = choice.device_time.make,
+                            parameters = choice.device_time_parameters,
+                            variants = choice.device_time_variants,
+                            delays = calibrated_delays(scenario, choice.device_time_variants)] {
+      return make_variant(variants, make(parameters), delays);
+    };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
   if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&

@@ -1,5 +1,6 @@
 #include "sim/rig/cameras.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -70,8 +71,11 @@ void Cameras::add_camera(std::size_t camera) {
 CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
   const scenarios::Stream& profile = scenario_.cameras.streams[which];
   const ShutterSettings shutter = shutter_settings(camera, profile);
+  const scenarios::CalibrationError& error = scenario_.cameras.calibration;
   const double bytes = profile.image_bytes();
   RandomStream latency(seed_, "camera/latency", camera);
+  RandomStream of_model(seed_, "calibration/delay");
+  RandomStream of_camera(seed_, "calibration/camera_delay", camera);
   TrueTime started = start_of(camera);
   if (shutter.mode == ShutterMode::kFreeRunning) {
     // Nothing aligns the frames of a free-running stream: they begin anywhere in a period.
@@ -86,10 +90,13 @@ CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
           .kind = profile.kind,
           .bytes = bytes,
           .transfer_ns = bytes / bytes_per_ns(scenario_.usb),
-          .latency = from_ms(profile.pipeline_latency_ms +
-                             profile.latency_mode_periods * 1e3 / profile.mode_rate_hz +
-                             latency.uniform(0, scenario_.cameras.latency_camera_max_ms)),
+          .latency = from_ms(
+              std::max(0.0, profile.pipeline_latency_ms +
+                                profile.latency_mode_periods * 1e3 / profile.mode_rate_hz +
+                                latency.uniform(0, scenario_.cameras.latency_camera_max_ms) +
+                                of_model.normal(error.delay_error_sigma_ms))),
           .readout = shutter.readout,
+          .late_ns = of_camera.normal(error.camera_delay_error_sigma_ms) * 1e6,
           .started = started,
           .shutter = Shutter(shutter, started),
           .delays = FrameDelays(scenario_.usb, seed_, id),

@@ -5,6 +5,10 @@
 // host share a controller. The values of a stream are drawn from random streams named after its
 // camera and kind, so neither hosts nor pipelines change them.
 //
+// Delays differ from what a user measured for the model (/cameras/calibration): all of a seed alike
+// before their transfers, each camera's after its own, so that it does not change how cameras share
+// the bus.
+//
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2 ("Cameras"),
 // docs/reference/d455.md.
 //
@@ -41,6 +45,7 @@ struct CameraStream {
   double transfer_ns;   // of a frame that is alone on the bus
   Nanoseconds latency;  // from the end of the exposure to the offer to the bus
   Nanoseconds readout;  // of a rolling shutter
+  double late_ns;       // delivered later than a camera of the model is (may be negative)
   TrueTime started;
   Shutter shutter;
   FrameDelays delays;

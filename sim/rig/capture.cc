@@ -40,7 +40,8 @@ Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine
       outages_(outages),
       camera_faults_(scenario.faults),
       host_errors_(clocks_.size()),
-      arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)) {
+      arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)),
+      backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_) {
   first_slot_ = trigger_.first_slot_from(TrueTime(from_ms(scenario.timeline.warm_up_ms)));
   last_slot_ = first_slot_ + scenario.timeline.frames - 1;
 }
@@ -59,6 +60,7 @@ RigLayout Capture::layout() const {
 
 void Capture::start(TrueTime at, std::function<void()> on_end) {
   reports_.start(at);
+  start_ = at;
   on_end_ = std::move(on_end);
   trigger_.start(at);
   camera_faults_.start(at);
@@ -217,7 +219,8 @@ void Capture::deliver_later(std::uint32_t frame_id) {
   const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
   way.frame.transferred = now;
   way.frame.copied = now + from_ns(way.kernel_copy_ns);
-  TrueTime arrival = way.frame.copied + from_ns(way.delivery_ns + host_jitter_ns);
+  const double delivery_ns = way.delivery_ns + host_jitter_ns + stream.late_ns;
+  TrueTime arrival = way.frame.copied + from_ns(std::max(0.0, delivery_ns));
   arrival += host.load.delay(arrival, kLateFrame, way.stream, way.frame.record.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
   engine_.schedule(stream.last_arrival, id_, kDelivery, frame_id);
@@ -241,7 +244,7 @@ void Capture::stamp(CapturedFrame& frame) {
   const TrueTime middle = frame.truth.mid_exposure();
   const SystemClock::Reading arrival = clock.read_both(frame.delivered);
   const SystemClock::Reading exposed = clock.read_both(middle);
-  frame.record.backend = round_down(clock.read(frame.copied), arrival_quantum_);
+  frame.record.backend = backend_stamps_.stamp(clock, start_, frame.copied, frame.delivered);
   frame.record.arrival = round_down(arrival.system, arrival_quantum_);
   frame.record.arrival_steady = round_down(arrival.steady, arrival_quantum_);
   frame.truth.own_host = exposed.system;

@@ -35,6 +35,7 @@
 #include "sim/rig/cameras.h"
 #include "sim/rig/capture_reports.h"
 #include "sim/trigger/trigger_tree.h"
+#include "sim/usb/backend_stamp.h"
 #include "sim/usb/host_stack.h"
 #include "sim/usb/usb_controller.h"
 
@@ -118,6 +119,8 @@ class Capture final : public EventHandler {
   std::int64_t last_slot_ = 0;
   TrueTime end_{};  // no exposure begins after this
   Nanoseconds arrival_quantum_;
+  BackendStamps backend_stamps_;
+  TrueTime start_{};
   bool pulses_over_ = false;
   std::function<void()> on_end_;
 };

@@ -9,6 +9,7 @@ namespace {
 
 constexpr ComponentKey kPhase("camera: phase of the clock polls");
 constexpr ComponentKey kDelays("camera: delays of a clock poll");
+constexpr ComponentKey kAsymmetryError("calibration/poll_asymmetry");
 
 }  // namespace
 
@@ -20,7 +21,10 @@ ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, 
       hosts_(hosts),
       capture_(capture),
       sink_(sink),
-      interval_(from_ms(scenario.cameras.clock_poll.interval_ms)) {}
+      interval_(from_ms(scenario.cameras.clock_poll.interval_ms)),
+      asymmetry_error_ms_(RandomStream(seed, kAsymmetryError)
+                              .normal(scenario.cameras.calibration.poll_asymmetry_error_sigma_ms)) {
+}
 
 void ClockPolls::start() {
   if (interval_.count() == 0) return;
@@ -46,8 +50,9 @@ void ClockPolls::send(std::uint32_t camera, std::int64_t number) {
   const double reply_ms = parameters.reply_ms + draw.exponential(parameters.reply_exponential_ms);
   if (draw.chance(parameters.tail_probability))
     request_ms += draw.uniform(0, parameters.tail_max_ms);
-  poll.read = poll.begin + from_ms(request_ms);
-  engine_.schedule(poll.read + from_ms(reply_ms), id_, 0, camera);
+  poll.read = poll.begin + from_ms(std::max(0.0, request_ms + asymmetry_error_ms_ / 2));
+  engine_.schedule(poll.read + from_ms(std::max(0.0, reply_ms - asymmetry_error_ms_ / 2)), id_, 0,
+                   camera);
 }
 
 void ClockPolls::handle(const Event& event) {

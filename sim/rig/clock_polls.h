@@ -10,6 +10,9 @@
 // skips those due meanwhile. A camera that has vanished does not reply, and a host that has stopped
 // does not poll.
 //
+// All polls of a seed may be less symmetric than was measured (/cameras/calibration): half of that
+// lengthens the request, half of it shortens the reply, and neither becomes negative.
+//
 // All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns;
 // with an interval of 0 there is nothing at all, not even a handler.
 //
@@ -60,7 +63,8 @@ class ClockPolls final : private EventHandler {
   Capture& capture_;
   RecordingSink& sink_;
   Nanoseconds interval_;
-  std::vector<Poll> polls_;  // by camera
+  double asymmetry_error_ms_;  // of the seed
+  std::vector<Poll> polls_;    // by camera
 };
 
 }  // namespace simbench::sim

@@ -1,0 +1,33 @@
+#include "sim/usb/backend_stamp.h"
+
+#include "sim/clock/clock_interface.h"
+
+namespace simbench::sim {
+
+Nanoseconds through_float_ms(Nanoseconds since_boot) {
+  constexpr std::int64_t kTickNs = 100;  // of Media Foundation
+  const auto ticks = static_cast<float>(floor_div(since_boot.count(), kTickNs));
+  return from_ms(static_cast<double>(ticks / 10000.0F));
+}
+
+BackendStamps::BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
+                             Nanoseconds arrival_quantum)
+    : is_converted_(settings.has_value()), resolution_(arrival_quantum) {
+  if (!settings) return;
+  uptime_ = from_seconds(settings->host_uptime_h * 3600);
+  resolution_ = from_ms(settings->resolution_ms);
+}
+
+HostTime BackendStamps::stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
+                              TrueTime delivered) const {
+  if (!is_converted_) return round_down(clock.read(copied), resolution_);
+  const SteadyTime boot = clock.steady(capture_start) - uptime_;
+  const Nanoseconds since_boot = clock.steady(copied) - boot;
+  const SystemClock::Reading now = clock.read_both(delivered);
+  const HostTime system = round_down(now.system, resolution_);
+  const SteadyTime monotonic = round_down(SteadyTime(now.steady - boot), resolution_);
+  const Nanoseconds kernel = uptime_.count() > 0 ? through_float_ms(since_boot) : since_boot;
+  return round_down(system + (kernel - monotonic.time_since_epoch()), resolution_);
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,55 @@
+// The back-end stamp of a frame: what librealsense makes of the kernel's stamp.
+//
+// The kernel stamps the frame, copied to its memory, on the host's monotonic clock (here its steady
+// clock). When the SDK has the frame, it moves that stamp to the system clock by the difference of
+// both clocks, each cut to the SDK's resolution, and cuts the result:
+//
+//   stamp = cut(m(copied) + cut(system(delivered)) - cut(monotonic(delivered)))
+//
+// On Windows m, in ms since the host was switched on, goes through a 32-bit float, whose 24 bits
+// are steps of 0.25 ms after an hour and of 8 ms after a day. So intervals of back-end stamps
+// fluctuate far more than those of arrivals, as in Fig. 2 of Yoon et al. 2021, whose hosts have
+// Windows 10. Elsewhere, and on Windows since 2025, m is the monotonic clock itself.
+//
+// There is nothing random in it, and no other stamp depends on it. The frame is stamped after its
+// last packet here; that drivers stamp the first one shifts all stamps alike.
+//
+// Source: librealsense src/backend.cpp (monotonic_to_realtime), src/mf/mf-uvc.cpp (OnReadSample)
+// until pull request #13997; docs/reference/d455.md section 1.
+//
+//   const BackendStamps stamps(scenario.usb.backend_stamp, arrival_quantum);
+//   frame.backend = stamps.stamp(clock, capture_start, copied, delivered);
+#ifndef SIMBENCH_SIM_USB_BACKEND_STAMP_H_
+#define SIMBENCH_SIM_USB_BACKEND_STAMP_H_
+
+#include <optional>
+
+#include "algorithms/ports/time.h"
+#include "recording/true_time.h"
+#include "scenarios/scenario.h"
+#include "sim/clock/system_clock.h"
+
+namespace simbench::sim {
+
+class BackendStamps {
+ public:
+  // Without settings a stamp is the system clock at `copied` in steps of `arrival_quantum`.
+  BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
+                Nanoseconds arrival_quantum);
+
+  // Of a host with this clock, switched on host_uptime_h before `capture_start`.
+  HostTime stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
+                 TrueTime delivered) const;
+
+ private:
+  bool is_converted_;
+  Nanoseconds uptime_{};  // 0: no float
+  Nanoseconds resolution_;
+};
+
+// Milliseconds since the host was switched on, as a 32-bit float has them.
+Nanoseconds through_float_ms(Nanoseconds since_boot);
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_USB_BACKEND_STAMP_H_
