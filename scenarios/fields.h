@@ -156,7 +156,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DelayLaw, fixed_us, exponential_
                                                 common_time_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stack, transmit, transmit_to_card, receive, wake_up,
                                    interrupt_moderation_us, interrupts_per_s, sleep_share,
-                                   sleep_exit_us, sleep_time_ms, speed_log_sigma)
+                                   sleep_exit_us, awake_us, sleep_time_ms, speed_log_sigma)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Hosts, count, master_is_exact, clock, send_cost_ms,
                                                 send_cost_exponential_ms,
                                                 send_cost_session_exponential_ms,
@@ -198,11 +198,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure,
     calibration)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackendStamp, host_uptime_h, resolution_ms)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
-    Usb, bandwidth_mb_per_s, sharing, cameras_per_controller, buffered_frames,
-    kernel_copy_exponential_ms, delivery_jitter_transfers, host_jitter_transfers,
-    host_jitter_correlation, spike_probability, spike_max_transfers, delivery_quantiles_ms,
-    delivery_correlation, backend_stamp)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Usb, bandwidth_mb_per_s, sharing,
+                                                cameras_per_controller, buffered_frames,
+                                                kernel_copy_exponential_ms,
+                                                delivery_jitter_transfers, host_jitter_transfers,
+                                                host_jitter_correlation, spike_probability,
+                                                spike_max_transfers, delivery_quantiles_ms,
+                                                delivery_correlation, backend_stamp)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathering)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)

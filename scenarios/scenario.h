@@ -135,6 +135,7 @@ struct Stack {
   double interrupts_per_s = 0;         // of other traffic of the host
   double sleep_share = 0;  // of the messages find the processor in an energy-saving sleep
   double sleep_exit_us = 0;
+  double awake_us = 0;         // after a message of its own, sent or received
   double sleep_time_ms = 0;    // for how long a host stays awake or sleepy
   double speed_log_sigma = 0;  // factor exp(N(0, this)) on all these delays, one draw per host
 };

@@ -62,7 +62,10 @@ MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed
 }
 
 Nanoseconds MessageStack::transmit(TrueTime at, const MessageKey& key) {
-  return parts_ ? parts_->transmit.draw(at, key) : Nanoseconds(0);
+  if (!parts_) return Nanoseconds(0);
+  const Nanoseconds delay = parts_->transmit.draw(at, key);
+  stay_awake(at + delay);
+  return delay;
 }
 
 Nanoseconds MessageStack::to_card(TrueTime left, const MessageKey& key) {
@@ -74,12 +77,22 @@ Nanoseconds MessageStack::to_card(TrueTime left, const MessageKey& key) {
 TrueTime MessageStack::receive(TrueTime at, const MessageKey& key) {
   if (!parts_) return at;
   TrueTime stamp = interrupt(at, key);
-  if (normal_probability(parts_->sleepiness.at(at)) < parts_->stated.sleep_share) {
+  if (sleeps(stamp)) {
     stamp += from_us(parts_->factor * parts_->stated.sleep_exit_us);
   }
   stamp += parts_->receive.draw(at, key);
   parts_->last_stamp = std::max(parts_->last_stamp, stamp);
+  stay_awake(parts_->last_stamp);
   return parts_->last_stamp;
+}
+
+bool MessageStack::sleeps(TrueTime at) {
+  return at >= parts_->awake_until &&
+         normal_probability(parts_->sleepiness.at(at)) < parts_->stated.sleep_share;
+}
+
+void MessageStack::stay_awake(TrueTime from) {
+  parts_->awake_until = std::max(parts_->awake_until, from + from_us(parts_->stated.awake_us));
 }
 
 TrueTime MessageStack::interrupt(TrueTime at, const MessageKey& key) {

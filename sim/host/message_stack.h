@@ -13,8 +13,10 @@
 //  - the card moderates: interrupts are interrupt_moderation_us apart at least. The host's other
 //    traffic causes interrupts too, as a Poisson process of rate r; as each blocks for T, a message
 //    meets a blocked card with probability rT / (1 + rT) and then waits U(0, T);
-//  - the processor sleeps, for sleep_share of the time in a process in true time: waking it takes
-//    sleep_exit_us.
+//  - the processor sleeps: waking it takes sleep_exit_us. It would sleep for sleep_share of the
+//  time,
+//    a process in true time, but stays awake for awake_us after each message of its own. A client
+//    is therefore awake when the answer comes, while its server may have slept: an asymmetry.
 // Parts keep the order of messages: none overtakes another on the same host.
 //
 // One factor exp(N(0, speed_log_sigma)) per host scales all of it but the moderation.
@@ -100,10 +102,13 @@ class MessageStack {
     TrueTime last_at_card = TrueTime::min();
     TrueTime last_interrupt = TrueTime::min();
     TrueTime last_stamp = TrueTime::min();
+    TrueTime awake_until = TrueTime::min();
   };
 
   // When the card interrupts for a message.
   TrueTime interrupt(TrueTime at, const MessageKey& key);
+  bool sleeps(TrueTime at);
+  void stay_awake(TrueTime from);
 
   std::uint64_t run_seed_;
   std::optional<Parts> parts_;  // nothing without /hosts/stack
