@@ -21,8 +21,10 @@
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/statistics.h"
 #include "hardware/experiment/network_sandbox.h"
+#include "hardware/experiment/stack_delays.h"
 #include "reports/rigs/measured_study.h"
 #include "reports/rigs/model_gap_report.h"
+#include "reports/rigs/stack_study.h"
 
 namespace simbench::cli {
 namespace {
@@ -38,10 +40,15 @@ Nodes get network namespaces of their own if permitted, else ports of loopback. 
 paper's algorithms takes some 8 s, of ntp and two_way_hull as long as their service runs before the
 capture. The machine should do nothing else meanwhile.
 
+With --stack it measures, for some two minutes, what a message costs between the calls of a program
+and the kernel's stamps, over sockets in two network namespaces: idle, then with a busy thread on
+every core. A scenario's /hosts/stack takes these laws.
+
 Examples:
   simbench validate-model --scenario 6node_relay
   simbench validate-model --scenario 6node_relay --repeats 20 --save study.json
   simbench validate-model --scenario 6node_relay --measured study.json --format json
+  simbench validate-model --scenario 6node_relay --stack network_stack.json
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
@@ -54,6 +61,7 @@ struct ValidateModelOptions {
   std::uint64_t seeds = 200;
   std::string measured;
   std::string save;
+  std::string stack;
   std::string format;
 };
 
@@ -167,7 +175,44 @@ std::string model_gap_text(const reports::ModelGapReport& report, const std::str
   return format == "markdown" ? markdown(document) : plain(document);
 }
 
+// Nothing if interrupted.
+std::optional<reports::StackCondition> measure_stack(const std::string& name,
+                                                     unsigned busy_threads) {
+  const hardware::StackDelays delays = hardware::measure_stack_delays(
+      {.busy_threads = busy_threads, .cancelled = [] { return app::InterruptHandler::raised(); }});
+  if (app::InterruptHandler::raised()) return std::nullopt;
+  return reports::StackCondition{.name = name,
+                                 .busy_threads = busy_threads,
+                                 .parts = {{"transmit", reports::stack_law(delays.transmit_us)},
+                                           {"passage", reports::stack_law(delays.passage_us)},
+                                           {"wake_up", reports::stack_law(delays.wake_up_us)}}};
+}
+
+int measure_stacks(const std::string& file) {
+  if (const auto refusal = hardware::NetworkSandbox::enter()) {
+    throw scenarios::InputError("--stack needs network namespaces: " + *refusal);
+  }
+  const auto study = watched<reports::StackStudy>(
+      [](const evaluation::Progress& progress) -> std::optional<reports::StackStudy> {
+        const auto idle = measure_stack("idle", 0);
+        if (!idle) return std::nullopt;
+        progress(1, 2);
+        const auto loaded = measure_stack("beside_load", std::thread::hardware_concurrency());
+        if (!loaded) return std::nullopt;
+        progress(2, 2);
+        return reports::StackStudy{.date = today(),
+                                   .machine = machine("veth between namespaces"),
+                                   .conditions = {*idle, *loaded}};
+      },
+      {.unit = "condition", .total = 2, .waits_for_end = true});
+  if (!study) return kInterrupted;
+  reports::write_stack_study(file, *study);
+  print_note("delays of this machine's network stack written to " + file);
+  return kOk;
+}
+
 int validate_model(const ValidateModelOptions& options) {
+  if (!options.stack.empty()) return measure_stacks(options.stack);
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   evaluation::check_pipelines(scenario);
@@ -200,6 +245,8 @@ void add_measurement_options(Command& command, ValidateModelOptions& options) {
                "Instead of measuring now: a study that --save wrote");
   command.text("--save", "FILE", options.save,
                "Write the measured study to this file, with date and machine");
+  command.text("--stack", "FILE", options.stack,
+               "Instead of an experiment: measure this machine's network stack, into this file");
 }
 
 }  // namespace

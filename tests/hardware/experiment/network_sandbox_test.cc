@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <net/if.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
@@ -11,36 +10,11 @@
 #include <string>
 
 #include "hardware/experiment/child_process.h"
-#include "hardware/experiment/experiment_rig.h"
+#include "hardware/experiment/temporary_folder.h"
+#include "tests/hardware/experiment/in_sandbox.h"
 
 namespace simbench::hardware {
 namespace {
-
-constexpr int kGood = 0;
-constexpr int kNotPermitted = 77;
-
-// Runs `body` in a process with a network namespace of its own; its result, or kNotPermitted.
-template <class Body>
-int in_sandbox(const Body& body) {
-  const pid_t process = fork();
-  if (process == 0) {
-    if (NetworkSandbox::enter()) _exit(kNotPermitted);
-    int result = 99;
-    try {
-      result = body();
-    } catch (const std::exception& error) {
-      const std::string text = std::string(error.what()) + "\n";
-      if (write(2, text.data(), text.size()) < 0) _exit(98);
-    }
-    _exit(result);
-  }
-  int status = 0;
-  waitpid(process, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
-
-#define SKIP_WITHOUT_NAMESPACES(result) \
-  if ((result) == kNotPermitted) GTEST_SKIP() << "not run: no network namespace is permitted here"
 
 ChildProcess::Settings member(const TemporaryFolder& folder, unsigned number,
                               const std::string& script) {
