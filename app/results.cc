@@ -14,6 +14,7 @@
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
+#include "reports/sweep/sweep_ranking.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
@@ -45,6 +46,8 @@ std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
     document.blocks.push_back(
         table == StudyTable::kHostOrder     ? reports::host_order_block(plan, rows)
         : table == StudyTable::kSeedsNeeded ? reports::seeds_needed_block(plan, rows)
+        : table == StudyTable::kRanking     ? reports::ranking_block(plan, rows)
+        : table == StudyTable::kPackets     ? reports::packets_block(plan, rows)
                                             : reports::response_block(plan, rows));
   }
   return plain(document);
@@ -60,6 +63,7 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
                           StudyTable table) {
   if (table == StudyTable::kHostOrder) return reports::host_order_figure(plan, rows);
   if (table == StudyTable::kSeedsNeeded) return reports::seeds_needed_figure(plan, rows);
+  if (table == StudyTable::kPackets) return reports::packets_figure(plan, rows);
   return reports::response_figure(plan, rows);
 }
 

@@ -10,6 +10,14 @@ namespace simbench::scenarios {
 
 using nlohmann::json;
 
+namespace {
+
+std::optional<std::uint64_t> number_in(const json& study, const char* key) {
+  return study.contains(key) ? std::optional(study.at(key).get<std::uint64_t>()) : std::nullopt;
+}
+
+}  // namespace
+
 const std::vector<Study>& studies() {
   static const std::vector<Study> all = [] {
     std::vector<Study> studies;
@@ -22,7 +30,10 @@ const std::vector<Study>& studies() {
                          .sweep = in.at("sweep"),
                          .pipelines = in.at("pipelines"),
                          .seeds = in.at("seeds"),
-                         .tables = in.at("tables")});
+                         .tables = in.at("tables"),
+                         .clocks = in.value("clocks", false),
+                         .duration_s = number_in(in, "duration_s"),
+                         .from_s = number_in(in, "from_s")});
     }
     return studies;
   }();

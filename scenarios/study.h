@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,11 +19,14 @@
 namespace simbench::scenarios {
 
 // What a sweep prints and draws.
-enum class StudyTable : std::uint8_t { kResponse, kHostOrder, kSeedsNeeded };
+enum class StudyTable : std::uint8_t { kResponse, kHostOrder, kSeedsNeeded, kRanking, kPackets };
 constexpr auto words_of(StudyTable) {
   using enum StudyTable;
-  return std::to_array<Word<StudyTable>>(
-      {{kResponse, "response"}, {kHostOrder, "host_order"}, {kSeedsNeeded, "seeds_needed"}});
+  return std::to_array<Word<StudyTable>>({{kResponse, "response"},
+                                          {kHostOrder, "host_order"},
+                                          {kSeedsNeeded, "seeds_needed"},
+                                          {kRanking, "ranking"},
+                                          {kPackets, "packets"}});
 }
 
 struct Study {
@@ -34,6 +38,10 @@ struct Study {
   std::vector<std::string> pipelines;
   std::uint64_t seeds = 0;
   std::vector<StudyTable> tables;
+  // Of the hosts' clocks alone (simbench sweep --clocks).
+  bool clocks = false;
+  std::optional<std::uint64_t> duration_s{};
+  std::optional<std::uint64_t> from_s{};
 };
 
 // In alphabetical order.

@@ -73,6 +73,11 @@ void add_study(const Study& study, SweepOptions& options) {
   if (request.pipelines.empty()) request.pipelines = study.pipelines;
   if (!options.seeds) options.seeds = study.seeds;
   request.axes = study.sweep;
+  if (study.clocks) {
+    options.clocks = true;
+    if (!options.duration_s) options.duration_s = study.duration_s;
+    if (!options.from_s) options.from_s = study.from_s;
+  }
   options.sets.insert(options.sets.begin(), study.set.begin(), study.set.end());
 }
 
@@ -102,7 +107,8 @@ void set_kind(const SweepOptions& options, const Study* study, evaluation::Sweep
         fmt::format("{}: found without --clocks; captures are as long as the scenario's /timeline",
                     options.duration_s ? "--duration-s" : "--from-s"));
   }
-  if (study != nullptr && study->tables != std::vector{scenarios::StudyTable::kResponse}) {
+  if (study != nullptr && !study->clocks &&
+      study->tables != std::vector{scenarios::StudyTable::kResponse}) {
     throw scenarios::InputError(
         fmt::format("--clocks: the study {} shows what only captures have; leave out --clocks, or "
                     "name --scenario and --sweep in place of --study",

@@ -19,6 +19,7 @@
 #include "reports/figures/figure_parts.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
+#include "reports/sweep/sweep_parts.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
@@ -31,8 +32,6 @@ using evaluation::SweepPlan;
 using evaluation::SweepRun;
 using evaluation::SweepScore;
 using evaluation::TablePlaces;
-
-bool of_clocks(const SweepPlan& plan) { return plan.kind == evaluation::ResultKind::kClockRuns; }
 
 // The columns that identify the run.
 std::string run_header(const SweepPlan& plan) {
@@ -66,36 +65,6 @@ Json value_of(const std::string& text) {
 constexpr std::array<std::int64_t, 8> kSeedCounts = {8, 16, 32, 64, 128, 256, 512, 1024};
 constexpr std::array<double, 4> kWanted = {0.20, 0.10, 0.05, 0.02};
 
-// "/hosts/clock/tick_ms" on three lines: columns of numbers are narrow.
-std::string header_of(const std::string& pointer) {
-  std::string header;
-  for (const char c : pointer) {
-    if (c == '/' && !header.empty()) header += '\n';
-    header += c;
-  }
-  return header;
-}
-
-std::vector<Column> point_columns(const SweepPlan& plan) {
-  std::vector<Column> columns;
-  for (const std::string& pointer : plan.pointers()) columns.push_back({header_of(pointer)});
-  columns.push_back({"pipeline", Align::kLeft});
-  return columns;
-}
-
-std::vector<std::string> point_cells(const SweepPlan& plan, const ResponseRow& row) {
-  std::vector<std::string> cells = plan.values(row.point);
-  cells.push_back(plan.pipelines[row.pipeline]);
-  return cells;
-}
-
-std::string heading(const SweepPlan& plan) {
-  return fmt::format("{}: {}, {}, {}{}", scenarios::named(plan.scenario, plan.derivation),
-                     counted(plan.points(), "point"), counted(plan.pipelines.size(), "pipeline"),
-                     counted(plan.seeds, "seed"),
-                     of_clocks(plan) ? ", the hosts' clocks alone" : "");
-}
-
 bool is_of_single_camera(const ResponseRow& row) {
   return row.kind == evaluation::ResultKind::kCaptures && row.of("complete_pulses").median > 0 &&
          evaluation::count_of_existing(row.of("amd_ms").values) == 0;
@@ -116,11 +85,6 @@ std::string percent_text(double share) {
   return std::isnan(share) ? "-" : fmt::format("{:.1f} %", share * 100);
 }
 
-// Clock runs have values of nanoseconds.
-auto number_style(const SweepPlan& plan) {
-  return of_clocks(plan) ? significant_text : number_text;
-}
-
 std::string response_legend(const SweepPlan& plan, const std::vector<const Metric*>& metrics) {
   if (!of_clocks(plan)) {
     return "Medians over the seeds; precision and recall over all of them. Margin: the gathering "
@@ -134,8 +98,6 @@ std::string response_legend(const SweepPlan& plan, const std::vector<const Metri
   if (text.back() == ';') text.back() = '.';
   return text;
 }
-
-constexpr std::size_t kMostCurves = 24;
 
 // The place of each step of the first axis on x.
 struct XAxis {
@@ -177,26 +139,6 @@ std::string curve_label(const SweepPlan& plan, const ResponseRow& row) {
                          plan.axes[axis].values.front()[steps[axis]]);
   }
   return label;
-}
-
-// A zero keeps the axis linear: it would be a gap in a response.
-void use_log_scale_if_wide(FigurePanel& panel) {
-  const auto is_above_zero = [](const std::vector<double>& values) {
-    return std::none_of(values.begin(), values.end(), [](double value) { return value <= 0; });
-  };
-  const bool are_above_zero =
-      std::all_of(panel.series.begin(), panel.series.end(), [&](const FigureSeries& series) {
-        return is_above_zero(series.y) && is_above_zero(series.low);
-      });
-  panel.log_y = are_above_zero && is_wide(panel);
-}
-
-// The next curve of the panel; null if it has the most curves already.
-FigureSeries* add_curve(FigurePanel& panel, const std::string& label, Mark mark) {
-  if (panel.series.size() == kMostCurves) return nullptr;
-  const int colour = static_cast<int>(panel.series.size());
-  return &panel.series.emplace_back(
-      FigureSeries{.label = label, .mark = mark, .x = {}, .y = {}, .colour = colour});
 }
 
 std::string axis_label(const SweepPlan& plan, const Metric& metric) {
@@ -246,24 +188,6 @@ FigurePanel response_panel(const SweepPlan& plan, const std::vector<ResponseRow>
   }
   if (!x.categories.empty()) set_side_by_side(panel);
   return panel;
-}
-
-Figure new_figure(const SweepPlan& plan, const std::string& id, const std::string& title) {
-  Figure figure;
-  figure.id = id;
-  figure.title = plan.pipelines.size() > 1
-                     ? fmt::format("{}: {}", plan.scenario, title)
-                     : fmt::format("{}, {}: {}", plan.scenario, plan.pipelines.front(), title);
-  figure.source = {.scenario = plan.scenario,
-                   .derivation = plan.derivation,
-                   .pipeline = plan.pipelines.size() == 1 ? plan.pipelines.front() : "",
-                   .first_seed = plan.first_seed,
-                   .seeds = plan.seeds,
-                   .version = std::string(version()),
-                   .commit = std::string(commit())};
-  figure.caption =
-      fmt::format("{}, {} each.", counted(plan.points(), "point"), counted(plan.seeds, "seed"));
-  return figure;
 }
 
 }  // namespace
@@ -350,7 +274,7 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
     }
     table.add(std::move(cells));
   }
-  Block block{.heading = heading(plan),
+  Block block{.heading = sweep_heading(plan),
               .table = std::move(table),
               .prose = {response_legend(plan, metrics)}};
   if (lack_seeds) block.prose.emplace_back(kScoredSeedsLegend);
@@ -419,7 +343,7 @@ Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& 
 }
 
 Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  Figure figure = new_figure(plan, "sweep", "response");
+  Figure figure = new_sweep_figure(plan, "sweep", "response");
   if (plan.points() < 2) {
     figure.absent = "a single point has no response";
     return figure;
@@ -439,7 +363,8 @@ Figure response_figure(const SweepPlan& plan, const std::vector<ResponseRow>& ro
 }
 
 Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  Figure figure = new_figure(plan, "sweep_host_order", "clock error in the order of the sessions");
+  Figure figure =
+      new_sweep_figure(plan, "sweep_host_order", "clock error in the order of the sessions");
   FigurePanel panel = {.title = "Clock error of the slaves",
                        .x_label = "host, in the order of the sessions",
                        .y_label = "median |mean clock error| [5-95 %], ms"};
@@ -463,7 +388,7 @@ Figure host_order_figure(const SweepPlan& plan, const std::vector<ResponseRow>& 
 }
 
 Figure seeds_needed_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
-  Figure figure = new_figure(plan, "sweep_seeds_needed", "seeds needed");
+  Figure figure = new_sweep_figure(plan, "sweep_seeds_needed", "seeds needed");
   FigurePanel panel = {.title = "95 % interval of the median AMD",
                        .x_label = "seeds",
                        .y_label = "+-, % of the median"};

@@ -1,0 +1,133 @@
+#include "reports/sweep/sweep_ranking.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "evaluation/scoring/metrics.h"
+#include "evaluation/sweep/ranking.h"
+#include "reports/figures/figure_parts.h"
+#include "reports/sweep/sweep_parts.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Metric;
+using evaluation::RankedPoint;
+using evaluation::Ranking;
+using evaluation::RankingFlip;
+using evaluation::ResponseRow;
+using evaluation::SweepPlan;
+
+const Metric& ranked_metric(const SweepPlan& plan) {
+  return of_clocks(plan) ? evaluation::metric("clock_spread_ms", plan.kind)
+                         : evaluation::metric("absolute_error_ms");
+}
+
+// "two_way_hull < chrony ~ ntp".
+std::string order_text(const SweepPlan& plan, const RankedPoint& point) {
+  std::string text = plan.pipelines[point.order.front()];
+  for (std::size_t i = 1; i < point.order.size(); ++i) {
+    text.append(point.is_apart[i - 1] ? " < " : " ~ ").append(plan.pipelines[point.order[i]]);
+  }
+  return text;
+}
+
+// "chrony is better than ntp up to /hosts/count=2, ntp from /hosts/count=4 on."
+std::string flip_text(const SweepPlan& plan, const RankingFlip& flip) {
+  return fmt::format("{} is better than {} up to {}, worse from {} on.",
+                     plan.pipelines[flip.before], plan.pipelines[flip.after],
+                     plan.point_text(flip.last), plan.point_text(flip.first));
+}
+
+// The rows of a pipeline in order of the packets.
+std::vector<const ResponseRow*> by_packets(const std::vector<ResponseRow>& rows,
+                                           std::size_t pipeline) {
+  std::vector<const ResponseRow*> own;
+  for (const ResponseRow& row : rows) {
+    if (row.pipeline == pipeline) own.push_back(&row);
+  }
+  std::ranges::stable_sort(own, {},
+                           [](const ResponseRow* row) { return row->of("packets_per_s").median; });
+  return own;
+}
+
+}  // namespace
+
+Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  const Metric& metric = ranked_metric(plan);
+  const Ranking ranking = evaluation::rank(plan, rows, metric);
+  std::vector<Column> columns = value_columns(plan);
+  const std::size_t keys = columns.size();
+  columns.push_back({"best first", Align::kLeft});
+  Table table(std::move(columns), keys);
+  for (const RankedPoint& point : ranking.points) {
+    std::vector<std::string> cells = plan.values(point.point);
+    cells.push_back(order_text(plan, point));
+    table.add(std::move(cells));
+  }
+  Block block{
+      .heading = fmt::format("The order by {}", metric.title),
+      .table = std::move(table),
+      .prose = {"a < b: a is better than b; a ~ b: their differences, paired by seed, may be "
+                "chance (t-tests of logarithms, 5 % for all pairs and points together)."}};
+  if (ranking.flips.empty()) {
+    block.prose.emplace_back("No two pipelines change places within these values.");
+  }
+  for (const RankingFlip& flip : ranking.flips) block.prose.push_back(flip_text(plan, flip));
+  return block;
+}
+
+Block packets_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  const Metric& metric = ranked_metric(plan);
+  Table table(
+      {{"pipeline", Align::kLeft}, {"packets\nper s"}, {metric.heading}, {metric.band_heading}}, 1);
+  for (std::size_t pipeline = 0; pipeline < plan.pipelines.size(); ++pipeline) {
+    std::string last;
+    for (const ResponseRow* row : by_packets(rows, pipeline)) {
+      const auto& series = row->of(metric.sweep);
+      std::vector<std::string> cells = {
+          plan.pipelines[pipeline], significant_text(row->of("packets_per_s").median),
+          significant_text(series.median), band_text(series, significant_text)};
+      // Where a method cannot ask more often, further points repeat it.
+      const std::string text = fmt::format("{}", fmt::join(cells, " "));
+      if (text != last) table.add(std::move(cells));
+      last = text;
+    }
+  }
+  return {.heading = fmt::format("{} over packets per second", capitalised(metric.title)),
+          .table = std::move(table),
+          .prose = {"Packets per second: of all hosts together. Medians over the seeds."}};
+}
+
+Figure packets_figure(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
+  const Metric& metric = ranked_metric(plan);
+  Figure figure = new_sweep_figure(plan, "sweep_packets", "error over packets per second");
+  FigurePanel panel = {.title = capitalised(metric.title),
+                       .x_label = "packets per second of all hosts together",
+                       .y_label = fmt::format("median [5-95 %], {}", metric.unit)};
+  for (std::size_t pipeline = 0; pipeline < plan.pipelines.size(); ++pipeline) {
+    FigureSeries* series = add_curve(panel, plan.pipelines[pipeline], Mark::kMarkedLine);
+    if (series == nullptr) break;
+    for (const ResponseRow* row : by_packets(rows, pipeline)) {
+      const double packets_per_s = row->of("packets_per_s").median;
+      // Nothing sent has no place on a logarithmic axis.
+      if (!(packets_per_s > 0)) continue;
+      if (!series->x.empty() && series->x.back() == packets_per_s) continue;
+      series->x.push_back(packets_per_s);
+      series->y.push_back(row->of(metric.sweep).median);
+      series->low.push_back(row->of(metric.sweep).p05);
+      series->high.push_back(row->of(metric.sweep).p95);
+    }
+    if (series->x.empty()) panel.series.pop_back();
+  }
+  panel.log_x = true;
+  use_log_scale_if_wide(panel);
+  figure.panels = {std::move(panel)};
+  return figure;
+}
+
+}  // namespace simbench::reports
