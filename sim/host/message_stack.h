@@ -24,7 +24,7 @@
 // Without /hosts/stack nothing takes time. Not modelled: which processor core serves, batches that
 // share one pass (NAPI), and the stack's own queue under overload.
 //
-// Source: docs/reference/host_sync.md section 3; scenario /hosts/stack. Cost: some 100 ns a
+// Source: docs/reference/host_sync.md section 4; scenario /hosts/stack. Cost: some 100 ns a
 // message.
 //
 //   MessageStack stack(scenario.hosts, seed, 3);

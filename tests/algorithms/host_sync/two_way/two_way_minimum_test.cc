@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMeanMs = 0.05;
 
-// The world of docs/reference/host_sync.md section 4, whose stamps are in steps of 100 ns.
+// The world of docs/reference/host_sync.md section 5, whose stamps are in steps of 100 ns.
 class ExponentialWorld {
  public:
   std::vector<TwoWayExchange> exchanges(int count) {
