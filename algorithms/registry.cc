@@ -13,6 +13,7 @@
   FILE(limits)                   \
   FILE(two_way)                  \
   FILE(ptp)                      \
+  FILE(sptp)                     \
   FILE(common_view)              \
   FILE(gnss)                     \
   FILE(ntp)                      \

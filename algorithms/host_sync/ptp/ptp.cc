@@ -1,5 +1,7 @@
 #include "algorithms/host_sync/ptp/ptp.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,27 +20,19 @@ Task<void> serve_ptp(Host& host, PeerId slave, PtpSettings settings,
   co_await master.run();
 }
 
-// The master's card follows its system clock.
-Task<void> couple_card(Host& host, PtpSettings settings, std::shared_ptr<bool> is_ready) {
-  ClockCoupling coupling(host, ClockKind::kHardware, settings);
-  while (true) {
-    co_await coupling.update();
-    *is_ready = coupling.is_locked();
-    co_await host.sleep_for(ClockCoupling::kInterval);
-  }
-}
-
 }  // namespace
 
 Task<void> Ptp::run_master(Host& host, std::vector<PeerId> slaves) {
-  const bool needs_card = settings_.has_hardware_stamps;
+  const bool needs_card = settings_.stamps == StampSource::kCard;
   // The slaves will report that no Sync came.
   if (needs_card && host.hardware_clock() == nullptr) co_return;
   auto is_ready = std::make_shared<bool>(!needs_card);
   std::vector<Task<void>> tasks;
   tasks.reserve(slaves.size() + 1);
   for (const PeerId slave : slaves) tasks.push_back(serve_ptp(host, slave, settings_, is_ready));
-  if (needs_card) tasks.push_back(couple_card(host, settings_, is_ready));
+  if (needs_card) {
+    tasks.push_back(keep_coupled(host, ClockKind::kHardware, settings_.servo_limits, is_ready));
+  }
   co_await join_all(std::move(tasks));
 }
 
@@ -50,18 +44,28 @@ Task<void> Ptp::run_slave(Host& host, PeerId master) {
 namespace {
 
 const char* const kLinuxPtp = "linuxptp (ptp4l, phc2sys), defaults";
+const char* const kLogInterval = "linuxptp: logSyncInterval, logMinDelayReqInterval, defaults 0";
 
-std::vector<ParameterSpec> ptp_parameters(double warm_up_s) {
-  return {
-      number_parameter("warm_up_s", warm_up_s, 1, 1e6,
+// One of the registered forms.
+struct PtpForm {
+  bool is_peer_delay = false;
+  bool has_hardware_stamps = false;
+  double log_interval = 0;
+};
+
+std::vector<ParameterSpec> ptp_parameters(const PtpForm& form) {
+  const std::string source =
+      form.log_interval == 0 ? kLogInterval : "sixteen a second: G.8275.1's rate";
+  std::vector<ParameterSpec> specs = {
+      number_parameter("warm_up_s", form.has_hardware_stamps ? 60 : 300, 1, 1e6,
                        "how long the service has run before the capture",
                        "assumption: until the default servo has settled"),
       choice_parameter("servo", {"pi", "linreg"}, "the servo that steers the clock that stamps",
                        kLinuxPtp),
-      number_parameter("sync_interval_s", 1, 1e-3, 1e4, "time between two Sync messages",
-                       kLinuxPtp),
-      number_parameter("delay_interval_s", 1, 1e-3, 1e4,
-                       "mean time between two measurements of the delay", kLinuxPtp),
+      number_parameter("log_sync_interval", form.log_interval, -7, 12,
+                       "log2 of the seconds between two Sync messages: -4 is 16 a second", source),
+      number_parameter("log_delay_interval", form.log_interval, -7, 12,
+                       "log2 of the mean seconds between two measurements of the delay", source),
       number_parameter("delay_median", 10, 1, 1e4, "length of the delay's moving median",
                        kLinuxPtp),
       number_parameter("first_step_threshold_us", 20, 0, 1e12,
@@ -71,30 +75,40 @@ std::vector<ParameterSpec> ptp_parameters(double warm_up_s) {
       number_parameter("max_frequency_ppm", 500, 1, 4e5, "largest correction of a frequency",
                        "adjtimex(2)"),
   };
+  if (!form.has_hardware_stamps) specs.push_back(software_stamps_parameter());
+  return specs;
 }
 
-HostSyncEntry ptp(std::string name, std::string summary, bool is_peer_delay, bool has_hardware) {
+Nanoseconds interval_of(const Parameters& parameters, const char* log_interval) {
+  return from_seconds(std::exp2(parameters.number(log_interval)));
+}
+
+PtpSettings ptp_settings(const Parameters& parameters, const PtpForm& form) {
+  PtpSettings settings;
+  settings.is_peer_delay = form.is_peer_delay;
+  settings.stamps = form.has_hardware_stamps ? StampSource::kCard : software_stamps(parameters);
+  settings.service_time = from_seconds(parameters.number("warm_up_s"));
+  settings.servo = parameters.text("servo") == "pi" ? ServoKind::kPi : ServoKind::kLinearRegression;
+  settings.sync_interval = interval_of(parameters, "log_sync_interval");
+  settings.delay_interval = interval_of(parameters, "log_delay_interval");
+  settings.median_length = static_cast<std::size_t>(parameters.number("delay_median"));
+  settings.servo_limits.first_step_threshold_ns =
+      parameters.number("first_step_threshold_us") * 1e3;
+  settings.servo_limits.step_threshold_ns = parameters.number("step_threshold_us") * 1e3;
+  settings.servo_limits.max_frequency_ppb = parameters.number("max_frequency_ppm") * 1e3;
+  return settings;
+}
+
+HostSyncEntry ptp(std::string name, std::string summary, PtpForm form) {
   HostSyncEntry entry;
   entry.info.name = std::move(name);
-  entry.info.family = has_hardware ? "ptp_hardware" : "ptp_software";
+  entry.info.family = form.has_hardware_stamps ? "ptp_hardware" : "ptp_software";
   entry.info.summary = std::move(summary);
   entry.info.source = "IEEE 1588-2008; linuxptp (docs/reference/host_sync.md section 1)";
-  entry.info.parameters = ptp_parameters(has_hardware ? 60 : 300);
-  if (has_hardware) entry.info.needs = {Need::kHardwareStamps};
-  entry.make = [is_peer_delay, has_hardware](const Parameters& parameters) {
-    PtpSettings settings;
-    settings.is_peer_delay = is_peer_delay;
-    settings.has_hardware_stamps = has_hardware;
-    settings.service_time = from_seconds(parameters.number("warm_up_s"));
-    settings.servo =
-        parameters.text("servo") == "pi" ? ServoKind::kPi : ServoKind::kLinearRegression;
-    settings.sync_interval = from_seconds(parameters.number("sync_interval_s"));
-    settings.delay_interval = from_seconds(parameters.number("delay_interval_s"));
-    settings.median_length = static_cast<std::size_t>(parameters.number("delay_median"));
-    settings.first_step_threshold_us = parameters.number("first_step_threshold_us");
-    settings.step_threshold_us = parameters.number("step_threshold_us");
-    settings.max_frequency_ppm = parameters.number("max_frequency_ppm");
-    return std::make_unique<Ptp>(settings);
+  entry.info.parameters = ptp_parameters(form);
+  if (form.has_hardware_stamps) entry.info.needs = {Need::kHardwareStamps};
+  entry.make = [form](const Parameters& parameters) {
+    return std::make_unique<Ptp>(ptp_settings(parameters, form));
   };
   return entry;
 }
@@ -102,15 +116,24 @@ HostSyncEntry ptp(std::string name, std::string summary, bool is_peer_delay, boo
 }  // namespace
 
 std::vector<HostSyncEntry> host_sync_ptp() {
+  constexpr double kSixteenPerSecond = -4;
   return {
       ptp("ptp_e2e_software", "PTP end to end with software stamps, steering the system clock",
-          false, false),
+          {.is_peer_delay = false, .has_hardware_stamps = false}),
+      ptp("ptp_e2e_software_16hz", "the same with 16 Syncs and delay requests a second",
+          {.is_peer_delay = false,
+           .has_hardware_stamps = false,
+           .log_interval = kSixteenPerSecond}),
       ptp("ptp_p2p_software", "PTP with peer delay and software stamps, steering the system clock",
-          true, false),
+          {.is_peer_delay = true, .has_hardware_stamps = false}),
       ptp("ptp_e2e_hardware",
-          "PTP end to end with the network cards' stamps and clocks, then phc2sys", false, true),
+          "PTP end to end with the network cards' stamps and clocks, then phc2sys",
+          {.is_peer_delay = false, .has_hardware_stamps = true}),
+      ptp("ptp_e2e_hardware_16hz", "the same with 16 Syncs and delay requests a second",
+          {.is_peer_delay = false, .has_hardware_stamps = true, .log_interval = kSixteenPerSecond}),
       ptp("ptp_p2p_hardware",
-          "PTP with peer delay, the network cards' stamps and clocks, then phc2sys", true, true),
+          "PTP with peer delay, the network cards' stamps and clocks, then phc2sys",
+          {.is_peer_delay = true, .has_hardware_stamps = true}),
   };
 }
 

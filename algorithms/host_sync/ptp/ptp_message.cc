@@ -7,14 +7,16 @@ namespace {
 
 constexpr std::size_t kShortBytes = 44;
 constexpr std::size_t kLongBytes = 54;
+constexpr std::size_t kAnnounceBytes = 64;
 constexpr std::uint8_t kPtpVersion = 2;
 constexpr std::uint16_t kTwoStep = 0x0200;
+constexpr std::uint16_t kSimple = 0x2400;
 constexpr std::uint8_t kNoInterval = 0x7f;
 constexpr std::uint16_t kPort = 1;
 // Times this far from zero can still be subtracted in 64 bits.
 constexpr std::int64_t kMostSeconds = 4'000'000'000;
 
-bool is_known(std::uint8_t type) { return type <= 0x3 || (type >= 0x8 && type <= 0xa); }
+bool is_known(std::uint8_t type) { return type <= 0x3 || (type >= 0x8 && type <= 0xb); }
 
 bool is_response(PtpType type) {
   return type == PtpType::kPeerDelayResponse || type == PtpType::kDelayResponse ||
@@ -22,6 +24,7 @@ bool is_response(PtpType type) {
 }
 
 std::size_t length_of(PtpType type) {
+  if (type == PtpType::kAnnounce) return kAnnounceBytes;
   return is_response(type) || type == PtpType::kPeerDelayRequest ? kLongBytes : kShortBytes;
 }
 
@@ -38,6 +41,13 @@ std::uint8_t control_of(PtpType type) {
     default:
       return 5;
   }
+}
+
+std::uint16_t flags_of(const PtpMessage& message) {
+  if (message.is_simple) return kSimple;
+  const bool is_two_step =
+      message.type == PtpType::kSync || message.type == PtpType::kPeerDelayResponse;
+  return is_two_step ? kTwoStep : 0;
 }
 
 void store_port(unsigned char* at, PeerId host) {
@@ -57,9 +67,7 @@ Bytes encode(const PtpMessage& message) {
   at[0] = static_cast<unsigned char>(message.type);
   at[1] = kPtpVersion;
   boost::endian::store_big_u16(at + 2, static_cast<std::uint16_t>(bytes.size()));
-  const bool is_two_step =
-      message.type == PtpType::kSync || message.type == PtpType::kPeerDelayResponse;
-  boost::endian::store_big_u16(at + 6, is_two_step ? kTwoStep : 0);
+  boost::endian::store_big_u16(at + 6, flags_of(message));
   boost::endian::store_big_s64(at + 8, message.correction);
   store_port(at + 20, message.sender);
   boost::endian::store_big_u16(at + 30, message.sequence);
@@ -70,6 +78,7 @@ Bytes encode(const PtpMessage& message) {
   boost::endian::store_big_s48(at + 34, seconds);
   boost::endian::store_big_u32(at + 40, static_cast<std::uint32_t>(rest_ns));
   if (is_response(message.type)) store_port(at + 44, message.asked_by);
+  if (message.type == PtpType::kAnnounce) boost::endian::store_big_u64(at + 53, message.sender);
   return bytes;
 }
 
@@ -82,6 +91,7 @@ std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes) {
   message.type = static_cast<PtpType>(type);
   if (bytes.size() != length_of(message.type)) return std::nullopt;
   if (boost::endian::load_big_u16(at + 2) != bytes.size()) return std::nullopt;
+  message.is_simple = (boost::endian::load_big_u16(at + 6) & kSimple) == kSimple;
   message.correction = boost::endian::load_big_s64(at + 8);
   message.sender = static_cast<PeerId>(boost::endian::load_big_u64(at + 20));
   message.sequence = boost::endian::load_big_u16(at + 30);

@@ -1,14 +1,14 @@
 // The messages of the Precision Time Protocol, version 2, as bytes.
 //
 // Header of 34 bytes, big-endian, then the body (44 bytes in all for Sync, Follow_Up and Delay_Req,
-// 54 for the others):
+// 64 for Announce, 54 for the others):
 //
 //   offset  size  field
 //   0       1     transport specific (0) in the high nibble, message type in the low one
 //   1       1     version, 2
 //   2       2     length in bytes
 //   4       1     domain, 0
-//   6       2     flags; 0x0200 two-step
+//   6       2     flags; 0x0200 two-step; 0x2400 of SPTP (unicast, profile-specific 1)
 //   8       8     correction, signed, in 2^-16 ns; transparent clocks add to it on the way
 //   20      10    port identity of the sender: 8 bytes clock, 2 bytes port (1)
 //   30      2     sequence number
@@ -16,10 +16,11 @@
 //   33      1     log2 of the interval; 0x7f: none
 //   34      10    time: 48-bit seconds, 32-bit nanoseconds
 //   44      10    Delay_Resp, Pdelay_Resp, Pdelay_Resp_Follow_Up: the requesting port
+//   44      20    Announce: 0, but the grandmaster's clock at 53: the sender
 //
 // Seconds are taken as signed, so that a clock before its zero can be sent.
 //
-// Source: IEEE 1588-2008 clause 13.
+// Source: IEEE 1588-2008 clause 13; facebook/time, ptp/sptp/README.md.
 //
 //   Bytes bytes = encode(PtpMessage{.type = PtpType::kSync, .sequence = 7});
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_MESSAGE_H_
@@ -40,6 +41,7 @@ enum class PtpType : std::uint8_t {
   kFollowUp = 0x8,
   kDelayResponse = 0x9,
   kPeerDelayFollowUp = 0xa,
+  kAnnounce = 0xb,
 };
 
 struct PtpMessage {
@@ -49,6 +51,7 @@ struct PtpMessage {
   std::int64_t correction = 0;  // 2^-16 ns
   std::int64_t time_ns = 0;     // within +-4e18
   PeerId asked_by = 0;          // in responses; else 0
+  bool is_simple = false;       // of SPTP (sptp.h)
   friend bool operator==(const PtpMessage&, const PtpMessage&) = default;
 };
 
@@ -57,8 +60,8 @@ Nanoseconds correction_of(const PtpMessage& message);
 
 Bytes encode(const PtpMessage& message);
 
-// Nothing unless it is a PTPv2 message of one of these types. Flags, domain, control and interval
-// are ignored.
+// Nothing unless it is a PTPv2 message of one of these types. Other flags, domain, control,
+// interval and what an Announce tells of the grandmaster are ignored.
 std::optional<PtpMessage> decode_ptp_message(const Bytes& bytes);
 
 }  // namespace simbench

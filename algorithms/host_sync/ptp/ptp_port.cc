@@ -7,108 +7,34 @@
 namespace simbench {
 namespace {
 
-constexpr int kStepCalls = 3;
-// An error below this needs no further call.
-constexpr Nanoseconds kStepTolerance{1'000};
+constexpr int kStartUpIntervals = 5;
 
-// The system clock's lead over the steady clock.
-Task<Nanoseconds> system_lead(Host& host) {
-  const HostTime reading = co_await host.clock().now();
-  co_return offset_between(reading, host.steady_clock().now());
+ServoSettings port_servo_settings(const PtpSettings& settings) {
+  ServoSettings servo = settings.servo_limits;
+  servo.interval_s = to_seconds(settings.sync_interval);
+  return servo;
 }
 
-ServoSettings servo_settings(const PtpSettings& settings, Nanoseconds interval) {
-  return {.interval_s = to_seconds(interval),
-          .max_frequency_ppb = settings.max_frequency_ppm * 1e3,
-          .first_step_threshold_ns = settings.first_step_threshold_us * 1e3,
-          .step_threshold_ns = settings.step_threshold_us * 1e3};
-}
-
-// Adds `offset` to the system clock. A set call takes effect late by a part of its duration, so its
-// effect is measured against the steady clock and the rest is set again.
-Task<void> step_system_clock(Host& host, Nanoseconds offset) {
-  const Nanoseconds before = co_await system_lead(host);
-  const Nanoseconds wanted = before + offset;
-  Nanoseconds lead = wanted;  // to be set, so that `wanted` results
-  for (int call = 0; call < kStepCalls; ++call) {
-    const SteadyTime now = host.steady_clock().now();
-    co_await host.clock().set(HostTime(now.time_since_epoch() + lead));
-    const Nanoseconds reached = co_await system_lead(host);
-    const Nanoseconds missing = wanted - reached;
-    if (missing < kStepTolerance && -missing < kStepTolerance) co_return;
-    lead += missing;
-  }
-}
-
-// Does to the clock what the servo answered; `offset` is what the servo was fed.
-Task<void> apply_answer(Host& host, ClockKind kind, ServoAnswer answer, Nanoseconds offset) {
-  if (answer.state == ServoState::kUnlocked) co_return;
-  if (kind == ClockKind::kSystem) {
-    co_await host.clock().adjust_frequency(-answer.ppb);
-    if (answer.state == ServoState::kJump) co_await step_system_clock(host, -offset);
-    co_return;
-  }
-  co_await host.hardware_clock()->adjust_frequency(-answer.ppb);
-  if (answer.state == ServoState::kJump) co_await host.hardware_clock()->step(-offset);
-}
-
-// When the message left that send() has just returned from; nothing if the card did not stamp it.
-Task<std::optional<std::int64_t>> departure_stamp(Host& host, MessageChannel& channel, MessageId id,
-                                                  ClockKind kind) {
-  const SteadyTime deadline = host.steady_clock().now() + kStampTimeout;
-  if (kind == ClockKind::kHardware) {
-    const std::optional<HardwareTime> stamp =
-        co_await channel.hardware_transmit_stamp(id, deadline);
-    if (!stamp) co_return std::nullopt;
-    co_return nanoseconds_of(*stamp);
-  }
-  const std::optional<HostTime> stamp = co_await channel.transmit_stamp(id, deadline);
-  if (stamp) co_return nanoseconds_of(*stamp);
-  const HostTime now = co_await host.clock().now();
-  co_return nanoseconds_of(now);
-}
-
-std::optional<std::int64_t> arrival_stamp(const ReceivedMessage& message, ClockKind kind) {
-  if (kind == ClockKind::kSystem) return nanoseconds_of(message.received);
-  if (!message.received_hardware) return std::nullopt;
-  return nanoseconds_of(*message.received_hardware);
+PiServo make_pi(const PtpSettings& settings) {
+  const bool is_card = settings.stamps == StampSource::kCard;
+  return PiServo(is_card ? PiServo::kHardwareStamps : PiServo::kSoftwareStamps,
+                 port_servo_settings(settings));
 }
 
 std::unique_ptr<Servo> make_port_servo(const PtpSettings& settings) {
-  const ServoSettings servo = servo_settings(settings, settings.sync_interval);
-  if (settings.servo == ServoKind::kLinearRegression) {
-    return std::make_unique<LinearRegressionServo>(servo);
-  }
-  return std::make_unique<PiServo>(
-      settings.has_hardware_stamps ? PiServo::kHardwareStamps : PiServo::kSoftwareStamps, servo);
+  if (settings.servo == ServoKind::kPi) return std::make_unique<PiServo>(make_pi(settings));
+  return std::make_unique<LinearRegressionServo>(port_servo_settings(settings));
+}
+
+// Until there is a first offset and a frequency: some Syncs, and what the PI servo waits.
+Nanoseconds start_up_time(const PtpSettings& settings) {
+  const double servo_s =
+      settings.servo == ServoKind::kPi ? make_pi(settings).first_frequency_s() : 0;
+  return settings.patience + from_seconds(servo_s) +
+         kStartUpIntervals * (settings.sync_interval + settings.delay_interval);
 }
 
 }  // namespace
-
-ClockCoupling::ClockCoupling(Host& host, ClockKind follower, const PtpSettings& settings)
-    : host_(host),
-      follower_(follower),
-      servo_(PiServo::kHardwareStamps, servo_settings(settings, kInterval)) {}
-
-Task<void> ClockCoupling::update() {
-  CrossStamp best;
-  Nanoseconds width = Nanoseconds::max();
-  for (int i = 0; i < kCrossStamps; ++i) {
-    const CrossStamp stamp = co_await host_.hardware_clock()->cross_stamp();
-    if (stamp.after - stamp.before >= width) continue;
-    best = stamp;
-    width = stamp.after - stamp.before;
-  }
-  const HostTime system = best.before + width / 2;
-  const Nanoseconds system_lead = offset_between(system, best.hardware);
-  const bool system_follows = follower_ == ClockKind::kSystem;
-  const Nanoseconds offset = system_follows ? system_lead : -system_lead;
-  const std::int64_t local =
-      system_follows ? nanoseconds_of(system) : nanoseconds_of(best.hardware);
-  const ServoAnswer answer = servo_.sample(static_cast<double>(offset.count()), local, 1);
-  co_await apply_answer(host_, follower_, answer, offset);
-  if (answer.state != ServoState::kUnlocked) is_locked_ = true;
-}
 
 Task<void> PtpMaster::run() {
   const double part = host_.random_uniform();
@@ -120,6 +46,8 @@ Task<void> PtpMaster::run() {
     if (host_.steady_clock().now() < next_sync) continue;
     next_sync += settings_.sync_interval;
     if (*is_ready_) co_await send_sync();
+    // The slave will report that no Sync came.
+    if (!stamps_.lacking().empty()) co_return;
   }
 }
 
@@ -127,8 +55,7 @@ Task<void> PtpMaster::send_sync() {
   PtpMessage message{.type = PtpType::kSync, .sender = host_.id(), .sequence = ++sequence_};
   Bytes sync = encode(message);
   const MessageId id = co_await channel().send(std::move(sync));
-  const std::optional<std::int64_t> departure =
-      co_await departure_stamp(host_, channel(), id, clock());
+  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
   if (!departure) co_return;
   message.type = PtpType::kFollowUp;
   message.time_ns = *departure;
@@ -139,7 +66,7 @@ Task<void> PtpMaster::send_sync() {
 Task<void> PtpMaster::answer(ReceivedMessage received) {
   const std::optional<PtpMessage> request = decode_ptp_message(received.bytes);
   if (!request) co_return;
-  const std::optional<std::int64_t> arrival = arrival_stamp(received, clock());
+  const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   if (!arrival) co_return;
   if (request->type == PtpType::kPeerDelayRequest) {
     co_await answer_peer_delay(*request, *arrival);
@@ -165,8 +92,7 @@ Task<void> PtpMaster::answer_peer_delay(PtpMessage request, std::int64_t arrival
                      .asked_by = request.sender};
   Bytes response = encode(message);
   const MessageId id = co_await channel().send(std::move(response));
-  const std::optional<std::int64_t> departure =
-      co_await departure_stamp(host_, channel(), id, clock());
+  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
   if (!departure) co_return;
   message.type = PtpType::kPeerDelayFollowUp;
   message.correction = request.correction;
@@ -187,24 +113,20 @@ PtpSlave::PtpSlave(Host& host, PeerId master, PtpSettings settings)
       master_(master),
       settings_(settings),
       servo_(make_port_servo(settings)),
+      stamps_(host, settings.stamps),
       offset_(settings.median_length),
       outcome_(host) {
-  if (settings.has_hardware_stamps && host.hardware_clock() != nullptr) {
-    coupling_.emplace(host, ClockKind::kSystem, settings);
+  if (settings.stamps == StampSource::kCard && host.hardware_clock() != nullptr) {
+    coupling_.emplace(host, ClockKind::kSystem, settings.servo_limits);
   }
 }
 
 Task<void> PtpSlave::run() {
-  if (settings_.has_hardware_stamps && !coupling_) {
-    outcome_.failed(0,
-                    "the host has no hardware clock (Host::hardware_clock); use software stamps");
-    co_return;
-  }
   begin_ = host_.steady_clock().now();
   const double part = host_.random_uniform();
   SteadyTime next_request = begin_ + from_ms(part * to_ms(settings_.delay_interval));
   SteadyTime next_coupling = SteadyTime::max();
-  while (true) {
+  while (stamps_.lacking().empty()) {
     std::optional<ReceivedMessage> received =
         co_await channel().receive(std::min(next_request, next_coupling));
     if (received) co_await take(std::move(*received));
@@ -222,6 +144,7 @@ Task<void> PtpSlave::run() {
     }
     report_outcome_if_due();
   }
+  outcome_.failed(0, stamps_.lacking());
 }
 
 Task<void> PtpSlave::ask() {
@@ -233,15 +156,14 @@ Task<void> PtpSlave::ask() {
   peer_follow_up_.reset();
   Bytes bytes = encode(message);
   const MessageId id = co_await channel().send(std::move(bytes));
-  const std::optional<std::int64_t> departure =
-      co_await departure_stamp(host_, channel(), id, clock());
+  const std::optional<std::int64_t> departure = co_await stamps_.departure(channel(), id);
   if (departure) request_ = Half{message, *departure};
 }
 
 Task<void> PtpSlave::take(ReceivedMessage received) {
   const std::optional<PtpMessage> message = decode_ptp_message(received.bytes);
   if (!message) co_return;
-  const std::optional<std::int64_t> arrival = arrival_stamp(received, clock());
+  const std::optional<std::int64_t> arrival = stamps_.arrival(received);
   const bool is_answer = request_ && message->sequence == request_->message.sequence &&
                          message->asked_by == host_.id();
   switch (message->type) {
@@ -277,7 +199,7 @@ bool PtpSlave::is_late(std::uint16_t sequence) const {
 
 void PtpSlave::take_delay_response(const PtpMessage& response) {
   const std::int64_t arrived = response.time_ns - correction_of(response).count();
-  offset_.add_request(request_->stamp, arrived);
+  offset_.add_request(request_->stamp, arrived, servo_->rate_ratio());
   if (offset_.sync()) report(request_->stamp, arrived, offset_.sync()->t1, offset_.sync()->t2);
   request_.reset();
 }
@@ -309,7 +231,7 @@ Task<void> PtpSlave::correct() {
   ++corrections_;
   const ServoAnswer answer =
       servo_->sample(static_cast<double>(offset->count()), offset_.sync()->t2, 1);
-  co_await apply_answer(host_, clock(), answer, *offset);
+  co_await apply_answer(host_, clock_of(settings_.stamps), answer, *offset);
   if (answer.state == ServoState::kUnlocked) co_return;
   is_locked_ = true;
   if (answer.state != ServoState::kJump) co_return;
@@ -320,7 +242,7 @@ Task<void> PtpSlave::correct() {
 }
 
 void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::int64_t t4) {
-  if (settings_.has_hardware_stamps) return;
+  if (settings_.stamps == StampSource::kCard) return;
   host_.report_exchange({.peer = master_,
                          .t1 = HostTime(Nanoseconds(t1)),
                          .t2 = HostTime(Nanoseconds(t2)),
@@ -331,13 +253,14 @@ void PtpSlave::report(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::in
 void PtpSlave::report_outcome_if_due() {
   if (outcome_.is_reported()) return;
   if (coupling_ ? coupling_->is_locked() : is_locked_) return outcome_.synchronised(corrections_);
-  if (host_.steady_clock().now() - begin_ < settings_.patience) return;
-  outcome_.failed(corrections_,
-                  "the servo has not locked after " +
-                      std::to_string(static_cast<int>(to_seconds(settings_.patience))) + " s and " +
-                      std::to_string(corrections_) + " measured offsets; is host " +
-                      std::to_string(master_) + " running and reachable" +
-                      (coupling_ ? ", and do both network cards stamp messages" : "") + "?");
+  const Nanoseconds waited = host_.steady_clock().now() - begin_;
+  if (waited < start_up_time(settings_)) return;
+  outcome_.failed(corrections_, "the servo has not locked after " +
+                                    std::to_string(static_cast<int>(to_seconds(waited))) +
+                                    " s and " + std::to_string(corrections_) +
+                                    " measured offsets; is host " + std::to_string(master_) +
+                                    " running and reachable" +
+                                    ", and does it stamp its messages as this one does?");
 }
 
 }  // namespace simbench

@@ -1,8 +1,6 @@
-// The two ends of PTP (ptp.h), the clocks that they steer, and what the slave computes from the
-// stamps.
+// The two ends of PTP (ptp.h), and what the slave computes from the stamps.
 //
-// Every stamp is a count of nanoseconds of the clock in use: the system clock with software stamps,
-// the network card's clock with hardware stamps.
+// Every stamp is a count of nanoseconds of the clock that stamps (stamps.h).
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_PORT_H_
 
@@ -16,6 +14,7 @@
 
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/host_sync/ptp/ptp.h"
+#include "algorithms/host_sync/ptp/ptp_clocks.h"
 #include "algorithms/host_sync/ptp/ptp_message.h"
 #include "algorithms/host_sync/ptp/ptp_servo.h"
 #include "algorithms/ports/host.h"
@@ -23,40 +22,21 @@
 
 namespace simbench {
 
-enum class ClockKind : std::uint8_t { kSystem, kHardware };
-
-// phc2sys: one of a host's two clocks follows the other. The host must have a hardware clock.
-class ClockCoupling {
- public:
-  static constexpr int kCrossStamps = 5;
-  static constexpr Nanoseconds kInterval{1'000'000'000};
-
-  ClockCoupling(Host& host, ClockKind follower, const PtpSettings& settings);
-  // Measures and corrects once.
-  Task<void> update();
-  bool is_locked() const { return is_locked_; }
-
- private:
-  Host& host_;
-  ClockKind follower_;
-  PiServo servo_;
-  bool is_locked_ = false;
-};
-
 // The master's port towards one slave.
 class PtpMaster {
  public:
   // It sends Sync while *is_ready.
   PtpMaster(Host& host, PeerId slave, PtpSettings settings, std::shared_ptr<const bool> is_ready)
-      : host_(host), slave_(slave), settings_(settings), is_ready_(std::move(is_ready)) {}
+      : host_(host),
+        slave_(slave),
+        settings_(settings),
+        stamps_(host, settings.stamps),
+        is_ready_(std::move(is_ready)) {}
 
-  // Never ends.
+  // Never ends, unless the host lacks the stamps.
   Task<void> run();
 
  private:
-  ClockKind clock() const {
-    return settings_.has_hardware_stamps ? ClockKind::kHardware : ClockKind::kSystem;
-  }
   MessageChannel& channel() { return host_.open_channel(slave_, Transport::kDatagram); }
   Task<void> send_sync();
   Task<void> answer(ReceivedMessage received);
@@ -65,6 +45,7 @@ class PtpMaster {
   Host& host_;
   PeerId slave_;
   PtpSettings settings_;
+  MessageStamps stamps_;
   std::shared_ptr<const bool> is_ready_;
   std::uint16_t sequence_ = 0;
 };
@@ -100,17 +81,18 @@ class MovingMedian {
 // From PTP's stamps to the offset that a servo is fed.
 //
 // End to end: a Sync leaves the master at t1 and reaches the slave at t2, a Delay_Req leaves at t3
-// and reaches the master at t4; delay = ((t2 - t3) + (t4 - t1)) / 2 with the last Sync before it.
+// and reaches the master at t4; delay = ((t2 - t3) r + (t4 - t1)) / 2 with the last Sync before it
+// and the servo's rate ratio r.
 // Peer delay: request t1 to t2, response t3 to t4; delay = ((t4 - t1) - (t3 - t2)) / 2.
 // The delay is the median of the last 10; offset = t2 - t1 - delay, slave minus master.
 //
 // All stamps in nanoseconds, corrections of transparent clocks already taken out; the clocks' rates
-// are taken as equal within a delay measurement.
+// are taken as equal within a peer delay measurement.
 // Source: IEEE 1588-2008 clause 11; docs/reference/host_sync.md section 1 (linuxptp, tsproc.c).
 //
 //   PtpOffset filter(10);
 //   filter.add_sync(t1_ns, t2_ns);
-//   filter.add_request(t3_ns, t4_ns);
+//   filter.add_request(t3_ns, t4_ns, servo.rate_ratio());
 //   std::optional<Nanoseconds> offset = filter.offset();
 class PtpOffset {
  public:
@@ -123,9 +105,11 @@ class PtpOffset {
 
   void add_sync(std::int64_t t1, std::int64_t t2) { sync_ = Sync{t1, t2}; }
   // Ignored without a Sync.
-  void add_request(std::int64_t t3, std::int64_t t4) {
+  void add_request(std::int64_t t3, std::int64_t t4, double rate_ratio) {
     if (!sync_) return;
-    delay_ = median_.add(Nanoseconds((sync_->t2 - t3) / 2 + (t4 - sync_->t1) / 2));
+    const Nanoseconds apart(sync_->t2 - t3);
+    const Nanoseconds gained = from_ns((rate_ratio - 1) * to_ns(apart));
+    delay_ = median_.add((apart + gained) / 2 + Nanoseconds((t4 - sync_->t1) / 2));
   }
   void add_peer_delay(std::int64_t t1, std::int64_t t2, std::int64_t t3, std::int64_t t4) {
     delay_ = median_.add(Nanoseconds((t4 - t1) / 2 - (t3 - t2) / 2));
@@ -151,7 +135,7 @@ class PtpSlave {
  public:
   PtpSlave(Host& host, PeerId master, PtpSettings settings);
 
-  // Never ends, unless the host has no hardware clock and needs one.
+  // Never ends, unless the host lacks the stamps.
   Task<void> run();
 
  private:
@@ -161,9 +145,6 @@ class PtpSlave {
     std::int64_t stamp = 0;  // arrival, or departure of the own request
   };
 
-  ClockKind clock() const {
-    return settings_.has_hardware_stamps ? ClockKind::kHardware : ClockKind::kSystem;
-  }
   MessageChannel& channel() { return host_.open_channel(master_, Transport::kDatagram); }
   Task<void> ask();
   Task<void> take(ReceivedMessage received);
@@ -181,6 +162,7 @@ class PtpSlave {
   PtpSettings settings_;
   std::unique_ptr<Servo> servo_;
   std::optional<ClockCoupling> coupling_;  // with hardware stamps
+  MessageStamps stamps_;
   PtpOffset offset_;
   std::uint16_t sequence_ = 0;
   std::optional<Half> request_;

@@ -6,26 +6,29 @@
 namespace simbench {
 namespace {
 
-constexpr double kProportionalExponent = -0.3;
-constexpr double kIntegralExponent = 0.4;
-constexpr double kProportionalMax = 0.7;
-constexpr double kIntegralMax = 0.3;
 constexpr double kEstimateOverIntegral = 0.016;
 constexpr double kLongestEstimateS = 1000;
+// A sample that comes a little early is late enough.
+constexpr double kEstimateMargin = 1.001;
 
 }  // namespace
 
-PiServo::PiServo(Scales scales, ServoSettings settings)
+PiServo::PiServo(PiScales scales, ServoSettings settings)
     : settings_(settings),
-      kp_(std::min(scales.kp * std::pow(settings.interval_s, kProportionalExponent),
-                   kProportionalMax / settings.interval_s)),
-      ki_(std::min(scales.ki * std::pow(settings.interval_s, kIntegralExponent),
-                   kIntegralMax / settings.interval_s)) {}
+      kp_(std::min(scales.kp * std::pow(settings.interval_s, scales.kp_exponent),
+                   scales.kp_limit / settings.interval_s)),
+      ki_(std::min(scales.ki * std::pow(settings.interval_s, scales.ki_exponent),
+                   scales.ki_limit / settings.interval_s)) {}
+
+double PiServo::first_frequency_s() const {
+  return std::min(kEstimateOverIntegral / ki_, kLongestEstimateS);
+}
 
 ServoAnswer PiServo::sample(double offset_ns, std::int64_t local_ns, double weight) {
   if (phase_ == Phase::kRunning && settings_.step_threshold_ns > 0 &&
       std::abs(offset_ns) > settings_.step_threshold_ns) {
     phase_ = Phase::kEmpty;
+    return {.ppb = drift_ppb_, .state = ServoState::kUnlocked};
   }
   if (phase_ == Phase::kEmpty) {
     first_offset_ns_ = offset_ns;
@@ -44,6 +47,11 @@ ServoAnswer PiServo::sample(double offset_ns, std::int64_t local_ns, double weig
   return {.ppb = ppb, .state = ServoState::kLocked};
 }
 
+void PiServo::forget() {
+  phase_ = Phase::kEmpty;
+  drift_ppb_ = 0;
+}
+
 ServoAnswer PiServo::first_frequency(double offset_ns, std::int64_t local_ns) {
   ServoAnswer answer{.ppb = drift_ppb_, .state = ServoState::kUnlocked};
   if (local_ns <= first_local_ns_) {
@@ -51,8 +59,7 @@ ServoAnswer PiServo::first_frequency(double offset_ns, std::int64_t local_ns) {
     return answer;
   }
   const auto elapsed_ns = static_cast<double>(local_ns - first_local_ns_);
-  const double needed_s = std::min(kEstimateOverIntegral / ki_, kLongestEstimateS);
-  if (elapsed_ns < needed_s * 1e9) return answer;
+  if (elapsed_ns * kEstimateMargin < first_frequency_s() * 1e9) return answer;
   drift_ppb_ += (1e9 - drift_ppb_) * (offset_ns - first_offset_ns_) / elapsed_ns;
   drift_ppb_ = std::clamp(drift_ppb_, -settings_.max_frequency_ppb, settings_.max_frequency_ppb);
   const double step = is_first_update_ ? settings_.first_step_threshold_ns : 0;
@@ -166,16 +173,12 @@ ServoAnswer LinearRegressionServo::sample(double offset_ns, std::int64_t local_n
   fit_all();
   choose_window();
   if (window_ == 0) return {.ppb = -frequency_ppb_, .state = ServoState::kUnlocked};
-  if (!is_first_update_ && settings_.step_threshold_ns > 0 &&
-      std::abs(offset_ns) > settings_.step_threshold_ns) {
-    // The reference has jumped: its old samples do not count.
-    restart();
-    return {.ppb = -frequency_ppb_, .state = ServoState::kJump};
-  }
   Fit& chosen = fit(window_);
-  frequency_ppb_ = 1e9 * (chosen.slope - 1);
-  const bool is_far = is_first_update_ && settings_.first_step_threshold_ns > 0 &&
-                      std::abs(offset_ns) > settings_.first_step_threshold_ns;
+  const double residual_ns = std::abs(chosen.intercept_ns);
+  const double first_step_ns = is_first_update_ ? settings_.first_step_threshold_ns : 0;
+  const bool is_far =
+      (first_step_ns > 0 && residual_ns > first_step_ns) ||
+      (settings_.step_threshold_ns > 0 && residual_ns > settings_.step_threshold_ns);
   is_first_update_ = false;
   if (is_far) {
     const std::int64_t step_ns = -std::llround(offset_ns);
@@ -183,9 +186,11 @@ ServoAnswer LinearRegressionServo::sample(double offset_ns, std::int64_t local_n
     last_local_ns_ += step_ns;
   }
   const int intervals = window_ <= kWindowOfOneInterval ? 1 : window_ / 2;
+  frequency_ppb_ = 1e9 * (chosen.slope - 1);
   frequency_ppb_ += chosen.intercept_ns / settings_.interval_s / intervals;
   frequency_ppb_ =
       std::clamp(frequency_ppb_, -settings_.max_frequency_ppb, settings_.max_frequency_ppb);
+  rate_ratio_ = chosen.slope / (1 + frequency_ppb_ / 1e9);
   return {.ppb = -frequency_ppb_, .state = is_far ? ServoState::kJump : ServoState::kLocked};
 }
 

@@ -156,6 +156,7 @@ class ScriptHost::Channel : public MessageChannel {
   Task<MessageId> send(Bytes message) override {
     const Nanoseconds end = host_.book_cpu(host_.costs.send) + host_.costs.send;
     co_await host_.world_.wait_until(end);
+    last_departure_ = host_.reading();
     host_.world_.transmit(host_.id_, peer_, std::move(message));
     co_return ++sent_;
   }
@@ -176,8 +177,10 @@ class ScriptHost::Channel : public MessageChannel {
     co_return message;
   }
 
-  Task<std::optional<HostTime>> transmit_stamp(MessageId /*id*/, SteadyTime /*deadline*/) override {
-    co_return std::nullopt;
+  // Of the last message only.
+  Task<std::optional<HostTime>> transmit_stamp(MessageId id, SteadyTime /*deadline*/) override {
+    if (!host_.stamps_departures || id != sent_) co_return std::nullopt;
+    co_return last_departure_;
   }
   Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId /*id*/,
                                                             SteadyTime /*deadline*/) override {
@@ -190,6 +193,7 @@ class ScriptHost::Channel : public MessageChannel {
   std::deque<ReceivedMessage> inbox_;
   std::shared_ptr<Gate> waiting_;
   MessageId sent_ = 0;
+  HostTime last_departure_{};
 };
 
 ScriptHost::ScriptHost(ScriptWorld& world, PeerId id)

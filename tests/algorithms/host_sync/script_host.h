@@ -91,9 +91,10 @@ class ScriptHost : public Host {
 
   // Script.
   ScriptCosts costs;
-  Nanoseconds offset{0};          // system clock minus time
-  double uniform = 0;             // what random_uniform() returns
-  bool throw_on_outcome = false;  // a fault of the host itself
+  Nanoseconds offset{0};           // system clock minus time
+  double uniform = 0;              // what random_uniform() returns
+  bool stamps_departures = false;  // in the kernel
+  bool throw_on_outcome = false;   // a fault of the host itself
   // Log.
   std::vector<Nanoseconds> steps;  // change of `offset` by each set()
   std::vector<Slew> slews;         // applied at once

@@ -13,7 +13,8 @@ constexpr PtpType kTypes[] = {PtpType::kSync,
                               PtpType::kPeerDelayResponse,
                               PtpType::kFollowUp,
                               PtpType::kDelayResponse,
-                              PtpType::kPeerDelayFollowUp};
+                              PtpType::kPeerDelayFollowUp,
+                              PtpType::kAnnounce};
 
 TEST(PtpMessageTest, WhatIsEncodedIsDecoded) {
   for (const PtpType type : kTypes) {
@@ -25,7 +26,8 @@ TEST(PtpMessageTest, WhatIsEncodedIsDecoded) {
                                .sequence = 0xfffe,
                                .correction = -77'000,
                                .time_ns = time_ns,
-                               .asked_by = is_response ? 17u : 0u};
+                               .asked_by = is_response ? 17u : 0u,
+                               .is_simple = time_ns < 0};
       EXPECT_EQ(decode_ptp_message(encode(message)), message);
     }
   }
@@ -57,6 +59,12 @@ TEST(PtpMessageTest, TheBytesAreWhereTheStandardPutsThem) {
   EXPECT_EQ(encode({.type = PtpType::kSync}).size(), 44u);
   EXPECT_EQ(std::to_integer<int>(encode({.type = PtpType::kSync})[6]), 0x02);
   EXPECT_EQ(encode({.type = PtpType::kPeerDelayRequest}).size(), 54u);
+  const Bytes announce = encode({.type = PtpType::kAnnounce, .sender = 7, .is_simple = true});
+  ASSERT_EQ(announce.size(), 64u);
+  EXPECT_EQ(std::to_integer<int>(announce[60]), 7);
+  // Unicast and profile-specific 1; no two-step.
+  EXPECT_EQ(std::to_integer<int>(announce[6]), 0x24);
+  EXPECT_EQ(std::to_integer<int>(encode({.type = PtpType::kSync, .is_simple = true})[6]), 0x24);
 }
 
 TEST(PtpMessageTest, CorrectionsAreIn65536thsOfANanosecond) {
@@ -73,7 +81,9 @@ TEST(PtpMessageTest, ForeignBytesAreRefused) {
   EXPECT_FALSE(decode_ptp_message(other)) << "version 1";
   other = good;
   other[0] = std::byte{0xb};
-  EXPECT_FALSE(decode_ptp_message(other)) << "Announce";
+  EXPECT_FALSE(decode_ptp_message(other)) << "an Announce that is too short";
+  other[0] = std::byte{0xc};
+  EXPECT_FALSE(decode_ptp_message(other)) << "Signaling";
   other = good;
   other[3] = std::byte{43};
   EXPECT_FALSE(decode_ptp_message(other)) << "length";

@@ -19,11 +19,11 @@ constexpr Nanoseconds kPtpLatency{150'000};
 TEST(PtpOffsetTest, EndToEndAndPeerDelayFindTheOffset) {
   // Slave 5000 ahead, delay 300 each way.
   PtpOffset filter(10);
-  filter.add_request(0, 0);
+  filter.add_request(0, 0, 1);
   EXPECT_FALSE(filter.offset());
   filter.add_sync(1'000'000, 1'000'300 + 5'000);
   EXPECT_FALSE(filter.offset());
-  filter.add_request(1'205'000, 1'200'300);
+  filter.add_request(1'205'000, 1'200'300, 1);
   EXPECT_EQ(filter.offset(), Nanoseconds(5000));
   PtpOffset peer(10);
   peer.add_peer_delay(1'005'000, 1'000'300, 1'000'700, 1'006'000);
@@ -36,8 +36,18 @@ TEST(PtpOffsetTest, EndToEndAndPeerDelayFindTheOffset) {
 TEST(PtpOffsetTest, ALateRequestDoesNotCountInTheMedian) {
   PtpOffset filter(3);
   filter.add_sync(1000, 1300);
-  for (const std::int64_t late : {0, 90'000, 0}) filter.add_request(2000, 2300 + late);
+  for (const std::int64_t late : {0, 90'000, 0}) filter.add_request(2000, 2300 + late, 1);
   EXPECT_EQ(filter.offset(), Nanoseconds(0));
+}
+
+TEST(PtpOffsetTest, TheRateRatioTakesTheDriftBetweenSyncAndRequestOut) {
+  // The slave's clock gains 1e-4 on the master's; between Sync and request pass 0.5 s.
+  PtpOffset filter(10);
+  filter.add_sync(1'000'000, 1'000'300);
+  filter.add_request(501'050'300, 501'000'300 + 300, 1 - 1e-4);
+  // Without the ratio the delay would come out some 25 us too short.
+  filter.add_sync(2'000'000, 2'000'300);
+  EXPECT_NEAR(static_cast<double>(filter.offset()->count()), 0, 4);
 }
 
 class PtpTest : public testing::TestWithParam<bool> {
@@ -48,6 +58,7 @@ class PtpTest : public testing::TestWithParam<bool> {
       world_.host(slave).offset = from_ms(-400.0 * slave);
       world_.host(slave).uniform = 0.4;
     }
+    for (PeerId host = 0; host < 3; ++host) world_.host(host).stamps_departures = true;
     settings_.is_peer_delay = GetParam();
   }
   double lead_us(PeerId slave) { return to_ms(world_.host(slave).lead_over(world_.host(0))) * 1e3; }
@@ -140,16 +151,51 @@ TEST_P(PtpTest, ASilentMasterIsOneOutcome) {
   EXPECT_TRUE(world_.host(1).outcomes.at(0).synchronised);
 }
 
-TEST_P(PtpTest, WithoutAHardwareClockTheOutcomeNamesThePort) {
-  settings_.has_hardware_stamps = true;
+TEST_P(PtpTest, StampsThatTheHostDoesNotTakeAreAnOutcomeThatNamesThem) {
+  const auto expect_failure = [this](StampSource source, const char* what) {
+    settings_.stamps = source;
+    Ptp sync(settings_);
+    ScriptWorld world(2);
+    world.connect(kPtpLatency);
+    world.run(sync, from_ms(60e3));
+    ASSERT_EQ(world.host(1).outcomes.size(), 1u) << what;
+    EXPECT_FALSE(world.host(1).outcomes[0].synchronised) << what;
+    EXPECT_NE(world.host(1).outcomes[0].message.find(what), std::string::npos)
+        << world.host(1).outcomes[0].message;
+    EXPECT_TRUE(world.host(1).steps.empty());
+    EXPECT_EQ(world.unfinished(), 0u) << what;
+  };
+  expect_failure(StampSource::kCard, "Host::hardware_clock");
+  expect_failure(StampSource::kKernel, "MessageChannel::transmit_stamp");
+}
+
+TEST_P(PtpTest, TheProgramsStampsAreTakenWhereTheyAreAskedFor) {
+  for (PeerId host = 0; host < 3; ++host) world_.host(host).stamps_departures = false;
+  settings_.stamps = StampSource::kProgram;
   Ptp sync(settings_);
   world_.run(sync, from_ms(60e3));
-  for (const PeerId slave : nonempty(world_.slaves())) {
-    ASSERT_EQ(world_.host(slave).outcomes.size(), 1u);
-    EXPECT_FALSE(world_.host(slave).outcomes[0].synchronised);
-    EXPECT_NE(world_.host(slave).outcomes[0].message.find("Host::hardware_clock"),
-              std::string::npos);
-  }
+  EXPECT_NEAR(lead_us(1), 0, 0.01);
+}
+
+TEST_P(PtpTest, TheRateOfTheMessagesIsTheSettings) {
+  settings_.sync_interval = settings_.delay_interval = from_ms(62.5);
+  std::size_t from_master = 0;
+  std::size_t from_slave = 0;
+  world_.script_link(0, 1, [&from_master](std::size_t, const Bytes&) {
+    ++from_master;
+    return std::vector{kPtpLatency};
+  });
+  world_.script_link(1, 0, [&from_slave](std::size_t, const Bytes&) {
+    ++from_slave;
+    return std::vector{kPtpLatency};
+  });
+  world_.host(1).uniform = 0.5;  // of an interval that is varied from 0 to twice itself
+  Ptp sync(settings_);
+  world_.run(sync, from_ms(60e3));
+  // Sync and Follow_Up; the answers: Delay_Resp, or Pdelay_Resp and its Follow_Up.
+  EXPECT_NEAR(static_cast<double>(from_master), 60 * 16 * (GetParam() ? 4 : 3), 8);
+  EXPECT_NEAR(static_cast<double>(from_slave), 60 * 16, 4);
+  EXPECT_NEAR(lead_us(1), 0, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(EndToEndAndPeerDelay, PtpTest, testing::Bool());

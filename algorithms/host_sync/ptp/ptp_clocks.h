@@ -1,0 +1,66 @@
+// The clocks that PTP's servos steer: the system clock, or the network card's and then, through
+// phc2sys, the system clock.
+//
+//   ClockCoupling coupling(host, ClockKind::kSystem, {});
+//   while (true) {
+//     co_await coupling.update();
+//     co_await host.sleep_for(ClockCoupling::kInterval);
+//   }
+#ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_
+#define SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_
+
+#include <cstdint>
+#include <memory>
+
+#include "algorithms/host_sync/ptp/ptp_servo.h"
+#include "algorithms/host_sync/stamps.h"
+#include "algorithms/ports/host.h"
+
+namespace simbench {
+
+enum class ClockKind : std::uint8_t { kSystem, kHardware };
+
+// The clock that stamps, which is the one to steer.
+inline ClockKind clock_of(StampSource stamps) {
+  return stamps == StampSource::kCard ? ClockKind::kHardware : ClockKind::kSystem;
+}
+
+// Does to the clock what the servo answered, which had been fed `offset`. A set call of the system
+// clock takes effect late by a part of its duration, so a step is measured against the steady clock
+// and its rest set again.
+Task<void> apply_answer(Host& host, ClockKind clock, ServoAnswer answer, Nanoseconds offset);
+// Its two parts.
+Task<void> set_frequency(Host& host, ClockKind clock, double ppb);
+Task<void> step_clock(Host& host, ClockKind clock, Nanoseconds offset);
+
+// phc2sys: one of a host's two clocks follows the other. Each update takes the narrowest of
+// kCrossStamps cross stamps and feeds it to a PI servo with the constants of hardware stamps.
+// The host must have a hardware clock, and outlive this.
+class ClockCoupling {
+ public:
+  static constexpr int kCrossStamps = 5;
+  static constexpr Nanoseconds kInterval{1'000'000'000};
+
+  // `settings` without its interval, which is kInterval.
+  ClockCoupling(Host& host, ClockKind follower, ServoSettings settings);
+  // Measures and corrects once.
+  Task<void> update();
+  bool is_locked() const { return is_locked_; }
+
+ private:
+  Host& host_;
+  ClockKind follower_;
+  PiServo servo_;
+  bool is_locked_ = false;
+};
+
+// Updates for ever, every kInterval; *is_locked says whether the clocks agree.
+Task<void> keep_coupled(Host& host, ClockKind follower, ServoSettings settings,
+                        std::shared_ptr<bool> is_locked);
+
+// The narrowest of ClockCoupling::kCrossStamps readings. The host must have a hardware clock.
+Task<CrossStamp> narrowest_cross_stamp(Host& host);
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_ALGORITHMS_HOST_SYNC_PTP_PTP_CLOCKS_H_

@@ -1,0 +1,57 @@
+#include "algorithms/host_sync/stamps.h"
+
+namespace simbench {
+
+std::string MessageStamps::lacking() const {
+  if (source_ == StampSource::kCard && host_.hardware_clock() == nullptr) {
+    return "the host has no hardware clock (Host::hardware_clock); use software stamps";
+  }
+  if (unstamped_ < kPatience) return "";
+  if (source_ == StampSource::kCard) {
+    return "the network card stamps no departures (MessageChannel::hardware_transmit_stamp); use "
+           "software stamps";
+  }
+  return "the host's stack stamps no departures (MessageChannel::transmit_stamp; in a scenario: "
+         "/network/stamp_point); let it stamp in the kernel, or ask for the program's stamps";
+}
+
+Task<std::optional<std::int64_t>> MessageStamps::departure(MessageChannel& channel, MessageId id) {
+  const std::optional<std::int64_t> stamp = co_await stamp_of(channel, id);
+  if (stamp) unstamped_ = -1;
+  if (!stamp && unstamped_ >= 0) ++unstamped_;
+  co_return stamp;
+}
+
+Task<std::optional<std::int64_t>> MessageStamps::stamp_of(MessageChannel& channel, MessageId id) {
+  if (source_ == StampSource::kProgram) {
+    const HostTime now = co_await host_.clock().now();
+    co_return nanoseconds_of(now);
+  }
+  const SteadyTime deadline = host_.steady_clock().now() + kStampTimeout;
+  if (source_ == StampSource::kCard) {
+    const std::optional<HardwareTime> stamp =
+        co_await channel.hardware_transmit_stamp(id, deadline);
+    if (!stamp) co_return std::nullopt;
+    co_return nanoseconds_of(*stamp);
+  }
+  const std::optional<HostTime> stamp = co_await channel.transmit_stamp(id, deadline);
+  if (!stamp) co_return std::nullopt;
+  co_return nanoseconds_of(*stamp);
+}
+
+std::optional<std::int64_t> MessageStamps::arrival(const ReceivedMessage& message) const {
+  if (source_ != StampSource::kCard) return nanoseconds_of(message.received);
+  if (!message.received_hardware) return std::nullopt;
+  return nanoseconds_of(*message.received_hardware);
+}
+
+ParameterSpec software_stamps_parameter() {
+  return choice_parameter("stamps", {"kernel", "program"},
+                          "who stamps: the kernel, or the program after its send call", "linuxptp");
+}
+
+StampSource software_stamps(const Parameters& parameters) {
+  return parameters.text("stamps") == "kernel" ? StampSource::kKernel : StampSource::kProgram;
+}
+
+}  // namespace simbench
