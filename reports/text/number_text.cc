@@ -12,7 +12,11 @@ std::string number_text(double value) {
   if (!std::isfinite(value)) return "-";
   const double size = std::abs(value);
   if (size >= 1e6) return fmt::format("{:.1e}", value);
-  if (size < 0.0005) return "0.000";  // never "-0.000"
+  constexpr double kNanosecondMs = 1e-6;
+  if (size < kNanosecondMs) return "0.000";  // never "-0.000"
+  if (size < 0.0005) {
+    return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(size))));
+  }
   return fmt::format("{:.{}f}", value, size < 100 ? 3 : 1);
 }
 

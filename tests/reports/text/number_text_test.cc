@@ -20,7 +20,9 @@ TEST(NumberText, HasAsManyDigitsAsMakeSense) {
 TEST(NumberText, ZeroHasNoSign) {
   EXPECT_EQ(number_text(0), "0.000");
   EXPECT_EQ(number_text(-0.0), "0.000");
-  EXPECT_EQ(number_text(-0.0004), "0.000");
+  EXPECT_EQ(number_text(-0.0000004), "0.000");
+  EXPECT_EQ(number_text(-0.0004), "-0.00040");
+  EXPECT_EQ(number_text(0.000042), "0.000042");
 }
 
 TEST(NumberText, WhatIsNotFiniteIsADash) {
