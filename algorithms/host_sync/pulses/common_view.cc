@@ -1,7 +1,9 @@
 #include "algorithms/host_sync/pulses/common_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -14,7 +16,11 @@ namespace simbench {
 namespace {
 
 constexpr Nanoseconds kAnswerTimeout{500'000'000};
-constexpr double kClear = 8;  // standard deviations; they are estimated from few differences
+// Beyond so many standard deviations the tail of a normal is an exponential, and underflows.
+constexpr double kFarTail = 25;
+
+double normal_density(double x) { return std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi); }
+double normal_below(double x) { return std::erfc(-x / std::numbers::sqrt2) / 2; }
 
 // The master's end towards one slave.
 Task<void> serve_pulses(Host& host, PeerId slave, std::shared_ptr<SteeredClock> clock,
@@ -45,9 +51,12 @@ Task<void> serve_pulses(Host& host, PeerId slave, std::shared_ptr<SteeredClock> 
 
 class CommonViewSlave : public TwoWaySlave {
  public:
-  CommonViewSlave(Host& host, PeerId master, CommonViewSettings settings, PulseObserver observer)
-      : TwoWaySlave(host, master, settings.two_way, std::make_unique<TwoWayHull>(settings.hull)),
-        settings_(settings),
+  // `hull` is the estimator's, for its corridor.
+  CommonViewSlave(Host& host, PeerId master, const TwoWaySettings& settings,
+                  std::unique_ptr<TwoWayEstimator> estimator, const TwoWayHull& hull,
+                  PulseObserver observer)
+      : TwoWaySlave(host, master, settings, std::move(estimator)),
+        hull_(hull),
         observer_(std::move(observer)) {}
 
  private:
@@ -79,10 +88,10 @@ class CommonViewSlave : public TwoWaySlave {
     const auto master_sigma_ns = static_cast<double>(pulse.sigma_ns);
     correction_ns_ = common_view_correction_ns(
         {.offset_ns = offset_ns, .sigma_ns = std::hypot(seen->sigma_ns, master_sigma_ns)},
-        settings_.asymmetry_sigma_us);
+        to_ns(hull_.width().value_or(Nanoseconds(0))) / 2);
   }
 
-  CommonViewSettings settings_;
+  const TwoWayHull& hull_;
   PulseObserver observer_;
   std::uint32_t index_ = 0;
   double correction_ns_ = 0;
@@ -90,11 +99,20 @@ class CommonViewSlave : public TwoWaySlave {
 
 }  // namespace
 
-double common_view_correction_ns(CommonViewCorrection measured, double asymmetry_sigma_us) {
-  if (std::abs(measured.offset_ns) > kClear * measured.sigma_ns) return measured.offset_ns;
-  const double half_ns = asymmetry_sigma_us * 1e3 / 2;
-  const double expected = half_ns * half_ns;
-  return measured.offset_ns * expected / (expected + measured.sigma_ns * measured.sigma_ns);
+double common_view_correction_ns(CommonViewCorrection measured, double bound_ns) {
+  if (bound_ns <= 0) return 0;
+  if (measured.offset_ns < 0) {
+    return -common_view_correction_ns({-measured.offset_ns, measured.sigma_ns}, bound_ns);
+  }
+  const double nearest_ns = std::min(measured.offset_ns, bound_ns);
+  if (measured.sigma_ns <= 0) return nearest_ns;
+  // In standard deviations from c; low is the farther end.
+  const double low = (-bound_ns - measured.offset_ns) / measured.sigma_ns;
+  const double high = (bound_ns - measured.offset_ns) / measured.sigma_ns;
+  if (high < -kFarTail) return std::max(-bound_ns, bound_ns + measured.sigma_ns / high);
+  const double inside = normal_below(high) - normal_below(low);
+  const double shift = (normal_density(low) - normal_density(high)) / inside;
+  return std::clamp(measured.offset_ns + measured.sigma_ns * shift, 0.0, nearest_ns);
 }
 
 Task<void> CommonView::run_master(Host& host, std::vector<PeerId> slaves) {
@@ -115,7 +133,10 @@ Task<void> CommonView::run_slave(Host& host, PeerId master) {
         0, std::string("the host has no ") + port_name(settings_.pulses.source));
     co_return;
   }
-  CommonViewSlave slave(host, master, settings_, std::move(observer));
+  auto estimator = std::make_unique<TwoWayHull>(settings_.hull);
+  const TwoWayHull& hull = *estimator;
+  CommonViewSlave slave(host, master, settings_.two_way, std::move(estimator), hull,
+                        std::move(observer));
   co_await slave.run();
 }
 
@@ -135,10 +156,6 @@ HostSyncEntry common_view(std::string name, std::string summary, std::string sou
   entry.info.parameters.push_back(number_parameter(
       "settle_s", 5, 0, 1e5, "frames of a camera's first seconds that are left out",
       "docs/reference/paper.md section 8: the first 5 s are unsteady"));
-  entry.info.parameters.push_back(number_parameter(
-      "asymmetry_sigma_us", 10, 0, 1e6,
-      "asymmetry to expect of a link; a correction less certain than half of it counts less",
-      "network of the *_lan scenarios"));
   entry.make = [pulses](const Parameters& parameters) {
     CommonViewSettings settings;
     settings.two_way = two_way_settings(parameters);
@@ -146,7 +163,6 @@ HostSyncEntry common_view(std::string name, std::string summary, std::string sou
     settings.pulses.source = pulses;
     settings.pulses.window = from_seconds(parameters.number("pulse_window_s"));
     settings.pulses.settle = from_seconds(parameters.number("settle_s"));
-    settings.asymmetry_sigma_us = parameters.number("asymmetry_sigma_us");
     return std::make_unique<CommonView>(settings);
   };
   return entry;

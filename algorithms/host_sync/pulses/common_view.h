@@ -13,13 +13,15 @@
 // (two_way_estimators.h), which also identifies the pulses (wrongly if its error ever exceeds half
 // a period), and the pulses correct its offset, during the capture too.
 //
-// c has a standard deviation s (split halves of both hosts' pulses). Before there are many pulses
-// it is worse than the network, so only w c is subtracted, with
-//
-//   w = a^2 / (a^2 + s^2),  a = asymmetry_sigma / 2;   w = 1 if |c| > 8 s
+// c has a standard deviation s (pulse_observer.h, of both hosts). Before there are many pulses it
+// is worse than the network, so only what c says of the error is subtracted. The prior is causality
+// alone: no message arrives before it left, so the hull's error is at most half of the least round
+// trip, b = width / 2 of its corridor, and every value in between counts the same. Subtracted is
+// the mean of the error given c: of N(c, s^2), cut off at +-b.
 //
 // Limit: unequal least delays between hosts (other USB controllers, other cameras, cables) go into
-// the offset unseen, where the network alone would have been right.
+// the offset, where the network alone would have been right: up to b, and unseen as far as they are
+// common to a host's cameras.
 //
 // Frames and trigger lines have pulses during the capture only, PPS always. A slave without the
 // port reports that as its outcome and ends; if the master lacks the port and does not answer, the
@@ -40,7 +42,6 @@ struct CommonViewSettings {
   TwoWaySettings two_way;
   TwoWayHull::Settings hull;
   PulseObserver::Settings pulses;
-  double asymmetry_sigma_us = 10;
 };
 
 // c and its standard deviation.
@@ -49,8 +50,8 @@ struct CommonViewCorrection {
   double sigma_ns = 0;
 };
 
-// The part of c to subtract.
-double common_view_correction_ns(CommonViewCorrection measured, double asymmetry_sigma_us);
+// The part of c to subtract where the error is at most `bound_ns` either way.
+double common_view_correction_ns(CommonViewCorrection measured, double bound_ns);
 
 class CommonView : public HostSync {
  public:

@@ -1,7 +1,10 @@
 #include "algorithms/host_sync/pulses/pulse_observer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 namespace simbench {
@@ -11,14 +14,23 @@ constexpr double kStrangePart = 0.25;
 // Each pass multiplies the error by the slope of the envelope.
 constexpr int kPasses = 5;
 
+// Of the mean of values that differ by chance.
+double standard_error(std::span<const double> values) {
+  const auto count = static_cast<double>(values.size());
+  if (values.size() < 2) return 0;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / (count - 1) / count);
+}
+
 }  // namespace
 
 PulseTrain::PulseTrain(Settings settings)
     : settings_(settings),
       period_ns_(settings.period ? to_ns(*settings.period) : 0),
       all_(to_ns(settings.window)),
-      even_(to_ns(settings.window)),
-      odd_(to_ns(settings.window)) {}
+      groups_(Sighting::kGroups, Envelope(to_ns(settings.window))) {}
 
 std::optional<Nanoseconds> PulseTrain::period() const {
   if (period_ns_ <= 0) return std::nullopt;
@@ -33,8 +45,7 @@ void PulseTrain::restart() {
   strange_ = 0;
   pulses_ = 0;
   all_.clear();
-  even_.clear();
-  odd_.clear();
+  for (Envelope& group : groups_) group.clear();
 }
 
 void PulseTrain::add(Nanoseconds step, SteadyTime seen) {
@@ -75,7 +86,13 @@ void PulseTrain::add_numbered(Nanoseconds step, SteadyTime seen) {
   const double x = number_ * period_ns_;
   const double y = to_ns(seen - zero_) - x;
   all_.add(x, y);
-  (std::fmod(number_, 2) == 0 ? even_ : odd_).add(x, y);
+  groups_[group_of(number_)].add(x, y);
+}
+
+std::size_t PulseTrain::group_of(double number) const {
+  const double pulses_of_block = std::max(1.0, std::round(kBlockNs / period_ns_));
+  const double block = std::floor(number / pulses_of_block);
+  return static_cast<std::size_t>(std::fmod(block, static_cast<double>(Sighting::kGroups)));
 }
 
 std::optional<Sighting> PulseTrain::middle() const {
@@ -99,10 +116,15 @@ std::optional<Sighting> PulseTrain::nearest(SteadyTime when) const {
 std::optional<Sighting> PulseTrain::at_number(double number) const {
   const double x = number * period_ns_;
   const std::optional<double> y = all_.at(x);
-  const std::optional<double> even = even_.at(x);
-  const std::optional<double> odd = odd_.at(x);
-  if (!y || !even || !odd) return std::nullopt;
-  return Sighting{.at = zero_ + from_ns(x + *y), .sigma_ns = std::abs(*even - *odd) / 2};
+  if (!y) return std::nullopt;
+  Sighting sighting{.at = zero_ + from_ns(x + *y)};
+  for (std::size_t i = 0; i < Sighting::kGroups; ++i) {
+    const std::optional<double> of_group = groups_[i].at(x);
+    if (!of_group) return std::nullopt;
+    sighting.groups_ns[i] = *of_group - *y;
+  }
+  sighting.sigma_ns = standard_error(sighting.groups_ns);
+  return sighting;
 }
 
 namespace {
@@ -206,18 +228,22 @@ std::optional<Sighting> PulseObserver::middle() const {
 }
 
 std::optional<Sighting> PulseObserver::nearest(SteadyTime when) const {
-  double sum_ns = 0;
-  double variance = 0;
-  int count = 0;
+  std::vector<double> late_ns;
+  late_ns.reserve(trains_.size());
+  std::array<double, Sighting::kGroups> groups_ns{};
   for (const auto& [camera, train] : trains_) {
     const std::optional<Sighting> seen = train.train.nearest(when);
     if (!seen) continue;
-    sum_ns += static_cast<double>((seen->at - when).count());
-    variance += seen->sigma_ns * seen->sigma_ns;
-    ++count;
+    late_ns.push_back(to_ns(seen->at - when));
+    for (std::size_t i = 0; i < Sighting::kGroups; ++i) groups_ns[i] += seen->groups_ns[i];
   }
-  if (count == 0) return std::nullopt;
-  return Sighting{.at = when + from_ns(sum_ns / count), .sigma_ns = std::sqrt(variance) / count};
+  if (late_ns.empty()) return std::nullopt;
+  const auto count = static_cast<double>(late_ns.size());
+  for (double& group_ns : groups_ns) group_ns /= count;
+  const double mean_ns = std::accumulate(late_ns.begin(), late_ns.end(), 0.0) / count;
+  return Sighting{.at = when + from_ns(mean_ns),
+                  .sigma_ns = std::hypot(standard_error(groups_ns), standard_error(late_ns)),
+                  .groups_ns = groups_ns};
 }
 
 }  // namespace simbench

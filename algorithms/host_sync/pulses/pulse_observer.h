@@ -6,6 +6,7 @@
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_PULSES_PULSE_OBSERVER_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -21,8 +22,11 @@ namespace simbench {
 
 // A pulse on the steady clock, as seen with the least delay.
 struct Sighting {
+  static constexpr std::size_t kGroups = 4;
   SteadyTime at{};
   double sigma_ns = 0;
+  // Where each quarter of the pulses puts it, after `at`.
+  std::array<double, kGroups> groups_ns{};
 };
 
 // Periodic pulses that one observer (a camera, a pulse line) sees late: for each, when the host
@@ -36,8 +40,11 @@ struct Sighting {
 // periods; steps that are not positive are ignored. After kStrangeSteps in a row that are more than
 // a quarter of a period off, the train starts again: the rate has changed.
 //
-// The uncertainty is measured by splitting the pulses: the envelopes of the even and the odd ones
-// differ by chance alone; sigma = |difference| / 2.
+// The uncertainty is measured by splitting the pulses: neighbours of a quarter of a second make a
+// block, and every fourth block a group. The groups' envelopes differ by chance alone, also where
+// the delays of neighbouring pulses go together; sigma = their standard deviation / 2, as of a mean
+// of four (of exponential delays, whose minimum gains more by four times the pulses, the error is
+// half of that). At both ends of the kept pulses, where not every group has one, none is found.
 //
 // Complexity: O(1) amortised a pulse. Memory bounded (two_way_estimators.h).
 //
@@ -53,6 +60,7 @@ class PulseTrain {
   static constexpr std::size_t kFirstSteps = 9;
   static constexpr int kStrangeSteps = 8;
   static constexpr std::uint64_t kFewestPulses = 16;
+  static constexpr double kBlockNs = 25e7;
 
   explicit PulseTrain(Settings settings);
 
@@ -68,6 +76,7 @@ class PulseTrain {
   void add_numbered(Nanoseconds step, SteadyTime seen);
   void find_period();
   void restart();
+  std::size_t group_of(double number) const;
   std::optional<Sighting> at_number(double number) const;
 
   Settings settings_;
@@ -80,8 +89,7 @@ class PulseTrain {
   SteadyTime zero_{};  // x = 0, y = 0
   // x = number * period, y = seen - zero - x.
   Envelope all_;
-  Envelope even_;
-  Envelope odd_;
+  std::vector<Envelope> groups_;
 };
 
 enum class PulseSource : std::uint8_t { kFrames, kTrigger, kPps };
@@ -90,7 +98,9 @@ enum class PulseSource : std::uint8_t { kFrames, kTrigger, kPps };
 const char* port_name(PulseSource source);
 
 // Each camera, and each pulse line, is a PulseTrain of its own; where several trains saw a pulse,
-// it was seen at their mean, so that cameras of unequal delay hurt less.
+// it was seen at their mean, so that cameras of unequal delay hurt less. The uncertainty is that of
+// the trains' mean (from its groups, so delays that a host's cameras share count in full), and the
+// standard error of that mean over the trains, which contains how unequal their least delays are.
 //
 //   frames    the arrival of each frame less its exposure time: where the exposure begins with the
 //             pulse that is the pulse plus a constant, whatever the exposure. Pulses are counted by

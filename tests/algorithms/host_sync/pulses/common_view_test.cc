@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -118,6 +119,15 @@ class CommonViewTest : public testing::Test {
     world_.start(sync.run_master(master_, {1}));
     world_.run(end);
   }
+  // The slave's cameras deliver later than the master's.
+  void see_slower_cameras(Nanoseconds later) {
+    auto feed = std::make_unique<ScriptFrames>(world_.host(1));
+    feed->delay += later;
+    slave_.feed = std::move(feed);
+    master_.feed = std::make_unique<ScriptFrames>(world_.host(0));
+    CommonView sync(settings_);
+    run(sync);
+  }
   double lead_us() { return to_ms(world_.host(1).lead_over(world_.host(0))) * 1e3; }
 
   ScriptWorld world_{2};
@@ -138,14 +148,15 @@ TEST_F(CommonViewTest, FramesTakeTheAsymmetryOutAcrossTheWrapOfTheStamps) {
 }
 
 TEST_F(CommonViewTest, UnequalDelaysOfTheCamerasGoIntoTheOffset) {
-  auto feed = std::make_unique<ScriptFrames>(world_.host(1));
-  feed->delay += from_ms(0.3);
-  slave_.feed = std::move(feed);
-  master_.feed = std::make_unique<ScriptFrames>(world_.host(0));
-  CommonView sync(settings_);
-  run(sync);
+  see_slower_cameras(from_ms(0.1));
   // What the slave sees later seems to be due to a clock that is ahead, and is taken back.
-  EXPECT_NEAR(lead_us(), -300, 0.05);
+  EXPECT_NEAR(lead_us(), -100, 0.05);
+}
+
+TEST_F(CommonViewTest, ButNoFurtherThanTheNetworkAllows) {
+  see_slower_cameras(from_ms(0.4));
+  // A round trip of 480 us lets the hull, which is 40 us off, be no more than 240 us off.
+  EXPECT_NEAR(lead_us(), 40 - 240, 0.05);
 }
 
 TEST_F(CommonViewTest, WithoutTheMastersFramesTheNetworkAloneCounts) {
@@ -217,13 +228,39 @@ TEST_F(CommonViewTest, GnssWithoutLineOrTimeIsAnOutcome) {
   EXPECT_NE(world_.host(1).outcomes[0].message.find("sends no time"), std::string::npos);
 }
 
-TEST(CommonViewCorrectionTest, CountsAsMuchAsItIsCertain) {
-  EXPECT_EQ(common_view_correction_ns({.offset_ns = 3000, .sigma_ns = 0}, 10), 3000);
-  EXPECT_NEAR(common_view_correction_ns({.offset_ns = 3000, .sigma_ns = 5000}, 10), 1500, 1e-9);
-  EXPECT_LT(common_view_correction_ns({.offset_ns = 3000, .sigma_ns = 1e6}, 10), 1);
-  EXPECT_EQ(common_view_correction_ns({.offset_ns = 1e6, .sigma_ns = 5000}, 10), 1e6);
-  EXPECT_EQ(common_view_correction_ns({.offset_ns = 3000, .sigma_ns = 5000}, 0), 0);
-  EXPECT_EQ(common_view_correction_ns({.offset_ns = 0, .sigma_ns = 0}, 10), 0);
+TEST(CommonViewCorrectionTest, IsTheMeanOfWhatCausalityAllows) {
+  const auto correction = [](double offset_ns, double sigma_ns, double bound_ns) {
+    return common_view_correction_ns({.offset_ns = offset_ns, .sigma_ns = sigma_ns}, bound_ns);
+  };
+  EXPECT_EQ(correction(3000, 0, 10'000), 3000);
+  EXPECT_EQ(correction(30'000, 0, 10'000), 10'000);
+  EXPECT_EQ(correction(3000, 100, 0), 0);
+  EXPECT_EQ(correction(0, 100, 10'000), 0);
+  // Certain against the bound: as measured.
+  EXPECT_NEAR(correction(3000, 100, 10'000), 3000, 1e-6);
+  // Uncertain against the bound: c b^2 / (3 s^2), that of a normal prior of the same variance.
+  EXPECT_NEAR(correction(3000, 1e6, 10'000), 3000 * 1e8 / 3e12, 1e-3);
+  // At the bound itself, half a normal remains: b - s sqrt(2 / pi).
+  EXPECT_NEAR(correction(10'000, 100, 10'000), 10'000 - 100 * std::sqrt(2 / 3.14159265358979), 0.1);
+  // Far beyond it, the tail is exponential: b - s^2 / (c - b); the two formulas meet.
+  EXPECT_NEAR(correction(12'000, 100, 10'000), 10'000 - 5, 0.05);
+  EXPECT_NEAR(correction(12'499, 100, 10'000), correction(12'501, 100, 10'000), 0.02);
+  EXPECT_EQ(correction(-12'000, 100, 10'000), -correction(12'000, 100, 10'000));
+}
+
+TEST(CommonViewCorrectionTest, NeverLeavesTheRangeFromNothingToWhatWasMeasured) {
+  boost::random::mt19937_64 engine(4);
+  for (int run = 0; run < 100'000; ++run) {
+    const auto magnitude = [&engine] {
+      return std::pow(10, static_cast<double>(engine() % 1600) / 100 - 4);
+    };
+    const double offset_ns = magnitude();
+    const double bound_ns = magnitude();
+    const double correction =
+        common_view_correction_ns({.offset_ns = offset_ns, .sigma_ns = magnitude()}, bound_ns);
+    EXPECT_GE(correction, -bound_ns) << "seed 4, run " << run;
+    EXPECT_LE(correction, std::min(offset_ns, bound_ns)) << "seed 4, run " << run;
+  }
 }
 
 TEST(GnssEstimatorTest, FindsOffsetAndRateOfLatePulses) {

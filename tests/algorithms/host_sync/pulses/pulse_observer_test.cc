@@ -71,6 +71,18 @@ TEST_F(PulseObserverTest, CamerasAreAveraged) {
   EXPECT_NEAR(error_us(), 100, 0.1);
 }
 
+TEST_F(PulseObserverTest, UnequalDelaysOfTheCamerasAreInTheUncertainty) {
+  for (int pulse = 0; pulse < 500; ++pulse) {
+    host_.frames.push_back(arrival_of(1, pulse));
+    host_.frames.push_back(arrival_of(2, pulse, -from_ms(0.2)));
+  }
+  PulseObserver observer(host_, {});
+  world_.start(observer.collect());
+  world_.run();
+  // Two values 200 us apart: their mean has a standard error of 100 us.
+  EXPECT_NEAR(observer.middle()->sigma_ns, 100e3, 50);
+}
+
 TEST_F(PulseObserverTest, FramesThatDidNotShareTheBusAreLeftOut) {
   for (int pulse = 0; pulse < 500; ++pulse) {
     // Without the other camera's frame a frame is a millisecond faster.
