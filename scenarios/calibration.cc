@@ -2,6 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace simbench::scenarios {
 namespace {
@@ -9,7 +17,113 @@ namespace {
 // As careful as a user's reading of it.
 double rounded(double value_ms) { return std::round(value_ms * 100) / 100; }
 
-// How many cameras of a host share a controller's bandwidth while they deliver this stream.
+double latency_ms(const Stream& stream) {
+  return stream.pipeline_latency_ms + stream.latency_mode_periods * 1e3 / stream.mode_rate_hz;
+}
+
+double readout_ms(const Stream& stream) {
+  return stream.shutter == ShutterKind::kRolling ? stream.readout_ms : 0;
+}
+
+double transfer_ms(const Scenario& scenario, const Stream& stream) {
+  return stream.image_bytes() * 1e-3 / scenario.usb.bandwidth_mb_per_s;
+}
+
+// U(0, 1), alike with every compiler.
+class Uniform {
+ public:
+  double operator()() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+
+ private:
+  std::mt19937_64 generator_;  // begins alike each time, too
+};
+
+// A frame on its way over a controller: offered, and transferred in so long if it is alone.
+struct Offer {
+  double at_ms = 0;
+  double transfer_ms = 0;
+  bool is_measured = false;  // of the stream whose delay is asked for
+  double delay_ms = 0;       // end of exposure to offer; then also to the end of the transfer
+};
+
+bool sooner(const Offer& a, const Offer& b) { return a.at_ms < b.at_ms; }
+
+// One after the other.
+void transfer_in_order(std::vector<Offer>& offers) {
+  double free_at_ms = -std::numeric_limits<double>::infinity();
+  for (Offer& offer : offers) {
+    free_at_ms = std::max(free_at_ms, offer.at_ms) + offer.transfer_ms;
+    offer.delay_ms += free_at_ms - offer.at_ms;
+  }
+}
+
+// All at once, each with an equal share. `served_ms` is what each has had since the first came.
+void transfer_together(std::vector<Offer>& offers) {
+  using Pending = std::pair<double, Offer*>;  // with what was served when it ends
+  std::priority_queue<Pending, std::vector<Pending>, std::greater<>> pending;
+  double now_ms = 0;
+  double served_ms = 0;
+  const auto serve_until = [&](double end_ms) {
+    while (!pending.empty()) {
+      const auto sharers = static_cast<double>(pending.size());
+      const auto [done_ms, offer] = pending.top();
+      const double done_at_ms = now_ms + (done_ms - served_ms) * sharers;
+      if (done_at_ms > end_ms) {
+        served_ms += (end_ms - now_ms) / sharers;
+        break;
+      }
+      offer->delay_ms += done_at_ms - offer->at_ms;
+      served_ms = done_ms;
+      now_ms = done_at_ms;
+      pending.pop();
+    }
+    now_ms = end_ms;
+  };
+  for (Offer& offer : offers) {
+    serve_until(offer.at_ms);
+    pending.emplace(served_ms + offer.transfer_ms, &offer);
+  }
+  serve_until(std::numeric_limits<double>::infinity());
+}
+
+// How much later one camera's exposure ends than another's, from the same pulse.
+double exposure_spread_ms(const Cameras& cameras, double period_ms, Uniform& uniform) {
+  if (cameras.sync_mode != SyncMode::kGenlock) return 0;  // exposures end together
+  const AutoExposure& automatic = cameras.auto_exposure;
+  const double part = uniform();
+  return automatic.is_on() ? part * (automatic.max_ms - automatic.min_ms)
+                           : part * cameras.exposure_camera_periods * period_ms;
+}
+
+// The frames of one pulse on a controller with so many cameras, in order of their offers.
+std::vector<Offer> offers_of_pulse(const Scenario& scenario, const Stream& stream,
+                                   std::int64_t sharers, Uniform& uniform) {
+  const Cameras& cameras = scenario.cameras;
+  const bool follows = cameras.follows_trigger(stream);
+  std::vector<Offer> offers;
+  for (std::int64_t camera = 0; camera < sharers; ++camera) {
+    const double late_ms = uniform() * cameras.latency_camera_max_ms;
+    const double exposed_ms =
+        scenario.trigger.daisy_chain_delay_us * 1e-3 * static_cast<double>(camera) +
+        uniform() * scenario.trigger.cable_delay_max_us * 1e-3 +
+        exposure_spread_ms(cameras, scenario.trigger.period_ms(), uniform);
+    for (const Stream& other : cameras.streams) {
+      const bool is_measured = &other == &stream;
+      if (!is_measured && !(follows && cameras.follows_trigger(other))) continue;
+      if (uniform() < cameras.drop_probability) continue;
+      const double rows_ms = cameras.sync_mode == SyncMode::kGenlock ? readout_ms(other) : 0;
+      const double delay_ms = latency_ms(other) + late_ms;
+      offers.push_back({.at_ms = exposed_ms + rows_ms + delay_ms,
+                        .transfer_ms = transfer_ms(scenario, other),
+                        .is_measured = is_measured,
+                        .delay_ms = delay_ms});
+    }
+  }
+  std::stable_sort(offers.begin(), offers.end(), sooner);
+  return offers;
+}
+
+// How many cameras of a host share a controller while they deliver this stream.
 std::int64_t sharing_cameras(const Scenario& scenario, const Stream& stream) {
   if (scenario.usb.sharing == UsbSharing::kDedicated) return 1;
   if (!scenario.cameras.follows_trigger(stream)) return 1;
@@ -18,43 +132,43 @@ std::int64_t sharing_cameras(const Scenario& scenario, const Stream& stream) {
   return std::min(scenario.usb.cameras_per_controller, most);
 }
 
-// The bytes that a controller carries from the offer of a frame to the end of its transfer, if all
-// frames are offered at once: its share of each, or those before it.
-double bytes_until(const Scenario& scenario, const Stream& stream) {
-  const auto cameras = static_cast<double>(sharing_cameras(scenario, stream));
-  const bool triggered = scenario.cameras.follows_trigger(stream);
-  double of_a_camera = 0;
-  double together = 0;
-  double up_to_it = 0;
-  for (const Stream& other : scenario.cameras.streams) {
-    if (&other != &stream && !(triggered && scenario.cameras.follows_trigger(other))) continue;
-    of_a_camera += other.image_bytes();
-    together += std::min(other.image_bytes(), stream.image_bytes());
-    if (&other <= &stream) up_to_it += other.image_bytes();
+// Whether all pulses are alike.
+bool is_regular(const Cameras& cameras, const Trigger& trigger) {
+  return trigger.cable_delay_max_us == 0 && cameras.latency_camera_max_ms == 0 &&
+         cameras.exposure_camera_periods == 0 && cameras.drop_probability == 0 &&
+         !cameras.auto_exposure.is_on();
+}
+
+// From the end of the exposure to the end of the transfer, on average.
+double mean_transferred_ms(const Scenario& scenario, const Stream& stream) {
+  constexpr std::int64_t kFrames = 6000;
+  const std::int64_t sharers = sharing_cameras(scenario, stream);
+  const std::int64_t pulses = is_regular(scenario.cameras, scenario.trigger)
+                                  ? 1
+                                  : std::max<std::int64_t>(1, kFrames / sharers);
+  Uniform uniform;
+  double sum_ms = 0;
+  double frames = 0;
+  for (std::int64_t pulse = 0; pulse < pulses; ++pulse) {
+    std::vector<Offer> offers = offers_of_pulse(scenario, stream, sharers, uniform);
+    if (scenario.usb.sharing == UsbSharing::kFair) {
+      transfer_together(offers);
+    } else {
+      transfer_in_order(offers);
+    }
+    for (const Offer& offer : offers) {
+      if (!offer.is_measured) continue;
+      sum_ms += offer.delay_ms;
+      ++frames;
+    }
   }
-  if (scenario.usb.sharing == UsbSharing::kFair) return cameras * together;
-  return (cameras - 1) / 2 * of_a_camera + up_to_it;
-}
-
-double transfer_ms(const Scenario& scenario, double bytes) {
-  return bytes * 1e-3 / scenario.usb.bandwidth_mb_per_s;
-}
-
-// How much sooner than with all others at once fair sharing delivers frames that are offered one
-// after the other: twice as much as they come after the first on average, as long as they overlap.
-double sooner_ms(const Scenario& scenario, const Stream& stream) {
-  if (scenario.usb.sharing != UsbSharing::kFair) return 0;
-  const auto cameras = static_cast<double>(sharing_cameras(scenario, stream));
-  const double drawn_ms = scenario.cameras.latency_camera_max_ms * (0.5 - 1 / (cameras + 1));
-  const double chained_ms = scenario.trigger.daisy_chain_delay_us * 1e-3 * (cameras - 1) / 2;
-  return 2 * (drawn_ms + chained_ms);
+  return frames > 0 ? sum_ms / frames : latency_ms(stream) + transfer_ms(scenario, stream);
 }
 
 // The level of the jitter that a host's cameras share (sim/usb/host_stack.h).
 double common_jitter_ms(const Scenario& scenario, const Stream& stream) {
   const double correlation = scenario.usb.host_jitter_correlation;
-  const double mean_ms =
-      scenario.usb.host_jitter_transfers * transfer_ms(scenario, stream.image_bytes());
+  const double mean_ms = scenario.usb.host_jitter_transfers * transfer_ms(scenario, stream);
   return mean_ms * (1 - std::sqrt((1 - correlation) / (1 + correlation)));
 }
 
@@ -62,15 +176,10 @@ double common_jitter_ms(const Scenario& scenario, const Stream& stream) {
 
 double calibrated_delay_ms(const Scenario& scenario, const Stream& stream) {
   if (stream.calibrated_delay_ms) return *stream.calibrated_delay_ms;
-  const double readout_ms = stream.shutter == ShutterKind::kRolling ? stream.readout_ms : 0;
-  const double offered_ms = stream.pipeline_latency_ms +
-                            stream.latency_mode_periods * 1e3 / stream.mode_rate_hz +
-                            scenario.cameras.latency_camera_max_ms / 2;
   const std::vector<double>& table_ms = scenario.usb.delivery_quantiles_ms;
-  return rounded(
-      readout_ms / 2 + offered_ms + transfer_ms(scenario, bytes_until(scenario, stream)) -
-      sooner_ms(scenario, stream) + common_jitter_ms(scenario, stream) +
-      (table_ms.empty() ? 0 : table_ms.front()) - scenario.hosts.clock.arrival_quantum_ms / 2);
+  return rounded(readout_ms(stream) / 2 + mean_transferred_ms(scenario, stream) +
+                 common_jitter_ms(scenario, stream) + (table_ms.empty() ? 0 : table_ms.front()) -
+                 scenario.hosts.clock.arrival_quantum_ms / 2);
 }
 
 double calibrated_asymmetry_ms(const ClockPoll& polls) {

@@ -21,13 +21,12 @@ BackendStamps::BackendStamps(const std::optional<scenarios::BackendStamp>& setti
 HostTime BackendStamps::stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
                               TrueTime delivered) const {
   if (!is_converted_) return round_down(clock.read(copied), resolution_);
-  const SteadyTime boot = clock.steady(capture_start) - uptime_;
-  const Nanoseconds since_boot = clock.steady(copied) - boot;
   const SystemClock::Reading now = clock.read_both(delivered);
-  const HostTime system = round_down(now.system, resolution_);
-  const SteadyTime monotonic = round_down(SteadyTime(now.steady - boot), resolution_);
+  const SteadyTime monotonic(now.steady - (clock.steady(capture_start) - uptime_));
+  const Nanoseconds since_boot = monotonic.time_since_epoch();
   const Nanoseconds kernel = uptime_.count() > 0 ? through_float_ms(since_boot) : since_boot;
-  return round_down(system + (kernel - monotonic.time_since_epoch()), resolution_);
+  const Nanoseconds cut = round_down(monotonic, resolution_).time_since_epoch();
+  return round_down(round_down(now.system, resolution_) + (kernel - cut), resolution_);
 }
 
 }  // namespace simbench::sim

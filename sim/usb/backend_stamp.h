@@ -1,18 +1,20 @@
 // The back-end stamp of a frame: what librealsense makes of the kernel's stamp.
 //
-// The kernel stamps the frame, copied to its memory, on the host's monotonic clock (here its steady
-// clock). When the SDK has the frame, it moves that stamp to the system clock by the difference of
-// both clocks, each cut to the SDK's resolution, and cuts the result:
+// The kernel stamps the frame on the host's monotonic clock (here its steady clock). When the SDK
+// has the frame, it moves that stamp to the system clock by the difference of both clocks, each cut
+// to the SDK's resolution, and cuts the result:
 //
-//   stamp = cut(m(copied) + cut(system(delivered)) - cut(monotonic(delivered)))
+//   stamp = cut(m + cut(system) - cut(monotonic))
 //
 // On Windows m, in ms since the host was switched on, goes through a 32-bit float, whose 24 bits
-// are steps of 0.25 ms after an hour and of 8 ms after a day. So intervals of back-end stamps
+// are steps of 0.4 ms after an hour and of 8 ms after a day. So intervals of back-end stamps
 // fluctuate far more than those of arrivals, as in Fig. 2 of Yoon et al. 2021, whose hosts have
 // Windows 10. Elsewhere, and on Windows since 2025, m is the monotonic clock itself.
 //
-// There is nothing random in it, and no other stamp depends on it. The frame is stamped after its
-// last packet here; that drivers stamp the first one shifts all stamps alike.
+// All of a frame's delay after its transfer is taken to lie before the kernel's stamp, since the
+// paper ascribes the big jumps to the transmission from the camera to the host; that drivers stamp
+// a frame's first packet shifts all stamps alike. There is nothing random in it, and no other stamp
+// depends on it.
 //
 // Source: librealsense src/backend.cpp (monotonic_to_realtime), src/mf/mf-uvc.cpp (OnReadSample)
 // until pull request #13997; docs/reference/d455.md section 1.
@@ -37,7 +39,8 @@ class BackendStamps {
   BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
                 Nanoseconds arrival_quantum);
 
-  // Of a host with this clock, switched on host_uptime_h before `capture_start`.
+  // Of a host with this clock, switched on host_uptime_h before `capture_start`. `copied`: when the
+  // transfer has ended and the frame is copied, without delays.
   HostTime stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
                  TrueTime delivered) const;
 

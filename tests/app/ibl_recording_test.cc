@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "evaluation/replay/replay.h"
 #include "tests/data/test_data.h"
@@ -55,6 +59,36 @@ TEST(IblRecording, FrameDataIsDecoded) {
   EXPECT_EQ(frames[0].counter, 40U);
   EXPECT_EQ(frames[1].arrival, Nanoseconds(33'011'200));
   EXPECT_EQ(frames[1].sensor - frames[0].sensor, Nanoseconds(33'000'000));
+}
+
+// Part of the variance of this camera's delays is slow (docs/reference/d455.md section 4): the
+// nominal worlds take that part, as AR(1), for common to a host's cameras.
+TEST(IblRecording, PartOfTheDelaysIsSlow) {
+  std::vector<double> delays_ms;
+  for (const StampedFrame& frame : read_ibl_recording(kBody)) {
+    delays_ms.push_back(to_ms(frame.arrival - frame.sensor));
+  }
+  // Less the clocks' drift: the mean of the 30 s around each.
+  constexpr std::size_t kReach = 450;
+  std::vector<double> residuals_ms;
+  for (std::size_t i = kReach; i + kReach < delays_ms.size(); ++i) {
+    const auto first = delays_ms.begin() + static_cast<std::ptrdiff_t>(i - kReach);
+    const double sum = std::accumulate(first, first + 2 * kReach + 1, 0.0);
+    residuals_ms.push_back(delays_ms[i] - sum / (2 * kReach + 1));
+  }
+  const auto covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = lag; i < residuals_ms.size(); ++i) {
+      sum += residuals_ms[i] * residuals_ms[i - lag];
+    }
+    return sum / static_cast<double>(residuals_ms.size() - lag);
+  };
+  EXPECT_NEAR(std::sqrt(covariance(0)), 0.18, 0.005);
+  EXPECT_NEAR(covariance(1) / covariance(0), 0.10, 0.01);
+  EXPECT_NEAR(covariance(2) / covariance(0), 0.11, 0.01);
+  double later = 0;
+  for (std::size_t lag = 3; lag <= 10; ++lag) later += covariance(lag) / covariance(0) / 8;
+  EXPECT_NEAR(later, 0.018, 0.005);
 }
 
 TEST(IblRecording, DamagedFilesAreRefused) {

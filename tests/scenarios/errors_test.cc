@@ -248,8 +248,7 @@ TEST(Checks, LinksAgreeWithTheirNetwork) {
 std::string stream(const std::string& kind, int width, int height, int rate_hz) {
   return fmt::format(
       R"({{"kind": "{}", "width": {}, "height": {}, "bytes_per_pixel": 2, "mode_rate_hz": {},
-           "pipeline_latency_ms": 8, "latency_mode_periods": 0, "shutter": "global", "readout_ms": 0,
-           "calibrated_delay_ms": 10}})",
+           "pipeline_latency_ms": 8, "latency_mode_periods": 0, "shutter": "global", "readout_ms": 0}})",
       kind, width, height, rate_hz);
 }
 
@@ -273,7 +272,7 @@ TEST(Checks, Profiles) {
       "my.json:3: /cameras/streams/0/width: found depth 800x600, allowed 1280x720, 848x480, "
       "848x100, 640x480, 640x360, 480x270, 424x240, 256x144 (profiles of the RealSense D455)");
   EXPECT_EQ(error_of(streams({stream("depth", 848, 480, 90), stream("depth", 640, 480, 90)})),
-            "my.json:5: /cameras/streams/1/kind: found a second \"depth\", allowed one stream of a "
+            "my.json:4: /cameras/streams/1/kind: found a second \"depth\", allowed one stream of a "
             "kind");
 }
 

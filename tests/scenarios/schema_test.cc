@@ -51,6 +51,12 @@ json full_document() {
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json);
   // Beside which no link has a latency of its own, which only the checks say.
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
+  json& stream = document["cameras"]["streams"][0];
+  stream["calibrated_delay_ms"] = 10.5;
+  stream["calibrated_at"] = {{"width", 848}, {"height", 480}, {"mode_rate_hz", 30}};
+  json& polls = document["cameras"]["clock_poll"];
+  polls["calibrated_asymmetry_ms"] = 0.25;
+  polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
   return document;
 }
 
@@ -181,7 +187,12 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<Network>();
   expect_all_members_written<TriggerPause>();
   expect_all_members_written<Trigger>();
+  expect_all_members_written<StreamMode>();
   expect_all_members_written<Stream>();
+  expect_all_members_written<PollDelays>();
+  expect_all_members_written<ClockPoll>();
+  expect_all_members_written<CalibrationError>();
+  expect_all_members_written<BackendStamp>();
   expect_all_members_written<Cameras>();
   expect_all_members_written<Usb>();
   expect_all_members_written<Pipeline>();

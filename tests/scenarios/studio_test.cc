@@ -164,7 +164,7 @@ TEST(Studio, RoomForTheCameras) {
 TEST(Studio, NeedsDepthImagesOfAKnownFocalLength) {
   const std::string stream = R"({"width": 848, "height": 480, "bytes_per_pixel": 2,
     "mode_rate_hz": 30, "pipeline_latency_ms": 8, "latency_mode_periods": 0, "shutter": "global",
-    "readout_ms": 0, "calibrated_delay_ms": 10, "kind": )";
+    "readout_ms": 0, "kind": )";
   EXPECT_THAT(error_of_studio(R"("evaluation": {"stream": "colour"}, "cameras": {"streams": [)" +
                               stream + R"("colour"}], "sync_mode": "full_slave"})"),
               HasSubstr("/studio: found a studio without a depth stream in /cameras/streams, "

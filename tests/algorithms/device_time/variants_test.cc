@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -191,6 +192,34 @@ TEST(DeviceTimeName, TakesSuffixesInAnyOrder) {
   EXPECT_EQ(parse_device_time_name("minimum_1s_exposure_corrected_calibrated_steady"), all);
 }
 
+TEST(DeviceTimeName, SdkAndSteadyExcludeEachOther) {
+  const DeviceTimeName sdk = parse_device_time_name("hull_300_sdk_calibrated");
+  EXPECT_EQ(sdk.base, "hull_300");
+  EXPECT_TRUE(sdk.sdk && sdk.calibrated && !sdk.steady);
+  EXPECT_EQ(parse_device_time_name("hull_300_calibrated_sdk"), sdk);
+  EXPECT_EQ(parse_device_time_name("hull_300_sdk_steady").base, "hull_300_sdk");
+  EXPECT_EQ(parse_device_time_name("hull_300_steady_sdk").base, "hull_300_steady");
+}
+
+TEST(Variants, SdkStampsAreWholeMillisecondsOfTheSystemClock) {
+  Given given;
+  const auto wrapped = on_sdk_stamps(std::make_unique<Recorder>(given));
+  wrapped->stamp(sample_on(12'999'999, 20'000'001, 5000));
+  wrapped->stamp(sample_on(13'000'000, 20'000'002, 5000));
+  wrapped->stamp(sample_on(-1, 20'000'003, 5000));
+  wrapped->stamp(sample_on(std::numeric_limits<std::int64_t>::min(), 0, 0));
+  std::vector<std::int64_t> arrivals;
+  for (const DeviceSample& sample : given.stamped) {
+    arrivals.push_back(nanoseconds_of(sample.arrival));
+  }
+  EXPECT_EQ(arrivals, (std::vector<std::int64_t>{12'000'000, 13'000'000, -1'000'000,
+                                                 std::numeric_limits<std::int64_t>::min()}));
+  EXPECT_EQ(nanoseconds_of(given.stamped[0].arrival_steady), 20'000'001);
+  // Polls are the user's own.
+  wrapped->on_poll({.t0 = HostTime(Nanoseconds(1)), .t1 = HostTime(Nanoseconds(2))});
+  EXPECT_EQ(nanoseconds_of(given.polls[0].t1), 2);
+}
+
 TEST(DeviceTimeName, LeavesTheRestInTheBase) {
   EXPECT_EQ(parse_device_time_name("x_steady_steady").base, "x_steady");
   EXPECT_EQ(parse_device_time_name("steady").base, "steady");
@@ -211,6 +240,8 @@ TEST(DeviceTimeName, MakesTheVariant) {
   EXPECT_EQ(stamped(""), 100'000'000);
   EXPECT_EQ(stamped("_exposure_corrected"), 99'000'000);
   EXPECT_EQ(stamped("_calibrated"), 92'000'000);
+  EXPECT_EQ(stamped("_sdk"), 100'000'000);
+  EXPECT_EQ(stamped("_sdk_calibrated"), 92'000'000);
   EXPECT_EQ(stamped("_steady"), 40'001'000);
   EXPECT_EQ(stamped("_steady_exposure_corrected"), 39'001'000);
   EXPECT_EQ(stamped("_calibrated_steady"), 32'001'000);

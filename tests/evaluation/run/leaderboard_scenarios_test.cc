@@ -36,7 +36,8 @@ TEST_P(LeaderboardScenario, HasEveryHostSyncAndEveryDeviceTime) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builtin, LeaderboardScenario,
-                         testing::Values("leaderboard_lan", "leaderboard_calibrated"));
+                         testing::Values("leaderboard_lan", "leaderboard_lan_ideal_calibration",
+                                         "leaderboard_calibrated"));
 
 TEST(LeaderboardGathering, HasEveryGathering) {
   const scenarios::Scenario scenario = scenarios::load_scenario("leaderboard_gathering");

@@ -99,7 +99,8 @@ TEST(StrippedTruth, SlaveCapturesAreScoredOverSetsAndUnverified) {
   EXPECT_NEAR(static_cast<double>(row.sets.emitted), static_cast<double>(truth.sets.emitted), 8);
   EXPECT_GT(row.sets.emitted, 50);
   for (std::size_t seed = 0; seed < 2; ++seed) {
-    EXPECT_NEAR(row.set_amd_ms.values[seed] / truth.set_amd_ms.values[seed], 1, 0.05);
+    // A late frame in one of those is some percent of the mean.
+    EXPECT_NEAR(row.set_amd_ms.values[seed] / truth.set_amd_ms.values[seed], 1, 0.1);
   }
 }
 

@@ -39,8 +39,7 @@ inline scenarios::Scenario ideal_scenario() {
                         .pipeline_latency_ms = 8,
                         .latency_mode_periods = 0,
                         .shutter = scenarios::ShutterKind::kGlobal,
-                        .readout_ms = 0,
-                        .calibrated_delay_ms = 0}};
+                        .readout_ms = 0}};
   s.cameras.oscillator = exact;
   s.cameras.exposure_ms = 4;
   s.cameras.genlock_guard_fraction = 0.02;
