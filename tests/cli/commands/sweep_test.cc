@@ -19,6 +19,7 @@
 namespace simbench {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -248,9 +249,18 @@ TEST_F(SweepTest, WrongInputLeavesNothing) {
   EXPECT_THAT(nothing.err, HasSubstr("neither --study nor both --scenario and --sweep"));
   const ProgramResult study = run({"sweep", "--study", "scale", "-o", "out"});
   EXPECT_EQ(study.status, 2);
-  EXPECT_THAT(study.err,
-              HasSubstr("found 'scale', allowed: list, gathering_interval, scalability"));
+  EXPECT_THAT(study.err, AllOf(HasSubstr("found 'scale', allowed: list, asymmetry, "),
+                               HasSubstr(", scalability, ")));
   EXPECT_TRUE(names_in().empty());
+}
+
+TEST_F(SweepTest, AStudyMayBeOfClocks) {
+  const ProgramResult result = run({"sweep", "--study", "oscillator_class", "--duration-s", "400",
+                                    "--from-s", "100", "--seeds", "2", "-o", "out"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("the hosts' clocks alone"));
+  EXPECT_THAT(result.out, HasSubstr("The order by spread of the clocks"));
+  EXPECT_THAT(content("out/manifest.json"), HasSubstr("\"duration_s\": 400"));
 }
 
 // 2 points, 2 pipelines, 2 seeds of six hosts' clocks.
