@@ -242,6 +242,7 @@ Json hosts_json(const RigFit& fit, const FitInput& input) {
                                    "send_cost_session_exponential_ms", "receive_wake_up_ms"}) {
       hosts[cost] = 0;
     }
+    hosts["stack"] = nullptr;
   }
   return hosts;
 }
@@ -257,6 +258,8 @@ Json members(const RigFit& fit, const FitInput& input, const FitBase& base, Tabl
   if (!fit.network.latency_quantiles_ms.empty()) {
     result["network"] = {{"latency_quantiles_ms", tables.mark(fit.network.latency_quantiles_ms, 6)},
                          {"latency_session_exponential_ms", 0},
+                         {"switch_residence_ms", 0},
+                         {"cross_traffic_share", 0},
                          {"burst", {{"rate_hz", 0}}}};
   }
   if (base.rate_hz) result["trigger"] = {{"rate_hz", rounded(*base.rate_hz, 1e-6)}};
