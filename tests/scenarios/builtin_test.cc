@@ -182,7 +182,8 @@ TEST(Describe, ALineForEveryParameter) {
   };
   EXPECT_EQ(line("/network/latency_fixed_ms").value, "0.1");
   EXPECT_EQ(line("/network/latency_fixed_ms").unit, "ms");
-  EXPECT_EQ(line("/network/latency_fixed_ms").meaning, "One-way latency: fixed part");
+  EXPECT_THAT(line("/network/latency_fixed_ms").meaning,
+              HasSubstr("between the cards: fixed part"));
   EXPECT_THAT(line("/network/latency_fixed_ms").source, HasSubstr("FIT-C"));
   EXPECT_EQ(line("/hosts/clock/tick_ms").source, "my.json:3");
   EXPECT_EQ(line("/timeline/frames").source, "--set /timeline/frames=100");

@@ -28,6 +28,9 @@ using nlohmann::ordered_json;
 
 // A scenario that uses everything that may be left empty.
 json full_document() {
+  const std::string law =
+      R"({"fixed_us": 1, "exponential_us": 1, "quantiles_us": [1, 2], "spike_probability": 0,
+          "spike_max_us": 1, "common_share": 0, "common_time_ms": 1})";
   const std::string text = derived(R"("faults": [
       {"kind": "camera_vanishes", "camera": 1, "at_ms": 1, "duration_ms": 2},
       {"kind": "clock_step", "host": 1, "at_ms": 3, "step_ms": 4},
@@ -38,10 +41,19 @@ json full_document() {
                               "load_period_s": 100, "load_time_constant_s": 10,
                               "fan_amplitude_k": 1, "fan_period_s": 10},
               "drift_file": {"age_h": 1, "error_ppb": 2},
+              "stack": {"transmit": )" +
+                                   law + R"(, "transmit_to_card": )" + law + R"(,
+                        "receive": )" +
+                                   law + R"(, "wake_up": )" + law + R"(,
+                        "interrupt_moderation_us": 1, "interrupts_per_s": 1, "sleep_share": 0,
+                        "sleep_exit_us": 1, "awake_us": 1, "sleep_time_ms": 1,
+                        "speed_log_sigma": 1},
               "clock": {"oscillator": {"class": "tcxo"},
                         "skew_of_host_ppm": [0,1,2,3,4,5],
                         "initial_offset_of_host_ms": [0,1,2,3,4,5]}},
-    "network": {"port_asymmetry_sigma_ms": 0.01,
+    "network": {"port_asymmetry_sigma_ms": 0.01, "switch_of_host": [0,0,0,1,1,1],
+                "bandwidth_mbit_per_s": 1000, "switch_residence_ms": 0.001,
+                "cross_traffic_share": 0, "switch_clock_wander_ppb_per_sqrt_s": 1,
                 "links": [{"host": 1, "latency_fixed_ms": 1, "latency_exponential_ms": 2,
                            "asymmetry_ms": 0.5}]},
     "usb": {"delivery_quantiles_ms": [0, 0.3], "delivery_correlation": 0.1},
@@ -181,6 +193,8 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<Temperature>();
   expect_all_members_written<DriftFile>();
   expect_all_members_written<HostClock>();
+  expect_all_members_written<DelayLaw>();
+  expect_all_members_written<Stack>();
   expect_all_members_written<Hosts>();
   expect_all_members_written<Burst>();
   expect_all_members_written<Link>();

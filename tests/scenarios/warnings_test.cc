@@ -16,6 +16,18 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+TEST(WireWarnings, AnAsymmetryThatWouldMakeAMessageFasterThanLight) {
+  const auto warned = [](const char* sigma_ms) {
+    return warnings(
+        load_scenario("18cam_6host_45fps_lan", {{"/network/asymmetry_sigma_ms", sigma_ms}}));
+  };
+  EXPECT_THAT(warned("0.01"),
+              ElementsAre(AllOf(HasSubstr("/network/asymmetry_sigma_ms=0.01: links differ by 0.01 "
+                                          "ms"),
+                                HasSubstr("faster than light, and stops at 0"))));
+  EXPECT_THAT(warned("0.0005"), IsEmpty());
+}
+
 TEST(OscillatorWarnings, AWalkOrARampThatMayGetToItsLimit) {
   const auto warned = [](const char* pointer, const char* value, const char* frames) {
     return warnings(

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,8 @@ TEST(TwoWayClosedLoopTest, WithoutAsymmetryTheHullIsBelowAMicrosecond) {
 
 TEST(TwoWayClosedLoopTest, WithAsymmetryItsHalfIsTheFloor) {
   // Half of N(0, 10 us): 4.0 us on average.
-  const double error = error_us("two_way_hull", {});
+  const double error = error_us("two_way_hull", {{"/network/latency_fixed_ms", "0.1"},
+                                                 {"/network/asymmetry_sigma_ms", "0.01"}});
   EXPECT_GT(error, 1);
   EXPECT_LT(error, 6);
 }
@@ -170,17 +172,36 @@ TEST(PtpClosedLoopTest, SoftwareStampsFollowTheNoiseOfTheNetwork) {
   EXPECT_LT(error_us("ptp_e2e_software", kSymmetric, {{"servo", "linreg"}}), 60);
 }
 
-TEST(PtpClosedLoopTest, HardwareStampsNeedSwitchesThatTakePart) {
-  Overrides cards = kSymmetric;
-  cards.push_back({"/hosts/nic/hardware_stamps", "true"});
-  const double plain = error_us("ptp_e2e_hardware", cards);
-  EXPECT_LT(plain, 120);
-  cards.push_back({"/network/switch_clock", "\"transparent\""});
+// An idle gigabit LAN, medians of the hosts' errors: hardware stamps through an ordinary switch are
+// below a microsecond, through a transparent one below a tenth; software stamps are above both.
+TEST(PtpClosedLoopTest, HardwareStampsAreBelowWhatSoftwareStampsReach) {
+  const Overrides ordinary = {{"/hosts/nic/hardware_stamps", "true"}};
+  Overrides transparent = ordinary;
+  transparent.push_back({"/network/switch_clock", "\"transparent\""});
+  transparent.push_back({"/network/switch_clock_error_ns", "20"});
+  double best_of_software = std::numeric_limits<double>::infinity();
+  for (const char* name : {"ptp_e2e_software", "two_way_hull", "two_way_min_rtt",
+                           "two_way_independent_minima", "chrony"}) {
+    best_of_software = std::min(best_of_software, error_us(name, ordinary));
+  }
   for (const char* name : {"ptp_e2e_hardware", "ptp_p2p_hardware"}) {
     for (const char* servo : {"pi", "linreg"}) {
-      EXPECT_LT(error_us(name, cards, {{"servo", servo}}), plain / 20) << name << " " << servo;
+      const double plain = error_us(name, ordinary, {{"servo", servo}});
+      EXPECT_LT(plain, 1) << name << " " << servo;
+      EXPECT_LT(plain, best_of_software) << name << " " << servo;
+      EXPECT_LT(error_us(name, transparent, {{"servo", servo}}), 0.1) << name << " " << servo;
     }
   }
+}
+
+// ITU-T G.8261's point: queues that the cards do not see are in the stamps of the hardware too.
+TEST(PtpClosedLoopTest, LoadNeedsSwitchesThatTakePart) {
+  Overrides loaded = {{"/hosts/nic/hardware_stamps", "true"},
+                      {"/network/cross_traffic_share", "0.8"}};
+  const double plain = error_us("ptp_e2e_hardware", loaded);
+  EXPECT_GT(plain, 5);
+  loaded.push_back({"/network/switch_clock", "\"transparent\""});
+  EXPECT_LT(error_us("ptp_e2e_hardware", loaded), plain / 50);
 }
 
 }  // namespace
