@@ -125,13 +125,13 @@ std::vector<double> delays_ms(const scenarios::CalibrationError& error, std::uin
   return delays;
 }
 
-constexpr std::uint64_t kSeeds = 400;
+constexpr std::uint64_t kErrorSeeds = 400;
 // Of a standard deviation from 400 draws: 4 of its own standard errors.
 constexpr double kSigmaTolerance = 4 / 28.0;
 
 TEST(CalibrationError, OfTheModelIsOneDrawPerSeed) {
   std::vector<double> errors_ms;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kErrorSeeds; ++seed) {
     const std::vector<double> delays = delays_ms({.delay_error_sigma_ms = 0.2}, seed);
     EXPECT_NEAR(delays[0], delays[1], 1e-5);
     EXPECT_NEAR(delays[0], delays[2], 1e-5);
@@ -145,7 +145,7 @@ TEST(CalibrationError, OfTheModelIsOneDrawPerSeed) {
 TEST(CalibrationError, OfACameraIsOneDrawPerCameraAndSeed) {
   std::vector<double> errors_ms;
   std::vector<double> differences_ms;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kErrorSeeds; ++seed) {
     const std::vector<double> delays = delays_ms({.camera_delay_error_sigma_ms = 0.3}, seed);
     errors_ms.push_back(delays[0]);
     differences_ms.push_back(delays[2] - delays[1]);
@@ -173,7 +173,7 @@ TEST(CalibrationError, NoFrameArrivesBeforeItsTransferEnds) {
 
 TEST(CalibrationError, OfPollsIsOneDrawPerSeedHalfInEachDelay) {
   std::vector<double> errors_ms;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kErrorSeeds; ++seed) {
     scenarios::Scenario scenario = ideal_scenario();
     scenario.timeline.frames = 10;
     scenario.cameras.clock_poll = {.interval_ms = 100, .request_ms = 2, .reply_ms = 2};

@@ -61,7 +61,7 @@ std::map<std::uint32_t, FourStamps> stamps_by_camera(const scenarios::Scenario& 
   return stamps;
 }
 
-std::vector<scenarios::Override> brief(const std::string& name) {
+std::vector<scenarios::Override> shortened(const std::string& name) {
   std::vector<scenarios::Override> overrides = {{"/timeline/frames", "200"}};
   if (name.starts_with("scale_")) {
     overrides.push_back({"/hosts/count", "2"});
@@ -82,7 +82,7 @@ TEST(StampIntervals, AreInTheOrderOfFigure2InEveryScenario) {
   for (const scenarios::BuiltinScenario& builtin : nonempty(scenarios::builtin_scenarios())) {
     SCOPED_TRACE(builtin.name);
     const scenarios::Scenario scenario =
-        scenarios::load_scenario(builtin.name, brief(builtin.name));
+        scenarios::load_scenario(builtin.name, shortened(builtin.name));
     if (scenario.cameras.model != "d455") continue;
     ++d455;
     for (const auto& [camera, stamps] : nonempty(stamps_by_camera(scenario))) {
