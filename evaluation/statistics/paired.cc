@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
-#include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/statistics/in_double.h"
@@ -14,116 +14,77 @@
 namespace simbench::evaluation {
 namespace {
 
-constexpr double kPairedTail = 0.025;              // on each side of a 95 % interval
-constexpr std::uint64_t kRandomSeed = 20'151'104;  // arbitrary, but always the same
-constexpr double kMostSeeds = 1e15;                // the largest number needed that is reported
-
-struct Sums {
-  double a = 0;
-  double b = 0;
-};
-
-// Draws pairs from 32 random bits by multiplication, which favours some of n pairs by an
-// insignificant 2^-32 n.
-class PairDraw {
- public:
-  explicit PairDraw(std::size_t pairs) : pairs_(pairs) {}
-  Sums sums_of_resample(const std::vector<Pair>& pairs) {
-    Sums sums;
-    for (std::size_t i = 0; i < pairs_; ++i) {
-      const Pair& pair = pairs[next()];
-      sums.a += pair.a;
-      sums.b += pair.b;
-    }
-    return sums;
-  }
-
- private:
-  std::size_t next() {
-    return static_cast<std::size_t>((static_cast<std::uint64_t>(random_()) * pairs_) >> 32U);
-  }
-
-  std::uint64_t pairs_;
-  boost::random::mt19937 random_{static_cast<std::uint32_t>(kRandomSeed)};
-};
+constexpr double kMostSeeds = 1e15;  // the largest number needed that is reported
 
 using StudentsT = boost::math::students_t_distribution<double, InDouble>;
 using Normal = boost::math::normal_distribution<double, InDouble>;
 
-// The share of resamples to leave on each side (Hesterberg 2015).
-double expanded_tail(std::size_t pairs) {
-  const auto n = static_cast<double>(pairs);
-  const StudentsT t(n - 1);
-  const double reach = std::sqrt(n / (n - 1)) * boost::math::quantile(t, kPairedTail);
-  return boost::math::cdf(Normal(), reach);
+// So many subsets that the smallest p-value is an eighth of what Holm's first step asks for.
+unsigned subset_bits(std::size_t tests) {
+  constexpr double kTimesFiner = 8;
+  constexpr unsigned kFewestBits = 12;
+  constexpr unsigned kMostBits = 16;
+  const double wanted = 2 * kTimesFiner * static_cast<double>(tests) / kFamilyError;
+  return std::clamp(static_cast<unsigned>(std::ceil(std::log2(wanted))), kFewestBits, kMostBits);
 }
 
-// For equal differences every resample's mean is the same except for rounding, which must not show.
-bool all_equal(const std::vector<Pair>& pairs) {
-  const double first = pairs.front().b - pairs.front().a;
-  return std::all_of(pairs.begin(), pairs.end(),
-                     [&](const Pair& pair) { return pair.b - pair.a == first; });
-}
-
-void set_intervals(const std::vector<Pair>& pairs, PairedComparison& result) {
-  const auto n = static_cast<double>(pairs.size());
-  std::vector<double> differences;
-  std::vector<double> ratios;
-  PairDraw draw(pairs.size());
-  for (std::size_t i = 0; i < kResamples; ++i) {
-    const Sums sums = draw.sums_of_resample(pairs);
-    differences.push_back((sums.b - sums.a) / n);
-    if (sums.a > 0) ratios.push_back(sums.b / sums.a);
+// What needs no other comparison.
+PairedComparison describe(const PairedValues& values, const ComparisonRule& rule) {
+  const std::vector<Pair>& pairs = values.pairs;
+  PairedComparison result{.pairs = pairs.size(), .left_out = values.left_out};
+  if (pairs.empty()) return result;
+  std::vector<double> a;
+  std::vector<double> b;
+  a.reserve(pairs.size());
+  b.reserve(pairs.size());
+  for (const Pair& pair : pairs) {
+    a.push_back(pair.a);
+    b.push_back(pair.b);
+    result.higher += pair.b > pair.a ? 1 : 0;
+    result.lower += pair.b < pair.a ? 1 : 0;
   }
-  const double tail = expanded_tail(pairs.size());
-  Estimate& difference = result.difference;
-  difference.low = quantile(differences, tail);
-  difference.high = quantile(std::move(differences), 1 - tail);
-  if (all_equal(pairs)) difference.low = difference.high = difference.value;
-  if (ratios.size() < kResamples) {
-    result.ratio = {};
-    return;
-  }
-  result.ratio.low = quantile(ratios, tail);
-  result.ratio.high = quantile(std::move(ratios), 1 - tail);
+  result.mean_a = mean_of(a);
+  result.mean_b = mean_of(b);
+  result.median_a = median(std::move(a));
+  result.median_b = median(std::move(b));
+  result.smallest_effect =
+      std::max(rule.smallest_effect * std::abs(result.mean_a), rule.smallest_step);
+  return result;
 }
 
-// The width of an interval by the standard deviation, as if the differences were normal.
-double width_by_deviation(const std::vector<Pair>& pairs, double mean) {
+void show_equal(PairedComparison& result) {
+  result.difference = {.value = 0, .low = 0, .high = 0};
+  if (result.mean_a > 0) result.ratio = {.value = 1, .low = 1, .high = 1};
+  result.verdict = Verdict::kNoDifferenceSeen;
+  result.within_effect = true;
+}
+
+// The pairs with which the interval excludes 0 or is narrower than the smallest effect.
+std::uint64_t seeds_needed(const std::vector<Pair>& pairs, const PairedComparison& comparison,
+                           std::size_t fewest) {
+  if (pairs.size() < 2) return 0;
+  const double mean = comparison.difference.value;
   double squares = 0;
   for (const Pair& pair : pairs) squares += std::pow(pair.b - pair.a - mean, 2);
-  const auto n = static_cast<double>(pairs.size());
-  const double z = -boost::math::quantile(Normal(), kPairedTail);
-  return 2 * z * std::sqrt(squares / (n - 1) / n);
+  const double deviation = std::sqrt(squares / static_cast<double>(pairs.size() - 1));
+  const double z = -boost::math::quantile(Normal(), comparison.error / 2);
+  const double half_width = std::max(std::abs(mean), comparison.smallest_effect / 2);
+  const double by_scatter = half_width > 0 ? std::pow(z * deviation / half_width, 2) : kMostSeeds;
+  const auto seeds = static_cast<std::uint64_t>(std::min(kMostSeeds, std::ceil(by_scatter)));
+  return std::max({seeds, std::uint64_t{fewest}, std::uint64_t{pairs.size() + 1}});
 }
 
-// The pairs with which an interval that is now `width` wide is narrower than the smallest effect.
-std::uint64_t needed(std::size_t pairs, double width, double effect) {
-  const double times = effect > 0 ? std::pow(width / effect, 2) : kMostSeeds;
-  const double seeds = std::min(kMostSeeds, std::ceil(times * static_cast<double>(pairs)));
-  return std::max({static_cast<std::uint64_t>(seeds), static_cast<std::uint64_t>(kFewestPairs),
-                   static_cast<std::uint64_t>(pairs + 1)});
-}
-
-void decide(const std::vector<Pair>& pairs, const ComparisonRule& rule, PairedComparison& result) {
+void decide(const ComparisonTask& task, std::size_t fewest, PairedComparison& result) {
   const Estimate& difference = result.difference;
-  if (pairs.size() < kFewestPairs) {
-    if (pairs.size() >= 2) {
-      const double width = width_by_deviation(pairs, difference.value);
-      result.seeds_needed = needed(pairs.size(), width, result.smallest_effect);
-    }
-    return;
-  }
-  result.within_effect =
-      -result.smallest_effect <= difference.low && difference.high <= result.smallest_effect;
-  if (difference.low > 0 || difference.high < 0) {
-    const bool is_higher = difference.low > 0;
-    result.verdict = is_higher == rule.higher_is_better ? Verdict::kBetter : Verdict::kWorse;
+  const double effect = result.smallest_effect;
+  result.within_effect = -effect <= difference.low && difference.high <= effect;
+  if (result.adjusted_p <= kFamilyError) {
+    const bool is_higher = difference.value > 0;
+    result.verdict = is_higher == task.rule.higher_is_better ? Verdict::kBetter : Verdict::kWorse;
   } else if (result.within_effect) {
     result.verdict = Verdict::kNoDifferenceSeen;
   } else {
-    result.seeds_needed =
-        needed(pairs.size(), difference.high - difference.low, result.smallest_effect);
+    result.seeds_needed = seeds_needed(task.values.pairs, result, fewest);
   }
 }
 
@@ -143,34 +104,46 @@ PairedValues pair_up(const std::vector<double>& a, const std::vector<double>& b)
   return values;
 }
 
-PairedComparison compare(const PairedValues& values, const ComparisonRule& rule) {
-  const std::vector<Pair>& pairs = values.pairs;
-  PairedComparison result;
-  result.pairs = pairs.size();
-  result.left_out = values.left_out;
-  if (pairs.empty()) return result;
-  std::vector<double> a;
-  std::vector<double> b;
-  Sums sums;
-  for (const Pair& pair : pairs) {
-    a.push_back(pair.a);
-    b.push_back(pair.b);
-    sums.a += pair.a;
-    sums.b += pair.b;
+std::size_t fewest_pairs(std::size_t tests) {
+  std::size_t pairs = 1;
+  while (std::ldexp(2, -static_cast<int>(pairs)) * static_cast<double>(tests) > kFamilyError) {
+    ++pairs;
   }
-  const auto n = static_cast<double>(pairs.size());
-  result.mean_a = sums.a / n;
-  result.mean_b = sums.b / n;
-  result.median_a = median(std::move(a));
-  result.median_b = median(std::move(b));
-  result.difference.value =
-      all_equal(pairs) ? pairs.front().b - pairs.front().a : (sums.b - sums.a) / n;
-  if (sums.a > 0) result.ratio.value = sums.b / sums.a;
-  result.smallest_effect =
-      std::max(rule.smallest_effect * std::abs(result.mean_a), rule.smallest_step);
-  if (pairs.size() >= kFewestPairs) set_intervals(pairs, result);
-  decide(pairs, rule, result);
-  return result;
+  return pairs;
+}
+
+std::vector<PairedComparison> compare_together(const std::vector<ComparisonTask>& tasks) {
+  std::vector<PairedComparison> results;
+  results.reserve(tasks.size());
+  std::size_t tests = 0;
+  for (const ComparisonTask& task : tasks) {
+    results.push_back(describe(task.values, task.rule));
+    tests += results.back().is_tested() ? 1 : 0;
+  }
+  const unsigned bits = subset_bits(tests);
+  std::vector<double> p;
+  p.reserve(tests);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (results[i].is_tested()) p.push_back(SubsetMeans(tasks[i].values.pairs, bits).p());
+  }
+  const std::vector<HolmDecision> decisions = holm(p);
+  std::size_t test = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    PairedComparison& result = results[i];
+    if (!result.is_tested()) {
+      if (result.pairs > 0) show_equal(result);
+      continue;
+    }
+    result.p = p[test];
+    result.adjusted_p = decisions[test].adjusted_p;
+    result.error = decisions[test++].error;
+    // Made again: the means of all tests together would need much memory.
+    const SubsetMeans means(tasks[i].values.pairs, bits);
+    result.difference = means.difference(result.error);
+    result.ratio = means.ratio(result.error);
+    decide(tasks[i], fewest_pairs(tests), result);
+  }
+  return results;
 }
 
 namespace {

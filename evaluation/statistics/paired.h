@@ -4,25 +4,27 @@
 // Values stand in pairs, one for each seed, so that differences between worlds cancel. A pair
 // without one of its values (NaN) is left out and counted.
 //
-// Interval: 95 %, by bootstrap. Pairs are resampled kResamples times, always with the same random
-// numbers, so that all metrics have the same resamples and equal input gives equal bytes. The
-// percentiles are moved outward for small samples as in T. C. Hesterberg, "What teachers should
-// know about the bootstrap", The American Statistician 69(4), 2015 (expanded percentile interval):
-// with n = 8 and n = 32 pairs the interval holds the mean nearly as often as stated
-// (tests/evaluation/statistics/paired_test.cc). Below kFewestPairs there is no interval: even the
-// smallest and the largest of five differences enclose a mean only 94 times in 100.
+// Many comparisons are judged together. Each has the exact p-value of its mean difference, from the
+// means of subsets of its pairs (subset_means.h). Holm's step-down procedure (S. Holm, Scand. J.
+// Statistics 6, 1979) keeps the probability that any of the verdicts better and worse is false
+// within kFamilyError, whatever the comparisons have in common. A comparison whose pairs are all
+// equal shows no difference without a test and is not counted.
+//
+// Intervals are at the level that Holm leaves to the comparison (`error`), and exclude 0 exactly
+// where it is significant. Below fewest_pairs(tests) pairs a single comparison can not be
+// significant, however large its difference: the p-value of n pairs is at least 2 / 2^n. There is
+// then no interval, but the effect, and in how many pairs B is higher.
 //
 // Verdict, with e = the smallest effect of interest, max(share of A's mean, an absolute floor):
 //   interval excludes 0             better or worse
 //   includes 0, lies within +-e     no difference seen
 //   includes 0, reaches beyond e    too few seeds
-// seeds_needed is the number of seeds with which the interval is narrower than e, so that it leads
-// to one of the other verdicts. The width shrinks with the square root of the pairs.
+// seeds_needed is the number of seeds with which, if mean and deviation of the differences stay as
+// they are, the interval excludes 0 or is narrower than e, as if they were normal. It is a guess
+// from few seeds, at least fewest_pairs().
 //
-// Cost: kResamples draws per pair; 1,000 pairs in about 5 ms.
-//
-//   const PairedComparison c = compare(pair_up(with.values, without.values), {});
-//   if (c.verdict == Verdict::kBetter) print(c.ratio.value);
+//   const std::vector<PairedComparison> all = compare_together({{pair_up(with, without), {}}});
+//   if (all[0].verdict == Verdict::kBetter) print(all[0].ratio.value);
 #ifndef SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
 #define SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
 
@@ -31,16 +33,12 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
+#include "evaluation/statistics/subset_means.h"
 
 namespace simbench::evaluation {
 
-inline constexpr std::size_t kResamples = 2000;
-inline constexpr std::size_t kFewestPairs = 6;  // the first n with 1 - 2^(1 - n) of 95 % or more
-
-struct Pair {
-  double a = 0;
-  double b = 0;
-};
+// Of all tests that are made together.
+inline constexpr double kFamilyError = 0.05;
 
 struct PairedValues {
   std::vector<Pair> pairs;
@@ -49,13 +47,6 @@ struct PairedValues {
 
 // Pairs the i-th of `a` with the i-th of `b`, which are equally long.
 PairedValues pair_up(const std::vector<double>& a, const std::vector<double>& b);
-
-// NaN: does not exist.
-struct Estimate {
-  double value = kNan;
-  double low = kNan;
-  double high = kNan;
-};
 
 struct ComparisonRule {
   double smallest_effect = 0.05;  // as a share of A's mean
@@ -69,26 +60,41 @@ enum class Verdict : std::uint8_t { kBetter, kWorse, kNoDifferenceSeen, kTooFewS
 struct PairedComparison {
   std::size_t pairs = 0;
   std::size_t left_out = 0;
+  std::size_t higher = 0;  // pairs in which B is higher
+  std::size_t lower = 0;
   double mean_a = kNan;
   double mean_b = kNan;
   double median_a = kNan;
   double median_b = kNan;
   Estimate difference;  // mean of b - a
-  Estimate ratio;       // mean of b / mean of a; NaN if a resample's mean of a is not above 0
-  double smallest_effect = 0;  // e, in the metric's unit
+  Estimate ratio;       // mean of b / mean of a; NaN as SubsetMeans has it
+  double p = 1;
+  double adjusted_p = 1;        // by Holm: significant if at most kFamilyError
+  double error = kFamilyError;  // the intervals hold with 1 - error
+  double smallest_effect = 0;   // e, in the metric's unit
   Verdict verdict = Verdict::kTooFewSeeds;
   bool within_effect = false;      // the whole interval lies within +-e
   std::uint64_t seeds_needed = 0;  // only if too few; 0: unknown with fewer than two pairs
+
+  bool is_tested() const { return higher + lower > 0; }
 };
 
-PairedComparison compare(const PairedValues& values, const ComparisonRule& rule);
+struct ComparisonTask {
+  PairedValues values;
+  ComparisonRule rule;
+};
+
+// In the order of `tasks`.
+std::vector<PairedComparison> compare_together(const std::vector<ComparisonTask>& tasks);
+
+// The fewest pairs with which one of so many tests can be significant: 6, 7, 7, 8 ...
+std::size_t fewest_pairs(std::size_t tests);
 
 // Student's t for paired differences, and Holm's correction for many of them: the test of a gate.
 //
 // A gate tests many metrics and must rarely raise a false alarm. Each metric's mean paired
-// difference gets a two-sided p-value from Student's t with n - 1 degrees of freedom. Holm's
-// step-down procedure (S. Holm, Scand. J. Statistics 6, 1979) keeps the probability that any of
-// them excludes zero by chance within 5 %, whatever their dependence. interval() at
+// difference gets a two-sided p-value from Student's t with n - 1 degrees of freedom, and Holm's
+// procedure corrects for their number, as above. interval() at
 // HolmDecision::error excludes zero exactly where Holm rejects.
 //
 // If nothing changed, the two values of a pair are interchangeable. Their difference is then
@@ -97,8 +103,6 @@ PairedComparison compare(const PairedValues& values, const ComparisonRule& rule)
 // runs.
 //
 //   const PairedT t = paired_t(pair_up(before, after));
-inline constexpr double kFamilyError = 0.05;  // of all metrics of a gate together
-
 struct PairedT {
   std::size_t pairs = 0;
   double mean_a = 0;

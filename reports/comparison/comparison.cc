@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "recording/version.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/results/csv.h"
@@ -27,18 +29,38 @@ const Row& row_of(const Archive& archive, const std::string& name, const char* o
                                archive.path, fmt::join(names_of(archive), ", ")));
 }
 
-ComparedPipeline compared(const Row& a, const Row& b, const SeedPairing& pairing,
-                          const ComparisonOptions& options, evaluation::ResultKind kind) {
-  ComparedPipeline result{.pipeline_a = a.pipeline, .pipeline_b = b.pipeline, .metrics = {}};
-  for (const evaluation::Metric* metric : evaluation::judged_metrics(kind)) {
-    const evaluation::PairedValues values = evaluation::pair_up(
-        pairing.of_a(metric->series(a).values), pairing.of_b(metric->series(b).values));
-    result.metrics.push_back(
-        evaluation::compare(values, {.smallest_effect = options.smallest_effect,
-                                     .smallest_step = metric->judged->smallest_step,
-                                     .higher_is_better = metric->higher_is_better()}));
+struct RowPair {
+  const Row* a = nullptr;
+  const Row* b = nullptr;
+};
+
+// Judges every metric of every pair, all together.
+std::vector<ComparedPipeline> compared(const std::vector<RowPair>& rows, const SeedPairing& pairing,
+                                       const ComparisonOptions& options,
+                                       evaluation::ResultKind kind) {
+  const auto judged = evaluation::judged_metrics(kind);
+  std::vector<evaluation::ComparisonTask> tasks;
+  tasks.reserve(rows.size() * judged.size());
+  for (const RowPair& row : rows) {
+    for (const evaluation::Metric* metric : judged) {
+      tasks.push_back({.values = evaluation::pair_up(pairing.of_a(metric->series(*row.a).values),
+                                                     pairing.of_b(metric->series(*row.b).values)),
+                       .rule = {.smallest_effect = options.smallest_effect,
+                                .smallest_step = metric->judged->smallest_step,
+                                .higher_is_better = metric->higher_is_better()}});
+    }
   }
-  return result;
+  const std::vector<evaluation::PairedComparison> all = evaluation::compare_together(tasks);
+  std::vector<ComparedPipeline> pipelines;
+  pipelines.reserve(rows.size());
+  auto first = all.begin();
+  for (const RowPair& row : rows) {
+    const auto end = first + static_cast<std::ptrdiff_t>(judged.size());
+    pipelines.push_back(
+        {.pipeline_a = row.a->pipeline, .pipeline_b = row.b->pipeline, .metrics = {first, end}});
+    first = end;
+  }
+  return pipelines;
 }
 
 Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairing,
@@ -162,25 +184,25 @@ Comparison compare_archives(const Archive& a, const Archive& b, const Comparison
   comparison.a = described(a);
   comparison.b = described(b);
   note_versions(a, b, notes);
+  std::vector<RowPair> rows;
+  rows.reserve(std::max(a.results.rows.size(), options.pipelines.size()));
   if (options.pipelines.empty()) {
     for (const Row& row : a.results.rows) {
       const Row* other = evaluation::find_row(b.results.rows, row.pipeline);
-      if (other == nullptr) continue;
-      comparison.pipelines.push_back(compared(row, *other, pairing, options, comparison.kind));
+      if (other != nullptr) rows.push_back({&row, other});
     }
     note_other_pipelines(a, b, notes);
     note_other_pipelines(b, a, notes);
   }
   for (const std::string& name : options.pipelines) {
-    comparison.pipelines.push_back(compared(row_of(a, name, "--pipelines"),
-                                            row_of(b, name, "--pipelines"), pairing, options,
-                                            comparison.kind));
+    rows.push_back({&row_of(a, name, "--pipelines"), &row_of(b, name, "--pipelines")});
   }
-  if (comparison.pipelines.empty()) {
+  if (rows.empty()) {
     throw InputError(fmt::format("no pipeline is in both: {} has {}, {} has {}", a.path,
                                  fmt::join(names_of(a), ", "), b.path,
                                  fmt::join(names_of(b), ", ")));
   }
+  comparison.pipelines = compared(rows, pairing, options, comparison.kind);
   comparison.notes = std::move(notes);
   return comparison;
 }
@@ -191,9 +213,9 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
   Comparison comparison = prepared(archive, archive, pairing, options);
   comparison.a = fmt::format("pipeline {} of {}", a, described(archive));
   comparison.b = fmt::format("pipeline {} of {}", b, described(archive));
-  comparison.pipelines.push_back(compared(row_of(archive, a, "--pipelines"),
-                                          row_of(archive, b, "--pipelines"), pairing, options,
-                                          comparison.kind));
+  comparison.pipelines =
+      compared({{&row_of(archive, a, "--pipelines"), &row_of(archive, b, "--pipelines")}}, pairing,
+               options, comparison.kind);
   return comparison;
 }
 
@@ -205,14 +227,16 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
   comparison.a = fmt::format("pipeline {} of {}", baseline, described(archive));
   comparison.b = "each other pipeline of it";
   const Row& against = row_of(archive, baseline, "--with-baseline");
+  std::vector<RowPair> rows;
+  rows.reserve(archive.results.rows.size());
   for (const Row& row : archive.results.rows) {
-    if (row.pipeline == baseline) continue;
-    comparison.pipelines.push_back(compared(against, row, pairing, options, comparison.kind));
+    if (row.pipeline != baseline) rows.push_back({&against, &row});
   }
-  if (comparison.pipelines.empty()) {
+  if (rows.empty()) {
     throw InputError(
         fmt::format("--with-baseline: {} has no pipeline beside {}", archive.path, baseline));
   }
+  comparison.pipelines = compared(rows, pairing, options, comparison.kind);
   return comparison;
 }
 
@@ -231,11 +255,39 @@ Json paired_json(const evaluation::PairedComparison& c) {
           {"ratio", estimate_json(c.ratio)},
           {"smallest_effect", c.smallest_effect},
           {"within_smallest_effect", c.within_effect},
+          {"b_higher", c.higher},
+          {"b_lower", c.lower},
+          {"p", c.is_tested() ? Json(c.p) : Json()},
+          {"adjusted_p", c.is_tested() ? Json(c.adjusted_p) : Json()},
+          {"confidence", c.is_tested() ? Json(1 - c.error) : Json()},
           {"verdict", verdict_name(c.verdict)},
           {"seeds_needed", c.seeds_needed > 0 ? Json(c.seeds_needed) : Json()}};
 }
 
+Json verdicts_json(const VerdictCount& count) {
+  return {{"together", count.tests},
+          {"equal", count.equal},
+          {"correction", "holm"},
+          {"false_probability", evaluation::kFamilyError},
+          {"false_expected", count.expected_false()},
+          {"false_expected_uncorrected", count.expected_false_uncorrected()},
+          {"fewest_pairs", count.fewest_pairs}};
+}
+
 }  // namespace
+
+VerdictCount count_verdicts(const Comparison& comparison) {
+  VerdictCount count;
+  for (const ComparedPipeline& pipeline : comparison.pipelines) {
+    for (const evaluation::PairedComparison& each : pipeline.metrics) {
+      count.tests += each.is_tested() ? 1 : 0;
+      count.equal += each.pairs > 0 && !each.is_tested() ? 1 : 0;
+      count.most_pairs = std::max(count.most_pairs, each.pairs);
+    }
+  }
+  count.fewest_pairs = evaluation::fewest_pairs(std::max<std::size_t>(1, count.tests));
+  return count;
+}
 
 std::string comparison_json(const Comparison& comparison) {
   Json root = {{"schema_version", 1},
@@ -251,6 +303,7 @@ std::string comparison_json(const Comparison& comparison) {
                  {"count", comparison.seed_count},
                  {"paired_by", comparison.by_index ? "index" : "seed"}}},
                {"smallest_effect", comparison.smallest_effect},
+               {"verdicts", verdicts_json(count_verdicts(comparison))},
                {"pipelines", Json::array()},
                {"notes", comparison.notes}});
   const auto judged = evaluation::judged_metrics(comparison.kind);
@@ -267,7 +320,8 @@ std::string comparison_json(const Comparison& comparison) {
 std::string comparison_csv(const Comparison& comparison) {
   std::string text =
       "pipeline_a,pipeline_b,metric,pairs,left_out,mean_a,mean_b,median_a,median_b,difference,"
-      "difference_low,difference_high,ratio,ratio_low,ratio_high,verdict,seeds_needed\n";
+      "difference_low,difference_high,ratio,ratio_low,ratio_high,verdict,seeds_needed,"
+      "b_higher,b_lower,p,adjusted_p,confidence\n";
   const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
@@ -279,8 +333,13 @@ std::string comparison_csv(const Comparison& comparison) {
             c.difference.high, c.ratio.value, c.ratio.low, c.ratio.high}) {
         text += fmt::format(",{}", csv_cell(value));
       }
-      text += fmt::format(",{},{}\n", verdict_name(c.verdict),
-                          c.seeds_needed > 0 ? fmt::format("{}", c.seeds_needed) : "");
+      text += fmt::format(",{},{},{},{}", verdict_name(c.verdict),
+                          c.seeds_needed > 0 ? fmt::format("{}", c.seeds_needed) : "", c.higher,
+                          c.lower);
+      for (const double value : {c.p, c.adjusted_p, 1 - c.error}) {
+        text += fmt::format(",{}", csv_cell(c.is_tested() ? value : evaluation::kNan));
+      }
+      text += "\n";
     }
   }
   return text;

@@ -5,6 +5,8 @@
 // differences (version, commit, seeds, pipelines, parameters of the algorithms). Statistics and
 // verdicts are those of evaluation/statistics/paired.h.
 //
+// All verdicts of one comparison, pipelines times metrics, are corrected for their number together.
+//
 // Errors: scenarios::InputError, which states the difference and what can be compared instead:
 // other worlds (comparison_scenarios.h) unless allowed, no common seed unless paired by index, no
 // common pipeline, an unknown name.
@@ -14,6 +16,7 @@
 #ifndef SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 #define SIMBENCH_REPORTS_COMPARISON_COMPARISON_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -53,6 +56,23 @@ struct Comparison {
   std::vector<std::string> notes;
 };
 
+// The verdicts of a comparison, which are made and corrected together.
+struct VerdictCount {
+  std::size_t tests = 0;
+  std::size_t equal = 0;         // others, whose values are equal pair by pair: no test is needed
+  std::size_t most_pairs = 0;    // of any of them
+  std::size_t fewest_pairs = 0;  // with which one of so many can be better or worse
+
+  // Of verdicts better and worse, if nothing differs: of Holm's first step, and of tests at 5 %
+  // each.
+  double expected_false() const { return tests > 0 ? evaluation::kFamilyError : 0; }
+  double expected_false_uncorrected() const {
+    return evaluation::kFamilyError * static_cast<double>(tests);
+  }
+};
+
+VerdictCount count_verdicts(const Comparison& comparison);
+
 // Compares pipelines of the same name.
 Comparison compare_archives(const Archive& a, const Archive& b, const ComparisonOptions& options);
 // Compares two pipelines of one archive.
@@ -70,11 +90,13 @@ Document comparison_document(const Comparison& comparison);
 const char* verdict_name(evaluation::Verdict verdict);
 
 // "better"; "worse, by less than 5 %"; "no difference seen: all equal"; "too few seeds: 240
-// needed".
+// needed"; where no number of pairs like this can be significant: "too few seeds: 9 needed; higher
+// in 5 of 5".
 std::string verdict_text(const evaluation::PairedComparison& comparison, double smallest_effect);
 
 // B relative to A: "AMD 205 times smaller [181, 230]", "RMDV 12 % larger [8 %, 15 %]", "recall 100
-// % in place of 0 %", "absolute error: no difference seen".
+// % in place of 0 %", "absolute error: no difference seen", "AMD: 190 times smaller, but too few
+// seeds: 9 needed, lower in 5 of 5".
 std::string effect_words(const evaluation::Metric& metric,
                          const evaluation::PairedComparison& comparison, double smallest_effect);
 

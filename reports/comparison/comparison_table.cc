@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "reports/comparison/comparison.h"
 #include "reports/comparison/comparison_scenarios.h"
@@ -31,23 +32,27 @@ std::string shown_title(const Metric& metric) {
   return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
 }
 
-// "times" from a factor of two on, else percent.
+bool has_interval(const Estimate& estimate) { return !std::isnan(estimate.low); }
+
+// "times" from a factor of two on, else percent; with the interval, if there is one.
 std::string factor_words(const Estimate& ratio) {
   constexpr double kTimes = 2;
-  if (ratio.value >= kTimes) {
-    return fmt::format("{} times larger [{}, {}]", factor_text(ratio.value), factor_text(ratio.low),
-                       factor_text(ratio.high));
+  const auto worded = [&](const char* what, double value, double near, double far,
+                          const char* unit) {
+    const std::string text =
+        fmt::format("{}{} {}", factor_text(value), *unit == 0 ? " times" : unit, what);
+    if (!has_interval(ratio)) return text;
+    return fmt::format("{} [{}{}, {}{}]", text, factor_text(near), unit, factor_text(far), unit);
+  };
+  if (ratio.value >= kTimes) return worded("larger", ratio.value, ratio.low, ratio.high, "");
+  if (ratio.value * kTimes <= 1 && !(ratio.low <= 0)) {
+    return worded("smaller", 1 / ratio.value, 1 / ratio.high, 1 / ratio.low, "");
   }
-  if (ratio.value * kTimes <= 1 && ratio.low > 0) {
-    return fmt::format("{} times smaller [{}, {}]", factor_text(1 / ratio.value),
-                       factor_text(1 / ratio.high), factor_text(1 / ratio.low));
+  const auto percent = [](double share) { return 100 * std::abs(share - 1); };
+  if (ratio.value >= 1) {
+    return worded("larger", percent(ratio.value), percent(ratio.low), percent(ratio.high), " %");
   }
-  const bool is_larger = ratio.value >= 1;
-  const double near = is_larger ? ratio.low : ratio.high;
-  const double far = is_larger ? ratio.high : ratio.low;
-  const auto percent = [](double share) { return factor_text(100 * std::abs(share - 1)); };
-  return fmt::format("{} % {} [{} %, {} %]", percent(ratio.value), is_larger ? "larger" : "smaller",
-                     percent(near), percent(far));
+  return worded("smaller", percent(ratio.value), percent(ratio.high), percent(ratio.low), " %");
 }
 
 }  // namespace
@@ -85,6 +90,11 @@ std::string verdict_text(const PairedComparison& comparison, double smallest_eff
   } else {
     text = fmt::format("too few seeds: {} needed", comparison.seeds_needed);
   }
+  if (comparison.verdict == Verdict::kTooFewSeeds && !has_interval(comparison.difference)) {
+    const bool is_higher = comparison.higher >= comparison.lower;
+    text += fmt::format(", {} in {} of {}", is_higher ? "higher" : "lower",
+                        is_higher ? comparison.higher : comparison.lower, comparison.pairs);
+  }
   if (comparison.left_out > 0) {
     text += fmt::format(" ({} left out: no value)", counted(comparison.left_out, "seed"));
   }
@@ -94,7 +104,11 @@ std::string verdict_text(const PairedComparison& comparison, double smallest_eff
 std::string effect_words(const Metric& metric, const PairedComparison& comparison,
                          double smallest_effect) {
   if (!is_sure(comparison)) {
-    return fmt::format("{}: {}", metric.title, verdict_text(comparison, smallest_effect));
+    const bool has_effect = comparison.verdict == Verdict::kTooFewSeeds &&
+                            comparison.ratio.value > 0 && !has_interval(comparison.difference);
+    return fmt::format("{}: {}{}", metric.title,
+                       has_effect ? factor_words(comparison.ratio) + ", but " : "",
+                       verdict_text(comparison, smallest_effect));
   }
   if (metric.is_share()) {
     return fmt::format("{} {} in place of {}", metric.title, share_text(comparison.mean_b),
@@ -140,9 +154,9 @@ Table comparison_table(const Comparison& comparison) {
                {"A\nmedian"},
                {"B\nmedian"},
                {"B - A\nmean"},
-               {"B - A\n95 % interval"},
+               {"B - A\ninterval"},
                {"B / A\nof means"},
-               {"B / A\n95 % interval"},
+               {"B / A\ninterval"},
                {"B is", Align::kLeft}},
               2);
   const auto judged = evaluation::judged_metrics(comparison.kind);
@@ -181,14 +195,46 @@ Block words(const Comparison& comparison) {
   return block;
 }
 
+// How many verdicts there are and how sure they are together; what these pairs cannot tell.
+std::vector<std::string> verdicts_words(const Comparison& comparison) {
+  const VerdictCount count = count_verdicts(comparison);
+  std::vector<std::string> words;
+  if (count.tests > 0) {
+    words.push_back(fmt::format(
+        "{} made together, with Holm's correction: the probability that any better or worse is "
+        "false is at most {:.3g} %. Expected number of false ones if nothing differs: about {:.2g} "
+        "(at {:.3g} % each, without the correction: {:.3g}).",
+        counted(count.tests, "verdict"), 100 * evaluation::kFamilyError, count.expected_false(),
+        100 * evaluation::kFamilyError, count.expected_false_uncorrected()));
+  }
+  if (count.equal > 0) {
+    words.push_back(
+        fmt::format("{} of equal values, which need no test.", counted(count.equal, "line")));
+  }
+  if (count.tests > 0 && count.most_pairs < count.fewest_pairs) {
+    words.push_back(fmt::format(
+        "Of {} no p-value can be below {:.3g} (2 / 2^{}), however large the difference, and {} "
+        "corrected for their number ask for {:.2g}: these seeds can show neither better nor worse. "
+        "{} can. What they do tell: medians, means, their ratio, and in how many pairs B is "
+        "higher or lower.",
+        counted(count.most_pairs, "pair"), std::ldexp(2, -static_cast<int>(count.most_pairs)),
+        count.most_pairs, counted(count.tests, "verdict"),
+        evaluation::kFamilyError / static_cast<double>(count.tests),
+        counted(count.fewest_pairs, "pair")));
+  }
+  return words;
+}
+
 std::string comparison_legend(const Comparison& comparison) {
   return fmt::format(
-      "Median: over the seeds, as in the table of a run. Mean difference and ratio of means with "
-      "their 95 % intervals: over pairs of the same seed, by bootstrap. better, worse: the "
-      "interval excludes 0. no difference seen: it includes 0 and lies within {:.3g} % of A's mean "
-      "(--smallest-effect). too few seeds: it includes 0 and more than that; with the seeds needed "
-      "it is so narrow that it leads to one of the other results.",
-      100 * comparison.smallest_effect);
+      "Median: over the seeds, as in the table of a run. Mean difference and ratio of means: over "
+      "pairs of the same seed; their intervals come from the means of subsets of the pairs, at "
+      "the level that Holm's correction leaves to the line (confidence in JSON and CSV), {:.4g} % "
+      "or more. better, worse: the interval excludes 0. no difference seen: it includes 0 and "
+      "lies within {:.3g} % of A's mean (--smallest-effect). too few seeds: it includes 0 and "
+      "more than that; with the seeds needed, a guess from the scatter of these, it leads to one "
+      "of the other results.",
+      100 * (1 - evaluation::kFamilyError), 100 * comparison.smallest_effect);
 }
 
 }  // namespace
@@ -203,6 +249,9 @@ Document comparison_document(const Comparison& comparison) {
   }
   document.blocks.push_back({.table = comparison_table(comparison)});
   if (comparison.with_baseline) document.blocks.push_back(words(comparison));
+  if (std::vector<std::string> sure = verdicts_words(comparison); !sure.empty()) {
+    document.blocks.push_back({.heading = "How sure", .items = std::move(sure)});
+  }
   if (!comparison.notes.empty()) {
     document.blocks.push_back({.heading = "What differs besides", .items = comparison.notes});
   }

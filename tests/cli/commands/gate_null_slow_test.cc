@@ -1,16 +1,18 @@
-// How often the statistical gate fails where nothing changed, and how often where something did:
-// counted over 200 gates on seeds that no two of them share.
+// How often the statistical gate fails, and a comparison shows a verdict, where nothing changed,
+// and how often where something did: counted over 200 gates on seeds that no two of them share.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iostream>
 #include <string>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/paired.h"
 #include "evaluation/statistics/statistics.h"
+#include "reports/comparison/comparison.h"
 #include "reports/comparison/gate.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
@@ -104,6 +106,27 @@ TEST_F(NullGate, FailsSeldomWithoutMarginsToo) {
   RecordProperty("failed", failed);
   EXPECT_LE(failed, kMostFailures);
   EXPECT_GE(failed, 1);
+}
+
+// Two archives of the same pipelines on other seeds: whatever a comparison shows is false.
+TEST_F(NullGate, AComparisonSeldomShowsAnyVerdict) {
+  int some = 0;
+  std::size_t verdicts = 0;
+  for (std::uint64_t i = 0; i < kGates; ++i) {
+    const Comparison c = compare_archives(baseline_part(i), result_part(i), {.by_index = true});
+    bool found = false;
+    for (const ComparedPipeline& pipeline : c.pipelines) {
+      for (const evaluation::PairedComparison& each : pipeline.metrics) {
+        found = found || each.adjusted_p <= evaluation::kFamilyError;
+      }
+    }
+    some += static_cast<int>(found);
+    verdicts += count_verdicts(c).tests;
+  }
+  std::cout << "of 200 comparisons of other seeds, " << verdicts << " verdicts in all, " << some
+            << " show a difference\n";
+  EXPECT_LE(some, kMostFailures);
+  EXPECT_GE(verdicts, 10 * kGates);
 }
 
 // The t-test of one metric is neither blind nor jumpy: it rejects about as often as its level says.

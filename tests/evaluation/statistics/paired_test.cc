@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <boost/random/lognormal_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
@@ -22,6 +21,11 @@ PairedValues pairs_of(std::size_t count, const std::function<double(std::size_t,
     values.pairs.push_back({a, f(i, a)});
   }
   return values;
+}
+
+// One comparison alone.
+PairedComparison compare(const PairedValues& values, const ComparisonRule& rule) {
+  return compare_together({{.values = values, .rule = rule}}).front();
 }
 
 TEST(PairUp, LeavesOutAndCountsWhatDoesNotExist) {
@@ -97,6 +101,7 @@ TEST(Compare, TheSeedsNeededAreThoseThatMakeTheIntervalNarrowEnough) {
   EXPECT_NEAR(static_cast<double>(c.seeds_needed), 1537, 250);
   const PairedComparison enough = scattered(c.seeds_needed + 2, 5);
   EXPECT_EQ(enough.verdict, Verdict::kNoDifferenceSeen);
+  // The deviation of four values is 5.77.
   EXPECT_NEAR(static_cast<double>(scattered(4, 5).seeds_needed), 1537 * 4. / 3, 150);
 }
 
@@ -106,7 +111,7 @@ TEST(Compare, TooFewPairsHaveNoInterval) {
     EXPECT_EQ(c.verdict, Verdict::kTooFewSeeds);
     EXPECT_TRUE(std::isnan(c.difference.low));
     EXPECT_NEAR(c.ratio.value, 2, 1e-12);
-    EXPECT_EQ(c.seeds_needed, pairs == 1 ? 0 : kFewestPairs);
+    EXPECT_EQ(c.seeds_needed, pairs == 1 ? 0 : fewest_pairs(1));
   }
   EXPECT_EQ(compare(pairs_of(6, [](auto, double a) { return 2 * a; }), {}).verdict,
             Verdict::kWorse);
@@ -140,27 +145,74 @@ TEST(Compare, OrderOfArgumentsOnlyTurnsTheSign) {
   EXPECT_NEAR(forth.ratio.value * back.ratio.value, 1, 1e-12);
 }
 
-// How often the interval holds the true mean, of 95 % promised, over `experiments` samples.
-template <typename Distribution>
-double coverage(std::size_t pairs, Distribution distribution, double mean, int experiments) {
-  boost::random::mt19937_64 random(7);
-  int held = 0;
-  for (int i = 0; i < experiments; ++i) {
-    PairedValues values;
-    for (std::size_t k = 0; k < pairs; ++k) values.pairs.push_back({1, 1 + distribution(random)});
-    const Estimate difference = compare(values, {}).difference;
-    held += static_cast<int>(difference.low <= mean && mean <= difference.high);
-  }
-  return 100.0 * held / experiments;
+// A large difference in a few seeds: what is missing is seeds for the test, not a million for
+// the scatter.
+TEST(Compare, ALargeDifferenceInFewSeedsNeedsFewMore) {
+  const PairedValues values = pair_up({0.01, 0.03, 0.02, 0.015}, {1.2, 9.3, 2.5, 0.9});
+  const PairedComparison c = compare(values, {});
+  EXPECT_EQ(c.verdict, Verdict::kTooFewSeeds);
+  EXPECT_EQ(c.higher, 4U);
+  EXPECT_EQ(c.lower, 0U);
+  EXPECT_NEAR(c.ratio.value, 13.9 / 0.075, 1e-9);
+  EXPECT_EQ(c.p, 0.125);  // 2 / 2^4
+  EXPECT_TRUE(std::isnan(c.difference.low));
+  EXPECT_GE(c.seeds_needed, 6U);
+  EXPECT_LE(c.seeds_needed, 12U);
 }
 
-TEST(Compare, TheIntervalHoldsTheMeanAboutAsOftenAsItSays) {
-  const boost::random::normal_distribution<double> normal(0.3, 1);
-  EXPECT_NEAR(coverage(8, normal, 0.3, 1000), 95, 2.5);
-  EXPECT_NEAR(coverage(32, normal, 0.3, 1000), 95, 2.5);
-  // Skewed as errors are: e^N(0, 0.5) with mean e^0.125.
-  const boost::random::lognormal_distribution<double> skewed(0, 0.5);
-  EXPECT_NEAR(coverage(32, skewed, std::exp(0.125), 1000), 95, 3.5);
+TEST(FewestPairs, AreThoseWhosePValueCanBeSmallEnough) {
+  EXPECT_EQ(fewest_pairs(1), 6U);    // 2 / 2^6 = 0.031
+  EXPECT_EQ(fewest_pairs(2), 7U);    // 0.0156 for 0.025
+  EXPECT_EQ(fewest_pairs(45), 11U);  // 0.00098 for 0.0011
+}
+
+TEST(CompareTogether, OneOfManyNeedsMorePairsThanOneAlone) {
+  const auto doubled = [](auto i, double a) { return 2 * a + 0.01 * static_cast<double>(i); };
+  std::vector<ComparisonTask> tasks(45, {.values = pairs_of(8, doubled), .rule = {}});
+  EXPECT_EQ(compare(tasks[0].values, {}).verdict, Verdict::kWorse);
+  for (const PairedComparison& c : compare_together(tasks)) {
+    EXPECT_EQ(c.verdict, Verdict::kTooFewSeeds);
+    EXPECT_EQ(c.seeds_needed, 11U);
+    EXPECT_EQ(c.higher, 8U);
+  }
+  tasks.assign(45, {.values = pairs_of(11, doubled), .rule = {}});
+  for (const PairedComparison& c : compare_together(tasks)) EXPECT_EQ(c.verdict, Verdict::kWorse);
+}
+
+TEST(CompareTogether, WhatIsEqualIsNoTest) {
+  const auto doubled = [](auto i, double a) { return 2 * a + 0.01 * static_cast<double>(i); };
+  std::vector<ComparisonTask> tasks(
+      45, {.values = pairs_of(8, [](auto, double a) { return a; }), .rule = {}});
+  tasks[7].values = pairs_of(8, doubled);
+  tasks[8].values = pair_up({kNaN}, {1});
+  const std::vector<PairedComparison> all = compare_together(tasks);
+  EXPECT_EQ(all[7].verdict, Verdict::kWorse);
+  EXPECT_DOUBLE_EQ(all[7].error, kFamilyError);
+  EXPECT_FALSE(all[6].is_tested());
+  EXPECT_FALSE(all[8].is_tested());
+}
+
+// The interval excludes 0 exactly where the p-value is small enough, at every level.
+TEST(CompareTogether, IntervalsAndPValuesAgree) {
+  boost::random::mt19937_64 random(11);
+  boost::random::normal_distribution<double> normal;
+  std::vector<ComparisonTask> tasks(40);
+  for (std::size_t task = 0; task < tasks.size(); ++task) {
+    const double shift = 0.05 * static_cast<double>(task);
+    for (std::size_t i = 0; i < 20; ++i) {
+      tasks[task].values.pairs.push_back({5 + normal(random), 5 + shift + normal(random)});
+    }
+  }
+  int significant = 0;
+  for (const PairedComparison& c : compare_together(tasks)) {
+    const bool excludes = c.difference.low > 0 || c.difference.high < 0;
+    EXPECT_EQ(excludes, c.adjusted_p <= kFamilyError);
+    EXPECT_EQ(c.ratio.low > 1 || c.ratio.high < 1, excludes);
+    EXPECT_EQ(c.verdict == Verdict::kBetter || c.verdict == Verdict::kWorse, excludes);
+    significant += excludes ? 1 : 0;
+  }
+  EXPECT_GT(significant, 5);
+  EXPECT_LT(significant, 38);
 }
 
 }  // namespace

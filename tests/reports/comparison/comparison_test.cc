@@ -146,26 +146,63 @@ TEST(EffectWords, ChooseTheFormThatReadsBest) {
   const auto words = [&](double factor) {
     evaluation::PairedValues values;
     for (int i = 0; i < 32; ++i) values.pairs.push_back({10, 10 * factor});
-    return effect_words(amd, evaluation::compare(values, {}), 0.05);
+    const auto all = evaluation::compare_together({{.values = values, .rule = {}}});
+    return effect_words(amd, all.front(), 0.05);
   };
   EXPECT_EQ(words(250), "AMD 250 times larger [250, 250]");
   EXPECT_EQ(words(1.5), "AMD 50 % larger [50 %, 50 %]");
   EXPECT_EQ(words(0.75), "AMD 25 % smaller [25 %, 25 %]");
   EXPECT_EQ(words(0.001), "AMD 1000 times smaller [1000, 1000]");
   EXPECT_EQ(words(1), "AMD: no difference seen: all equal");
+  const auto few = evaluation::compare_together(
+      {{.values = evaluation::pair_up({10, 10, 10}, {2000, 1000, 3000}), .rule = {}}});
+  EXPECT_EQ(effect_words(amd, few.front(), 0.05),
+            "AMD: 200 times larger, but too few seeds: 6 needed, higher in 3 of 3");
 }
 
 TEST(VerdictText, SaysWhatIsMissing) {
   EXPECT_EQ(verdict_text({}, 0.05), "no values");
   evaluation::PairedComparison c;
   c.pairs = 1;
-  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: more needed");
+  c.lower = 1;
+  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: more needed, lower in 1 of 1");
+  c.pairs = 5;
+  c.higher = 4;
+  c.seeds_needed = 9;
+  EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: 9 needed, higher in 4 of 5");
+  c.difference = {.value = 1, .low = -1, .high = 3};
   c.seeds_needed = 120;
   c.left_out = 2;
   EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: 120 needed (2 seeds left out: no value)");
   c.seeds_needed = 5'000'000;
   c.left_out = 0;
   EXPECT_EQ(verdict_text(c, 0.05), "too few seeds: over a million needed");
+}
+
+TEST(CountVerdicts, CountsWhatIsTested) {
+  const VerdictCount same =
+      count_verdicts(compare_archives(sample_archive("a"), sample_archive("b"), {}));
+  EXPECT_EQ(same.tests, 0U);
+  EXPECT_GT(same.equal, 0U);
+  EXPECT_EQ(same.expected_false(), 0);
+  Archive b = sample_archive("b");
+  scale(b.results.rows[1].amd_ms, 0.5);
+  const Comparison c = compare_archives(sample_archive("a"), b, {});
+  EXPECT_EQ(count_verdicts(c).tests, 1U);
+  EXPECT_EQ(count_verdicts(c).fewest_pairs, 6U);
+  EXPECT_THAT(plain(comparison_document(c)),
+              AllOf(HasSubstr("1 verdict made together, with Holm's"),
+                    HasSubstr("false ones if nothing differs: about 0.05")));
+  const Json verdicts = Json::parse(comparison_json(c))["verdicts"];
+  EXPECT_EQ(verdicts["together"], 1);
+  EXPECT_EQ(verdicts["equal"], same.equal - 1);
+}
+
+TEST(ComparisonOutput, OfAFewSeedsSaysWhatTheyCanTell) {
+  const std::string text =
+      plain(comparison_document(compare_with_baseline(sample_archive("a", 1, 5), "plain", {})));
+  EXPECT_THAT(text, AllOf(HasSubstr("lower in 5 of 5"), HasSubstr("no p-value can be below 0.0625"),
+                          HasSubstr("show neither better nor worse"), Not(HasSubstr("million"))));
 }
 
 TEST(ComparisonOutput, JsonHasNullWhereThereIsNothing) {
