@@ -101,6 +101,12 @@ namespace {
 
 double seconds_of_poll(int exponent) { return std::ldexp(1.0, exponent); }
 
+// ntpd leaves the kernel's loop alone where an offset may be too large for it.
+bool uses_kernel(const NtpDisciplineSettings& settings) {
+  return settings.loop == NtpLoop::kKernel && settings.step_s > 0 &&
+         settings.step_s <= NtpDiscipline::kKernelStep;
+}
+
 double within_limit(double frequency) {
   return std::clamp(frequency, -NtpDiscipline::kMaxFrequency, NtpDiscipline::kMaxFrequency);
 }
@@ -112,7 +118,10 @@ NtpDiscipline::NtpDiscipline(const NtpDisciplineSettings& settings)
       state_(settings.frequency ? NtpState::kFset : NtpState::kNset),
       frequency_(within_limit(settings.frequency.value_or(0))),
       poll_(settings.poll_min),
-      jitter_s_(settings.precision_s) {}
+      jitter_s_(settings.precision_s) {
+  if (uses_kernel(settings)) kernel_.emplace(0);
+  if (kernel_) kernel_->set_frequency(frequency_);
+}
 
 NtpAction NtpDiscipline::update(double offset_s, double at_s) {
   SIMBENCH_ASSERT(std::isfinite(offset_s) && std::isfinite(at_s), "an offset must be finite");
@@ -155,21 +164,29 @@ NtpAction NtpDiscipline::update_small(double offset_s, double at_s) {
       measure_frequency(offset_s, at_s);
       break;
     case NtpState::kFset:
-      break;
     case NtpState::kSync:
     case NtpState::kSpik:
-      if (is_starting(at_s)) break;
-      if (poll_ >= kAllanPoll) {
-        frequency_ += (offset_s - residual_s(at_s)) * kFllGain / std::max(poll_interval_s(), mu_s);
-      }
-      const double loop_s = 4 * time_constant_s();
-      frequency_ += offset_s * std::min(mu_s, seconds_of_poll(kAllanPoll)) / (loop_s * loop_s);
       break;
   }
-  frequency_ = within_limit(frequency_);
+  if (!kernel_ && !is_starting(at_s)) update_frequency(offset_s, at_s);
   lock(NtpState::kSync, offset_s, at_s);
+  if (std::abs(offset_s) < kClampFloor) clamp_end_s_ = std::min(*clamp_end_s_, at_s);
+  if (is_kernel_in_force(at_s)) {
+    kernel_->update(offset_s, poll_, at_s);
+    frequency_ = kernel_->frequency();
+  }
   if (!is_starting(at_s)) adapt_poll(offset_s);
   return NtpAction::kAdjust;
+}
+
+void NtpDiscipline::update_frequency(double offset_s, double at_s) {
+  const double mu_s = at_s - at_s_;
+  if (poll_ >= kAllanPoll) {
+    frequency_ += (offset_s - residual_s(at_s)) * kFllGain / std::max(poll_interval_s(), mu_s);
+  }
+  const double loop_s = 4 * kPllGain * poll_interval_s();
+  frequency_ += offset_s * std::min(mu_s, seconds_of_poll(kAllanPoll)) / (loop_s * loop_s);
+  frequency_ = within_limit(frequency_);
 }
 
 NtpAction NtpDiscipline::step(double at_s) {
@@ -178,6 +195,7 @@ NtpAction NtpDiscipline::step(double at_s) {
   jitter_s_ = settings_.precision_s;
   // Without a frequency it is measured next, with the phase where the step has put it.
   lock(state_ == NtpState::kNset ? NtpState::kFreq : NtpState::kSync, 0, at_s);
+  if (is_kernel_in_force(at_s)) kernel_->update(0, poll_, at_s);
   return NtpAction::kStep;
 }
 
@@ -190,6 +208,7 @@ void NtpDiscipline::lock(NtpState state, double offset_s, double at_s) {
 
 void NtpDiscipline::measure_frequency(double offset_s, double at_s) {
   frequency_ = within_limit(frequency_ + (offset_s - offset_s_) / (at_s - at_s_));
+  if (kernel_) kernel_->set_frequency(frequency_);
 }
 
 void NtpDiscipline::adapt_poll(double offset_s) {
@@ -210,18 +229,29 @@ void NtpDiscipline::move_poll(int by) {
 
 double NtpDiscipline::poll_interval_s() const { return seconds_of_poll(poll_); }
 
+double NtpDiscipline::time_constant_s() const {
+  return kernel_ ? kernel_->time_constant_s() : kPllGain * poll_interval_s();
+}
+
 double NtpDiscipline::decay(double from_s, double to_s) const {
   const double clamped_s = std::max(std::min(to_s, clamp_end_s_.value_or(from_s)) - from_s, 0.0);
-  return clamped_s / kClampTime + (to_s - from_s - clamped_s) / time_constant_s();
+  // The kernel has not been told the offset of a clamp that ran out.
+  const double looped = kernel_ ? 0 : (to_s - from_s - clamped_s) / time_constant_s();
+  return clamped_s / kClampTime + looped;
 }
 
 double NtpDiscipline::residual_s(double at_s) const {
+  if (is_kernel_in_force(at_s)) return kernel_->residual_s(at_s);
   return state_ == NtpState::kSync ? offset_s_ * std::exp(-decay(at_s_, at_s)) : 0;
 }
 
 double NtpDiscipline::phase_rate(double at_s) const {
-  const double part = -std::expm1(-decay(at_s, at_s + poll_interval_s()));
-  const double rate = residual_s(at_s) * part / poll_interval_s();
+  const double interval_s = poll_interval_s();
+  if (is_kernel_in_force(at_s)) {
+    return (kernel_->residual_s(at_s) - kernel_->residual_s(at_s + interval_s)) / interval_s;
+  }
+  const double part = -std::expm1(-decay(at_s, at_s + interval_s));
+  const double rate = residual_s(at_s) * part / interval_s;
   const double limit = kMaxFrequency - std::abs(frequency_);
   return std::clamp(rate, -limit, limit);
 }

@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "algorithms/host_sync/ntp/ntp_kernel_loop.h"
+
 namespace simbench {
 
 struct NtpSample {
@@ -84,7 +86,14 @@ class NtpClockFilter {
   double best_delay_s_ = kMaxDispersion;
 };
 
+// What turns offsets into phase and frequency once the clock is locked.
+enum class NtpLoop : std::uint8_t {
+  kKernel,  // Linux's (ntp_kernel_loop.h): ntpd's default
+  kDaemon,  // ntpd's own: "disable kernel", or a kernel that has none
+};
+
 struct NtpDisciplineSettings {
+  NtpLoop loop = NtpLoop::kKernel;
   double step_s = 0.128;  // 0: never step
   double step_out_s = 300;
   double panic_s = 1000;  // 0: never panic
@@ -113,22 +122,28 @@ enum class NtpAction : std::uint8_t {
 //  - An offset above step_s steps the clock at once in NSET and FSET; in SYNC it is a spike, and
 //    steps if it lasts until step_out_s after the last good update. Above panic_s: panic.
 //  - A smaller first offset is slewed away at once; then FREQ begins, as after a step.
-//  - Phase: in SYNC the residual decays with the time constant 16 * 2^poll seconds, no faster than
-//    the frequency leaves room for within 500 ppm.
-//  - Start-up clamp: for step_out_s after SYNC is first entered, that time constant is 32 s and
-//    frequency and poll stay, until the initial transient is over.
-//  - Frequency: PLL, offset * min(mu, 2^11) / (4 * 16 * 2^poll)^2, with mu the time since the last
-//    update; from poll 11 on also FLL, (offset - residual) * 0.25 / max(2^poll, mu). Within 500
-//    ppm. (RFC 5905's appendix has a PLL gain of 65536: a time constant of 48 days.)
+//  - Start-up clamp: from when SYNC is first entered, the daemon removes the offset with a time
+//    constant of 32 s, while frequency and poll stay; until step_out_s later, or the first offset
+//    below kClampFloor.
+//  - Then the loop. The kernel's: ntp_kernel_loop.h, with the poll exponent as its constant. It is
+//    first told an offset by the update after the clamp. ntpd does not use it if it may not step,
+//    or only above kKernelStep.
+//  - The daemon's, phase: in SYNC the residual decays with the time constant 16 * 2^poll seconds,
+//    no faster than the frequency leaves room for within 500 ppm.
+//  - The daemon's, frequency: PLL, offset * min(mu, 2^11) / (4 * 16 * 2^poll)^2, with mu the time
+//    since the last update; from poll 11 on also FLL, (offset - residual) * 0.25 / max(2^poll, mu).
+//    Within 500 ppm. (RFC 5905's appendix has a PLL gain of 65536: a time constant of 48 days.)
 //  - Clock jitter: root of the exponential average (1/8) of squared offset differences.
 //  - Poll exponent: a counter goes up by the exponent while |offset| < 4 * jitter, else down by
 //    twice that; beyond +-30 the poll moves one step within its bounds.
 //
-// Not here: reading and writing a drift file, and the kernel's discipline.
+// Not here: reading and writing a drift file.
 class NtpDiscipline {
  public:
   static constexpr double kPllGain = 16;
-  static constexpr double kClampTime = 32;  // s, time constant during the start-up clamp
+  static constexpr double kClampTime = 32;       // s, time constant during the start-up clamp
+  static constexpr double kClampFloor = 0.0005;  // s, CLOCK_FLOOR
+  static constexpr double kKernelStep = 0.5;     // s
   static constexpr double kFllGain = 0.25;
   static constexpr double kAverage = 8;
   static constexpr int kAllanPoll = 11;
@@ -138,7 +153,7 @@ class NtpDiscipline {
 
   explicit NtpDiscipline(const NtpDisciplineSettings& settings);
 
-  // `at_s`, when the offset was measured, must not decrease.
+  // The service starts at 0 s. `at_s`, when the offset is told, must not decrease.
   NtpAction update(double offset_s, double at_s);
 
   NtpState state() const { return state_; }
@@ -147,10 +162,12 @@ class NtpDiscipline {
   double frequency() const { return frequency_; }  // correction, as a fraction
   int poll() const { return poll_; }
   double jitter_s() const { return jitter_s_; }
-  double time_constant_s() const { return kPllGain * poll_interval_s(); }
+  // Of the loop, once the clamp is over.
+  double time_constant_s() const;
   double poll_interval_s() const;
 
-  // What is left of the phase correction at a time after the last update; 0 unless in SYNC.
+  // What is left of the phase correction at a time after the last update. The daemon's is 0 unless
+  // in SYNC; the kernel knows no states.
   double residual_s(double at_s) const;
   // The part of it to correct in the poll interval that begins then, per second.
   double phase_rate(double at_s) const;
@@ -160,11 +177,13 @@ class NtpDiscipline {
   NtpAction update_small(double offset_s, double at_s);
   NtpAction step(double at_s);
   void lock(NtpState state, double offset_s, double at_s);
+  void update_frequency(double offset_s, double at_s);
   void measure_frequency(double offset_s, double at_s);
   void adapt_poll(double offset_s);
   // Time constants that pass between two times.
   double decay(double from_s, double to_s) const;
   void move_poll(int by);
+  bool is_kernel_in_force(double at_s) const { return kernel_ && !is_starting(at_s); }
 
   NtpDisciplineSettings settings_;
   NtpState state_;
@@ -175,6 +194,7 @@ class NtpDiscipline {
   double offset_s_ = 0;  // at the last update
   double at_s_ = 0;      // of the last update
   std::optional<double> clamp_end_s_;
+  std::optional<NtpKernelLoop> kernel_;
 };
 
 }  // namespace simbench

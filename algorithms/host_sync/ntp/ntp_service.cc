@@ -85,7 +85,7 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
       filter_(settings.discipline.precision_s),
       discipline_(started(settings.discipline, host.stored_frequency())),
       start_(host.steady_clock().now()),
-      broadcast_delay_s_(settings.broadcast_delay_s),
+      broadcast_delay_s_(settings.broadcast_delay_s / 2),
       outcome_(host) {}
 
 Task<void> NtpClient::run() {
@@ -191,7 +191,7 @@ Task<NtpAction> NtpClient::discipline_by(std::optional<NtpSample> sample) {
   if (!sample || filter_.distance_s() + root_distance_s_ > NtpClockFilter::kMaxDistance) {
     co_return NtpAction::kIgnore;
   }
-  const NtpAction action = discipline_.update(sample->offset_s, sample->at_s);
+  const NtpAction action = discipline_.update(sample->offset_s, seconds(now()));
   if (action == NtpAction::kPanic) {
     panicked_ = true;
     outcome_.failed(
@@ -285,18 +285,35 @@ namespace {
 const char* const kReferenceNtp =
     "reference implementation (docs/reference/host_sync.md section 2)";
 
-std::vector<ParameterSpec> ntp_parameters(double service_hours) {
+// What one registered form of ntpd has as its defaults.
+struct NtpForm {
+  std::string name;
+  std::string family;  // forms of one family share the scenario's parameters
+  std::string summary;
+  NtpMode mode = NtpMode::kUnicast;
+  NtpLoop loop = NtpLoop::kKernel;
+  int poll_min = 6;
+  int poll_max = 10;
+  double service_hours = 16;
+};
+
+std::vector<ParameterSpec> ntp_parameters(const NtpForm& form) {
+  const char* const poll_source =
+      "ntpd's documentation, minpoll and maxpoll (confopt.html): from 3 to 17, by default 6 and 10";
   return {
-      number_parameter("step_ms", 128, 0, 1e6, "offset above which the clock is stepped; 0: never",
+      number_parameter("step_ms", 128, 0, 1e6,
+                       "offset above which the clock is stepped; 0: never; 0 or above 500: ntpd's "
+                       "own loop instead of the kernel's",
                        kReferenceNtp),
-      number_parameter("step_out_s", 300, 1, 1e5,
+      number_parameter("step_out_s", 300, 300, 1e5,
                        "how long such an offset must last, and how long the frequency is measured",
-                       "reference implementation; RFC 5905: 900"),
+                       "reference implementation, which takes no less than 300; RFC 5905: 900"),
       number_parameter("panic_s", 1000, 0, 1e9, "offset that ends the service; 0: none",
                        kReferenceNtp),
-      number_parameter("min_poll", 6, 3, 17, "shortest poll interval, log2 s", kReferenceNtp),
-      not_below("min_poll", number_parameter("max_poll", 10, 3, 17, "longest poll interval, log2 s",
-                                             kReferenceNtp)),
+      number_parameter("min_poll", form.poll_min, 3, 17, "shortest poll interval, log2 s",
+                       poll_source),
+      not_below("min_poll", number_parameter("max_poll", form.poll_max, 3, 17,
+                                             "longest poll interval, log2 s", poll_source)),
       flag_parameter("iburst", true, "a burst of eight exchanges while the server is not reached",
                      "usual configuration (iburst)"),
       choice_parameter("stamps", {"application", "kernel"},
@@ -305,29 +322,42 @@ std::vector<ParameterSpec> ntp_parameters(double service_hours) {
       number_parameter("broadcast_interval_s", 64, 8, 131072,
                        "between broadcasts (broadcast modes only)", "RFC 5905 section 9.2"),
       number_parameter("broadcast_delay_ms", 4, 0, 1e4,
-                       "assumed one-way delay (ntp_broadcast_fixed only)",
-                       "older documents of ntpd: 4 ms, 3 to 7 typical"),
-      number_parameter("service_hours", service_hours, 0, 1e4,
+                       "broadcastdelay, the assumed round trip, of which half is added "
+                       "(ntp_broadcast_fixed only)",
+                       "ntpd's documentation, broadcastdelay (miscopt.html), for what it means; "
+                       "older documents of ntpd for 4 ms, 3 to 7 typical"),
+      number_parameter("service_hours", form.service_hours, 0, 1e4,
                        "how long the service has run when the capture starts",
                        "assumption: most of the start-up transient is over"),
   };
 }
 
-HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double service_hours) {
+// ntpd takes whole exponents only.
+int poll_of(const Parameters& parameters, const std::string& name) {
+  const double poll = parameters.number(name);
+  if (poll != std::floor(poll)) {
+    throw ParameterError(
+        name, name + " is an exponent of 2 and must be whole, not " + std::to_string(poll));
+  }
+  return static_cast<int>(poll);
+}
+
+HostSyncEntry ntp(const NtpForm& form) {
   HostSyncEntry entry;
-  entry.info.name = std::move(name);
-  entry.info.family = "ntp";
-  entry.info.summary = std::move(summary);
+  entry.info.name = form.name;
+  entry.info.family = form.family;
+  entry.info.summary = form.summary;
   entry.info.source = "RFC 5905; docs/reference/host_sync.md section 2";
-  entry.info.parameters = ntp_parameters(service_hours);
-  entry.make = [mode](const Parameters& parameters) {
+  entry.info.parameters = ntp_parameters(form);
+  entry.make = [mode = form.mode, loop = form.loop](const Parameters& parameters) {
     NtpSettings settings;
     settings.mode = mode;
+    settings.discipline.loop = loop;
     settings.discipline.step_s = parameters.number("step_ms") * 1e-3;
     settings.discipline.step_out_s = parameters.number("step_out_s");
     settings.discipline.panic_s = parameters.number("panic_s");
-    settings.discipline.poll_min = static_cast<int>(parameters.number("min_poll"));
-    settings.discipline.poll_max = static_cast<int>(parameters.number("max_poll"));
+    settings.discipline.poll_min = poll_of(parameters, "min_poll");
+    settings.discipline.poll_max = poll_of(parameters, "max_poll");
     settings.initial_burst = parameters.flag("iburst");
     settings.stamps = stamps_of(parameters);
     settings.broadcast_interval = from_seconds(parameters.number("broadcast_interval_s"));
@@ -342,12 +372,28 @@ HostSyncEntry ntp(std::string name, std::string summary, NtpMode mode, double se
 
 std::vector<HostSyncEntry> host_sync_ntp() {
   return {
-      ntp("ntp", "NTP client and server: clock filter, PLL/FLL discipline, adaptive poll",
-          NtpMode::kUnicast, 16),
-      ntp("ntp_broadcast_volley", "NTP broadcast, its delay calibrated by one volley of exchanges",
-          NtpMode::kBroadcastVolley, 6),
-      ntp("ntp_broadcast_fixed", "NTP broadcast with an assumed delay", NtpMode::kBroadcastFixed,
-          6),
+      ntp({.name = "ntp",
+           .family = "ntp",
+           .summary = "ntpd as Linux runs it: clock filter, the kernel's PLL/FLL, adaptive poll"}),
+      ntp({.name = "ntp_lan",
+           .family = "ntp_lan",
+           .summary = "ntpd at its best on a LAN: ntp with polls of 8 and 16 s",
+           .poll_min = 3,
+           .poll_max = 4}),
+      ntp({.name = "ntp_daemon_loop",
+           .family = "ntp",
+           .summary = "ntpd with its own PLL/FLL, for a kernel without one (disable kernel)",
+           .loop = NtpLoop::kDaemon}),
+      ntp({.name = "ntp_broadcast_volley",
+           .family = "ntp",
+           .summary = "NTP broadcast, its delay calibrated by one volley of exchanges",
+           .mode = NtpMode::kBroadcastVolley,
+           .service_hours = 6}),
+      ntp({.name = "ntp_broadcast_fixed",
+           .family = "ntp",
+           .summary = "NTP broadcast with half of an assumed round trip",
+           .mode = NtpMode::kBroadcastFixed,
+           .service_hours = 6}),
   };
 }
 

@@ -8,11 +8,14 @@
 //    the burst and of the next broadcast, and from then on only listens: offset = (t3 - t4) +
 //    delay/2. A change of the client's clock between the two stays in the delay for good; after a
 //    step or slew by the burst itself another burst follows.
-//  - broadcast_fixed: the same without a burst, with an assumed one-way delay.
+//  - broadcast_fixed: the same without a burst, with an assumed round trip (broadcastdelay), of
+//    which half is added.
 //
-// Samples pass the clock filter and drive the discipline (both ntp_discipline.h). The phase
-// correction, once a second in the reference implementation, is a slew that is renewed at every
-// poll with the exact exponential: 4 events instead of thousands.
+// Samples pass the clock filter and drive the discipline (both ntp_discipline.h): the kernel's loop
+// or the daemon's own. A sample counts from when the discipline is told, as in the reference
+// implementation, though the filter may have kept it for up to seven polls. The phase correction,
+// once a second in the kernel and the daemon, is a slew that is renewed at every poll with the
+// exact exponential: 4 events instead of thousands.
 //
 // A poll without a reply shifts a zero into the reach register; three in a row put a missing sample
 // into the filter. A server whose distance exceeds 1.5 s is not used. There is one server, so no
@@ -52,7 +55,7 @@ struct NtpSettings {
   NtpStamps stamps = NtpStamps::kApplication;
   bool initial_burst = true;
   Nanoseconds broadcast_interval = from_ms(64e3);
-  double broadcast_delay_s = 0.004;  // one way, of broadcast_fixed
+  double broadcast_delay_s = 0.004;  // round trip, of broadcast_fixed
   Nanoseconds service_time = from_ms(16 * 3600e3);
 };
 

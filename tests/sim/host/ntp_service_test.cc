@@ -80,14 +80,16 @@ TEST(NtpService, MeasuresTheFrequencyThenLocks) {
   world.run_until(301);
   const double lacking = world.error_s(1) - at_300;
   ASSERT_GT(std::abs(lacking), 1e-6) << "the test needs a rate error";
-  // The phase that has built up meanwhile is removed with a time constant of 32 s.
+  // The phase that has built up meanwhile is removed with a time constant of 32 s, its last 0.5 ms
+  // by the kernel, with one of 256 s.
   world.run_until(420);
   const double built_up_s = world.error_s(1);
   world.run_until(700);
-  EXPECT_LT(std::abs(world.error_s(1)), 0.02 * std::abs(built_up_s) + 2e-6);
+  EXPECT_LT(std::abs(world.error_s(1)), std::exp(-280 / 256.0) * std::abs(built_up_s));
   const double at_700 = world.error_s(1);
   world.run_until(701);
-  EXPECT_NEAR(world.error_s(1), at_700, 0.1e-6) << "the frequency is right";
+  // The kernel takes a part of that phase for a lack of frequency: 0.5 ms * 512 s / (1024 s)^2.
+  EXPECT_NEAR(world.error_s(1), at_700, 0.3e-6) << "the frequency is right";
   world.run_until(4 * 3600);
   EXPECT_LT(std::abs(world.error_s(1)), 10e-6);
 }
@@ -208,12 +210,12 @@ TEST(NtpService, AnOffsetBeyondThePanicLimitIsAnOutcome) {
   EXPECT_NEAR(world.error_s(1), 1001, 1) << "left alone";
 }
 
-TEST(NtpBroadcast, TheFixedDelayIsWrongByWhatItDiffersFromTheReal) {
+TEST(NtpBroadcast, HalfOfTheFixedDelayIsWrongByWhatItDiffersFromTheReal) {
   ServiceWorld world(quiet_world());
   NtpService ntp(mode(NtpMode::kBroadcastFixed));
   world.start(ntp);
   world.run_until(12 * 3600);
-  EXPECT_NEAR(world.error_s(1), 4e-3 - kLatencyMs * 1e-3, 20e-6);
+  EXPECT_NEAR(world.error_s(1), 4e-3 / 2 - kLatencyMs * 1e-3, 20e-6);
 }
 
 TEST(NtpBroadcast, TheVolleyFindsTheDelay) {

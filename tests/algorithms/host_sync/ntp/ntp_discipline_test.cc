@@ -9,8 +9,15 @@
 namespace simbench {
 namespace {
 
-NtpDisciplineSettings fixed_poll(int poll) {
+// ntpd's own loop; that of the kernel has a test of its own, and a section below.
+NtpDisciplineSettings daemon() {
   NtpDisciplineSettings settings;
+  settings.loop = NtpLoop::kDaemon;
+  return settings;
+}
+
+NtpDisciplineSettings fixed_poll(int poll) {
+  NtpDisciplineSettings settings = daemon();
   settings.poll_min = poll;
   settings.poll_max = poll;
   return settings;
@@ -27,7 +34,7 @@ NtpDiscipline locked(NtpDisciplineSettings settings) {
 }
 
 TEST(NtpDiscipline, ALargeFirstOffsetStepsAndThenTheFrequencyIsMeasured) {
-  NtpDiscipline discipline({});
+  NtpDiscipline discipline(daemon());
   EXPECT_EQ(discipline.update(0.3, 10), NtpAction::kStep);
   EXPECT_EQ(discipline.state(), NtpState::kFreq);
   EXPECT_EQ(discipline.residual_s(10), 0);
@@ -40,7 +47,7 @@ TEST(NtpDiscipline, ALargeFirstOffsetStepsAndThenTheFrequencyIsMeasured) {
 }
 
 TEST(NtpDiscipline, ASmallFirstOffsetIsSlewedAndThenTheFrequencyIsMeasured) {
-  NtpDiscipline discipline({});
+  NtpDiscipline discipline(daemon());
   EXPECT_EQ(discipline.update(0.05, 0), NtpAction::kSlew);
   EXPECT_EQ(discipline.state(), NtpState::kFreq);
   EXPECT_EQ(discipline.phase_rate(100), 0);
@@ -49,12 +56,12 @@ TEST(NtpDiscipline, ASmallFirstOffsetIsSlewedAndThenTheFrequencyIsMeasured) {
 }
 
 TEST(NtpDiscipline, TheStartUpClampRemovesTheTransientAndNothingElse) {
-  NtpDiscipline discipline({});
+  NtpDiscipline discipline(daemon());
   discipline.update(0.3, 0);
   discipline.update(10e-6 * 300, 300);  // 10 ppm, and 3 ms of phase
   EXPECT_NEAR(discipline.residual_s(332), 3e-3 * std::exp(-1), 1e-15);
   EXPECT_NEAR(discipline.phase_rate(300) * 64, 3e-3 * (1 - std::exp(-2)), 1e-15);
-  for (double at_s = 364; at_s < 600; at_s += 64) discipline.update(0, at_s);
+  for (double at_s = 364; at_s < 600; at_s += 64) discipline.update(0.6e-3, at_s);
   EXPECT_EQ(discipline.frequency(), 10e-6) << "untouched";
   EXPECT_EQ(discipline.poll(), 6);
   discipline.update(1e-3, 600);
@@ -62,8 +69,19 @@ TEST(NtpDiscipline, TheStartUpClampRemovesTheTransientAndNothingElse) {
   EXPECT_NEAR(discipline.residual_s(600 + 1024), 1e-3 * std::exp(-1), 1e-15);
 }
 
+TEST(NtpDiscipline, AnOffsetBelowTheFloorEndsTheClamp) {
+  NtpDiscipline discipline(daemon());
+  discipline.update(0.3, 0);
+  discipline.update(10e-6 * 300, 300);
+  EXPECT_TRUE(discipline.is_starting(363));
+  discipline.update(0.4e-3, 364);
+  EXPECT_FALSE(discipline.is_starting(364));
+  EXPECT_EQ(discipline.frequency(), 10e-6) << "this update still leaves the frequency alone";
+  EXPECT_NEAR(discipline.residual_s(364 + 1024), 0.4e-3 * std::exp(-1), 1e-15);
+}
+
 TEST(NtpDiscipline, TheSlewIsNeverAbove500Ppm) {
-  NtpDisciplineSettings settings;
+  NtpDisciplineSettings settings = daemon();
   settings.frequency = -100e-6;
   NtpDiscipline discipline(settings);
   discipline.update(0.12, 0);
@@ -71,7 +89,7 @@ TEST(NtpDiscipline, TheSlewIsNeverAbove500Ppm) {
 }
 
 TEST(NtpDiscipline, StartsLockedWithAKnownFrequency) {
-  NtpDisciplineSettings settings;
+  NtpDisciplineSettings settings = daemon();
   settings.frequency = 12e-6;
   NtpDiscipline discipline(settings);
   EXPECT_EQ(discipline.update(1e-3, 0), NtpAction::kAdjust);
@@ -137,7 +155,7 @@ TEST(NtpDiscipline, TheFllTakesOverAtLongPolls) {
 }
 
 TEST(NtpDiscipline, ALargeOffsetIsASpikeUntilTheStepOut) {
-  NtpDiscipline discipline = locked({});
+  NtpDiscipline discipline = locked(daemon());
   EXPECT_EQ(discipline.update(0.2, 64), NtpAction::kIgnore);
   EXPECT_EQ(discipline.state(), NtpState::kSpik);
   EXPECT_EQ(discipline.update(1e-3, 128), NtpAction::kAdjust);
@@ -150,7 +168,7 @@ TEST(NtpDiscipline, ALargeOffsetIsASpikeUntilTheStepOut) {
 }
 
 TEST(NtpDiscipline, StepAndPanicLimits) {
-  NtpDisciplineSettings settings;
+  NtpDisciplineSettings settings = daemon();
   NtpDiscipline at_limit = locked(settings);
   EXPECT_EQ(at_limit.update(0.128, 64), NtpAction::kAdjust);
   EXPECT_EQ(NtpDiscipline(settings).update(1000, 0), NtpAction::kStep);
@@ -163,7 +181,7 @@ TEST(NtpDiscipline, StepAndPanicLimits) {
 }
 
 TEST(NtpDiscipline, ThePollGrowsWhileOffsetsAreWithinTheJitter) {
-  NtpDiscipline discipline = locked({});
+  NtpDiscipline discipline = locked(daemon());
   int updates = 0;
   double at_s = 0;
   while (discipline.poll() == 6) {
@@ -171,8 +189,8 @@ TEST(NtpDiscipline, ThePollGrowsWhileOffsetsAreWithinTheJitter) {
     discipline.update(updates % 2 == 0 ? 50e-6 : -50e-6, at_s);
     ASSERT_LT(++updates, 100);
   }
-  // 6 a time beyond 30, the first of them when it was locked.
-  EXPECT_EQ(updates, 5);
+  // 6 a time beyond 30, the first two of them when it was locked.
+  EXPECT_EQ(updates, 4);
   for (int i = 0; i < 100; ++i) {
     at_s += discipline.poll_interval_s();
     discipline.update(i % 2 == 0 ? 50e-6 : -50e-6, at_s);
@@ -181,7 +199,7 @@ TEST(NtpDiscipline, ThePollGrowsWhileOffsetsAreWithinTheJitter) {
 }
 
 TEST(NtpDiscipline, ThePollShrinksWhenOffsetsStayAboveTheJitter) {
-  NtpDiscipline discipline = locked({});
+  NtpDiscipline discipline = locked(daemon());
   double at_s = 0;
   for (int i = 0; i < 100; ++i) {
     at_s += discipline.poll_interval_s();
@@ -198,14 +216,57 @@ TEST(NtpDiscipline, ThePollShrinksWhenOffsetsStayAboveTheJitter) {
 }
 
 TEST(NtpDiscipline, TheFrequencyIsCapped) {
-  NtpDiscipline discipline({});
+  NtpDiscipline discipline(daemon());
   discipline.update(0, 0);
   discipline.update(0.12, 300);  // 400 ppm
   EXPECT_NEAR(discipline.frequency(), 400e-6, 1e-12);
-  NtpDiscipline fast({});
+  NtpDiscipline fast(daemon());
   fast.update(0, 0);
   fast.update(0.27, 300);  // 900 ppm, and a step
   EXPECT_EQ(fast.frequency(), NtpDiscipline::kMaxFrequency);
+}
+
+TEST(NtpDiscipline, TheKernelIsToldWhatTheDaemonMeasuresAndThenDecides) {
+  NtpDiscipline discipline({});
+  discipline.update(0.3, 0);
+  discipline.update(10e-6 * 300, 300);
+  EXPECT_NEAR(discipline.frequency(), 10e-6, 1e-15);
+  EXPECT_NEAR(discipline.residual_s(332), 3e-3 * std::exp(-1), 1e-15) << "the daemon's clamp";
+  discipline.update(0.4e-3, 364);
+  NtpKernelLoop kernel(0);
+  kernel.set_frequency(10e-6);
+  kernel.update(0.4e-3, 6, 364);
+  EXPECT_EQ(discipline.frequency(), kernel.frequency());
+  EXPECT_EQ(discipline.residual_s(500), kernel.residual_s(500));
+  EXPECT_NEAR(discipline.phase_rate(364) * 64, 0.4e-3 - kernel.residual_s(364 + 64), 1e-15);
+  // A spike is the daemon's affair: the kernel goes on.
+  EXPECT_EQ(discipline.update(0.2, 428), NtpAction::kIgnore);
+  EXPECT_EQ(discipline.residual_s(428), kernel.residual_s(428));
+  EXPECT_EQ(discipline.update(0.2, 700), NtpAction::kStep);
+  EXPECT_EQ(discipline.residual_s(700), 0);
+  EXPECT_EQ(discipline.frequency(), kernel.frequency());
+}
+
+TEST(NtpDiscipline, AClampThatRunsOutLeavesTheKernelWithoutAnOffset) {
+  NtpDiscipline discipline({});
+  discipline.update(0.3, 0);
+  discipline.update(100e-3, 300);
+  EXPECT_GT(discipline.phase_rate(590), 0);
+  EXPECT_EQ(discipline.phase_rate(600), 0);
+  discipline.update(1e-3, 660);
+  EXPECT_NEAR(discipline.residual_s(660), 1e-3, 1e-15);
+}
+
+TEST(NtpDiscipline, ALimitForStepsThatIsTooHighForTheKernelLeavesTheDaemonsLoop) {
+  for (const auto& [step_s, tau_s] :
+       {std::pair{0.5, 255.5}, std::pair{0.0, 1024.0}, std::pair{0.6, 1024.0}}) {
+    NtpDisciplineSettings settings = fixed_poll(6);
+    settings.loop = NtpLoop::kKernel;
+    settings.step_s = step_s;
+    NtpDiscipline discipline = locked(settings);
+    discipline.update(1e-3, 64);
+    EXPECT_NEAR(discipline.time_constant_s(), tau_s, 0.001) << step_s;
+  }
 }
 
 TEST(NtpDiscipline, IsFiniteForAnyOffsets) {
@@ -213,6 +274,7 @@ TEST(NtpDiscipline, IsFiniteForAnyOffsets) {
     boost::random::mt19937 engine(seed);
     boost::random::uniform_01<double> uniform;
     NtpDisciplineSettings settings;
+    settings.loop = seed % 2 == 0 ? NtpLoop::kKernel : NtpLoop::kDaemon;
     settings.poll_max = 17;
     NtpDiscipline discipline(settings);
     double at_s = 0;

@@ -19,8 +19,8 @@ namespace {
 
 std::vector<HostSyncEntry> ntp_host_syncs() {
   std::vector<HostSyncEntry> entries;
-  for (const char* name : {"ntp", "ntp_broadcast_volley", "ntp_broadcast_fixed", "w32time",
-                           "w32time_domain", "chrony"}) {
+  for (const char* name : {"ntp", "ntp_lan", "ntp_daemon_loop", "ntp_broadcast_volley",
+                           "ntp_broadcast_fixed", "w32time", "w32time_domain", "chrony"}) {
     entries.push_back(*find_host_sync(name));
   }
   return entries;
@@ -50,6 +50,9 @@ TEST(NtpRegistration, ImpossibleParametersAreRefused) {
     EXPECT_THROW(make_service(name, {{"max_poll", 18.0}}), ParameterError) << name;
     EXPECT_THROW(make_service(name, {{"stamps", std::string("hardware")}}), ParameterError) << name;
   }
+  EXPECT_THROW(make_service("ntp_lan", {{"min_poll", 2.0}}), ParameterError);
+  EXPECT_THROW(make_service("ntp_lan", {{"min_poll", 3.5}}), ParameterError);
+  EXPECT_THROW(make_service("ntp", {{"step_out_s", 299.0}}), ParameterError);
   EXPECT_THROW(make_service("w32time_domain", {{"poll_interval_s", 1.0}}), ParameterError);
 }
 
