@@ -14,6 +14,7 @@
   FILE(two_way)                  \
   FILE(ptp)                      \
   FILE(sptp)                     \
+  FILE(huygens)                  \
   FILE(common_view)              \
   FILE(gnss)                     \
   FILE(ntp)                      \

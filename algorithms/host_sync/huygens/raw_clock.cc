@@ -1,0 +1,48 @@
+#include "algorithms/host_sync/huygens/raw_clock.h"
+
+#include "algorithms/host_sync/ptp/ptp_clocks.h"
+
+namespace simbench {
+
+Task<void> RawClock::watch() {
+  while (is_card()) {
+    const CrossStamp stamp = co_await narrowest_cross_stamp(host_);
+    const HostTime middle = stamp.before + (stamp.after - stamp.before) / 2;
+    if (!system_.is_known()) co_await system_.look();
+    add(nanoseconds_of(stamp.hardware), system_.when(middle));
+    co_await host_.sleep_for(kInterval);
+  }
+}
+
+void RawClock::add(std::int64_t raw_ns, SteadyTime at) {
+  seen_.push_back({.x = raw_ns, .y = nanoseconds_of(at) - raw_ns});
+  if (seen_.size() > kCrossStamps) seen_.pop_front();
+}
+
+Task<std::optional<std::int64_t>> RawClock::departure(MessageChannel& channel, MessageId id,
+                                                      SteadyTime begin) {
+  const std::optional<std::int64_t> stamp = co_await stamps_.departure(channel, id);
+  if (!stamp || is_card()) co_return stamp;
+  const SteadyTime left = system_.when(HostTime(Nanoseconds(*stamp)));
+  const SteadyTime now = host_.steady_clock().now();
+  if (left < begin || left > now) co_return std::nullopt;
+  co_return nanoseconds_of(left);
+}
+
+std::optional<std::int64_t> RawClock::arrival(const ReceivedMessage& message) {
+  system_.observe(message.received, message.received_steady);
+  if (!is_card()) return nanoseconds_of(message.received_steady);
+  return stamps_.arrival(message);
+}
+
+std::optional<SteadyTime> RawClock::steady_at(std::int64_t raw_ns) const {
+  if (!is_card()) return SteadyTime(Nanoseconds(raw_ns));
+  if (seen_.empty()) return std::nullopt;
+  const LinePoint last = seen_.back();
+  LineSums sums(kCrossStamps);
+  for (const LinePoint& point : seen_) sums.add({.x = point.x - last.x, .y = point.y - last.y});
+  const double ahead = sums.line().at(raw_ns - last.x);
+  return SteadyTime(Nanoseconds(raw_ns + last.y) + from_ns(ahead));
+}
+
+}  // namespace simbench
