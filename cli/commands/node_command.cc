@@ -52,6 +52,7 @@ struct NodeOptions {
   bool dry_run = false;
   double clock_offset_ms = 0;
   double clock_skew_ppm = 0;
+  hardware::SoftwareClock::SetCost clock_set;
 };
 
 void log_line(const std::string& line) {
@@ -127,6 +128,7 @@ std::unique_ptr<hardware::NodeClock> make_clock(boost::asio::io_context& context
   hardware::SoftwareClock::Settings settings;
   settings.host = me;
   settings.offset = from_ms(options.clock_offset_ms);
+  settings.set_cost = options.clock_set;
   if (options.clock_skew_ppm != 0) {
     const MonotonicTime zero = hardware::monotonic_now();
     settings.oscillator = {.monotonic_zero = zero,
@@ -205,6 +207,18 @@ void add_clock_options(Command& command, NodeOptions& options) {
   command
       .number("--clock-skew-ppm", "PPM", options.clock_skew_ppm, -1000, 1000,
               "For tests: the node's oscillator runs fast by this. Default: 0")
+      .excludes(set);
+  command
+      .number("--clock-set-cost-ms", "MS", options.clock_set.cost_ms, 0, 1000,
+              "For tests: a change of the node's clock takes so long. Default: 0")
+      .excludes(set);
+  command
+      .number("--clock-set-log-sigma", "SIGMA", options.clock_set.log_sigma, 0, 2,
+              "For tests: each time a factor exp(N(0, this)) longer or shorter. Default: 0")
+      .excludes(set);
+  command
+      .number("--clock-set-effective", "SHARE", options.clock_set.effective_fraction, 0, 1,
+              "For tests: the share of that time after which it counts. Default: 0")
       .excludes(set);
 }
 

@@ -35,8 +35,9 @@ constexpr StageEvidence kStages[] = {
      "The experiment's hosts share one oscillator: their skews are set, and they have no wander"},
     {"clock interface (get and set)",
      {false, true, false, false, true},
-     "the nodes' software clock is part of the experiment; cost and ticks of the system calls in "
-     "the calibrated worlds are fitted, no document supports them"},
+     "the nodes' software clock is part of the experiment, and blocks for as long as the scenario "
+     "says when it is set; that the calls of a real system cost so much, and the ticks of the "
+     "calibrated worlds, are fitted, no document supports them"},
     {"network latency",
      {false, false, false, true, true},
      "near published round trips of one wired link; unequal links and bursts are assumed. The "

@@ -1,6 +1,10 @@
 #include "hardware/clock/software_clock.h"
 
+#include <boost/random/normal_distribution.hpp>
 #include <chrono>
+#include <cmath>
+#include <random>
+#include <thread>
 #include <utility>
 
 namespace simbench::hardware {
@@ -14,28 +18,54 @@ clocks::DisciplinedClock<NodeOscillator> begin_clock(const SoftwareClock::Settin
   return {settings.host, settings.oscillator, begin.at, begin.reads + settings.offset, kHistory};
 }
 
+// Blocks the thread. A sleep ends too late by what waking takes, so the end of it is spent waiting.
+void block_until(MonotonicTime at) {
+  constexpr Nanoseconds kWakeUp = std::chrono::microseconds(300);
+  if (const Nanoseconds left = at - monotonic_now(); left > kWakeUp) {
+    std::this_thread::sleep_for(left - kWakeUp);
+  }
+  while (monotonic_now() < at) {
+  }
+}
+
 }  // namespace
 
 SoftwareClock::SoftwareClock(boost::asio::io_context& context, Settings settings)
-    : settings_(std::move(settings)), clock_(begin_clock(settings_)), settle_timer_(context) {}
+    : settings_(std::move(settings)),
+      clock_(begin_clock(settings_)),
+      costs_(std::random_device{}()),
+      settle_timer_(context) {}
 
 Task<HostTime> SoftwareClock::now() { co_return clock_.read(monotonic_now()); }
 
-Task<void> SoftwareClock::set(HostTime value) {
-  clock_.set(monotonic_now(), value);
+template <class Change>
+void SoftwareClock::change(const Change& apply) {
+  const SetCost& cost = settings_.set_cost;
+  if (cost.cost_ms <= 0) {
+    apply(monotonic_now());
+  } else {
+    boost::random::normal_distribution<double> normal;
+    const double cost_ms = cost.cost_ms * std::exp(cost.log_sigma * normal(costs_));
+    const MonotonicTime begin = monotonic_now();
+    block_until(begin + from_ms(cost_ms * cost.effective_fraction));
+    apply(monotonic_now());
+    block_until(begin + from_ms(cost_ms));
+  }
   settle_in_time();
+}
+
+Task<void> SoftwareClock::set(HostTime value) {
+  change([&](MonotonicTime at) { clock_.set(at, value); });
   co_return;
 }
 
 Task<void> SoftwareClock::adjust_frequency(double ppb) {
-  clock_.adjust_frequency(monotonic_now(), ppb);
-  settle_in_time();
+  change([&](MonotonicTime at) { clock_.adjust_frequency(at, ppb); });
   co_return;
 }
 
 Task<void> SoftwareClock::slew(Nanoseconds offset, double max_rate_ppb) {
-  clock_.slew(monotonic_now(), offset, max_rate_ppb);
-  settle_in_time();
+  change([&](MonotonicTime at) { clock_.slew(at, offset, max_rate_ppb); });
   co_return;
 }
 

@@ -4,7 +4,9 @@
 // offset, for nodes of tests), at rate 0, and runs on by itself (clocks/disciplined_clock.h has the
 // semantics of adjustments and the precision).
 //
-// Calls of HostClock do not suspend: they act on the present instant. A timer of `context` notifies
+// Calls of HostClock do not suspend: they act on the present instant. In tests a change may cost
+// time, as the operating system's call does where it is slow: the thread is blocked for so long,
+// and the change counts after a part of that. A timer of `context` notifies
 // the observer of the planned end of a slew; observe(nullptr) ends that timer, so that the context
 // can run out of work.
 //
@@ -17,6 +19,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/random/mersenne_twister.hpp>
 #include <cstdint>
 #include <functional>
 
@@ -27,10 +30,18 @@ namespace simbench::hardware {
 
 class SoftwareClock : public NodeClock {
  public:
+  // Of tests: what a change costs, each time anew, and the share of it after which it counts.
+  struct SetCost {
+    double cost_ms = 0;
+    double log_sigma = 0;  // factor exp(N(0, this))
+    double effective_fraction = 0;
+  };
+
   struct Settings {
     std::uint32_t host = 0;     // under which adjustments are reported
     NodeOscillator oscillator;  // of tests; the default is the kernel's own
     Nanoseconds offset{};       // of tests: ahead of the operating system's clock at the beginning
+    SetCost set_cost{};
     std::function<HostTime()> system_clock = read_system_clock;
   };
 
@@ -55,10 +66,13 @@ class SoftwareClock : public NodeClock {
  private:
   using Clock = clocks::DisciplinedClock<NodeOscillator>;
 
+  template <class Change>
+  void change(const Change& apply);
   void settle_in_time();
 
   Settings settings_;
   Clock clock_;
+  boost::random::mt19937_64 costs_;
   bool observed_ = false;
   boost::asio::steady_timer settle_timer_;
 };

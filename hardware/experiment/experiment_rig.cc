@@ -9,6 +9,7 @@
 #include <boost/asio/ip/udp.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -95,6 +96,7 @@ std::vector<ClockStart> draw_clock_starts(const scenarios::Scenario& scenario, s
     ClockStart start;
     start.skew_ppm = is_exact ? 0 : cut(skew_ppm, kMaxSkewPpm);
     start.offset_ms = host == 0 ? 0 : cut(offset_ms, kMaxOffsetMs);
+    start.set_cost_factor = std::exp(normal(generator) * clock.set_cost_session_log_sigma);
     starts.push_back(start);
   }
   return starts;
@@ -165,13 +167,18 @@ std::string ExperimentRig::rig_text(std::optional<unsigned> node) const {
 
 void ExperimentRig::start_node(unsigned node, const std::string& file) {
   const ClockStart& clock = settings_.clocks.at(node);
+  const scenarios::HostClock& interface = settings_.scenario->hosts.clock;
   const std::string name = fmt::format("host{}", node);
   nodes_.push_back(std::make_unique<ChildProcess>(ChildProcess::Settings{
       .program = settings_.program,
       .arguments = {"node", "--rig", file, "--name", name, "--key-file", folder_.file("rig.key"),
                     "--journal", folder_.file("journal-" + name),
                     fmt::format("--clock-offset-ms={}", clock.offset_ms),
-                    fmt::format("--clock-skew-ppm={}", clock.skew_ppm)},
+                    fmt::format("--clock-skew-ppm={}", clock.skew_ppm),
+                    fmt::format("--clock-set-cost-ms={}",
+                                interface.set_cost_ms * clock.set_cost_factor),
+                    fmt::format("--clock-set-log-sigma={}", interface.set_cost_call_log_sigma),
+                    fmt::format("--clock-set-effective={}", interface.set_effective_fraction)},
       .log = folder_.file(name + ".log"),
       .sandbox_member = settings_.namespaces ? std::optional(node) : std::nullopt}));
 }

@@ -1,9 +1,10 @@
 // A rig of processes on this machine: a node for each host of a scenario and a relay between them.
 //
 // One repetition of the real-network experiment runs on it: `simbench node` once a host, with
-// clocks that start at given offsets and skews and cameras that play a recording; `simbench relay`
-// with the scenario's network; a conductor's rig file and key for RigSource. All files lie in one
-// temporary folder. The destructor ends all processes and removes all files.
+// clocks that start at given offsets and skews, whose changes take as long as the scenario says,
+// and cameras that play a recording; `simbench relay` with the scenario's network; a conductor's
+// rig file and key for RigSource. All files lie in one temporary folder. The destructor ends all
+// processes and removes all files.
 //
 // Network: with `namespaces` every node has a network namespace of its own, joined to the caller's
 // (which NetworkSandbox::enter() made) by a veth pair; else every node has ports of its own on
@@ -41,6 +42,7 @@ namespace simbench::hardware {
 struct ClockStart {
   double offset_ms = 0;  // of its system clock
   double skew_ppm = 0;   // of its oscillator
+  double set_cost_factor = 1;
 };
 
 // The limits of draw_clock_starts().

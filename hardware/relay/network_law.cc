@@ -90,6 +90,17 @@ void check_relay_can(const scenarios::Scenario& scenario) {
   refuse_unless_zero("/network/latency_session_exponential_ms",
                      network.latency_session_exponential_ms);
   refuse_unless_zero("/network/port_asymmetry_sigma_ms", network.port_asymmetry_sigma_ms);
+  refuse_unless_zero("/network/switch_residence_ms", network.switch_residence_ms);
+  refuse_unless_zero("/network/cross_traffic_share", network.cross_traffic_share);
+  if (!network.switch_of_host.empty()) {
+    scenarios::fail_at(scenario, "/network/switch_of_host",
+                       "found switches in a line, allowed where a relay imitates the network: one");
+  }
+  if (scenario.hosts.stack) {
+    scenarios::fail_at(scenario, "/hosts/stack",
+                       "found a stack, allowed where a relay imitates the network: none; the nodes "
+                       "have that of their machine");
+  }
   if (!network.links.empty()) {
     scenarios::fail_at(scenario, "/network/links",
                        fmt::format("found {} links, allowed where a relay imitates the network: "

@@ -48,6 +48,22 @@ TEST_F(SoftwareClockTest, RunsAtTheSkewOfItsOscillator) {
   EXPECT_NEAR(to_ms(clock.steady_at(later) - clock.steady_at(now)), 1'000'030, 2e-6);
 }
 
+// The call lasts 20 ms and the value counts after a quarter of it, so at the call's end the clock
+// is ahead by the rest.
+TEST_F(SoftwareClockTest, AChangeTakesWhatItCosts) {
+  SoftwareClock::Settings slow = settings();
+  slow.set_cost = {.cost_ms = 20, .log_sigma = 0, .effective_fraction = 0.25};
+  SoftwareClock clock(context, slow);
+  const MonotonicTime begin = monotonic_now();
+  await(context, clock.set(HostTime(from_ms(5000))));
+  const MonotonicTime end = monotonic_now();
+  EXPECT_GE(end - begin, from_ms(20));
+  EXPECT_GE(clock.system_at(end), HostTime(from_ms(5000)));
+  EXPECT_LE(clock.system_at(end), HostTime(from_ms(5000 - 5)) + (end - begin));
+  // Readings of before the change are the old ones for a quarter of the call.
+  EXPECT_GT(clock.system_at(begin + from_ms(4.9)), HostTime(std::chrono::hours(1)));
+}
+
 TEST_F(SoftwareClockTest, SetsAndReadsThePresent) {
   SoftwareClock clock(context, settings());
   const MonotonicTime before = monotonic_now();

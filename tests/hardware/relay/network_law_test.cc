@@ -199,6 +199,9 @@ TEST(NetworkLaw, WhatARelayCannotImitateIsRefused) {
   EXPECT_THAT(law_refusal("/network/port_asymmetry_sigma_ms", "0.1"),
               HasSubstr("port_asymmetry_sigma_ms"));
   EXPECT_THAT(law_refusal("/network/links", R"([{"host": 1}])"), HasSubstr("found 1 links"));
+  EXPECT_THAT(law_refusal("/network/switch_residence_ms", "0.002"), HasSubstr("residence"));
+  EXPECT_THAT(law_refusal("/network/switch_of_host", "[0, 0, 0, 1, 1, 1]"),
+              HasSubstr("allowed where a relay imitates the network: one"));
 }
 
 }  // namespace
