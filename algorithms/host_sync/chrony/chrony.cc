@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "algorithms/host_sync/ntp/ntp_service.h"
 #include "algorithms/host_sync/outcome.h"
 #include "algorithms/registry.h"
 
@@ -15,6 +14,7 @@ namespace {
 
 constexpr double kMeasuredWeight = 3;
 constexpr double kMinSlewTime = 1;  // s
+constexpr double kSlewArea = 0.5;   // of a linear slew
 
 }  // namespace
 
@@ -26,8 +26,10 @@ ChronyCorrection ChronyReference::update(const ChronyEstimate& estimate, double 
   const double interval_s = now_s - last_update_s_.value_or(now_s);
   last_update_s_ = now_s;
   const double size_s = std::abs(left_s + correction.offset_s);
+  correction.is_step = updates_ < settings_.step_updates && size_s > settings_.step_threshold_s;
+  if (updates_ < settings_.step_updates) ++updates_;
   if (size_s > 0) {
-    const double area = settings_.correction_ratio * interval_s * estimate.offset_sd_s;
+    const double area = kSlewArea * settings_.correction_ratio * interval_s * estimate.offset_sd_s;
     const double time_s = std::max(area / size_s, kMinSlewTime);
     correction.slew_rate = std::min(size_s / time_s, settings_.max_slew_rate);
   }
@@ -52,31 +54,57 @@ double ChronyReference::change_of_frequency(const ChronyEstimate& estimate) {
 namespace {
 
 constexpr double kPollSpread = 0.02;
-constexpr double kSlewAhead = 1.25;      // poll intervals
-constexpr double kMaxClockError = 1e-6;  // the default of maxclockerror, 1 ppm
+constexpr double kSlewAhead = 1.25;    // poll intervals
+constexpr double kMaxJitter = 1;       // s; the default of maxjitter
+constexpr double kMaxLanDelay = 0.01;  // s
+constexpr double kBurstShare = 0.25;   // of a poll interval
+// What the poll's score gets instead of a sample.
+constexpr double kBadSample = 0.1;
+constexpr double kMissedWhileSynchronised = 0.1;
+constexpr double kMissed = 0.25;
 
 // The client on one slave. The host must outlive the client, and the client its coroutines.
 class ChronyClient {
  public:
   static constexpr int kBurst = 4;
-  static constexpr Nanoseconds kBurstSpacing{2'000'000'000};
-  static constexpr Nanoseconds kMaxDelay{3'000'000'000};
+  static constexpr std::uint32_t kBurstPolls = 8;
+  static constexpr double kBurstSpacing = 2;  // s
+  static constexpr double kMaxDelay = 3;      // s
+  static constexpr Nanoseconds kInitialDelay{200'000'000};
+  static constexpr std::uint32_t kReachPolls = 8;  // the last ones, of which one must be answered
   static constexpr std::uint32_t kPatience = 8;  // polls without a reply, then the slave has failed
 
   ChronyClient(Host& host, PeerId server, const ChronySettings& settings);
 
-  // Never ends.
+  // Ends only where the host lacks the stamps asked for.
   Task<void> run();
 
  private:
+  // A measurement and what the clock was corrected by since, or had still to slew then.
+  struct Pending {
+    NtpMeasurement measurement;
+    double at_s = 0;
+    double moved_s = 0;
+  };
+
   Task<void> poll();
+  void missed();
   // Returns whether there is an estimate to correct the clock by.
   bool use(const NtpMeasurement& measurement);
+  bool use(const ChronySample& sample);
   Task<void> correct();
+  Task<void> step(double offset_s);
   // Adds `offset_s` at a rate, as a fraction, in parts.
   Task<void> slew(double offset_s, double rate);
-  // The measurement as seen by the clock that has finished its slew.
-  ChronySample sample_of(const NtpMeasurement& measurement) const;
+  // The measurement that is complete with this reply: in interleaved mode the one before.
+  std::optional<Pending> completed(const NtpMeasurement& reply);
+  // As seen by the clock that has finished its slew.
+  Pending pending(const NtpMeasurement& measurement) const;
+  ChronySample sample_of(const Pending& complete) const;
+  Nanoseconds interval() const;
+  bool lacks_stamps() const {
+    return settings_.stamps == ChronyStamps::kKernel && !association_.lacking().empty();
+  }
 
   double seconds(SteadyTime at) const { return to_seconds(at - start_); }
   double now_s() const { return seconds(host_.steady_clock().now()); }
@@ -89,9 +117,13 @@ class ChronyClient {
   ChronyReference reference_;
   ChronyPoll poll_;
   UnfinishedSlew slew_;
+  std::optional<Pending> last_;  // in interleaved mode: without the server's departure stamp
+  bool last_is_interleaved_ = false;
   SteadyTime start_;
+  SteadyTime heard_;  // the last reply, or the last poll that was not answered
   std::uint32_t polls_ = 0;
   std::uint32_t replies_ = 0;
+  std::uint32_t unanswered_ = 0;
   int good_samples_ = 0;
   OutcomeReport outcome_;
 };
@@ -107,61 +139,103 @@ ChronyClient::ChronyClient(Host& host, PeerId server, const ChronySettings& sett
     : host_(host),
       server_(server),
       settings_(settings),
-      association_(host, server, settings.stamps),
+      association_(host, server,
+                   settings.stamps == ChronyStamps::kApplication ? NtpStamps::kApplication
+                                                                 : NtpStamps::kKernel),
       stats_(settings.stats),
       reference_(settings.reference),
       poll_(settings.poll_min, settings.poll_max, settings.poll_target),
       start_(host.steady_clock().now()),
-      outcome_(host) {}
+      heard_(start_),
+      outcome_(host) {
+  if (settings.is_interleaved) association_.interleave();
+}
 
 Task<void> ChronyClient::run() {
   if (const auto stored = host_.stored_frequency()) {
     reference_.start_with(stored->ppb * 1e-9, stored->error_ppb * 1e-9);
     co_await host_.clock().adjust_frequency(reference_.frequency() * 1e9);
   }
-  // Clients that start together do not stay together.
-  co_await host_.sleep_for(from_seconds(host_.random_uniform() * to_seconds(kBurstSpacing)));
-  while (true) {
-    const SteadyTime begin = host_.steady_clock().now();
+  co_await host_.sleep_for(kInitialDelay);
+  while (!lacks_stamps()) {
     co_await poll();
     const double spread = 1 + host_.random_uniform() * kPollSpread;
-    const bool in_burst = settings_.initial_burst && replies_ > 0 && good_samples_ < kBurst;
-    const Nanoseconds interval =
-        in_burst ? kBurstSpacing : from_seconds(poll_.interval_s() * spread);
-    const Nanoseconds passed = host_.steady_clock().now() - begin;
-    if (passed < interval) co_await host_.sleep_for(interval - passed);
+    const Nanoseconds wait = from_seconds(to_seconds(interval()) * spread);
+    const Nanoseconds passed = host_.steady_clock().now() - heard_;
+    if (passed < wait) co_await host_.sleep_for(wait - passed);
   }
+  outcome_.failed(polls_, association_.lacking());
+}
+
+Nanoseconds ChronyClient::interval() const {
+  const bool in_burst = settings_.initial_burst && good_samples_ < kBurst && polls_ < kBurstPolls;
+  if (!in_burst) return from_seconds(poll_.interval_s());
+  return from_seconds(std::min(kBurstSpacing, kBurstShare * poll_.interval_s()));
 }
 
 Task<void> ChronyClient::poll() {
-  const std::optional<NtpMeasurement> reply = co_await association_.exchange(kMaxDelay);
+  heard_ = host_.steady_clock().now();
+  const std::optional<NtpMeasurement> reply = co_await association_.exchange(interval());
   ++polls_;
+  if (reply) heard_ = reply->received;
+  if (!reply) missed();
   const bool is_used = reply && use(*reply);
+  const bool is_near = unanswered_ < kReachPolls && stats_.min_delay_s() <= kMaxLanDelay;
+  if (!is_near) poll_.keep_whole_seconds();
   if (!is_used) {
     co_await slew(slew_.left_s(now_s()), slew_.rate);
-    if (replies_ == 0 && polls_ >= kPatience) {
-      outcome_.failed(polls_, "no valid reply from time server " + std::to_string(server_) +
-                                  " in " + std::to_string(polls_) +
-                                  " polls; is it running, synchronised and reachable?");
-    }
     co_return;
   }
   co_await correct();
   outcome_.synchronised(polls_);
 }
 
+void ChronyClient::missed() {
+  ++unanswered_;
+  poll_.add(stats_.estimate() ? kMissedWhileSynchronised : kMissed);
+  if (replies_ > 0 || polls_ < kPatience) return;
+  outcome_.failed(polls_, "no valid reply from time server " + std::to_string(server_) + " in " +
+                              std::to_string(polls_) +
+                              " polls; is it running, synchronised and reachable?");
+}
+
 bool ChronyClient::use(const NtpMeasurement& measurement) {
   ++replies_;
-  const ChronySample sample = sample_of(measurement);
+  unanswered_ = 0;
+  const bool is_stamped = measurement.is_kernels || settings_.stamps != ChronyStamps::kKernel;
+  const std::optional<Pending> complete = is_stamped ? completed(measurement) : std::nullopt;
+  if (complete) return use(sample_of(*complete));
+  poll_.add(kBadSample);
+  return false;
+}
+
+std::optional<ChronyClient::Pending> ChronyClient::completed(const NtpMeasurement& reply) {
+  const Pending now = pending(reply);
+  if (!settings_.is_interleaved) return now;
+  std::optional<Pending> complete;
+  if (!reply.is_interleaved) {
+    complete = now;
+  } else if (last_ && last_is_interleaved_) {
+    complete = last_;
+    complete->measurement.t3 = reply.t3;
+    host_.report_exchange(complete->measurement.exchange(server_));
+  }
+  last_ = now;
+  last_is_interleaved_ = reply.is_interleaved;
+  return complete;
+}
+
+bool ChronyClient::use(const ChronySample& sample) {
   const double error_s = std::abs(sample.offset_s - stats_.predict_s(sample.at_s));
-  const bool was_known = stats_.estimate().has_value();
-  if (!stats_.is_good(sample)) return false;
+  const bool is_good = sample.delay_s - sample.dispersion_s <= kMaxDelay && stats_.is_good(sample);
+  if (!is_good) {
+    poll_.add(kBadSample);
+    return false;
+  }
   ++good_samples_;
   stats_.add(sample);
-  if (was_known && good_samples_ > kBurst) {
-    poll_.update(stats_.samples(), error_s, sample.delay_s / 2 + sample.dispersion_s);
-  }
-  return stats_.estimate().has_value();
+  poll_.update(stats_.samples(), error_s, sample.delay_s / 2 + sample.dispersion_s);
+  return stats_.estimate() && stats_.estimate()->sd_s <= kMaxJitter;
 }
 
 Task<void> ChronyClient::correct() {
@@ -169,10 +243,24 @@ Task<void> ChronyClient::correct() {
   const double left_s = slew_.left_s(now);
   const ChronyCorrection correction = reference_.update(*stats_.estimate(), now, left_s);
   stats_.correct(now, correction.offset_s, correction.frequency);
+  if (last_) {
+    last_->moved_s += correction.offset_s + correction.frequency * (last_->at_s - now);
+  }
   if (correction.frequency != 0) {
     co_await host_.clock().adjust_frequency(reference_.frequency() * 1e9);
   }
-  co_await slew(left_s + correction.offset_s, correction.slew_rate);
+  if (correction.is_step) {
+    co_await step(left_s + correction.offset_s);
+  } else {
+    co_await slew(left_s + correction.offset_s, correction.slew_rate);
+  }
+}
+
+Task<void> ChronyClient::step(double offset_s) {
+  co_await host_.clock().slew(Nanoseconds{0}, 0);
+  slew_ = {};
+  const HostTime before = co_await host_.clock().now();
+  co_await host_.clock().set(before + from_seconds(offset_s));
 }
 
 Task<void> ChronyClient::slew(double offset_s, double rate) {
@@ -186,15 +274,21 @@ Task<void> ChronyClient::slew(double offset_s, double rate) {
   slew_ = {offset_s, rate, (before_s + now_s()) / 2, part_s / rate};
 }
 
-ChronySample ChronyClient::sample_of(const NtpMeasurement& measurement) const {
-  ChronySample sample;
-  const double received_s = seconds(measurement.received);
+ChronyClient::Pending ChronyClient::pending(const NtpMeasurement& measurement) const {
   const double taken_s = std::max(to_seconds(measurement.t4 - measurement.t1), 0.0);
-  sample.at_s = received_s - taken_s / 2;
-  sample.offset_s = measurement.offset_s() - slew_.left_s(sample.at_s);
-  sample.delay_s = std::max(measurement.delay_s(), settings_.stats.precision_s);
-  const double rate_error = kMaxClockError + std::min(reference_.skew(), 1.0);
-  sample.dispersion_s = settings_.stats.precision_s + rate_error * taken_s;
+  const double at_s = seconds(measurement.received) - taken_s / 2;
+  return {.measurement = measurement, .at_s = at_s, .moved_s = slew_.left_s(at_s)};
+}
+
+ChronySample ChronyClient::sample_of(const Pending& complete) const {
+  const NtpMeasurement& measurement = complete.measurement;
+  const double precision_s = 2 * settings_.stats.precision_s;  // the client's and the server's
+  const double taken_s = std::abs(to_seconds(measurement.t4 - measurement.t1));
+  ChronySample sample;
+  sample.at_s = complete.at_s;
+  sample.offset_s = measurement.offset_s() - complete.moved_s;
+  sample.delay_s = std::max(std::abs(measurement.delay_s()), precision_s);
+  sample.dispersion_s = precision_s + stats_.frequency_error() * taken_s;
   return sample;
 }
 
@@ -211,17 +305,47 @@ namespace {
 
 const char* const kChronyDocumentation =
     "chrony.conf documentation (docs/reference/host_sync.md section 2)";
+const char* const kDebianConfiguration = "chrony.conf of Debian 12";
 
-std::vector<ParameterSpec> chrony_parameters() {
+ChronyStamps chrony_stamps(const std::string& name) {
+  if (name == "kernel") return ChronyStamps::kKernel;
+  return name == "available" ? ChronyStamps::kAvailable : ChronyStamps::kApplication;
+}
+
+// What a configuration states. As installed: Debian's.
+struct ChronyForm {
+  int min_poll = 6;
+  int max_poll = 10;
+  double poll_target = 8;
+  bool initial_burst = true;
+  bool is_interleaved = false;
+  const char* stamps = "available";
+};
+
+std::vector<ParameterSpec> polling_parameters(const ChronyForm& form) {
   return {
-      number_parameter("min_poll", 6, 0, 17, "shortest poll interval, log2 s",
+      number_parameter("min_poll", form.min_poll, -7, 17,
+                       "shortest poll interval, log2 s; below a second only in a local network",
                        kChronyDocumentation),
-      not_below("min_poll", number_parameter("max_poll", 10, 0, 17, "longest poll interval, log2 s",
-                                             kChronyDocumentation)),
-      number_parameter("poll_target", 8, 3, 60, "samples that the poll interval aims at",
-                       kChronyDocumentation),
-      flag_parameter("iburst", true, "four good exchanges at 2 s to begin with",
-                     "usual configuration (iburst)"),
+      not_below("min_poll",
+                number_parameter("max_poll", form.max_poll, -7, 17, "longest poll interval, log2 s",
+                                 kChronyDocumentation)),
+      number_parameter("poll_target", form.poll_target, 3, 60,
+                       "samples that the poll interval aims at", kChronyDocumentation),
+      flag_parameter("iburst", form.initial_burst, "four good exchanges at 2 s to begin with",
+                     kDebianConfiguration),
+      flag_parameter("xleave", form.is_interleaved,
+                     "interleaved mode: the server's departure stamps are its kernel's",
+                     kChronyDocumentation),
+      choice_parameter("stamps", {"available", "kernel", "application"},
+                       "t1 from the kernel where it stamps (available), from the kernel or not at "
+                       "all (kernel), or from before the send",
+                       "chronyd takes the best it gets"),
+  };
+}
+
+std::vector<ParameterSpec> clock_parameters() {
+  return {
       number_parameter("min_samples", 6, 3, 64, "samples that the runs test leaves",
                        kChronyDocumentation),
       not_below("min_samples", number_parameter("max_samples", 64, 4, 64, "samples that are kept",
@@ -230,20 +354,31 @@ std::vector<ParameterSpec> chrony_parameters() {
                        "largest delay above the minimum, in standard deviations of the samples",
                        kChronyDocumentation),
       number_parameter("correction_ratio", 3, 0.01, 100,
-                       "duration of a slew over the time between updates (corrtimeratio)",
+                       "duration of a slew over half the time between updates (corrtimeratio)",
                        kChronyDocumentation),
       number_parameter("max_slew_ppm", 83333.333, 1, 100000, "fastest slew (maxslewrate)",
                        kChronyDocumentation),
-      number_parameter("max_update_skew_ppm", 1000, 0.001, 1e6,
+      number_parameter("max_update_skew_ppm", 100, 0.001, 1e6,
                        "skew above which a frequency is not used (maxupdateskew)",
-                       kChronyDocumentation),
-      choice_parameter("stamps", {"application", "kernel"},
-                       "t1 from before the send, or from the kernel where it stamps",
-                       "the other stamps are the application's"),
+                       kDebianConfiguration),
+      number_parameter("step_threshold_s", 1, 0, 1e9, "offset above which the clock is stepped",
+                       kDebianConfiguration),
+      number_parameter("step_updates", 3, 0, 1e6, "first updates that may step (makestep)",
+                       kDebianConfiguration),
       number_parameter("service_hours", 4, 0, 1e4,
                        "how long the service has run when the capture starts",
                        "assumption: start-up transients are over"),
   };
+}
+
+std::vector<ParameterSpec> chrony_parameters(const ChronyForm& form) {
+  std::vector<ParameterSpec> specs = polling_parameters(form);
+  for (ParameterSpec& spec : specs) {
+    if (spec.name == "stamps") spec.fallback = std::string(form.stamps);
+  }
+  const std::vector<ParameterSpec> rest = clock_parameters();
+  specs.insert(specs.end(), rest.begin(), rest.end());
+  return specs;
 }
 
 std::unique_ptr<HostSync> make_chrony(const Parameters& parameters) {
@@ -258,24 +393,44 @@ std::unique_ptr<HostSync> make_chrony(const Parameters& parameters) {
   settings.reference.correction_ratio = parameters.number("correction_ratio");
   settings.reference.max_slew_rate = parameters.number("max_slew_ppm") * 1e-6;
   settings.reference.max_update_skew = parameters.number("max_update_skew_ppm") * 1e-6;
-  settings.stamps = stamps_of(parameters);
+  settings.reference.step_threshold_s = parameters.number("step_threshold_s");
+  settings.reference.step_updates = static_cast<int>(parameters.number("step_updates"));
+  settings.is_interleaved = parameters.flag("xleave");
+  settings.stamps = chrony_stamps(parameters.text("stamps"));
   settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);
   return std::make_unique<ChronyService>(settings);
 }
 
-HostSyncEntry chrony() {
+HostSyncEntry chrony(const char* name, const char* summary, const ChronyForm& form) {
   HostSyncEntry entry;
-  entry.info.name = "chrony";
+  entry.info.name = name;
   entry.info.family = "chrony";
-  entry.info.summary = "NTP client in the manner of chronyd: weighted regression, slews only";
-  entry.info.source = "chrony (docs/reference/host_sync.md sections 1 and 2); RFC 5905";
-  entry.info.parameters = chrony_parameters();
+  entry.info.summary = summary;
+  entry.info.source = "chrony 4.3 (docs/reference/host_sync.md sections 1 and 2); RFC 5905";
+  entry.info.parameters = chrony_parameters(form);
   entry.make = make_chrony;
   return entry;
 }
 
 }  // namespace
 
-std::vector<HostSyncEntry> host_sync_chrony() { return {chrony()}; }
+std::vector<HostSyncEntry> host_sync_chrony() {
+  return {
+      chrony("chrony", "NTP client in the manner of chronyd, as Debian installs it", {}),
+      chrony("chrony_lan", "The same with the line of chrony's FAQ for a LAN, interleaved",
+             {.min_poll = 2,
+              .max_poll = 4,
+              .poll_target = 30,
+              .initial_burst = false,
+              .is_interleaved = true,
+              .stamps = "kernel"}),
+      chrony("chrony_lan_fast", "The same four times a second, interleaved",
+             {.min_poll = -2,
+              .max_poll = -2,
+              .initial_burst = false,
+              .is_interleaved = true,
+              .stamps = "kernel"}),
+  };
+}
 
 }  // namespace simbench

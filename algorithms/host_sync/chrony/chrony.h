@@ -1,10 +1,14 @@
 // chrony as deployed: chronyd as the client on each slave, a stratum 1 server on the master.
 //
-// The client polls every 2^poll s (and up to 2 % more, at random), first four times at 2 s
-// (iburst). A line is fitted to its samples (chrony_source_stats.h); after every good sample from
-// the third on the clock takes over the line's frequency and offset (ChronyReference): the
-// frequency at once, the offset by a slew, never by a step. The poll adapts (ChronyPoll). Samples
-// with a delay above 3 s, and those that are not good (ChronySourceStats::is_good), are discarded.
+// The client polls 2^poll s after a reply (and up to 2 % more, at random), first until it has four
+// good samples, at most eight times, at 2 s or a quarter of the shortest interval (iburst). A line
+// is fitted to its samples (chrony_source_stats.h); after every good sample from the third on the
+// clock takes over the line's frequency and offset (ChronyReference): the frequency at once, the
+// offset by a slew, or by a step (makestep). The poll adapts (ChronyPoll). Samples with a delay
+// above 3 s, and those that are not good (ChronySourceStats::is_good), are discarded.
+//
+// Interleaved mode (xleave): a sample is complete when the next reply brings the server's departure
+// stamp, so it is one poll old. The reply after the first basic one gives none.
 //
 // Where the host has a drift file, the clock starts with its frequency and its error as the skew.
 //
@@ -13,12 +17,13 @@
 //
 // A service: warm_up() is how long it has run when the capture starts; it never ends. The outcome
 // is "synchronised" at the first correction of the clock, and a failure after eight polls without a
-// valid reply.
+// valid reply, or, where the kernel's stamps are asked for, when the host's stack takes none.
 //
-// Not here: several sources and their selection, makestep, the sample filter option, interleaved
-// mode, refclocks. chrony has no broadcast client.
+// Not here: several sources and their selection, the sample filter option, refclocks, a frequency
+// above 500 ppm (chronyd takes 10 %, through the kernel's tick), the slower rate of what a slew has
+// left after 10000 s. chrony has no broadcast client.
 //
-// Source: docs/reference/host_sync.md sections 1 and 2 (chrony); chrony.conf documentation.
+// Source: docs/reference/host_sync.md sections 1 and 2 (chrony 4.3); chrony.conf documentation.
 //
 //   ChronyService chrony({});
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_H_
@@ -41,28 +46,36 @@ namespace simbench {
 //
 // A score moves by (samples/target - 1)/target per sample, twice that downwards; a prediction whose
 // error exceeds the sample's distance (delay/2 + dispersion) moves it by -log2(error/distance)
-// instead. Each whole point of the score is one step of the exponent, within its bounds.
+// instead. From 1 on its whole part is added to the exponent, below 0 its whole part less one. At
+// the lower bound the score is 0, at the upper one 1: there the next step down needs a whole point.
 //
 // Source: docs/reference/host_sync.md section 2 (polltarget 8; ntp_core.c).
 class ChronyPoll {
  public:
-  // Exponents, log2 s.
+  // Exponents, log2 s. It begins with `low`, but with no less than a second.
   ChronyPoll(int low, int high, double target)
-      : low_(low), high_(high), target_(target), exponent_(low) {}
+      : low_(low), high_(high), target_(target), exponent_(std::max(low, 0)) {}
 
   // `distance_s` must be > 0.
   void update(std::size_t samples, double error_s, double distance_s) {
-    if (error_s > distance_s) {
-      score_ -= std::log2(error_s / distance_s);
-    } else {
-      const double change = (static_cast<double>(samples) / target_ - 1) / target_;
-      score_ += change < 0 ? 2 * change : change;
-    }
-    const double steps = std::floor(score_);
-    const double wanted = std::clamp<double>(exponent_ + steps, low_, high_);
-    score_ = wanted == exponent_ + steps ? score_ - steps : 0;
-    exponent_ = static_cast<int>(wanted);
+    if (error_s > distance_s) return add(-std::log2(error_s / distance_s));
+    const double change = (static_cast<double>(samples) / target_ - 1) / target_;
+    add(change < 0 ? 2 * change : change);
   }
+
+  // Moves the score.
+  void add(double change) {
+    score_ += change;
+    const double steps = score_ < 0 ? std::trunc(score_ - 1) : std::trunc(score_);
+    const double wanted = exponent_ + steps;
+    score_ -= steps;
+    if (wanted < low_) score_ = 0;
+    if (wanted > high_) score_ = 1;
+    exponent_ = static_cast<int>(std::clamp<double>(wanted, low_, high_));
+  }
+
+  // An interval below a second is for a server that replies, and in a local network.
+  void keep_whole_seconds() { exponent_ = std::max(exponent_, 0); }
 
   int exponent() const { return exponent_; }
   double interval_s() const { return std::ldexp(1.0, exponent_); }
@@ -82,12 +95,13 @@ class ChronyPoll {
 //    with a skew above max_update_skew changes nothing. The skew follows by the same gain, widened
 //    by how much the two disagree.
 //  - Offset: a slew corrects all of it. An offset as large as the estimate's own deviation takes
-//    correction_ratio times the interval between updates; a larger one is corrected faster in
-//    proportion, in no less than 1 s, at no more than max_slew_rate.
+//    half of correction_ratio times the interval between updates; a larger one is corrected faster
+//    in proportion, in no less than 1 s, at no more than max_slew_rate.
+//  - Step: in the first step_updates updates an offset above step_threshold_s is stepped instead.
 //
-// A pure state machine. chrony steps only if it is configured to (makestep), which is not here.
-// Source: docs/reference/host_sync.md section 2 (chrony, conf.c); chrony.conf documentation
-// (corrtimeratio, maxslewrate, maxupdateskew).
+// A pure state machine.
+// Source: docs/reference/host_sync.md section 2 (chrony, conf.c, reference.c); chrony.conf
+// documentation (corrtimeratio, maxslewrate, maxupdateskew, makestep).
 //
 //   ChronyReference reference({});
 //   const ChronyCorrection correction = reference.update(*stats.estimate(), now_s, left_s);
@@ -95,12 +109,15 @@ struct ChronyReferenceSettings {
   double correction_ratio = 3;       // corrtimeratio
   double max_slew_rate = 83333e-6;   // as a fraction
   double max_update_skew = 1000e-6;  // as a fraction
+  double step_threshold_s = 1;
+  int step_updates = 0;
 };
 
 struct ChronyCorrection {
   double frequency = 0;  // change of the clock's rate, as a fraction
   double offset_s = 0;   // to be added to what was still to be slewed
   double slew_rate = 0;  // for all that is then left, as a fraction; 0 if nothing is
+  bool is_step = false;  // all that is then left is to be stepped
 };
 
 class ChronyReference {
@@ -128,7 +145,14 @@ class ChronyReference {
   ChronyReferenceSettings settings_;
   double frequency_ = 0;
   double skew_ = 1;  // nothing is known
+  int updates_ = 0;
   std::optional<double> last_update_s_;
+};
+
+enum class ChronyStamps : std::uint8_t {
+  kAvailable,    // the kernel's where it stamps, else the program's, as chronyd takes them
+  kKernel,       // the kernel's, or the service fails
+  kApplication,  // t1 from before the send
 };
 
 struct ChronySettings {
@@ -138,7 +162,8 @@ struct ChronySettings {
   int poll_max = 10;
   double poll_target = 8;  // samples
   bool initial_burst = true;
-  NtpStamps stamps = NtpStamps::kApplication;
+  bool is_interleaved = false;
+  ChronyStamps stamps = ChronyStamps::kAvailable;
   Nanoseconds service_time = from_ms(4 * 3600e3);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -206,18 +207,21 @@ namespace {
 constexpr double kMedianToSd = 0.7;
 constexpr double kMinSkew = 1e-12;
 constexpr double kMaxSkew = 1e2;
+constexpr double kMinDeviation = 1e-9;         // s
+constexpr double kWorstFrequencyError = 2e-3;  // as a fraction
+constexpr std::size_t kDelayTestSamples = 6;
 
 double distance(const ChronySample& sample) { return sample.delay_s / 2 + sample.dispersion_s; }
 
 }  // namespace
 
 bool ChronySourceStats::is_good(const ChronySample& sample) const {
-  if (samples() < kChronyMinPoints || !estimate_) return true;
-  const double elapsed_s = std::max(sample.at_s - estimate_->at_s, 0.0);
-  const double allowed_s =
-      estimate_->sd_s * settings_.max_delay_ratio + elapsed_s * estimate_->skew;
+  if (samples() < kDelayTestSamples || !estimate_) return true;
+  const double elapsed_s = sample.at_s - estimate_->at_s;
+  const double allowed_s = estimate_->sd_s * settings_.max_delay_ratio +
+                           elapsed_s * (estimate_->skew + settings_.max_clock_error);
   const double increase_s = (sample.delay_s - min_delay_s()) / 2;
-  if (increase_s < allowed_s) return true;
+  if (increase_s <= allowed_s) return true;
   return std::abs(sample.offset_s - predict_s(sample.at_s)) - increase_s > allowed_s;
 }
 
@@ -225,9 +229,9 @@ void ChronySourceStats::add(const ChronySample& sample) {
   SIMBENCH_ASSERT(std::isfinite(sample.at_s) && std::isfinite(sample.offset_s) &&
                       std::isfinite(sample.delay_s) && std::isfinite(sample.dispersion_s),
                   "a sample must be finite");
+  if (samples() >= settings_.max_samples) drop_oldest(1);
   if (!samples_.empty() && sample.at_s <= samples_.back().at_s) reset();
   samples_.push_back(sample);
-  if (samples() > settings_.max_samples) drop_oldest(1);
   update_asymmetry();
   regress();
 }
@@ -250,12 +254,17 @@ void ChronySourceStats::reset() {
 }
 
 double ChronySourceStats::predict_s(double at_s) const {
-  return estimate_ ? estimate_->offset_s + (at_s - estimate_->at_s) * estimate_->frequency : 0;
+  if (estimate_) return estimate_->offset_s + (at_s - estimate_->at_s) * estimate_->frequency;
+  return samples_.empty() ? 0 : samples_.back().offset_s;
+}
+
+double ChronySourceStats::frequency_error() const {
+  return estimate_ ? std::min(estimate_->skew, kWorstFrequencyError) : kWorstFrequencyError;
 }
 
 double ChronySourceStats::min_delay_s() const {
-  const auto used = std::span(samples_).subspan(extra_);
-  return std::min_element(used.begin(), used.end(),
+  if (samples_.empty()) return std::numeric_limits<double>::infinity();
+  return std::min_element(samples_.begin(), samples_.end(),
                           [](const auto& a, const auto& b) { return a.delay_s < b.delay_s; })
       ->delay_s;
 }
@@ -279,15 +288,22 @@ void ChronySourceStats::update_asymmetry() {
   std::vector<double> time;
   std::vector<double> delay;
   std::vector<double> offset;
-  for (const ChronySample& sample : std::span(samples_).subspan(extra_)) {
+  const double least_s = min_delay_s();
+  for (const ChronySample& sample : samples_) {
     time.push_back(sample.at_s - samples_.back().at_s);
-    delay.push_back(sample.delay_s);
+    delay.push_back(sample.delay_s - least_s);
     offset.push_back(sample.offset_s);
   }
-  const double slope = second_slope(time, delay, offset).value_or(0);
-  asymmetry_run_ = std::abs(slope) >= kMinAsymmetry ? asymmetry_run_ + 1 : 0;
-  asymmetry_ =
-      asymmetry_run_ > kAsymmetryRun ? std::clamp(slope, -kMaxAsymmetry, kMaxAsymmetry) : 0;
+  const std::optional<double> slope = second_slope(time, delay, offset);
+  if (!slope || *slope * asymmetry_run_ < 0) {
+    asymmetry_ = 0;
+    asymmetry_run_ = 0;
+    return;
+  }
+  if (*slope <= -kMinAsymmetry) asymmetry_run_ = std::max(asymmetry_run_ - 1, -kMaxAsymmetryRun);
+  if (*slope >= kMinAsymmetry) asymmetry_run_ = std::min(asymmetry_run_ + 1, kMaxAsymmetryRun);
+  if (std::abs(asymmetry_run_) < kMinAsymmetryRun) return;
+  asymmetry_ = std::clamp(*slope, -kMaxAsymmetry, kMaxAsymmetry);
 }
 
 void ChronySourceStats::regress() {
@@ -311,7 +327,7 @@ void ChronySourceStats::regress() {
   estimate.frequency = best->line.slope;
   estimate.skew = std::clamp(best->line.slope_sd * student_t_9995(best->degrees_of_freedom),
                              kMinSkew, kMaxSkew);
-  estimate.sd_s = std::max(std::sqrt(best->line.variance), settings_.precision_s);
+  estimate.sd_s = std::max(std::sqrt(best->line.variance), kMinDeviation);
   estimate_ = estimate;
   drop_oldest(best->start);
 }

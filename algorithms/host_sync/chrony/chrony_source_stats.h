@@ -86,7 +86,8 @@ struct ChronyStatsSettings {
   std::size_t min_samples = 6;  // that the runs test leaves
   std::size_t max_samples = 64;
   double precision_s = 1e-7;
-  double max_delay_ratio = 10;  // maxdelaydevratio
+  double max_delay_ratio = 10;    // maxdelaydevratio
+  double max_clock_error = 1e-6;  // maxclockerror, as a fraction
 };
 
 struct ChronyEstimate {
@@ -105,9 +106,11 @@ struct ChronyEstimate {
 //    the minimum; w = (1 + max(0, distance - minimum - precision)/sd)^2, like a variance.
 //  - Line: best_regression() over at most 64 samples; the dropped ones still serve its runs test.
 //    Skew: 99.95 % bound of the slope's error.
-//  - Asymmetry: offset regressed on time and delay. A slope on the delay of 0.45 or more (all of
-//    the extra delay in one direction is 0.5) for ten samples in a row is corrected:
-//    offset - slope * (delay - minimum delay), the slope being at most 0.5.
+//  - Asymmetry: offset regressed on time and delay, over all samples, the dropped ones too. A slope
+//    on the delay of 0.45 or more (all of the extra delay in one direction is 0.5) adds one to a
+//    count, up to 1000; a smaller one of the same sign leaves it, another sign begins anew. From a
+//    count of ten on it is corrected: offset - slope * (delay - minimum delay), the slope being at
+//    most 0.5. The minimum delay is that of all samples, the dropped ones too.
 //
 // Complexity: O(n^2) a sample in the worst case, O(n) when no sample is dropped; n <= 64.
 // Degenerate: fewer than three samples, or all at one time, have no estimate.
@@ -115,12 +118,15 @@ class ChronySourceStats {
  public:
   static constexpr double kMinAsymmetry = 0.45;
   static constexpr double kMaxAsymmetry = 0.5;
-  static constexpr int kAsymmetryRun = 10;
+  static constexpr int kMinAsymmetryRun = 10;
+  static constexpr int kMaxAsymmetryRun = 1000;
 
   explicit ChronySourceStats(const ChronyStatsSettings& settings) : settings_(settings) {}
 
-  // Whether the sample's delay above the minimum is within max_delay_ratio times the samples' sd,
-  // or its offset differs by more than that delay explains: a change of the clock.
+  // With six samples or more: whether half the sample's delay above the minimum is within
+  // max_delay_ratio times the samples' sd and what the clock may have changed by (skew and
+  // max_clock_error since the last sample), or its offset differs by more than that delay explains:
+  // a change of the clock.
   bool is_good(const ChronySample& sample) const;
 
   // Samples must be finite; one that is not later than the last restarts the collection.
@@ -132,13 +138,16 @@ class ChronySourceStats {
   void reset();
 
   const std::optional<ChronyEstimate>& estimate() const { return estimate_; }
-  // The estimated offset at a time; 0 without an estimate.
+  // The estimated offset at a time; without an estimate that of the last sample, or 0.
   double predict_s(double at_s) const;
+  // The least delay of the samples, the dropped ones too; infinite without any.
+  double min_delay_s() const;
+  // Bound of the frequency's error, as a fraction; at most 0.2 %, which it is without an estimate.
+  double frequency_error() const;
   std::size_t samples() const { return samples_.size() - extra_; }
   double asymmetry() const { return asymmetry_; }
 
  private:
-  double min_delay_s() const;
   std::vector<double> weights() const;
   void update_asymmetry();
   void regress();

@@ -2,6 +2,7 @@
 
 #include <boost/endian/conversion.hpp>
 #include <chrono>
+#include <deque>
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
@@ -100,6 +101,8 @@ constexpr std::uint8_t kStratumLocal = 1;
 constexpr std::uint32_t kReferenceLocal = 0x4C4F434C;  // "LOCL"
 constexpr std::int8_t kPrecision = -23;                // 100 ns
 constexpr double kShortFormatUnit = 1.0 / 65536;
+constexpr int kMaxUnanswered = 4;        // requests in interleaved mode
+constexpr std::size_t kRepliesKept = 5;  // one more
 
 NtpPacket server_packet(std::uint8_t mode, HostTime reference) {
   NtpPacket packet;
@@ -117,9 +120,13 @@ bool is_synchronised_server(const NtpPacket& packet) {
          packet.transmit != NtpTimestamp{};
 }
 
-// `sent` is the transmit stamp of the request.
-bool is_valid_ntp_reply(const NtpPacket& reply, NtpTimestamp sent) {
-  return reply.mode == kNtpModeServer && reply.origin == sent && reply.receive != NtpTimestamp{} &&
+bool is_interleaved_reply(const NtpPacket& reply, const NtpPacket& request) {
+  return request.receive != NtpTimestamp{} && reply.origin == request.receive;
+}
+
+bool is_valid_ntp_reply(const NtpPacket& reply, const NtpPacket& request) {
+  return reply.mode == kNtpModeServer && reply.receive != NtpTimestamp{} &&
+         (reply.origin == request.transmit || is_interleaved_reply(reply, request)) &&
          is_synchronised_server(reply);
 }
 
@@ -140,7 +147,8 @@ NtpAssociation::NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std:
       server_(server),
       stamps_(stamps),
       version_(version),
-      channel_(host.open_channel(server, Transport::kDatagram)) {}
+      channel_(host.open_channel(server, Transport::kDatagram)),
+      departures_(host, StampSource::kKernel) {}
 
 Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout) {
   NtpMeasurement measurement;
@@ -148,25 +156,35 @@ Task<std::optional<NtpMeasurement>> NtpAssociation::exchange(Nanoseconds timeout
   NtpPacket request;
   request.version = version_;
   request.transmit = to_ntp(measurement.t1);
+  if (interleaves_ && unanswered_ < kMaxUnanswered) {
+    request.origin = server_received_;
+    request.receive = reply_received_;
+  }
+  ++unanswered_;
   Bytes bytes = encode(request);
   const SteadyTime deadline = host_.steady_clock().now() + timeout;
   const MessageId id = co_await channel_.send(std::move(bytes));
   if (stamps_ == NtpStamps::kKernel) {
-    const std::optional<HostTime> left = co_await channel_.transmit_stamp(id, deadline);
-    measurement.t1 = left.value_or(measurement.t1);
+    const std::optional<std::int64_t> left = co_await departures_.departure(channel_, id);
+    measurement.is_kernels = left.has_value();
+    if (left) measurement.t1 = HostTime(Nanoseconds(*left));
   }
   while (true) {
     const std::optional<ReceivedMessage> received = co_await channel_.receive(deadline);
     if (!received) co_return std::nullopt;
     const std::optional<NtpPacket> reply = decode_ntp_packet(received->bytes);
-    if (!reply || !is_valid_ntp_reply(*reply, request.transmit)) continue;
+    if (!reply || !is_valid_ntp_reply(*reply, request)) continue;
+    unanswered_ = 0;
+    server_received_ = reply->receive;
+    reply_received_ = to_ntp(received->received);
     measurement.t2 = from_ntp(reply->receive, measurement.t1);
     measurement.t3 = from_ntp(reply->transmit, measurement.t1);
     measurement.t4 = received->received;
     measurement.received = received->received_steady;
+    measurement.is_interleaved = is_interleaved_reply(*reply, request);
     measurement.root_delay_s = reply->root_delay * kShortFormatUnit;
     measurement.root_dispersion_s = reply->root_dispersion * kShortFormatUnit;
-    host_.report_exchange(measurement.exchange(server_));
+    if (!measurement.is_interleaved) host_.report_exchange(measurement.exchange(server_));
     co_return measurement;
   }
 }
@@ -188,8 +206,26 @@ Task<std::optional<NtpBroadcast>> NtpAssociation::next_broadcast(SteadyTime dead
 
 namespace {
 
+struct SentReply {
+  NtpTimestamp receive;
+  MessageId id = 0;
+};
+
+// When the reply left whose receive stamp is `receive`; nothing if that is not known.
+Task<std::optional<HostTime>> departure_of(Host& host, MessageChannel& channel,
+                                           const std::deque<SentReply>& sent,
+                                           NtpTimestamp receive) {
+  for (const SentReply& reply : sent) {
+    if (reply.receive != receive) continue;
+    const SteadyTime deadline = host.steady_clock().now() + kStampTimeout;
+    co_return co_await channel.transmit_stamp(reply.id, deadline);
+  }
+  co_return std::nullopt;
+}
+
 Task<void> serve_client(Host& host, PeerId client, double root_dispersion_s) {
   MessageChannel& channel = host.open_channel(client, Transport::kDatagram);
+  std::deque<SentReply> sent;
   while (true) {
     const std::optional<ReceivedMessage> received =
         co_await channel.receive(host.steady_clock().now() + kIdle);
@@ -202,10 +238,19 @@ Task<void> serve_client(Host& host, PeerId client, double root_dispersion_s) {
     reply.root_dispersion = static_cast<std::uint32_t>(root_dispersion_s / kShortFormatUnit);
     reply.origin = request->transmit;
     reply.receive = to_ntp(received->received);
-    const HostTime t3 = co_await host.clock().now();
-    reply.transmit = to_ntp(t3);
+    const std::optional<HostTime> left =
+        co_await departure_of(host, channel, sent, request->origin);
+    if (left) {
+      reply.origin = request->receive;
+      reply.transmit = to_ntp(*left);
+    } else {
+      const HostTime t3 = co_await host.clock().now();
+      reply.transmit = to_ntp(t3);
+    }
     Bytes bytes = encode(reply);
-    co_await channel.send(std::move(bytes));
+    const MessageId id = co_await channel.send(std::move(bytes));
+    sent.push_back({reply.receive, id});
+    if (sent.size() > kRepliesKept) sent.pop_front();
   }
 }
 

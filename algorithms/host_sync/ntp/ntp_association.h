@@ -5,8 +5,13 @@
 // do so with t3, which has left by then: its sending time counts to one direction only, and half of
 // it is an error.
 //
+// Interleaved mode does away with that error: a reply carries the kernel's stamp of when the reply
+// before it left. The client asks by echoing, as the origin, the server's last receive stamp; the
+// server answers so if it has that stamp, and as usual otherwise. It keeps the last five replies;
+// after four requests without a reply the client asks as usual.
+//
 // Source: RFC 5905 sections 6 to 9; RFC 4330 sections 3 to 5 (the client's checks);
-// docs/reference/host_sync.md section 2.
+// docs/reference/host_sync.md section 2; draft-ietf-ntp-interleaved-modes section 2 (RFC 9769).
 //
 //   NtpAssociation association(host, master, NtpStamps::kApplication);
 //   const std::optional<NtpMeasurement> reply = co_await association.exchange(from_ms(1000));
@@ -16,8 +21,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "algorithms/host_sync/stamps.h"
 #include "algorithms/ports/host.h"
 
 namespace simbench {
@@ -78,7 +85,9 @@ struct NtpMeasurement {
   HostTime t2{};
   HostTime t3{};
   HostTime t4{};
-  SteadyTime received{};  // when t4 was taken
+  SteadyTime received{};        // when t4 was taken
+  bool is_interleaved = false;  // t3 is that of the reply before
+  bool is_kernels = false;      // t1 is
   double root_delay_s = 0;
   double root_dispersion_s = 0;
 
@@ -105,6 +114,13 @@ class NtpAssociation {
   // The host must outlive the association. Requests are of `version`.
   NtpAssociation(Host& host, PeerId server, NtpStamps stamps, std::uint8_t version = 4);
 
+  // Requests from now on ask for the interleaved mode. Its exchanges, which are complete only with
+  // the next reply, are the caller's to report.
+  void interleave() { interleaves_ = true; }
+
+  // What the host lacks of the stamps asked for; empty if nothing is known (MessageStamps).
+  std::string lacking() const { return departures_.lacking(); }
+
   // Sends a request and reports the exchange; nothing if no valid reply comes within `timeout`.
   Task<std::optional<NtpMeasurement>> exchange(Nanoseconds timeout);
 
@@ -117,6 +133,11 @@ class NtpAssociation {
   NtpStamps stamps_;
   std::uint8_t version_;
   MessageChannel& channel_;
+  MessageStamps departures_;
+  bool interleaves_ = false;
+  int unanswered_ = 0;
+  NtpTimestamp server_received_;  // t2 of the last reply
+  NtpTimestamp reply_received_;   // and its t4
 };
 
 // Serves these clients for ever, as a local reference of stratum 1, in the version of each request.

@@ -40,10 +40,11 @@ TEST(HostSyncRegistration, EveryEntrySaysWhatItIsAndWhereItsNumbersAreFrom) {
 TEST(HostSyncRegistration, TheNamesAreTheFixedOnes) {
   std::vector<std::string> names;
   for (const HostSyncEntry& each : host_sync_algorithms()) names.push_back(each.info.name);
-  EXPECT_THAT(names, testing::IsSupersetOf({"yoon2021_network", "yoon2021_time", "yoon2021_both",
-                                            "yoon2021_neither", "w32time", "free_running",
-                                            "ntp_last_set", "oracle", "ntp", "ntp_broadcast_volley",
-                                            "ntp_broadcast_fixed", "w32time_domain", "chrony"}));
+  EXPECT_THAT(names,
+              testing::IsSupersetOf({"yoon2021_network", "yoon2021_time", "yoon2021_both",
+                                     "yoon2021_neither", "w32time", "free_running", "ntp_last_set",
+                                     "oracle", "ntp", "ntp_broadcast_volley", "ntp_broadcast_fixed",
+                                     "w32time_domain", "chrony", "chrony_lan", "chrony_lan_fast"}));
 }
 
 TEST(HostSyncRegistration, TheLimitsDifferInTheirClocksAndDoNothing) {

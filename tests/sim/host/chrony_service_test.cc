@@ -111,6 +111,74 @@ TEST(ChronyService, OnlySlews) {
   }
 }
 
+TEST(ChronyService, StepsAtTheStartWhereItMay) {
+  ServiceWorld world(chrony_world(1e-4, 1e-9));
+  world.clock(1).set(TrueTime{}, HostTime(from_ms(100e3)));
+  ChronySettings settings;
+  settings.reference.step_updates = 3;
+  ChronyService chrony(settings);
+  world.start(chrony);
+  world.run_until(20);
+  EXPECT_LT(std::abs(world.error_s(1)), 1e-3);
+}
+
+// A server whose stamp of departure is early by its time to send: half of that is an error in basic
+// mode, none in interleaved mode.
+TEST(ChronyService, InterleavedModeTakesTheServersSendingTimeOut) {
+  scenarios::Scenario scenario = chrony_world(0, 0);
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
+  scenario.hosts.send_cost_ms = 0.4;
+  double error_s[2] = {};
+  for (const bool is_interleaved : {false, true}) {
+    ServiceWorld world(scenario);
+    ChronySettings settings;
+    settings.poll_min = 2;
+    settings.poll_max = 4;
+    settings.is_interleaved = is_interleaved;
+    settings.stamps = ChronyStamps::kKernel;
+    ChronyService chrony(settings);
+    world.start(chrony);
+    world.run_until(2000);
+    error_s[is_interleaved ? 1 : 0] = std::abs(world.error_s(1));
+    EXPECT_GT(world.record.exchanges.size(), 100U);
+  }
+  EXPECT_NEAR(error_s[0], 0.2e-3, 0.05e-3);
+  EXPECT_LT(error_s[1], 0.02e-3);
+}
+
+TEST(ChronyService, InterleavedModeSurvivesLoss) {
+  scenarios::Scenario scenario = chrony_world(1e-4, 1e-9);
+  scenario.network.stamp_point = scenarios::StampPoint::kKernel;
+  scenario.network.loss_probability = 0.3;
+  scenario.network.duplicate_probability = 0.2;
+  ServiceWorld world(scenario);
+  ChronySettings settings;
+  settings.poll_min = -2;
+  settings.poll_max = -2;
+  settings.is_interleaved = true;
+  ChronyService chrony(settings);
+  world.start(chrony);
+  world.run_until(1000);
+  EXPECT_LT(std::abs(world.error_s(1)), 0.2e-3);
+  EXPECT_GT(world.record.exchanges.size(), 1500U);
+}
+
+TEST(ChronyService, AHostWithoutTheStampsAskedForIsAnOutcome) {
+  scenarios::Scenario scenario = chrony_world(1e-4, 1e-9);
+  scenario.network.stamp_point = scenarios::StampPoint::kApplication;
+  ServiceWorld world(scenario);
+  ChronySettings settings;
+  settings.stamps = ChronyStamps::kKernel;
+  ChronyService chrony(settings);
+  world.start(chrony);
+  world.run_until(3600);
+  bool is_named = false;
+  for (const SyncOutcome& outcome : world.record.outcomes) {
+    if (outcome.message.find("/network/stamp_point") != std::string::npos) is_named = true;
+  }
+  EXPECT_TRUE(is_named);
+}
+
 TEST(ChronyService, AsymmetryIsTheFloor) {
   scenarios::Scenario scenario = chrony_world(0, 0);
   scenario.network.asymmetry_sigma_ms = 0.2;

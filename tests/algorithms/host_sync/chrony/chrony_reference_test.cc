@@ -45,13 +45,13 @@ TEST(ChronyReference, TheOffsetIsThatOfNow) {
   EXPECT_NEAR(reference.update(estimate(1e-3, 10e-6, 1e-6), 50, 0).offset_s, 1.5e-3, 1e-15);
 }
 
-TEST(ChronyReference, AnOffsetOfOneDeviationTakesThreeIntervals) {
+TEST(ChronyReference, AnOffsetOfOneDeviationTakesHalfOfThreeIntervals) {
   ChronyReference reference({});
   reference.update(estimate(0, 0, 1e-6), 0, 0);
   const ChronyCorrection one = reference.update(estimate(10e-6, 0, 1e-6), 64, 0);
-  EXPECT_NEAR(10e-6 / one.slew_rate, 3 * 64, 1e-9);
+  EXPECT_NEAR(10e-6 / one.slew_rate, 1.5 * 64, 1e-9);
   const ChronyCorrection ten = reference.update(estimate(50e-6, 0, 1e-6), 128, 50e-6);
-  EXPECT_NEAR(100e-6 / ten.slew_rate, 3 * 64 / 10.0, 1e-9) << "what was left counts";
+  EXPECT_NEAR(100e-6 / ten.slew_rate, 1.5 * 64 / 10.0, 1e-9) << "what was left counts";
 }
 
 TEST(ChronyReference, ASlewIsNeitherTooShortNorTooFast) {
@@ -59,6 +59,16 @@ TEST(ChronyReference, ASlewIsNeitherTooShortNorTooFast) {
   EXPECT_NEAR(reference.update(estimate(1e-3, 0, 1e-6), 0, 0).slew_rate, 1e-3, 1e-15);
   EXPECT_NEAR(reference.update(estimate(-10, 0, 1e-6), 1, 0).slew_rate, 83333e-6, 1e-15);
   EXPECT_EQ(reference.update(estimate(0, 0, 1e-6), 2, 0).slew_rate, 0);
+}
+
+TEST(ChronyReference, OnlyTheFirstUpdatesMayStep) {
+  ChronyReference never({});
+  EXPECT_FALSE(never.update(estimate(1.5, 0, 1e-6), 0, 0).is_step);
+  ChronyReference reference({.step_threshold_s = 1, .step_updates = 3});
+  EXPECT_TRUE(reference.update(estimate(1.5, 0, 1e-6), 0, 0).is_step);
+  EXPECT_FALSE(reference.update(estimate(1.5, 0, 1e-6), 1, -1).is_step) << "0.5 s are left";
+  EXPECT_TRUE(reference.update(estimate(-0.5, 0, 1e-6), 2, -0.6).is_step);
+  EXPECT_FALSE(reference.update(estimate(1.5, 0, 1e-6), 3, 0).is_step);
 }
 
 TEST(ChronyReference, TheFrequencyIsCapped) {
@@ -92,12 +102,29 @@ TEST(ChronyPoll, GrowsWithTheSamplesOnTheLine) {
 TEST(ChronyPoll, ShrinksTwiceAsFastAndAtOnceWhenThePredictionFails) {
   ChronyPoll poll(6, 10, 8);
   for (int i = 0; i < 1000; ++i) poll.update(64, 0, 1e-3);
-  for (int i = 0; i < 8; ++i) poll.update(4, 0, 1e-3);  // -1/8 each
+  for (int i = 0; i < 8; ++i) poll.update(4, 0, 1e-3);  // -1/8 each, from 1
+  EXPECT_EQ(poll.exponent(), 10);
+  poll.update(4, 0, 1e-3);
   EXPECT_EQ(poll.exponent(), 9);
-  poll.update(8, 4e-3, 1e-3);  // -2
+  poll.update(8, 3e-3, 1e-3);  // -1.6
   EXPECT_EQ(poll.exponent(), 7);
   poll.update(8, 1, 1e-3);
   EXPECT_EQ(poll.exponent(), 6);
+}
+
+TEST(ChronyPoll, BelowASecondOnlyWhereItIsTold) {
+  ChronyPoll poll(-2, -2, 8);
+  EXPECT_EQ(poll.exponent(), 0) << "nothing is known of the server";
+  poll.update(1, 0, 1e-3);
+  EXPECT_EQ(poll.interval_s(), 0.25);
+  poll.keep_whole_seconds();
+  EXPECT_EQ(poll.interval_s(), 1);
+}
+
+TEST(ChronyPoll, RepliesThatAreMissingMakeItLonger) {
+  ChronyPoll poll(6, 10, 8);
+  for (int i = 0; i < 4; ++i) poll.add(0.25);
+  EXPECT_EQ(poll.exponent(), 7);
 }
 
 }  // namespace

@@ -25,7 +25,10 @@ ChronySourceStats stats_with(int samples) {
 
 TEST(ChronySourceStats, NeedsThreeSamples) {
   EXPECT_FALSE(stats_with(2).estimate());
-  EXPECT_EQ(stats_with(2).predict_s(1000), 0);
+  EXPECT_EQ(ChronySourceStats({}).predict_s(1000), 0);
+  EXPECT_EQ(stats_with(2).predict_s(1000), chrony_sample(64, 0, -50e-9).offset_s);
+  EXPECT_EQ(stats_with(2).frequency_error(), 2e-3);
+  EXPECT_LT(stats_with(10).frequency_error(), 1e-6);
   EXPECT_TRUE(stats_with(3).estimate());
 }
 
@@ -87,10 +90,51 @@ TEST(ChronySourceStats, CorrectsAnAsymmetryThatPersists) {
   for (int i = 0; i < 30; ++i) {
     const double extra_s = (i * 7 % 5) * 1e-3;  // all of it on the request's way
     stats.add(chrony_sample(i * 64, extra_s, extra_s / 2));
-    EXPECT_EQ(stats.asymmetry() != 0, i >= 13) << i;  // four samples, then ten more
+    EXPECT_EQ(stats.asymmetry() != 0, i >= 12) << i;  // ten, the first with four samples
   }
   EXPECT_NEAR(stats.asymmetry(), 0.5, 1e-9);
   EXPECT_NEAR(stats.estimate()->offset_s, 1e-3 + 10e-6 * 29 * 64, 1e-9);
+}
+
+// The count of asymmetric samples goes on where the slope is small; only its sign ends it.
+TEST(ChronySourceStats, ASmallSlopeDoesNotEndTheRun) {
+  ChronySourceStats stats({});
+  double at_s = 0;
+  const auto add = [&](int count, double share) {
+    for (int i = 0; i < count; ++i, at_s += 64) {
+      const double extra_s = (i * 7 % 5) * 1e-3;
+      stats.add(chrony_sample(at_s, extra_s, share * extra_s));
+    }
+  };
+  add(30, 0.5);
+  add(10, 0.4);
+  EXPECT_NE(stats.asymmetry(), 0);
+  add(64, -0.5);
+  add(64, -0.5);
+  EXPECT_NEAR(stats.asymmetry(), -0.5, 1e-9);
+}
+
+TEST(ChronySourceStats, TestsDelaysFromSixSamplesOn) {
+  const auto judged = [](int samples) {
+    return stats_with(samples).is_good(chrony_sample(samples * 64, 5e-3, 2.5e-3));
+  };
+  EXPECT_TRUE(judged(5));
+  EXPECT_FALSE(judged(6));
+}
+
+// After a day of silence 1 ppm explains 86 ms.
+TEST(ChronySourceStats, TheClocksOwnErrorIsAllowedFor) {
+  ChronyStatsSettings exact;
+  exact.max_clock_error = 0;
+  for (const bool is_exact : {true, false}) {
+    ChronySourceStats stats(is_exact ? exact : ChronyStatsSettings{});
+    for (int i = 0; i < 64; ++i) {
+      stats.add(chrony_sample(i * 64, (i * 7 % 5) * 1e-6, i % 2 == 0 ? 50e-9 : -50e-9));
+    }
+    ChronySample late = chrony_sample(64 * 64 + 86400, 40e-3);
+    late.offset_s = stats.predict_s(late.at_s);
+    EXPECT_EQ(stats.is_good(late), !is_exact);
+  }
 }
 
 TEST(ChronySourceStats, ASampleOfThePastRestarts) {
