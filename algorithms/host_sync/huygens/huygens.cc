@@ -1,6 +1,7 @@
 #include "algorithms/host_sync/huygens/huygens.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <memory>
@@ -22,6 +23,8 @@ namespace {
 
 // A line of an older window says nothing of the present one.
 constexpr int kWindowsOfALine = 3;
+// A point this far from where a rate could lead means that a clock has jumped.
+constexpr double kJumpNs = 1e6;
 
 Task<void> send_to(Host& host, PeerId peer, Bytes bytes) {
   co_await host.open_channel(peer, Transport::kDatagram).send(std::move(bytes));
@@ -105,6 +108,8 @@ class HuygensMaster : public HuygensHost {
   }
 
   Task<void> run() {
+    // The slaves report that they lack the stamps too, or that nothing comes.
+    if (!raw().lacking().empty()) co_return;
     for (const PeerId peer : peers_[host().id()]) add_link(peer);
     std::vector<Task<void>> tasks = probing();
     tasks.reserve(tasks.size() + slaves_.size() + 2);
@@ -251,10 +256,19 @@ class HuygensSlave : public HuygensHost {
     if (!at) co_return;
     const bool is_old = !points_.empty() && *at <= points_.back().at;
     if (is_old) co_return;
+    if (has_jumped({*at, steer->master})) points_.clear();
     points_.push_back({*at, steer->master});
     if (points_.size() > settings().points) points_.pop_front();
     co_await raw().system().steer(line());
     outcome_.synchronised(++steered_);
+  }
+
+  // Whether no rate that is possible leads to the point.
+  bool has_jumped(Point point) const {
+    if (points_.empty()) return false;
+    const double since_ns = to_ns(point.at - points_.back().at);
+    const double off_ns = to_ns(point.master - line().read(point.at));
+    return std::abs(off_ns) > kJumpNs + settings().max_rate_ppm * 1e-6 * since_ns;
   }
 
   // The least-squares line through the points.
@@ -266,7 +280,10 @@ class HuygensSlave : public HuygensHost {
       sums.add({.x = since.count(), .y = (point.master - last.master - since).count()});
     }
     const Line fit = sums.line();
-    return {.at = last.at, .value = last.master + from_ns(fit.at(0)), .rate_ppb = fit.slope * 1e9};
+    const double limit_ppb = settings().max_rate_ppm * 1e3;
+    return {.at = last.at,
+            .value = last.master + from_ns(fit.at(0)),
+            .rate_ppb = std::clamp(fit.slope * 1e9, -limit_ppb, limit_ppb)};
   }
 
   void report_failure_if_due() {
