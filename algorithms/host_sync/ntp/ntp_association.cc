@@ -212,13 +212,14 @@ struct SentReply {
 };
 
 // When the reply left whose receive stamp is `receive`; nothing if that is not known.
-Task<std::optional<HostTime>> departure_of(Host& host, MessageChannel& channel,
-                                           const std::deque<SentReply>& sent,
-                                           NtpTimestamp receive) {
+Task<std::optional<HostTime>> reply_departure(Host& host, MessageChannel& channel,
+                                              const std::deque<SentReply>& sent,
+                                              NtpTimestamp receive) {
   for (const SentReply& reply : sent) {
     if (reply.receive != receive) continue;
     const SteadyTime deadline = host.steady_clock().now() + kStampTimeout;
-    co_return co_await channel.transmit_stamp(reply.id, deadline);
+    const std::optional<HostTime> left = co_await channel.transmit_stamp(reply.id, deadline);
+    co_return left;
   }
   co_return std::nullopt;
 }
@@ -239,7 +240,7 @@ Task<void> serve_client(Host& host, PeerId client, double root_dispersion_s) {
     reply.origin = request->transmit;
     reply.receive = to_ntp(received->received);
     const std::optional<HostTime> left =
-        co_await departure_of(host, channel, sent, request->origin);
+        co_await reply_departure(host, channel, sent, request->origin);
     if (left) {
       reply.origin = request->receive;
       reply.transmit = to_ntp(*left);

@@ -106,7 +106,7 @@ TEST(ChronyPoll, ShrinksTwiceAsFastAndAtOnceWhenThePredictionFails) {
   EXPECT_EQ(poll.exponent(), 10);
   poll.update(4, 0, 1e-3);
   EXPECT_EQ(poll.exponent(), 9);
-  poll.update(8, 3e-3, 1e-3);  // -1.6
+  poll.update(8, 5e-3, 1e-3);  // -2.3
   EXPECT_EQ(poll.exponent(), 7);
   poll.update(8, 1, 1e-3);
   EXPECT_EQ(poll.exponent(), 6);
