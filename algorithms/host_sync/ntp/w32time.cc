@@ -1,5 +1,6 @@
 #include "algorithms/host_sync/ntp/w32time.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,7 +14,8 @@ namespace simbench {
 
 bool W32TimeSpikes::accept(Nanoseconds offset, SteadyTime at) {
   const bool is_large = offset >= kLargePhaseOffset || offset <= -kLargePhaseOffset;
-  if (held_ < kHoldPeriod) {
+  was_held_ = held_ < kHoldPeriod;
+  if (was_held_) {
     ++held_;
     return true;
   }
@@ -35,47 +37,99 @@ constexpr double kClockRateUnits = 156250;  // one tick, 15.625 ms
 constexpr double kPollFactor = 16;
 constexpr std::uint8_t kSntpVersion = 3;
 constexpr double kLocalClockDispersion = 10;  // s, the documented default
+constexpr double kBasePoll = 64;              // s, to which FrequencyCorrectRate refers
+constexpr double kFllAverage = 4;             // CLOCK_AVG
+constexpr double kFllBegin = 256;             // s, CLOCK_MINSEC
+constexpr double kFllIntercept = 1024;        // s, CLOCK_ALLAN
 
 Nanoseconds magnitude(Nanoseconds interval) {
   return interval < Nanoseconds{0} ? -interval : interval;
 }
 
-Task<void> correct(Host& host, Nanoseconds offset, W32TimeSettings settings) {
-  const W32TimeCorrection correction = w32time_correction(offset, settings);
-  if (!correction.set) {
-    co_await host.clock().slew(offset, correction.rate_ppb);
-    co_return;
+// The client on one slave. The host must outlive the client, and the client its coroutines.
+class W32TimeClient {
+ public:
+  W32TimeClient(Host& host, PeerId server, const W32TimeSettings& settings)
+      : host_(host),
+        server_(server),
+        settings_(settings),
+        association_(host, server, NtpStamps::kApplication, kSntpVersion),
+        outcome_(host) {}
+
+  Task<void> run();
+
+ private:
+  // Repeats the request until there is a reply, and corrects the clock by it.
+  Task<void> poll();
+  Task<void> correct(Nanoseconds offset);
+  Task<void> correct_rate(Nanoseconds offset);
+
+  Host& host_;
+  PeerId server_;
+  W32TimeSettings settings_;
+  NtpAssociation association_;
+  W32TimeSpikes spikes_;
+  double rate_ = 0;  // correction, as a fraction
+  std::optional<SteadyTime> accepted_;
+  OutcomeReport outcome_;
+};
+
+Task<void> W32TimeClient::run() {
+  const std::optional<StoredFrequency> stored = host_.stored_frequency();
+  if (stored) {
+    rate_ = std::clamp(stored->ppb * 1e-9, -kW32TimeMaxRate, kW32TimeMaxRate);
+    co_await host_.clock().adjust_frequency(rate_ * 1e9);
   }
-  const HostTime now = co_await host.clock().now();
-  co_await host.clock().set(now + offset);
+  const double part = host_.random_uniform();
+  co_await host_.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
+  while (true) {
+    co_await poll();
+    co_await host_.sleep_for(settings_.poll_interval);
+  }
 }
 
-// Repeats the request until there is a reply, and corrects the clock by it. The arguments must
-// outlive the call.
-Task<void> poll(Host& host, PeerId server, NtpAssociation& association,
-                const W32TimeSettings& settings, W32TimeSpikes& spikes, OutcomeReport& outcome) {
+Task<void> W32TimeClient::poll() {
   for (std::uint32_t request = 1; request <= W32Time::kRequestLimit; ++request) {
     const std::optional<NtpMeasurement> reply =
-        co_await association.exchange(W32Time::kReplyTimeout);
+        co_await association_.exchange(W32Time::kReplyTimeout);
     if (!reply) continue;
     const Nanoseconds offset = clock_offset(reply->t1, reply->t2, reply->t3, reply->t4);
-    if (settings.max_phase_correction && magnitude(offset) > *settings.max_phase_correction) {
-      outcome.failed(request, "the clock is off by " + std::to_string(to_seconds(offset)) +
-                                  " s, more than W32Time corrects (MaxPosPhaseCorrection " +
-                                  std::to_string(to_seconds(*settings.max_phase_correction)) +
-                                  " s); set it by hand");
+    if (settings_.max_phase_correction && magnitude(offset) > *settings_.max_phase_correction) {
+      outcome_.failed(request, "the clock is off by " + std::to_string(to_seconds(offset)) +
+                                   " s, more than W32Time corrects (MaxPosPhaseCorrection " +
+                                   std::to_string(to_seconds(*settings_.max_phase_correction)) +
+                                   " s); set it by hand");
       co_return;
     }
-    if (spikes.accept(offset, host.steady_clock().now())) {
-      co_await correct(host, offset, settings);
-    }
-    outcome.synchronised(request);
+    if (spikes_.accept(offset, host_.steady_clock().now())) co_await correct(offset);
+    outcome_.synchronised(request);
     co_return;
   }
-  outcome.failed(W32Time::kRequestLimit, "no valid reply from time server " +
-                                             std::to_string(server) + " to " +
-                                             std::to_string(W32Time::kRequestLimit) +
-                                             " requests; is it running and reachable?");
+  outcome_.failed(W32Time::kRequestLimit, "no valid reply from time server " +
+                                              std::to_string(server_) + " to " +
+                                              std::to_string(W32Time::kRequestLimit) +
+                                              " requests; is it running and reachable?");
+}
+
+Task<void> W32TimeClient::correct(Nanoseconds offset) {
+  co_await correct_rate(offset);
+  const W32TimeCorrection correction = w32time_correction(offset, settings_);
+  if (!correction.set) {
+    co_await host_.clock().slew(offset, correction.rate_ppb);
+    co_return;
+  }
+  const HostTime now = co_await host_.clock().now();
+  co_await host_.clock().set(now + offset);
+}
+
+Task<void> W32TimeClient::correct_rate(Nanoseconds offset) {
+  const SteadyTime now = host_.steady_clock().now();
+  const std::optional<SteadyTime> before = std::exchange(accepted_, now);
+  if (!before || !spikes_.corrects_rate()) co_return;
+  const double change = w32time_rate_change(offset, now - *before, settings_);
+  if (change == 0) co_return;
+  rate_ = std::clamp(rate_ + change, -kW32TimeMaxRate, kW32TimeMaxRate);
+  co_await host_.clock().adjust_frequency(rate_ * 1e9);
 }
 
 }  // namespace
@@ -103,23 +157,35 @@ W32TimeCorrection w32time_correction(Nanoseconds offset, const W32TimeSettings& 
   return correction;
 }
 
+double w32time_rate_change(Nanoseconds offset, Nanoseconds interval,
+                           const W32TimeSettings& settings) {
+  const double offset_s = to_seconds(offset);
+  const double mu_s = to_seconds(interval);
+  if (settings.rate == W32TimeRate::kHeld || mu_s <= 0) return 0;
+  const double polls = std::max(to_seconds(settings.poll_interval) / kBasePoll, 1.0);
+  const double gain_s = settings.frequency_correct_rate * kBasePoll * polls;
+  const double pll = offset_s * mu_s / (16 * gain_s * gain_s);
+  if (settings.rate == W32TimeRate::kPll) return pll;
+  const double part = std::clamp((mu_s - kFllBegin) / kFllIntercept, 0.0, 1.0);
+  return pll + offset_s * part / (kFllAverage * std::max(mu_s, kFllIntercept));
+}
+
 Task<void> W32Time::run_master(Host& host, std::vector<PeerId> slaves) {
   co_await serve_ntp(host, std::move(slaves), kLocalClockDispersion);
 }
 
 Task<void> W32Time::run_slave(Host& host, PeerId master) {
-  const double part = host.random_uniform();
-  co_await host.sleep_for(from_ms(part * to_ms(settings_.start_spread)));
-  NtpAssociation association(host, master, NtpStamps::kApplication, kSntpVersion);
-  W32TimeSpikes spikes;
-  OutcomeReport outcome(host);
-  while (true) {
-    co_await poll(host, master, association, settings_, spikes, outcome);
-    co_await host.sleep_for(settings_.poll_interval);
-  }
+  W32TimeClient client(host, master, settings_);
+  co_await client.run();
 }
 
 namespace {
+
+W32TimeRate rate_of(const Parameters& parameters) {
+  const std::string& choice = parameters.text("rate_correction");
+  if (choice == "pll") return W32TimeRate::kPll;
+  return choice == "held" ? W32TimeRate::kHeld : W32TimeRate::kHybrid;
+}
 
 // w32time_domain is a family of its own: a scenario's parameters for a stand-alone machine are not
 // meant for it.
@@ -138,6 +204,13 @@ HostSyncEntry w32time(const std::string& name, std::string summary,
                        documentation),
       number_parameter("phase_correct_rate", defaults.phase_correct_rate, 1, 1e3,
                        "PhaseCorrectRate, divides the slew rate", documentation),
+      number_parameter("frequency_correct_rate", defaults.frequency_correct_rate, 1, 1e3,
+                       "FrequencyCorrectRate, divides the correction of the rate", documentation),
+      choice_parameter("rate_correction", {"hybrid", "pll", "held"},
+                       "how the clock's rate is corrected after the hold, of which little is "
+                       "documented: by PLL and FLL, by PLL, not at all",
+                       "[MS-W32T] 2.2.7 and UDel TR 97-3, which it names; Microsoft, "
+                       "FrequencyCorrectRate Entry, for the PLL"),
       number_parameter("max_allowed_phase_offset_s", to_seconds(defaults.max_allowed_phase_offset),
                        0, 1e6, "MaxAllowedPhaseOffset, from which on the clock is set, not slewed",
                        documentation),
@@ -152,6 +225,8 @@ HostSyncEntry w32time(const std::string& name, std::string summary,
     W32TimeSettings settings = defaults;
     settings.poll_interval = from_seconds(parameters.number("poll_interval_s"));
     settings.phase_correct_rate = parameters.number("phase_correct_rate");
+    settings.frequency_correct_rate = parameters.number("frequency_correct_rate");
+    settings.rate = rate_of(parameters);
     settings.max_allowed_phase_offset =
         from_seconds(parameters.number("max_allowed_phase_offset_s"));
     settings.service_time = from_ms(parameters.number("service_hours") * 3600e3);

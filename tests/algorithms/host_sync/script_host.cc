@@ -123,7 +123,10 @@ class ScriptHost::SystemClock : public HostClock {
     co_await host_.world_.wait_until(begin + cost);
   }
 
-  Task<void> adjust_frequency(double /*ppb*/) override { co_return; }
+  Task<void> adjust_frequency(double ppb) override {
+    host_.frequencies_ppb.push_back(ppb);
+    co_return;
+  }
 
   Task<void> slew(Nanoseconds amount, double max_rate_ppb) override {
     host_.slews.push_back({amount, max_rate_ppb});

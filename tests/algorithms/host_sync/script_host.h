@@ -96,8 +96,9 @@ class ScriptHost : public Host {
   bool stamps_departures = false;  // in the kernel
   bool throw_on_outcome = false;   // a fault of the host itself
   // Log.
-  std::vector<Nanoseconds> steps;  // change of `offset` by each set()
-  std::vector<Slew> slews;         // applied at once
+  std::vector<Nanoseconds> steps;       // change of `offset` by each set()
+  std::vector<Slew> slews;              // applied at once
+  std::vector<double> frequencies_ppb;  // of adjust_frequency(), which changes nothing
   std::vector<Exchange> exchanges;
   std::vector<SyncOutcome> outcomes;
   std::vector<Nanoseconds> outcome_times;

@@ -22,6 +22,17 @@ TEST(W32TimeSpikes, TakesEverythingDuringTheHold) {
   EXPECT_FALSE(spikes.accept(from_ms(9e3), at_s(400)));
 }
 
+TEST(W32TimeSpikes, DuringTheHoldTheRateIsLeftAlone) {
+  W32TimeSpikes spikes;
+  EXPECT_FALSE(spikes.corrects_rate());
+  for (int i = 0; i < W32TimeSpikes::kHoldPeriod; ++i) {
+    EXPECT_TRUE(spikes.accept(Nanoseconds{0}, at_s(i)));
+    EXPECT_FALSE(spikes.corrects_rate()) << i;
+  }
+  EXPECT_TRUE(spikes.accept(Nanoseconds{0}, at_s(9)));
+  EXPECT_TRUE(spikes.corrects_rate());
+}
+
 TEST(W32TimeSpikes, ASpikeIsFromTheLimitOnInBothDirections) {
   EXPECT_TRUE(after_hold().accept(from_ms(5e3) - Nanoseconds{1}, at_s(100)));
   EXPECT_FALSE(after_hold().accept(from_ms(5e3), at_s(100)));

@@ -53,6 +53,78 @@ TEST(W32TimeRule, BeyondHalfTheClockRateTheClockIsSet) {
   EXPECT_TRUE(w32time_correction(from_ms(2000) + Nanoseconds{100}, settings).set);
 }
 
+TEST(W32TimeRateChange, ThePllHasTheDocumentedGain) {
+  W32TimeSettings settings = settings_with_poll(64);
+  settings.rate = W32TimeRate::kPll;
+  // 4 * 4096 ticks of 15.625 ms: 256 s.
+  EXPECT_NEAR(w32time_rate_change(from_ms(10), from_ms(64e3), settings),
+              10e-3 * 64 / (1024.0 * 1024), 1e-18);
+  settings.poll_interval = from_ms(1024e3);
+  EXPECT_NEAR(w32time_rate_change(from_ms(-10), from_ms(1024e3), settings), -10e-3 / (256 * 1024.0),
+              1e-18);
+  settings.frequency_correct_rate = 2;
+  EXPECT_NEAR(w32time_rate_change(from_ms(-10), from_ms(1024e3), settings), -10e-3 / (64 * 1024.0),
+              1e-18);
+}
+
+TEST(W32TimeRateChange, TheFllFadesInAboveFourMinutes) {
+  W32TimeSettings pll = settings_with_poll(1024);
+  pll.rate = W32TimeRate::kPll;
+  const auto fll = [&pll](double interval_s) {
+    W32TimeSettings hybrid = pll;
+    hybrid.rate = W32TimeRate::kHybrid;
+    const Nanoseconds interval = from_ms(interval_s * 1e3);
+    return w32time_rate_change(from_ms(100), interval, hybrid) -
+           w32time_rate_change(from_ms(100), interval, pll);
+  };
+  EXPECT_NEAR(fll(256), 0, 1e-15);
+  EXPECT_NEAR(fll(1024), 0.1 * 0.75 / (4 * 1024), 1e-12);
+  EXPECT_NEAR(fll(32768), 0.1 / (4 * 32768.0), 1e-12);
+}
+
+TEST(W32TimeRateChange, HeldOrWithoutAnIntervalThereIsNone) {
+  W32TimeSettings settings = settings_with_poll(1024);
+  EXPECT_EQ(w32time_rate_change(from_ms(100), Nanoseconds{0}, settings), 0);
+  settings.rate = W32TimeRate::kHeld;
+  EXPECT_EQ(w32time_rate_change(from_ms(100), from_ms(1024e3), settings), 0);
+}
+
+// A clock that lacks 10 ppm, on paper: each poll the phase rule takes its part of the offset, and
+// after the hold the rate changes.
+TEST(W32TimeRateChange, AtTheDocumentedPollsTheLoopSettles) {
+  for (const double poll_s : {64.0, 1024.0, 32768.0}) {
+    for (const W32TimeRate rate : {W32TimeRate::kHybrid, W32TimeRate::kPll}) {
+      W32TimeSettings settings = settings_with_poll(poll_s);
+      settings.rate = rate;
+      const double corrected = std::min(1 / (16 * 7 * 15.625e-3), 1.0);
+      double lacking = 10e-6;
+      double offset_s = 0;
+      for (int poll = 0; poll < 5000; ++poll) {
+        lacking -= w32time_rate_change(from_seconds(offset_s), settings.poll_interval, settings);
+        offset_s += lacking * poll_s - corrected * offset_s;
+      }
+      EXPECT_LT(std::abs(lacking), 0.1e-6) << poll_s;
+      EXPECT_LT(std::abs(offset_s), 0.01 * 10e-6 * poll_s) << poll_s;
+    }
+  }
+}
+
+TEST(W32Time, TheRateIsCorrectedOnceTheHoldIsOver) {
+  ScriptWorld world(2);
+  world.connect(kOneWay);
+  for (int poll = 0; poll < 6; ++poll) {
+    world.call_at(from_ms(1024e3 * poll - (poll > 0 ? 500e3 : 0)),
+                  [&world] { world.host(0).offset += from_ms(10); });
+  }
+  W32Time algorithm(settings_with_poll(1024));
+  world.run(algorithm, from_ms(4.5 * 1024e3));
+  EXPECT_EQ(world.host(1).slews.size(), 5U);
+  EXPECT_TRUE(world.host(1).frequencies_ppb.empty());
+  world.run(from_ms(5.5 * 1024e3));
+  ASSERT_EQ(world.host(1).frequencies_ppb.size(), 1U);
+  EXPECT_NEAR(world.host(1).frequencies_ppb[0], 10e6 * (0.75 / 4 + 1.0 / 256) / 1024, 1);
+}
+
 TEST(W32Time, SetsALargeOffsetAndSlewsASmallOne) {
   ScriptWorld world(3);
   world.connect(kOneWay);
