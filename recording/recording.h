@@ -128,6 +128,8 @@ struct RecordingCost {
   std::uint64_t events = 0;
   double simulated_seconds = 0;  // 0 on a real rig
   std::uint64_t trace_hash = 0;  // of the simulated events; 0 on a real rig
+  // That the hosts sent each other, also the lost ones; unknown on a real rig.
+  std::optional<std::uint64_t> messages{};
   // What went wrong, a line each for the user: a host that was lost, a camera that was unplugged.
   // The recording holds what came before.
   std::vector<std::string> notes{};

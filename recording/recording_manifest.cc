@@ -27,21 +27,23 @@ constexpr std::size_t kLargestManifest = 256U << 20U;
 Json json_of(const RecordedCapture& capture) {
   Json cameras = Json::array();
   for (const CameraLayout& camera : capture.layout.cameras) cameras.push_back(camera.host);
-  return {{"pipeline", capture.pipeline},
-          {"seed", capture.seed},
-          {"complete", capture.complete},
-          {"layout",
-           {{"hosts", capture.layout.hosts},
-            {"camera_hosts", std::move(cameras)},
-            {"frame_rate_hz", capture.layout.frame_rate_hz},
-            {"first_pulse", capture.layout.first_pulse},
-            {"pulses", capture.layout.pulses}}},
-          {"cost",
-           {{"events", capture.cost.events},
-            {"simulated_seconds", capture.cost.simulated_seconds},
-            {"trace_hash", capture.cost.trace_hash}}},
-          {"lines", {{"frames", capture.frames}, {"events", capture.other_events}}},
-          {"notes", capture.notes}};
+  Json json = {{"pipeline", capture.pipeline},
+               {"seed", capture.seed},
+               {"complete", capture.complete},
+               {"layout",
+                {{"hosts", capture.layout.hosts},
+                 {"camera_hosts", std::move(cameras)},
+                 {"frame_rate_hz", capture.layout.frame_rate_hz},
+                 {"first_pulse", capture.layout.first_pulse},
+                 {"pulses", capture.layout.pulses}}},
+               {"cost",
+                {{"events", capture.cost.events},
+                 {"simulated_seconds", capture.cost.simulated_seconds},
+                 {"trace_hash", capture.cost.trace_hash}}},
+               {"lines", {{"frames", capture.frames}, {"events", capture.other_events}}},
+               {"notes", capture.notes}};
+  if (capture.cost.messages) json["cost"]["messages"] = *capture.cost.messages;
+  return json;
 }
 
 bool is_plain(char c) {
@@ -179,6 +181,10 @@ RecordedCapture capture_of(const Value& value) {
   capture.cost.events = cost.at("events").whole<std::uint64_t>(0, kAny);
   capture.cost.simulated_seconds = cost.at("simulated_seconds").number(0, 1e12);
   capture.cost.trace_hash = cost.at("trace_hash").whole<std::uint64_t>(0, kAny);
+  // Older recordings and real rigs do not say.
+  if (cost.has("messages")) {
+    capture.cost.messages = cost.at("messages").whole<std::uint64_t>(0, kAny);
+  }
   capture.complete = value.at("complete").truth();
   const Value lines = value.at("lines");
   capture.frames = lines.at("frames").whole<std::uint64_t>(0, kAny);

@@ -31,6 +31,11 @@ struct LinePoint {
   std::int64_t y = 0;
 };
 
+// Of points with different x.
+inline double slope_between(LinePoint a, LinePoint b) {
+  return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
+}
+
 // The fitted line. With fewer than two points, or all at one x, its slope is 0: the mean of y.
 struct Line {
   double slope = 0;

@@ -31,10 +31,6 @@ void append(std::vector<LinePoint>& hull, LinePoint point) {
   hull.push_back(point);
 }
 
-double slope_between(LinePoint a, LinePoint b) {
-  return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
-}
-
 }  // namespace
 
 void LowerHull::add(LinePoint point) {

@@ -244,10 +244,6 @@ class TheilSen final : public DeviceTimeEstimator {
     replaced_ = 0;
   }
 
-  static double slope_between(LinePoint a, LinePoint b) {
-    return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
-  }
-
   // The line through the points, with its level at `origin`.
   void refit(std::int64_t origin) {
     since_refit_ = 0;

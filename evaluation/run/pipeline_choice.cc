@@ -309,6 +309,9 @@ SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::
   RecordingCost cost = record_run(source, choice, seed, sink, observer);
   SeedScore score = scorer.finish();
   score.seed = seed;
+  if (cost.messages && cost.simulated_seconds > 0) {
+    score.packets_per_s = static_cast<double>(*cost.messages) / cost.simulated_seconds;
+  }
   score.cost = std::move(cost);
   return score;
 }

@@ -22,6 +22,12 @@ constexpr Metric on_panel(Metric metric, int place) {
   return metric;
 }
 
+constexpr Metric packets_of_clock_runs() {
+  Metric metric = packets_metric();
+  metric.tables = {.clocks = 13, .response = 8};
+  return metric;
+}
+
 inline constexpr Metric kClockMetricTable[] = {
     {.id = "clock_spread_ms",
      .title = "spread of the clocks",
@@ -108,14 +114,7 @@ inline constexpr Metric kClockMetricTable[] = {
      .legend = "recovery: from its return until the spread stays within the largest before.",
      .legend_continues = true,
      .sweep = "recovery_s"},
-    {.id = "packets_per_s",
-     .title = "packets per second",
-     .unit = "1/s",
-     .place =
-         SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s},
-     .tables = {.clocks = 13, .response = 8},
-     .heading = "packets\nper s",
-     .sweep = "packets_per_s"},
+    packets_of_clock_runs(),
 };
 
 }  // namespace simbench::evaluation

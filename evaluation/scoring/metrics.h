@@ -67,6 +67,8 @@ struct MetricValues {
   Value rms_te_ms = no_value<Value>();       // over all slaves
   Value constant_te_ms = no_value<Value>();  // largest |mean TE| of any host
   Value dynamic_te_ms = no_value<Value>();   // largest range (peak to peak) of any host's TE
+  // Messages that all hosts sent, the lost ones too, over the time of the whole run.
+  Value packets_per_s = no_value<Value>();
   // Of clock runs only (evaluation/clock_run/clock_score.h).
   Value clock_spread_ms = no_value<Value>();  // mean in time: largest minus smallest clock
   Value clock_spread_median_ms = no_value<Value>();
@@ -78,7 +80,6 @@ struct MetricValues {
   Value holdover_60_ms = no_value<Value>();  // largest |TE| 60 s after the master was lost
   Value holdover_600_ms = no_value<Value>();
   Value recovery_s = no_value<Value>();  // from its return until the spread is as before
-  Value packets_per_s = no_value<Value>();
   // Without an entry below: only the claims of the paper use these.
   Value offline_amd_ms = no_value<Value>();     // AMD of regression_offline over the same recording
   Value spread_in_host_ms = no_value<Value>();  // mean over pulses and hosts of the range in a host
@@ -286,6 +287,29 @@ inline constexpr Metric kDynamicTe =
     time_error("dynamic_te_ms", "dynamic time error",
                {&MetricValues<double>::dynamic_te_ms, &MetricValues<Series>::dynamic_te_ms}, 4,
                "dynamic\nTE ms", "dynamic: largest range of a host.");
+// Of both kinds of runs; in tables of captures beside the hosts' time errors.
+constexpr Metric packets_metric() {
+  Metric metric;
+  metric.id = "packets_per_s";
+  metric.title = "packets per second";
+  metric.unit = "1/s";
+  metric.better = Better::kNeither;
+  metric.place =
+      SeriesPlace{&MetricValues<double>::packets_per_s, &MetricValues<Series>::packets_per_s};
+  metric.heading = "packets\nper s";
+  metric.sweep = "packets_per_s";
+  return metric;
+}
+constexpr Metric packets_of_captures() {
+  Metric metric = packets_metric();
+  metric.tables = {.time_errors = 5, .response = 7};
+  metric.legend =
+      "packets: messages that all hosts sent, the lost ones too, from the start of host "
+      "synchronisation to the end of the capture.";
+  metric.csv = CsvColumns::kValueAtEnd;
+  metric.is_new = true;
+  return metric;
+}
 inline constexpr Metric kMetricTable[] = {
     {.id = "amd_ms",
      .title = "AMD",
@@ -351,6 +375,7 @@ inline constexpr Metric kMetricTable[] = {
     kRmsTe,
     kConstantTe,
     kDynamicTe,
+    packets_of_captures(),
     {.id = "exposure_spread_ms",
      .title = "exposure spread",
      .unit = "ms",

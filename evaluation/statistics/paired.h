@@ -23,7 +23,7 @@
 // they are, the interval excludes 0 or is narrower than e, as if they were normal. It is a guess
 // from few seeds, at least fewest_pairs().
 //
-//   const std::vector<PairedComparison> all = compare_together({{pair_up(with, without), {}}});
+//   const std::vector<PairedComparison> all = compare_together({{pair_up(before, after), {}}});
 //   if (all[0].verdict == Verdict::kBetter) print(all[0].ratio.value);
 #ifndef SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
 #define SIMBENCH_EVALUATION_STATISTICS_PAIRED_H_
@@ -66,8 +66,8 @@ struct PairedComparison {
   double mean_b = kNan;
   double median_a = kNan;
   double median_b = kNan;
-  Estimate difference;  // mean of b - a
-  Estimate ratio;       // mean of b / mean of a; NaN as SubsetMeans has it
+  Estimate difference{};  // mean of b - a
+  Estimate ratio{};       // mean of b / mean of a; NaN as SubsetMeans has it
   double p = 1;
   double adjusted_p = 1;        // by Holm: significant if at most kFamilyError
   double error = kFamilyError;  // the intervals hold with 1 - error

@@ -22,7 +22,7 @@
 //
 // Cost: 2^bits n / 8 additions; 32 pairs with 16 bits in some 3 ms.
 //
-//   const SubsetMeans means(pairs, 14);
+//   const SubsetMeans means({{1.5, 1.2}, {1.4, 1.3}}, 14);
 //   if (means.p() <= 0.05) print(means.difference(0.05).low, means.difference(0.05).high);
 #ifndef SIMBENCH_EVALUATION_STATISTICS_SUBSET_MEANS_H_
 #define SIMBENCH_EVALUATION_STATISTICS_SUBSET_MEANS_H_

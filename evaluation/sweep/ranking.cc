@@ -11,7 +11,7 @@ namespace simbench::evaluation {
 namespace {
 
 // Which of two pipelines is better at a point.
-enum class Better : std::uint8_t { kNeither, kFirst, kSecond };
+enum class BetterOf : std::uint8_t { kNeither, kFirst, kSecond };
 
 double logarithm(double value) { return value > 0 ? std::log(value) : kNan; }
 
@@ -36,25 +36,25 @@ class Comparisons {
             return rows[point * pipelines_ + pipeline].of(metric.sweep);
           };
           const PairedT t = compare_logarithms(series(a), series(b));
-          signs_.push_back(t.mean > 0 ? Better::kFirst : Better::kSecond);
+          signs_.push_back(t.mean > 0 ? BetterOf::kFirst : BetterOf::kSecond);
           p.push_back(t.mean == 0 || std::isnan(t.p) ? 1 : t.p);
         }
       }
     }
     const std::vector<HolmDecision> decisions = holm(p);
     for (std::size_t i = 0; i < p.size(); ++i) {
-      if (decisions[i].adjusted_p > kFamilyError) signs_[i] = Better::kNeither;
+      if (decisions[i].adjusted_p > kFamilyError) signs_[i] = BetterOf::kNeither;
     }
   }
 
   // a < b.
-  Better at(std::size_t point, std::size_t a, std::size_t b) const {
+  BetterOf at(std::size_t point, std::size_t a, std::size_t b) const {
     return signs_[point * (pipelines_ * (pipelines_ - 1) / 2) + b * (b - 1) / 2 + a];
   }
 
  private:
   std::size_t pipelines_;
-  std::vector<Better> signs_;  // by point, then (0,1), (0,2), (1,2), (0,3) ...
+  std::vector<BetterOf> signs_;  // by point, then (0,1), (0,2), (1,2), (0,3) ...
 };
 
 RankedPoint ranked(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
@@ -70,7 +70,7 @@ RankedPoint ranked(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
   result.is_apart.reserve(pipelines);
   for (std::size_t i = 1; i < pipelines; ++i) {
     const auto [a, b] = std::minmax({result.order[i - 1], result.order[i]});
-    result.is_apart.push_back(comparisons.at(point, a, b) != Better::kNeither);
+    result.is_apart.push_back(comparisons.at(point, a, b) != BetterOf::kNeither);
   }
   return result;
 }
@@ -91,13 +91,13 @@ std::vector<std::vector<std::size_t>> lines_of(const SweepPlan& plan) {
 
 void add_flips(const std::vector<std::size_t>& line, const Comparisons& comparisons, std::size_t a,
                std::size_t b, std::vector<RankingFlip>& flips) {
-  Better last = Better::kNeither;
+  BetterOf last = BetterOf::kNeither;
   std::size_t last_point = 0;
   for (const std::size_t point : line) {
-    const Better now = comparisons.at(point, a, b);
-    if (now == Better::kNeither) continue;
-    if (last != Better::kNeither && now != last) {
-      const bool was_first = last == Better::kFirst;
+    const BetterOf now = comparisons.at(point, a, b);
+    if (now == BetterOf::kNeither) continue;
+    if (last != BetterOf::kNeither && now != last) {
+      const bool was_first = last == BetterOf::kFirst;
       flips.push_back({.before = was_first ? a : b,
                        .after = was_first ? b : a,
                        .last = last_point,

@@ -143,6 +143,8 @@ void add_pointer(const std::string& axis, const std::string& text, SweepAxis& re
                         values.find_first_of("0123456789+-.") == 0;
   result.pointers.push_back(text.substr(0, equals));
   result.values.push_back(is_range ? range_values(axis, values, parts) : list_values(axis, values));
+  // The first pointer tells the steps apart; what goes in lockstep with it may rest.
+  if (result.pointers.size() > 1) return;
   std::set<std::string> seen;
   for (const std::string& value : result.values.back()) {
     if (!seen.insert(value).second) fail(axis, fmt::format("found the value {} twice", value));

@@ -7,9 +7,9 @@
 //   /hosts/count=2:6:2+/cameras/count=6:18:6           several in lockstep, where one alone
 //                                                      would make no valid scenario
 //
-// Value i of a range is start + i * step, never a sum of steps. For decimals it is the decimal that
-// a person expects: 0:1:0.1 has 0.3, not 0.30000000000000004. A value's text is the shortest that
-// reads back as the same number.
+// The values of the first of an axis differ. Value i of a range is start + i * step, never a sum of
+// steps. For decimals it is the decimal that a person expects: 0:1:0.1 has 0.3, not
+// 0.30000000000000004. A value's text is the shortest that reads back as the same number.
 //
 // A point is one combination; the first axis varies slowest. A run is one pipeline at one point
 // with one seed: a capture, or a run of the hosts' clocks alone (evaluation/clock_run). Runs are

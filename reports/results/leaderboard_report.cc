@@ -67,6 +67,7 @@ Table error_table(const Board& board) {
   fields.push_back(ratio("AMD /\noracle's", &Rank::to_oracle, &PairedRatios::amd));
   fields.push_back(ratio("AMD /\npaper's Both", &Rank::to_paper, &PairedRatios::amd));
   add("host_error_ms", false);
+  add("packets_per_s", false);
   add("precision", false);
   add("recall", false);
   return table_of(fields, ranks);
@@ -99,8 +100,9 @@ std::string order_legend(const Results& results) {
   return fmt::format(
       "Sorted by absolute error: mean |global stamp - true mid-exposure on the master's clock|. "
       "Ratios are medians over the seeds, seed by seed: to the row of the board with the oracle in "
-      "its place, and to the paper's proposal. {} Online stamps a frame when it arrives; offline "
-      "needs the whole recording.",
+      "its place, and to the paper's proposal. packets per s: messages that all hosts sent, from "
+      "the start of host synchronisation to the end of the capture. {} Online stamps a frame when "
+      "it arrives; offline needs the whole recording.",
       has_real_rows(results) ? "Every repetition of a pipeline is a capture of its own."
                              : "Every pipeline meets the same worlds.");
 }

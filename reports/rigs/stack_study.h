@@ -6,7 +6,7 @@
 // delay does not stretch the whole end of the table. A spike is uniform, an assumption, with the
 // measured mean.
 //
-//   write_stack_study("network_stack.json", {.date = today, .machine = machine,
+//   write_stack_study("network_stack.json", {.date = "2021-09-14", .machine = "a desktop",
 //       .conditions = {{.name = "idle", .busy_threads = 0, .parts = {{"transmit", law}}}}});
 #ifndef SIMBENCH_REPORTS_RIGS_STACK_STUDY_H_
 #define SIMBENCH_REPORTS_RIGS_STACK_STUDY_H_

@@ -8,8 +8,8 @@
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/figures/figure.h"
-#include "reports/text/number_text.h"
 #include "reports/text/block.h"
+#include "reports/text/number_text.h"
 
 namespace simbench::reports {
 

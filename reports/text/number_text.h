@@ -11,9 +11,10 @@
 
 namespace simbench::reports {
 
-// Three decimals (a microsecond, where the unit is a millisecond), of smaller numbers two significant
-// digits down to 1e-6 (a nanosecond), fewer for numbers of 100 and more, scientific from a million
-// on: "0.00023", "0.004", "12.345", "547.5", "1.6e+09"; "-" for what is not finite, here and below.
+// Three decimals (a microsecond, where the unit is a millisecond), of smaller numbers two
+// significant digits down to 1e-6 (a nanosecond), fewer for numbers of 100 and more, scientific
+// from a million on: "0.00023", "0.004", "12.345", "547.5", "1.6e+09"; "-" for what is not finite,
+// here and below.
 std::string number_text(double value);
 
 // Three significant digits, whatever the size: "0.00123", "36000", "1.23e-05".

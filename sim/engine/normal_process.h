@@ -7,7 +7,7 @@
 //
 // Cost: some 20 ns while readings stay within a step, two more normal draws in another.
 //
-//   NormalProcess load(run_seed, kLoad, host, from_ms(100));
+//   NormalProcess load(run_seed, kMessage, 3, from_ms(100));
 //   const double z = load.at(engine.now());
 //   const double share = normal_probability(z);   // uniform in (0, 1)
 #ifndef SIMBENCH_SIM_ENGINE_NORMAL_PROCESS_H_

@@ -14,9 +14,9 @@
 //    traffic causes interrupts too, as a Poisson process of rate r; as each blocks for T, a message
 //    meets a blocked card with probability rT / (1 + rT) and then waits U(0, T);
 //  - the processor sleeps: waking it takes sleep_exit_us. It would sleep for sleep_share of the
-//  time,
-//    a process in true time, but stays awake for awake_us after each message of its own. A client
-//    is therefore awake when the answer comes, while its server may have slept: an asymmetry.
+//    time, a process in true time, but stays awake for awake_us after each message of its own. A
+//    client is therefore awake when the answer comes, while its server may have slept: an
+//    asymmetry.
 // Parts keep the order of messages: none overtakes another on the same host.
 //
 // One factor exp(N(0, speed_log_sigma)) per host scales all of it but the moderation.

@@ -252,7 +252,8 @@ void Network::acknowledge(PathId path_id) {
   engine_.schedule(nagle.ack_in_order(arrival), handler_id_, kAckArrival, path_id);
 }
 
-void Network::report(const Segment& segment, std::optional<TrueTime> arrival) const {
+void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
+  messages_ += segment.messages.size();
   if (observer_ == nullptr) return;
   const Path& path = paths_[segment.path];
   MessageId id = segment.first;

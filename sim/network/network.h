@@ -131,6 +131,9 @@ class Network : private EventHandler {
   // capture traffic are not reported.
   void observe(WorldObserver& observer) { observer_ = &observer; }
 
+  // The messages of which an observer would have been notified until now.
+  std::uint64_t messages() const { return messages_; }
+
   // `from` sends `bytes` of capture traffic now.
   void send_capture_traffic(PeerId from, double bytes);
 
@@ -175,8 +178,8 @@ class Network : private EventHandler {
   // The segment, which is at switch `number` of its way, has come to its next port.
   void pass_switch(SegmentId id, TrueTime at);
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
-  // Reports to the observer that the segment's messages arrive then, or never.
-  void report(const Segment& segment, std::optional<TrueTime> arrival) const;
+  // Counts the segment's messages and reports to the observer that they arrive then, or never.
+  void report(const Segment& segment, std::optional<TrueTime> arrival);
 
   SegmentId keep(Segment segment);
   Segment release(SegmentId id);
@@ -195,6 +198,7 @@ class Network : private EventHandler {
   RunLoad load_;
   const Outages& outages_;
   WorldObserver* observer_ = nullptr;
+  std::uint64_t messages_ = 0;
   SwitchClock switch_clock_;
   LineRate rate_;
   HandlerId handler_id_;

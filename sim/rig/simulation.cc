@@ -67,6 +67,7 @@ class Run {
     return {.events = engine_.events(),
             .simulated_seconds = to_seconds(engine_.now() - start_),
             .trace_hash = engine_.trace_hash(),
+            .messages = hosts_.network().messages(),
             .notes = notes()};
   }
 

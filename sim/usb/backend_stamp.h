@@ -20,7 +20,7 @@
 // until pull request #13997; docs/reference/d455.md section 1.
 //
 //   const BackendStamps stamps(scenario.usb.backend_stamp, arrival_quantum);
-//   frame.backend = stamps.stamp(clock, capture_start, copied, delivered);
+//   const HostTime backend = stamps.stamp(system_clock, capture_start, copied, delivered);
 #ifndef SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 #define SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 

@@ -64,6 +64,10 @@ extern const Whatever step;
 extern const HostTime m, t1;
 extern Host& host;
 extern HardwareClock& clock;
+extern MessageChannel& channel;
+extern OutcomeReport& outcome;
+extern RawClock raw;
+extern const LowerHull above, below_negated;
 extern const ReceivedMessage message;
 extern const std::vector<PeerId> peers, slaves;
 extern const TwoWayExchange exchange;
@@ -121,6 +125,7 @@ using scenarios::Scenario;
 using sim::make_simulation;
 std::string task_text(std::size_t task);
 std::string answer_in(const std::string& setup, const std::string& task);
+extern const std::vector<ResponseRow> rows;
 extern const Whatever pipeline, make_world, make_clocks, base, fit, simulated, measured, stream,
     choice, make_estimator, workspace, layout, arrival, shift, before, after, keep, results, truth,
     global;
@@ -189,8 +194,8 @@ extern ReprojectionRow row;
 }  // namespace reconstruction
 
 namespace reports {
-extern const Whatever simulated, path, manifest, identity, begin, end, work_on, refuse, provenance,
-    measured, summary, run, choice, results, mesh;
+extern const Whatever law, simulated, path, manifest, identity, begin, end, work_on, refuse,
+    provenance, measured, summary, run, choice, results, mesh;
 extern const Archive a, b;
 extern const SeedRange seeds_of_a, seeds_of_b;
 extern const evaluation::Row row_a, row_b;
@@ -245,7 +250,9 @@ extern const std::size_t host_count;
 extern const std::uint64_t link_and_direction, message_index;
 extern std::vector<int> messages;
 extern WaitPoint arrived;
-extern const Given<FrameArrival> frame;
+extern Given<FrameArrival> frame;
+extern const Whatever arrival_quantum, copied, delivered;
+extern const TrueTime at_card, left;
 extern const TrueTime deadline;
 extern const SteadyTime steady_deadline;
 extern int count;

@@ -44,6 +44,7 @@ inline evaluation::Row full_row() {
   both.rms_te_ms = series(0.5, 0.75);
   both.constant_te_ms = series(0.25, 0.5);
   both.dynamic_te_ms = series(1.5, 2.5);
+  both.packets_per_s = series(20, 40);
   both.exposure_spread_ms = series(0, 0.125);
   both.precision = 1;
   both.recall = 0.75;
@@ -85,7 +86,7 @@ inline evaluation::Row bare_row() {
   none.bias_ms = no_series();
   none.host_error_ms = no_series();
   none.max_te_ms = none.rms_te_ms = no_series();
-  none.constant_te_ms = none.dynamic_te_ms = no_series();
+  none.constant_te_ms = none.dynamic_te_ms = none.packets_per_s = no_series();
   none.exposure_spread_ms = no_series();
   none.precision = kNaN;
   none.recall = 0;

@@ -37,10 +37,6 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-double slope_between(LinePoint a, LinePoint b) {
-  return static_cast<double>(b.y - a.y) / static_cast<double>(b.x - a.x);
-}
-
 // The next slope of the hulls on the way of the two touched vertices.
 struct Corner {
   double above = kEndless;

@@ -33,9 +33,9 @@ struct ProbeWay {
 // that the sender began anew. Complexity: O(1) a probe.
 //
 //   CodedProbes probes(from_us(1));
-//   probes.arrive(7, 0, arrived_0);
-//   probes.arrive(7, 1, arrived_1);
-//   std::optional<CodedProbes::Pair> pure = probes.departed(7, {left_0, left_1});
+//   probes.arrive(7, 0, t2_ns);
+//   probes.arrive(7, 1, t4_ns);
+//   std::optional<CodedProbes::Pair> pure = probes.departed(7, {t1_ns, t3_ns});
 class CodedProbes {
  public:
   using Pair = std::array<ProbeWay, 2>;
@@ -82,7 +82,8 @@ struct PairLine {
 // Complexity: O(vertices): the margin is concave in the rate, with its corners at the hulls'
 // slopes.
 //
-//   std::optional<PairLine> line = separating_line(above.vertices(), below.vertices(), x, 5e-4);
+//   std::optional<PairLine> line = separating_line(above.vertices(), below_negated.vertices(), 0,
+//   5e-4);
 std::optional<PairLine> separating_line(std::span<const LinePoint> above,
                                         std::span<const LinePoint> below_negated, std::int64_t x_ns,
                                         double max_rate);

@@ -9,7 +9,7 @@ namespace simbench {
 namespace {
 
 // Part of an interval by which it is varied, so that the hosts' probes do not stay in step.
-constexpr double kVariation = 0.2;
+constexpr double kProbesVary = 0.2;
 constexpr int kWindowsKept = 3;
 constexpr std::size_t kFewestPoints = 4;
 
@@ -41,7 +41,7 @@ Task<void> ProbeLink::probe() {
   ProbeMessage probe{.pair = 0};
   while (raw_.lacking().empty()) {
     next += settings_.probe_interval;
-    const double late = kVariation * host_.random_uniform() * to_ns(settings_.probe_interval);
+    const double late = kProbesVary * host_.random_uniform() * to_ns(settings_.probe_interval);
     const Nanoseconds pause = next + from_ns(late) - host_.steady_clock().now();
     if (pause.count() < 0) continue;
     co_await host_.sleep_for(pause);

@@ -3,8 +3,8 @@
 // Of the two, a is the host of the lower number: b sends it the hull of the probes from a to b, and
 // a finds the line.
 //
-//   ProbeLink link(host, peer, settings, raw);
-//   tasks.push_back(link.probe());
+//   ProbeLink link(host, master, HuygensSettings{}, raw);
+//   co_await link.probe();
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_PROBE_LINK_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_PROBE_LINK_H_
 

@@ -7,7 +7,7 @@
 // The card's clock is compared with the steady clock once per second (narrowest cross stamp) and
 // taken as the least-squares line of the last kCrossStamps comparisons.
 //
-//   RawClock raw(host, StampSource::kKernel);
+//   RawClock raw(host, StampSource::kKernel, {});
 //   std::optional<std::int64_t> arrived = raw.arrival(message);
 #ifndef SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_RAW_CLOCK_H_
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_HUYGENS_RAW_CLOCK_H_

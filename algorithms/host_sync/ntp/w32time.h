@@ -53,8 +53,8 @@ namespace simbench {
 // (HoldPeriod counts samples), [MS-W32T] 2.2.7 (HOLD: time only; SYNC: time and rate).
 //
 //   W32TimeSpikes spikes;
-//   if (spikes.accept(offset, host.steady_clock().now())) correct_the_time();
-//   if (spikes.corrects_rate()) correct_the_rate();
+//   if (spikes.accept(offset, host.steady_clock().now())) correct_the_clock();
+//   if (spikes.corrects_rate()) adjustment();
 class W32TimeSpikes {
  public:
   static constexpr Nanoseconds kLargePhaseOffset{5'000'000'000};

@@ -92,7 +92,7 @@ class MovingMedian {
 //
 //   PtpOffset filter(10);
 //   filter.add_sync(t1_ns, t2_ns);
-//   filter.add_request(t3_ns, t4_ns, servo.rate_ratio());
+//   filter.add_request(t3_ns, t4_ns, 1 + 5e-6);  // as the servo has found it
 //   std::optional<Nanoseconds> offset = filter.offset();
 class PtpOffset {
  public:

@@ -38,7 +38,7 @@ struct SptpExchange {
 // is.
 //
 //   SptpPathDelay delay({});
-//   const Nanoseconds offset = delay.offset(exchange);
+//   const Nanoseconds offset = delay.offset(SptpExchange{});
 class SptpPathDelay {
  public:
   struct Settings {

@@ -40,11 +40,11 @@ struct Sighting {
 // periods; steps that are not positive are ignored. After kStrangeSteps in a row that are more than
 // a quarter of a period off, the train starts again: the rate has changed.
 //
-// The uncertainty is measured by splitting the pulses: neighbours of a quarter of a second make a
-// block, and every fourth block a group. The groups' envelopes differ by chance alone, also where
-// the delays of neighbouring pulses go together; sigma = their standard deviation / 2, as of a mean
-// of four (of exponential delays, whose minimum gains more by four times the pulses, the error is
-// half of that). At both ends of the kept pulses, where not every group has one, none is found.
+// The uncertainty is measured by splitting the pulses: neighbours of a second make a block, and
+// every fourth block a group. The groups' envelopes differ by chance alone, also where the delays
+// of neighbouring pulses go together; sigma = their standard deviation / 2, as of a mean of four
+// (of exponential delays, whose minimum gains more by four times the pulses, the error is half of
+// that). At both ends of the kept pulses, where not every group has one, none is found.
 //
 // Complexity: O(1) amortised a pulse. Memory bounded (two_way_estimators.h).
 //
@@ -60,7 +60,7 @@ class PulseTrain {
   static constexpr std::size_t kFirstSteps = 9;
   static constexpr int kStrangeSteps = 8;
   static constexpr std::uint64_t kFewestPulses = 16;
-  static constexpr double kBlockNs = 25e7;
+  static constexpr double kBlockNs = 1e9;
 
   explicit PulseTrain(Settings settings);
 

@@ -87,6 +87,7 @@ TEST(SweepAxis, SaysWhatIsWrong) {
   EXPECT_THAT(axis_problem("/a="), HasSubstr("found an empty value"));
   EXPECT_THAT(axis_problem("/a=1,,2"), HasSubstr("found an empty value"));
   EXPECT_THAT(axis_problem("/a=1,2,1.0"), HasSubstr("found the value 1 twice"));
+  EXPECT_EQ(parse_axis("/a=1,2,3+/b=4,5,5").steps(), 3u) << "what goes along may rest";
   EXPECT_THAT(axis_problem("/a=1:2"), HasSubstr("found '1:2', allowed start:stop:step"));
   EXPECT_THAT(axis_problem("/a=1:x:2"), HasSubstr("found 'x' in a range"));
   EXPECT_THAT(axis_problem("/a=1:inf:2"), HasSubstr("found 'inf' in a range"));

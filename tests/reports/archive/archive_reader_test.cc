@@ -109,10 +109,10 @@ TEST_F(ArchiveReader, WritingWhatWasReadChangesNothingButTheRecomputedBands) {
          {&evaluation::Row::amd_ms, &evaluation::Row::rmdv_ms, &evaluation::Row::absolute_error_ms,
           &evaluation::Row::bias_ms, &evaluation::Row::host_error_ms, &evaluation::Row::max_te_ms,
           &evaluation::Row::rms_te_ms, &evaluation::Row::constant_te_ms,
-          &evaluation::Row::dynamic_te_ms, &evaluation::Row::exposure_spread_ms,
-          &evaluation::Row::seed_precision, &evaluation::Row::seed_recall,
-          &evaluation::Row::set_amd_ms, &evaluation::Row::set_absolute_error_ms,
-          &evaluation::Row::emission_latency_ms}) {
+          &evaluation::Row::dynamic_te_ms, &evaluation::Row::packets_per_s,
+          &evaluation::Row::exposure_spread_ms, &evaluation::Row::seed_precision,
+          &evaluation::Row::seed_recall, &evaluation::Row::set_amd_ms,
+          &evaluation::Row::set_absolute_error_ms, &evaluation::Row::emission_latency_ms}) {
       (read.*series).p05 = (row.*series).p05;
       (read.*series).p95 = (row.*series).p95;
     }

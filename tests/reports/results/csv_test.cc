@@ -18,14 +18,14 @@ TEST(ResultsCsv, OneLinePerPipeline) {
             "exposure_spread_ms_p95,precision,recall,margin_ms,frames_expected,frames_delivered,"
             "frames_dropped,evaluated_pulses,unsynchronised_hosts,published_amd_ms,"
             "published_amd_inside,published_amd_percentile,published_rmdv_ms,"
-            "published_rmdv_inside,published_rmdv_attainable,sets,pure_sets,"
+            "published_rmdv_inside,published_rmdv_attainable,packets_per_s,sets,pure_sets,"
             "partial_sets,index_errors,discarded_frames,set_amd_ms,set_absolute_error_ms,"
             "emission_latency_ms,emission_latency_max_ms,scored_seeds\n"
             "yoon2021_both,yoon2021_both,regression_30,yoon2021,2,1.5,2.5,0.75,0.5,1,29,28,30,"
             "-29,-28,-30,0.5,0.25,0.75,0.0625,0,0.125,1,0.75,8.5,34560,34557,3,960,1,2.438,1,50,"
-            "1.8044,0,0,720,720,4,0,21,1.75,28,0.25,6,2\n"
+            "1.8044,0,0,30,720,720,4,0,21,1.75,28,0.25,6,2\n"
             "free_running,free_running,raw_arrival,yoon2021,750250,500,1500000,250,200,300,,,,,,"
-            ",,,,,,,,0,,0,0,0,0,0,,,,,,,0,0,0,0,0,,,,,2\n");
+            ",,,,,,,,0,,0,0,0,0,0,,,,,,,,0,0,0,0,0,,,,,2\n");
 }
 
 TEST(ResultsCsv, AChangedWorldIsTheLastColumn) {

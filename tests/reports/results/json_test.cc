@@ -36,6 +36,7 @@ TEST(ResultsJson, ARowHasEverything) {
     "rms_te_ms": {"median": 0.625, "p05": 0.5, "p95": 0.75, "values": [0.5, 0.75]},
     "constant_te_ms": {"median": 0.375, "p05": 0.25, "p95": 0.5, "values": [0.25, 0.5]},
     "dynamic_te_ms": {"median": 2.0, "p05": 1.5, "p95": 2.5, "values": [1.5, 2.5]},
+    "packets_per_s": {"median": 30.0, "p05": 20.0, "p95": 40.0, "values": [20.0, 40.0]},
     "exposure_spread_ms": {"median": 0.0625, "p05": 0.0, "p95": 0.125, "values": [0.0, 0.125]},
     "gathering_score": {
       "precision": 1.0, "recall": 0.75, "margin_ms": 8.5,

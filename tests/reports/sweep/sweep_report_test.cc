@@ -94,6 +94,7 @@ TEST(SweepReport, SaysOverHowManySeedsAMedianIs) {
   std::vector<SweepScore> some = scores();
   EXPECT_THAT(plain({.blocks = {response_block(plan(), rows())}}), testing::Not(HasSubstr("of 2")));
   some[0].at("amd_ms") = std::numeric_limits<double>::quiet_NaN();
+  some[0].at("packets_per_s") = std::numeric_limits<double>::quiet_NaN();
   some[0].at("host_error_ms") = std::numeric_limits<double>::quiet_NaN();
   const std::string table =
       plain({.blocks = {response_block(plan(), evaluation::response(plan(), some))}});
