@@ -13,6 +13,8 @@ function(read_folder folder result schema)
     string(APPEND entries "      {\"${name}\", R\"json(${text})json\"},\n")
   endforeach()
   file(READ ${folder}/schema.json schema_text)
+  # Without its indentation: compilers need not take literals beyond 64 KiB.
+  string(REGEX REPLACE "\n +" "\n" schema_text "${schema_text}")
   set(${result} "${entries}" PARENT_SCOPE)
   set(${schema} "${schema_text}" PARENT_SCOPE)
 endfunction()

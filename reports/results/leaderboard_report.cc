@@ -147,6 +147,9 @@ Document leaderboard_document(const Results& results, const std::string& summary
   Document document{.title = results_title(results),
                     .head = results_head(results, summary),
                     .blocks = board_blocks(results)};
+  if (Block failures = failures_block(results); !failures.prose.empty()) {
+    document.blocks.push_back(std::move(failures));
+  }
   if (const std::vector<std::string> notes = note_lines(results); !notes.empty()) {
     document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
   }

@@ -220,6 +220,8 @@ std::string unsynchronised_line(const Row& row) {
   return line;
 }
 
+}  // namespace
+
 Block failures_block(const Results& results) {
   Block block;
   for (const Row& row : results.rows) {
@@ -227,8 +229,6 @@ Block failures_block(const Results& results) {
   }
   return block;
 }
-
-}  // namespace
 
 std::vector<Field<Row>> metric_fields(const Metric& metric) {
   // Copied, since the address of a metric may not last.

@@ -43,6 +43,9 @@ Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.
 std::vector<std::string> sets_legend(const evaluation::Results& results);
 
+// A line for each pipeline whose host synchronisation failed, with the first reason.
+Block failures_block(const evaluation::Results& results);
+
 // The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);
 

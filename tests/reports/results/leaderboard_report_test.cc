@@ -47,6 +47,12 @@ TEST(LeaderboardReport, CountsItsSeeds) {
   EXPECT_THAT(leaderboard_document(results, "").title, HasSubstr("1 seed (1)"));
 }
 
+TEST(LeaderboardReport, SaysWhoseHostSynchronisationFailedAndWhy) {
+  EXPECT_THAT(plain(leaderboard_document(boards(), "")),
+              HasSubstr("host.mine: host synchronisation failed once over all seeds. Seed 2: "
+                        "timeout."));
+}
+
 TEST(LeaderboardReport, PrintsTheFloorOfUnequalLinks) {
   evaluation::Results results = boards();
   results.asymmetry_floor = evaluation::asymmetry_floor(0.01, 6);
