@@ -24,7 +24,8 @@ unsigned subset_bits(std::size_t tests) {
   constexpr double kTimesFiner = 8;
   constexpr unsigned kFewestBits = 12;
   constexpr unsigned kMostBits = 16;
-  const double wanted = 2 * kTimesFiner * static_cast<double>(tests) / kFamilyError;
+  const double wanted =
+      2 * kTimesFiner * static_cast<double>(std::max<std::size_t>(tests, 1)) / kFamilyError;
   return std::clamp(static_cast<unsigned>(std::ceil(std::log2(wanted))), kFewestBits, kMostBits);
 }
 

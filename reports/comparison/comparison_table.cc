@@ -39,7 +39,7 @@ std::string factor_words(const Estimate& ratio) {
   constexpr double kTimes = 2;
   const auto worded = [&](const char* what, double value, double near, double far,
                           const char* unit) {
-    const std::string text =
+    std::string text =
         fmt::format("{}{} {}", factor_text(value), *unit == 0 ? " times" : unit, what);
     if (!has_interval(ratio)) return text;
     return fmt::format("{} [{}{}, {}{}]", text, factor_text(near), unit, factor_text(far), unit);

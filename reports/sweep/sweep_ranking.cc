@@ -36,11 +36,23 @@ std::string order_text(const SweepPlan& plan, const RankedPoint& point) {
   return text;
 }
 
+// The point by the first pointer of each axis; what goes in lockstep with it is in the table.
+std::string leading_text(const SweepPlan& plan, std::size_t point) {
+  std::vector<std::string> texts;
+  for (const scenarios::Override& value : plan.overrides(point)) {
+    const bool leads = std::ranges::any_of(plan.axes, [&value](const evaluation::SweepAxis& axis) {
+      return axis.pointers.front() == value.pointer;
+    });
+    if (leads) texts.push_back(fmt::format("{}={}", value.pointer, value.value));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 // "chrony is better than ntp up to /hosts/count=2, ntp from /hosts/count=4 on."
 std::string flip_text(const SweepPlan& plan, const RankingFlip& flip) {
   return fmt::format("{} is better than {} up to {}, worse from {} on.",
                      plan.pipelines[flip.before], plan.pipelines[flip.after],
-                     plan.point_text(flip.last), plan.point_text(flip.first));
+                     leading_text(plan, flip.last), leading_text(plan, flip.first));
 }
 
 // The rows of a pipeline in order of the packets.
