@@ -23,7 +23,7 @@ std::string band(const BudgetPart& part) {
 
 std::string share_of(const BudgetPart& part, const ErrorParts& error) {
   const double share = part.mean / error.total.mean;
-  return share_text(std::abs(share) < 5e-4 ? 0 : share);
+  return share_text(std::abs(share) < 5e-4 ? std::abs(share) : share);  // of either sign
 }
 
 void add_line(Table& table, const std::string& name, const Budget& budget, const BudgetPart& amd,

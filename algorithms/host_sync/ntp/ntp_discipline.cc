@@ -30,18 +30,18 @@ std::optional<NtpSample> NtpClockFilter::add(const NtpSample& sample, double pol
   floored.dispersion_s = std::clamp(sample.dispersion_s, 0.0, kMaxDispersion);
   shift_in(floored);
   const auto by_preference = is_starting ? stages_ : ordered(sample.at_s);
-  const double jitter_before_s = jitter_s_;
-  const bool was_settled = dispersion_s_ < kMaxDistance;
   update_statistics(by_preference);
   const NtpSample& best = by_preference.front();
   if (is_missing(best)) return std::nullopt;
-  if (last_used_) {
-    if (best.at_s <= last_used_->at_s) return std::nullopt;
-    const bool is_soon = best.at_s - last_used_->at_s < 2 * poll_interval_s;
-    const double change_s = std::abs(best.offset_s - last_used_->offset_s);
-    if (was_settled && is_soon && change_s > kPopcornGate * jitter_before_s) return std::nullopt;
+  const double change_s = std::abs(best.offset_s - best_offset_s_.value_or(best.offset_s));
+  best_offset_s_ = best.offset_s;
+  if (last_used_at_s_) {
+    const double passed_s = best.at_s - *last_used_at_s_;
+    const bool is_spike = change_s > kPopcornGate * jitter_s_ && passed_s < 2 * poll_interval_s &&
+                          dispersion_s_ < kMaxDistance && best.dispersion_s < kMaxDistance;
+    if (passed_s <= 0 || is_spike) return std::nullopt;
   }
-  last_used_ = best;
+  last_used_at_s_ = best.at_s;
   return best;
 }
 
@@ -52,7 +52,8 @@ void NtpClockFilter::add_missing(double at_s) {
 
 void NtpClockFilter::reset() {
   stages_.fill({0, kMaxDispersion, kMaxDispersion, newest_s_});
-  last_used_.reset();
+  last_used_at_s_.reset();
+  best_offset_s_.reset();
   jitter_s_ = precision_s_;
   dispersion_s_ = kMaxDispersion;
   best_delay_s_ = kMaxDispersion;

@@ -37,10 +37,11 @@ struct NtpSample {
 //    sample has 16 s.
 //  - Jitter: RMS difference of the offsets to that of the best sample, at least the precision.
 //  - A sample is used once, and never one older than the last used.
-//  - Popcorn spikes: a best sample is not used if it differs from the last used by more than 3
-//    times the jitter before it and comes within two poll intervals of it; after these it is used,
-//    so a real change passes. The gate needs a dispersion below kMaxDistance (four samples), as a
-//    jitter of two samples is none.
+//  - Popcorn spikes: a best sample is not used if its offset differs from that of the best before
+//    (used or not) by more than 3 times the jitter, which is taken to the new one, within two poll
+//    intervals of the last used. So the gate closes only where the best before has just left the
+//    stages, and a lone outlier of low delay passes, as in the reference implementation. It needs
+//    dispersions below kMaxDistance (four samples).
 //
 // Complexity: O(1). Degenerate: delays below the precision count as the precision, a dispersion of
 // 16 s or more as no sample.
@@ -80,7 +81,8 @@ class NtpClockFilter {
   double precision_s_;
   std::array<NtpSample, kStages> stages_;  // newest first
   double newest_s_ = 0;                    // up to when the dispersions have grown
-  std::optional<NtpSample> last_used_;
+  std::optional<double> last_used_at_s_;
+  std::optional<double> best_offset_s_;  // of the last best sample, used or not
   double jitter_s_ = 0;
   double dispersion_s_ = kMaxDispersion;
   double best_delay_s_ = kMaxDispersion;

@@ -132,12 +132,7 @@ Task<void> NtpClient::calibrate() {
     if (!first) continue;
     const std::optional<NtpSample> volley = co_await burst(kBurst);
     if (!volley) continue;
-    const NtpAction action = co_await discipline_by(volley);
-    if (action == NtpAction::kSlew) {
-      const double slew_s = std::abs(volley->offset_s) / NtpDiscipline::kMaxFrequency;
-      co_await host_.sleep_for(from_seconds(slew_s));
-    }
-    if (action == NtpAction::kSlew || action == NtpAction::kStep) continue;
+    if (co_await discipline_by(volley) == NtpAction::kStep) continue;
     const SteadyTime deadline = now() + settings_.broadcast_interval * 2;
     const std::optional<NtpBroadcast> next = co_await association_.next_broadcast(deadline);
     if (!next) continue;

@@ -6,8 +6,9 @@
 //  - broadcast_volley: the server sends a broadcast every interval. The client answers the first
 //    with a burst of exchanges, estimates the delay as twice the difference between the offsets of
 //    the burst and of the next broadcast, and from then on only listens: offset = (t3 - t4) +
-//    delay/2. A change of the client's clock between the two stays in the delay for good; after a
-//    step or slew by the burst itself another burst follows.
+//    delay/2. A change of the client's clock between the two stays in the delay for good: so does
+//    the slew of a first offset below step_s (at 500 ppm, 32 ms until the next broadcast). After a
+//    step another burst follows.
 //  - broadcast_fixed: the same without a burst, with an assumed round trip (broadcastdelay), of
 //    which half is added.
 //

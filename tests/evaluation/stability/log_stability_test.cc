@@ -20,6 +20,7 @@ using testing::SizeIs;
 
 std::vector<ClockLogPoint> points_at(const std::vector<double>& times_s) {
   std::vector<ClockLogPoint> points;
+  points.reserve(times_s.size());
   for (const double time_s : times_s) {
     points.push_back({Microseconds(std::llround(1e6 * time_s)), 1e-3 * time_s});
   }

@@ -118,6 +118,7 @@ TEST(Steps, OfAConstantOrALineAreNoneButItsJumpIs) {
   EXPECT_EQ(steps[0].at_s, 130);
   EXPECT_EQ(steps[0].step_s, 0.25);
   std::vector<double> line;
+  line.reserve(1000);
   for (int i = 0; i < 1000; ++i) line.push_back(0.1 * i - 50);
   EXPECT_THAT(steps_of(one_piece(line)), IsEmpty());
 }

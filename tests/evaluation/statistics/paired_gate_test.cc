@@ -78,6 +78,7 @@ TEST(Holm, RejectsSomethingByAccidentNoMoreOftenThanItSays) {
   int families = 0;
   for (int round = 0; round < 4000; ++round) {
     std::vector<double> p;
+    p.reserve(36);
     for (int i = 0; i < 36; ++i) p.push_back(uniform(random));
     bool any = false;
     for (const HolmDecision& decision : holm(p)) any |= decision.adjusted_p <= kFamilyError;

@@ -122,6 +122,7 @@ TEST(PercentileTest, AmongNoValuesIsNan) {
 // n values, k of them below the published one.
 Placement placement_among(int n, int k) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) values.push_back(i < k ? 1 : 3);
   return placement_of(percentile_of(2, values));
 }

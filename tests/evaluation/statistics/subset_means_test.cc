@@ -12,6 +12,7 @@ namespace {
 
 std::vector<Pair> with_differences(const std::vector<double>& differences) {
   std::vector<Pair> pairs;
+  pairs.reserve(differences.size());
   for (const double each : differences) pairs.push_back({10, 10 + each});
   return pairs;
 }
@@ -46,6 +47,7 @@ TEST(SubsetMeans, DrawnSubsetsStandForAll) {
   boost::random::mt19937_64 random(3);
   boost::random::normal_distribution<double> normal(0.4, 1);
   std::vector<Pair> pairs;
+  pairs.reserve(16);
   for (int i = 0; i < 16; ++i) pairs.push_back({20, 20 + normal(random)});
   const SubsetMeans all(pairs, 16);
   const SubsetMeans drawn(pairs, 14);
@@ -56,6 +58,7 @@ TEST(SubsetMeans, DrawnSubsetsStandForAll) {
 
 TEST(SubsetMeans, MorePairsThanAMaskHasBits) {
   std::vector<Pair> pairs;
+  pairs.reserve(130);
   for (int i = 0; i < 130; ++i) pairs.push_back({1, i % 2 == 0 ? 2 : 1.5});
   const SubsetMeans means(pairs, 12);
   EXPECT_DOUBLE_EQ(means.p(), 2. / 4096);

@@ -37,6 +37,7 @@ TEST(ReconstructionTable, HasTheRowsOfTable4) {
 TEST(ReconstructionTable, PlacesPublishedValuesByTheirPercentile) {
   auto results = sample_reconstruction();
   std::vector<double> means;
+  means.reserve(80);
   for (int i = 0; i < 80; ++i) means.push_back(9 + 0.02 * i);  // 35 below 9.703; half of all < 12
   const auto published = results.rows[0].published;
   results.rows[0] = sample_row("ntp_last_set", means, 547, false);

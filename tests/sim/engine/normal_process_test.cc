@@ -39,6 +39,7 @@ TEST(NormalProcess, ReadingsDoNotDependOnTheirOrder) {
   NormalProcess forward(7, kProcess, 0, from_ms(10));
   NormalProcess backward(7, kProcess, 0, from_ms(10));
   std::vector<double> values;
+  values.reserve(100);
   for (int i = 0; i < 100; ++i) values.push_back(forward.at(at_ms(3.7 * i)));
   for (int i = 100; i-- > 0;) {
     EXPECT_EQ(backward.at(at_ms(3.7 * i)), values[static_cast<std::size_t>(i)]) << i;

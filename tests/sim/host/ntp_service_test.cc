@@ -231,6 +231,17 @@ TEST(NtpBroadcast, TheVolleyFindsTheDelay) {
   EXPECT_LE(two_way, 16U) << "one volley, and one more if the first stepped the clock";
 }
 
+TEST(NtpBroadcast, TheVolleyFreezesWhatASmallFirstOffsetStillSlews) {
+  ServiceWorld world(quiet_world());
+  world.clock(1).set(TrueTime{}, HostTime(from_ms(100)));
+  NtpService ntp(mode(NtpMode::kBroadcastVolley));
+  world.start(ntp);
+  world.run_until(12 * 3600);
+  // 500 ppm from the volley, 0 to 14 s after a broadcast, to the next one at 64 s.
+  EXPECT_GT(std::abs(world.error_s(1)), 500e-6 * 45);
+  EXPECT_LT(std::abs(world.error_s(1)), 500e-6 * 64 + 20e-6);
+}
+
 TEST(NtpBroadcast, TheVolleyFreezesTheDriftBetweenItsMeasurements) {
   scenarios::Scenario scenario = quiet_world();
   scenario.hosts.clock.oscillator.skew_sigma_ppm = 20;

@@ -144,7 +144,7 @@ TEST(LinkLatency, AsymmetriesOfPortsAddUpAroundACircle) {
   for (PeerId host = 1; host < kHosts; host += 2) {
     squares += std::pow(asymmetry_ms_of(network, host - 1, host), 2);
   }
-  constexpr double kPairs = kHosts / 2;
+  constexpr double kPairs = kHosts / 2.0;
   EXPECT_NEAR(std::sqrt(squares / kPairs), 0.4 * std::sqrt(2), 5 * 0.4 / std::sqrt(kPairs))
       << "seed " << kLatencySeed;
 }

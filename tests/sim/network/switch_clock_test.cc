@@ -135,6 +135,7 @@ TEST(BoundaryClock, ReadingsDoNotDependOnTheirOrder) {
   const BoundaryClock forward(network, 8, 2);
   const BoundaryClock backward(network, 8, 2);
   std::vector<double> errors_ns;
+  errors_ns.reserve(100);
   for (int s = 0; s < 100; ++s) errors_ns.push_back(forward.error_ns(at_ms(997 * s)));
   for (int s = 100; s-- > 0;) {
     EXPECT_EQ(backward.error_ns(at_ms(997 * s)), errors_ns[static_cast<std::size_t>(s)]) << s;

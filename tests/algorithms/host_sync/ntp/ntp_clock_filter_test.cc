@@ -64,18 +64,32 @@ NtpClockFilter settled_filter() {
   return filter;
 }
 
-TEST(NtpClockFilter, SuppressesAPopcornSpike) {
+TEST(NtpClockFilter, ALoneOutlierOfLowDelayPassesThePopcornGate) {
   NtpClockFilter filter = settled_filter();
-  EXPECT_FALSE(filter.add(sample(500e-6, 0.5e-3, 512), kPoll));
-  // Within three times the jitter of the last used one.
-  NtpClockFilter other = settled_filter();
-  EXPECT_TRUE(other.add(sample(25e-6, 0.5e-3, 512), kPoll));
+  EXPECT_TRUE(filter.add(sample(500e-6, 0.5e-3, 512), kPoll)) << "the jitter is taken to it";
+}
+
+// The best sample is the oldest and the only one at 0; it leaves with the ninth.
+NtpClockFilter filter_before_a_change() {
+  NtpClockFilter filter(kPrecision);
+  filter.add(sample(0, 0.5e-3, 0), kPoll);
+  for (int i = 1; i < 8; ++i) {
+    filter.add(sample(i % 2 == 0 ? 500e-6 : 510e-6, 1e-3 + i * 1e-6, i * 64), kPoll);
+  }
+  return filter;
+}
+
+TEST(NtpClockFilter, SuppressesAPopcornSpike) {
+  NtpClockFilter filter = filter_before_a_change();
+  EXPECT_FALSE(filter.add(sample(500e-6, 2e-3, 512), kPoll)) << "that of 64 s, within two polls";
+  NtpClockFilter slow = filter_before_a_change();
+  EXPECT_TRUE(slow.add(sample(500e-6, 2e-3, 512), kPoll / 2)) << "two polls after the last used";
 }
 
 TEST(NtpClockFilter, AChangeThatLastsIsNoSpike) {
-  NtpClockFilter filter = settled_filter();
-  EXPECT_FALSE(filter.add(sample(500e-6, 0.5e-3, 512), kPoll));
-  EXPECT_TRUE(filter.add(sample(500e-6, 0.4e-3, 576), kPoll));
+  NtpClockFilter filter = filter_before_a_change();
+  EXPECT_FALSE(filter.add(sample(500e-6, 2e-3, 512), kPoll));
+  EXPECT_TRUE(filter.add(sample(500e-6, 2e-3, 576), kPoll)) << "the best before counts, unused";
 }
 
 TEST(NtpClockFilter, MissingSamplesMakeTheServerUnusable) {
