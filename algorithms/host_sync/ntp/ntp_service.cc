@@ -17,6 +17,10 @@ constexpr double kNtpPollSpread = 1.0 / 16;
 constexpr double kNtpSlewAhead = 1.25;  // poll intervals
 // s; a longer round trip is of no use. This also keeps nonsense stamps out of the arithmetic.
 constexpr double kMaxDelay = 16;
+// s, round trip: a calibration beyond this met a clock that is still slewed.
+constexpr double kMostCalibratedDelay = 0.05;
+// A broadcast that comes sooner after the burst than an interval less this is dropped.
+constexpr Nanoseconds kBroadcastFuzz = from_ms(3e3);
 
 std::string text(double seconds) { return std::to_string(seconds) + " s"; }
 
@@ -45,6 +49,8 @@ class NtpClient {
   Task<void> poll();
   // Measures the delay by the first broadcast, a burst and the next broadcast.
   Task<void> calibrate();
+  // The next broadcast that does not come earlier than that; earlier ones are dropped.
+  Task<std::optional<NtpBroadcast>> broadcast_from(SteadyTime earliest);
   Task<void> listen();
 
   // Makes up to `count` exchanges at burst spacing; ends early if the first has no reply. Returns
@@ -131,13 +137,25 @@ Task<void> NtpClient::calibrate() {
     note_reply(first.has_value());
     if (!first) continue;
     const std::optional<NtpSample> volley = co_await burst(kBurst);
+    const SteadyTime answered = now();
     if (!volley) continue;
     if (co_await discipline_by(volley) == NtpAction::kStep) continue;
-    const SteadyTime deadline = now() + settings_.broadcast_interval * 2;
-    const std::optional<NtpBroadcast> next = co_await association_.next_broadcast(deadline);
+    co_await correct_phase();
+    const std::optional<NtpBroadcast> next =
+        co_await broadcast_from(answered + settings_.broadcast_interval - kBroadcastFuzz);
     if (!next) continue;
-    broadcast_delay_s_ = std::abs(volley->offset_s - next->offset_s());
+    const double one_way_s = std::abs(volley->offset_s - next->offset_s());
+    if (2 * one_way_s > kMostCalibratedDelay) continue;
+    broadcast_delay_s_ = one_way_s;
     co_return;
+  }
+}
+
+Task<std::optional<NtpBroadcast>> NtpClient::broadcast_from(SteadyTime earliest) {
+  const SteadyTime deadline = earliest + settings_.broadcast_interval * 2;
+  for (;;) {
+    const std::optional<NtpBroadcast> next = co_await association_.next_broadcast(deadline);
+    if (!next || next->received >= earliest) co_return next;
   }
 }
 

@@ -5,10 +5,10 @@
 //    not been reached, and after a step, a burst of eight at 2 s instead (iburst).
 //  - broadcast_volley: the server sends a broadcast every interval. The client answers the first
 //    with a burst of exchanges, estimates the delay as twice the difference between the offsets of
-//    the burst and of the next broadcast, and from then on only listens: offset = (t3 - t4) +
-//    delay/2. A change of the client's clock between the two stays in the delay for good: so does
-//    the slew of a first offset below step_s (at 500 ppm, 32 ms until the next broadcast). After a
-//    step another burst follows.
+//    the burst and of the first broadcast that comes at least an interval less 3 s after it, and
+//    from then on only listens: offset = (t3 - t4) + delay/2. What the client's clock moves between
+//    the two stays in the delay for good: so does the slew of a first offset below 25 ms. A delay
+//    above 50 ms is not believed; then, and after a step, all begins anew with the next broadcast.
 //  - broadcast_fixed: the same without a burst, with an assumed round trip (broadcastdelay), of
 //    which half is added.
 //

@@ -231,15 +231,22 @@ TEST(NtpBroadcast, TheVolleyFindsTheDelay) {
   EXPECT_LE(two_way, 16U) << "one volley, and one more if the first stepped the clock";
 }
 
-TEST(NtpBroadcast, TheVolleyFreezesWhatASmallFirstOffsetStillSlews) {
+double error_after_volley_s(double first_offset_ms) {
   ServiceWorld world(quiet_world());
-  world.clock(1).set(TrueTime{}, HostTime(from_ms(100)));
+  world.clock(1).set(TrueTime{}, HostTime(from_ms(first_offset_ms)));
   NtpService ntp(mode(NtpMode::kBroadcastVolley));
   world.start(ntp);
   world.run_until(12 * 3600);
-  // 500 ppm from the volley, 0 to 14 s after a broadcast, to the next one at 64 s.
-  EXPECT_GT(std::abs(world.error_s(1)), 500e-6 * 45);
-  EXPECT_LT(std::abs(world.error_s(1)), 500e-6 * 64 + 20e-6);
+  return world.error_s(1);
+}
+
+// 20 ms are slewed within 40 s, before the broadcast with which the volley is compared.
+TEST(NtpBroadcast, TheVolleyFreezesTheSlewOfASmallFirstOffset) {
+  EXPECT_NEAR(std::abs(error_after_volley_s(20)), 20e-3, 2.1e-3);
+}
+
+TEST(NtpBroadcast, AVolleyWithALargeDifferenceIsRepeated) {
+  EXPECT_NEAR(error_after_volley_s(40), 0, 20e-6);
 }
 
 TEST(NtpBroadcast, TheVolleyFreezesTheDriftBetweenItsMeasurements) {
@@ -254,11 +261,11 @@ TEST(NtpBroadcast, TheVolleyFreezesTheDriftBetweenItsMeasurements) {
   NtpService ntp(mode(NtpMode::kBroadcastVolley));
   world.start(ntp);
   world.run_until(12 * 3600);
-  // From the volley, 0 to 14 s after a broadcast, to the next broadcast at 64 s; the difference of
-  // one-way delay and drift is taken without its sign.
+  // From the volley, 0 to 14 s after a broadcast, to the second broadcast after it at 128 s; the
+  // difference of one-way delay and drift is taken without its sign.
   const double frozen_s = std::abs(world.error_s(1));
-  EXPECT_GT(frozen_s, 45 * std::abs(rate) - 2.1e-3);
-  EXPECT_LT(frozen_s, 64 * std::abs(rate) + 20e-6);
+  EXPECT_GT(frozen_s, 109 * std::abs(rate) - 2.1e-3);
+  EXPECT_LT(frozen_s, 128 * std::abs(rate) + 20e-6);
 }
 
 }  // namespace

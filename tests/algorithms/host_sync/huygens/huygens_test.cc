@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/algorithms/host_sync/unreliable_link.h"
 #include "tests/nonempty.h"
 
 namespace simbench {
@@ -84,25 +85,15 @@ TEST_F(HuygensTest, ImpureProbesDoNotCount) {
 
 TEST_F(HuygensTest, LossDuplicatesReorderingAndGarbageCostProbesOnly) {
   boost::random::mt19937_64 engine(17);
-  const LinkScript unreliable = [&engine](std::size_t, const Bytes&) {
-    switch (engine() % 5) {
-      case 0:
-        return std::vector<Nanoseconds>{};
-      case 1:
-        return std::vector<Nanoseconds>{kHuygensLatency, kHuygensLatency + from_us(300)};
-      case 2:
-        return std::vector<Nanoseconds>{kHuygensLatency + from_ms(70)};
-      default:
-        return std::vector<Nanoseconds>{kHuygensLatency};
-    }
-  };
+  const LinkScript unreliable =
+      unreliable_link(engine, kHuygensLatency,
+                      {.twice_after = from_us(300), .late = {kHuygensLatency + from_ms(70)}});
   for (PeerId slave = 1; slave < kHosts; ++slave) {
     world_.script_link(0, slave, unreliable);
     world_.script_link(slave, 0, unreliable);
   }
   for (int i = 0; i < 1'000; ++i) {
-    Bytes bytes(engine() % 60);
-    for (std::byte& byte : bytes) byte = static_cast<std::byte>(engine());
+    Bytes bytes = random_bytes(engine, 60);
     if (bytes.size() > 4) {
       bytes[0] = std::byte{0x48};
       bytes[1] = std::byte{0x59};

@@ -9,6 +9,7 @@
 #include "algorithms/host_sync/ptp/ptp_message.h"
 #include "algorithms/host_sync/ptp/ptp_port.h"
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/algorithms/host_sync/unreliable_link.h"
 #include "tests/nonempty.h"
 
 namespace simbench {
@@ -114,23 +115,13 @@ TEST_P(PtpTest, CorrectionsOfTransparentClocksAreTakenOut) {
 
 TEST_P(PtpTest, LossDuplicatesReorderingAndGarbageCostMeasurementsOnly) {
   boost::random::mt19937_64 engine(17);
-  const LinkScript unreliable = [&engine](std::size_t, const Bytes&) {
-    switch (engine() % 5) {
-      case 0:
-        return std::vector<Nanoseconds>{};
-      case 1:
-        return std::vector<Nanoseconds>{kPtpLatency, kPtpLatency + from_ms(0.3)};
-      case 2:
-        return std::vector<Nanoseconds>{kPtpLatency, kPtpLatency + from_ms(2500)};
-      default:
-        return std::vector<Nanoseconds>{kPtpLatency};
-    }
-  };
+  const LinkScript unreliable = unreliable_link(
+      engine, kPtpLatency,
+      {.twice_after = from_ms(0.3), .late = {kPtpLatency, kPtpLatency + from_ms(2500)}});
   world_.script_link(0, 1, unreliable);
   world_.script_link(1, 0, unreliable);
   for (int i = 0; i < 1000; ++i) {
-    Bytes bytes(engine() % 60);
-    for (std::byte& byte : bytes) byte = static_cast<std::byte>(engine());
+    const Bytes bytes = random_bytes(engine, 60);
     world_.call_at(from_ms(60.0 * i), [this, bytes] { world_.host(1).deliver(0, bytes); });
     world_.call_at(from_ms(60.0 * i + 9), [this, bytes] { world_.host(0).deliver(1, bytes); });
   }

@@ -9,6 +9,7 @@
 
 #include "algorithms/host_sync/ptp/ptp_message.h"
 #include "tests/algorithms/host_sync/script_host.h"
+#include "tests/algorithms/host_sync/unreliable_link.h"
 #include "tests/nonempty.h"
 
 namespace simbench {
@@ -189,23 +190,12 @@ TEST_F(SptpTest, CorrectionsOfTransparentClocksAreTakenOut) {
 
 TEST_F(SptpTest, LossDuplicatesReorderingAndGarbageCostMeasurementsOnly) {
   boost::random::mt19937_64 engine(17);
-  const LinkScript unreliable = [&engine](std::size_t, const Bytes&) {
-    switch (engine() % 5) {
-      case 0:
-        return std::vector<Nanoseconds>{};
-      case 1:
-        return std::vector<Nanoseconds>{kSptpLatency, kSptpLatency + from_ms(0.3)};
-      case 2:
-        return std::vector<Nanoseconds>{kSptpLatency + from_ms(2500)};
-      default:
-        return std::vector<Nanoseconds>{kSptpLatency};
-    }
-  };
+  const LinkScript unreliable = unreliable_link(
+      engine, kSptpLatency, {.twice_after = from_ms(0.3), .late = {kSptpLatency + from_ms(2500)}});
   world_.script_link(0, 1, unreliable);
   world_.script_link(1, 0, unreliable);
   for (int i = 0; i < 1000; ++i) {
-    Bytes bytes(engine() % 70);
-    for (std::byte& byte : bytes) byte = static_cast<std::byte>(engine());
+    const Bytes bytes = random_bytes(engine, 70);
     world_.call_at(from_ms(60.0 * i), [this, bytes] { world_.host(1).deliver(0, bytes); });
     world_.call_at(from_ms(60.0 * i + 9), [this, bytes] { world_.host(0).deliver(1, bytes); });
   }
