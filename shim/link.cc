@@ -1,0 +1,146 @@
+#include "shim/link.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+namespace simbench::shim {
+namespace {
+
+int world_link = -1;
+long asking_thread = 0;
+Identity own_identity{};
+Kind kinds[kMostDescriptors];
+
+ssize_t transfer(bool is_request, iovec* pieces, std::size_t count) {
+  msghdr message{};
+  message.msg_iov = pieces;
+  message.msg_iovlen = count;
+  const long call = is_request ? SYS_sendmsg : SYS_recvmsg;
+  ssize_t moved = 0;
+  do {
+    moved = syscall(call, world_link, &message, is_request ? MSG_NOSIGNAL : 0);
+  } while (moved < 0 && errno == EINTR);
+  return moved;
+}
+
+// Without a world there is nothing to go on with.
+[[noreturn]] void lose() {
+  syscall(SYS_exit_group, 125);
+  __builtin_unreachable();
+}
+
+// Before the program's own code: the shim's variables have no constructors that could undo this.
+__attribute__((constructor)) void join_world() {
+  const char* number = getenv(kLinkVariable);
+  if (number == nullptr) return;
+  world_link = atoi(number);
+  asking_thread = syscall(SYS_gettid);
+  Received reply{.data = &own_identity, .capacity = sizeof own_identity};
+  if (ask({.call = Call::kHello}, {}, {}, &reply) < 0) lose();
+}
+
+}  // namespace
+
+bool is_simulated() { return world_link >= 0; }
+
+const Identity& identity() { return own_identity; }
+
+std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) {
+  if (syscall(SYS_gettid) != asking_thread) {
+    asking_thread = syscall(SYS_gettid);
+    give_up("a second thread or process that waits or asks for the time");
+  }
+  Request header = request;
+  header.size = static_cast<std::uint32_t>(head.size + tail.size);
+  iovec out[] = {{&header, sizeof header},
+                 {const_cast<void*>(head.data), head.size},
+                 {const_cast<void*>(tail.data), tail.size}};
+  if (transfer(true, out, 3) < 0) lose();
+  Reply answer{};
+  char nothing = 0;
+  Received none{.data = &nothing};
+  Received& received = reply != nullptr ? *reply : none;
+  iovec in[] = {{&answer, sizeof answer}, {received.data, received.capacity}};
+  if (transfer(false, in, 2) < static_cast<ssize_t>(sizeof answer)) lose();
+  received.size = answer.size;
+  if (answer.error == 0) return answer.value;
+  errno = answer.error;
+  return -1;
+}
+
+void give_up(const char* what) {
+  // The world ends the program in place of a reply.
+  ask({.call = Call::kNote}, {what, strlen(what)});
+  lose();
+}
+
+void* find_real(const char* name) {
+  void* function = dlsym(RTLD_NEXT, name);
+  if (function == nullptr) give_up(name);
+  return function;
+}
+
+Kind kind_of(int fd) { return fd >= 0 && fd < kMostDescriptors ? kinds[fd] : Kind::kReal; }
+
+int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec) {
+  const int fd = eventfd(0, (nonblocking ? EFD_NONBLOCK : 0) | (close_on_exec ? EFD_CLOEXEC : 0));
+  if (fd < 0) return -1;
+  if (fd >= kMostDescriptors) {
+    syscall(SYS_close, fd);
+    errno = EMFILE;
+    return -1;
+  }
+  kinds[fd] = kind;
+  return fd;
+}
+
+bool is_blocking(int fd) { return (syscall(SYS_fcntl, fd, F_GETFL) & O_NONBLOCK) == 0; }
+
+namespace {
+
+void forget(int fd) {
+  if (kind_of(fd) == Kind::kReal) return;
+  if (kinds[fd] == Kind::kSocket || kinds[fd] == Kind::kTimer)
+    ask({.call = Call::kClose, .fd = fd});
+  kinds[fd] = Kind::kReal;
+}
+
+}  // namespace
+
+SIMBENCH_CALL int close(int fd) {
+  if (is_simulated() && fd == world_link) return 0;  // daemons close all that they do not know
+  forget(fd);
+  return static_cast<int>(syscall(SYS_close, fd));
+}
+
+SIMBENCH_CALL int fclose(FILE* file) {
+  forget(fileno(file));
+  return SIMBENCH_REAL(fclose)(file);
+}
+
+SIMBENCH_CALL pid_t getpid() {
+  return is_simulated() ? own_identity.process : static_cast<pid_t>(syscall(SYS_getpid));
+}
+
+SIMBENCH_CALL pid_t fork() {
+  if (is_simulated()) give_up("fork: the program goes to the background; run it in the foreground");
+  return SIMBENCH_REAL(fork)();
+}
+
+SIMBENCH_CALL int daemon(int keep_folder, int keep_output) {
+  if (is_simulated()) {
+    give_up("daemon: the program goes to the background; run it in the foreground");
+  }
+  return SIMBENCH_REAL(daemon)(keep_folder, keep_output);
+}
+
+}  // namespace simbench::shim

@@ -1,0 +1,73 @@
+// The shim's end of the conversation with the world, and the program's descriptors.
+//
+// The shim is preloaded into a program (LD_PRELOAD) that runs in a simulated world. It takes each
+// libc call that concerns time, waiting, network or chance, and asks the world; everything else is
+// the real call. Without a link in the environment all calls are the real ones.
+//
+// It has no libraries but libc, makes no threads and takes no memory from the heap. One thread asks
+// at a time, and always the same: a second one is reported to the world, which ends the program.
+//
+//   const TimerSetting wanted{.left = kSecond, .interval = 0};
+//   TimerSetting before{};
+//   Received reply{.data = &before, .capacity = sizeof before};
+//   ask({.call = Call::kSetTimer, .fd = 7}, {&wanted, sizeof wanted}, {}, &reply);
+#ifndef SIMBENCH_SHIM_LINK_H_
+#define SIMBENCH_SHIM_LINK_H_
+
+#include <cstddef>
+#include <cstdint>
+
+#include "shim/protocol.h"
+
+// A function of the program's view of libc.
+#define SIMBENCH_CALL extern "C" __attribute__((visibility("default")))
+
+namespace simbench::shim {
+
+inline constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+struct Sent {
+  const void* data = nullptr;
+  std::size_t size = 0;
+};
+
+struct Received {
+  void* data = nullptr;
+  std::size_t capacity = 0;
+  std::size_t size = 0;  // out: how much came, which may be more than the capacity
+};
+
+// Whether there is a world.
+bool is_simulated();
+const Identity& identity();
+
+// Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
+std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
+
+// Says what cannot be simulated, and ends the program.
+[[noreturn]] void give_up(const char* what);
+
+// What libc would have done.
+template <class Function>
+Function real(Function /*type*/, const char* name) {
+  extern void* find_real(const char*);
+  return reinterpret_cast<Function>(find_real(name));
+}
+#define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
+
+enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance };
+
+inline constexpr int kMostDescriptors = 1024;
+
+Kind kind_of(int fd);
+// A number that stands for something of the world, or -1 with errno. The kernel keeps it taken,
+// with the flags of fcntl().
+int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
+bool is_blocking(int fd);
+
+// read() of a timer.
+std::int64_t read_timer(int fd, void* data, std::size_t size);
+
+}  // namespace simbench::shim
+
+#endif  // SIMBENCH_SHIM_LINK_H_

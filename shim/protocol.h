@@ -1,0 +1,109 @@
+// What a program in the simulated world says to it, and what the world answers.
+//
+// Each process has one socket to the world (SOCK_SEQPACKET), whose number is in the environment
+// variable kLinkVariable. The shim sends a request and waits for its reply; time stands still until
+// a process asks for something that takes time. Both ends are one machine: integers are in its byte
+// order, and struct timex is the kernel's.
+//
+// A request or reply is its struct, then `size` bytes of data. Descriptors are the program's own
+// numbers. Times are nanoseconds. `error` is an errno, or 0.
+//
+// Untrusted: the world checks every number of a request (sim/programs/requests.h).
+#ifndef SIMBENCH_SHIM_PROTOCOL_H_
+#define SIMBENCH_SHIM_PROTOCOL_H_
+
+#include <cstddef>
+#include <cstdint>
+
+namespace simbench::shim {
+
+inline constexpr char kLinkVariable[] = "SIMBENCH_LINK";
+inline constexpr std::size_t kMostData = 65536;
+
+enum class Call : std::uint32_t {
+  kHello,        // -> Identity
+  kNote,         // data: a text about what cannot be simulated; the program ends
+  kReadClock,    // a: clockid -> value
+  kSetClock,     // a: clockid, b: its new reading
+  kAdjustClock,  // a: clockid, data: struct timex -> value: clock state, data: struct timex
+  kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data
+  kOpenTimer,    // fd, a: clockid
+  kSetTimer,     // fd, a: 1 if absolute, data: TimerSetting -> data: the setting before
+  kReadTimer,    // fd -> value: expirations since the last; EAGAIN if none
+  kQueryTimer,   // fd -> data: TimerSetting
+  kOpenSocket,   // fd, a: SOCK_DGRAM
+  kBind,         // fd, data: Address
+  kConnect,      // fd, data: Address
+  kSetOption,    // fd, a: SocketOption, b: value
+  kName,         // fd -> data: Address
+  kPeerName,     // fd -> data: Address; ENOTCONN
+  kSend,         // fd, data: Address (port 0: the peer), then the payload
+  kReceive,      // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload
+  kClose,        // fd
+  kRandom,       // a: how many -> data: bytes
+};
+
+// When a wait ends without anything being ready.
+enum class Deadline : std::int64_t { kNever, kAfter, kAtSystemTime, kAtMonotonicTime };
+
+enum class SocketOption : std::int64_t {
+  kReceiveStamps,   // software stamps of arrivals
+  kTransmitStamps,  // software stamps of departures, in the error queue
+  kBroadcast,
+};
+
+struct Request {
+  Call call{};
+  std::int32_t fd = -1;
+  std::int64_t a = 0;
+  std::int64_t b = 0;
+  std::uint32_t size = 0;
+  std::uint32_t reserved = 0;
+};
+
+struct Reply {
+  std::int64_t value;
+  std::int32_t error;
+  std::uint32_t size;
+};
+
+struct Identity {
+  std::int32_t process;   // what getpid() is
+  std::uint32_t address;  // the host's, host byte order
+  std::uint32_t hosts;    // in the network; their addresses follow each other from `first`
+  std::uint32_t first;    // address of host 0
+  std::uint32_t prefix;   // bits of the network
+  std::uint32_t reserved;
+};
+
+struct Address {
+  std::uint32_t host;  // IPv4, host byte order; 0: any
+  std::uint16_t port;  // host byte order
+  std::uint16_t reserved;
+};
+
+// As struct pollfd.
+struct Interest {
+  std::int32_t fd;
+  std::int16_t events;
+  std::int16_t ready;
+};
+
+struct TimerSetting {
+  std::int64_t left;      // until it expires, or the time at which it does; 0: disarmed
+  std::int64_t interval;  // 0: once
+};
+
+struct Arrival {
+  Address from;
+  Address to;
+  std::int64_t system;   // the software stamp; kNoStamp: none
+  std::uint32_t length;  // of the payload, also where less of it follows
+  std::uint32_t reserved;
+};
+
+inline constexpr std::int64_t kNoStamp = INT64_MIN;
+
+}  // namespace simbench::shim
+
+#endif  // SIMBENCH_SHIM_PROTOCOL_H_

@@ -1,0 +1,356 @@
+// Waiting: sleeps, select, poll, epoll and timers.
+//
+// A wait asks the world which of its descriptors are ready, and how long to wait. Real descriptors
+// (files, pipes, Unix-domain sockets) are looked at before and after; they end no wait.
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/select.h>
+#include <sys/syscall.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <initializer_list>
+
+#include "shim/link.h"
+
+namespace simbench::shim {
+namespace {
+
+constexpr int kMostInterests = 1024;
+
+struct Until {
+  Deadline kind = Deadline::kNever;
+  std::int64_t ns = 0;
+};
+
+bool is_time(const timespec& time) {
+  return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < kSecond;
+}
+
+// Times beyond 292 years are never.
+std::int64_t nanoseconds(const timespec& time) {
+  return time.tv_sec >= INT64_MAX / kSecond ? INT64_MAX : time.tv_sec * kSecond + time.tv_nsec;
+}
+
+Until after(const timespec* timeout) {
+  return timeout == nullptr ? Until{} : Until{Deadline::kAfter, nanoseconds(*timeout)};
+}
+
+Until after_ms(int timeout_ms) {
+  return timeout_ms < 0 ? Until{} : Until{Deadline::kAfter, timeout_ms * std::int64_t{1'000'000}};
+}
+
+int look_at_real(pollfd* interests, nfds_t count) {
+  const timespec now{};
+  return static_cast<int>(syscall(SYS_ppoll, interests, count, &now, nullptr, 8));
+}
+
+// As poll(): which of the descriptors are ready, at the latest then.
+int wait(pollfd* interests, nfds_t count, Until until) {
+  if (count > kMostInterests) {
+    errno = EINVAL;
+    return -1;
+  }
+  pollfd real[kMostInterests];
+  Interest simulated[kMostInterests];
+  std::size_t asked = 0;
+  for (nfds_t i = 0; i < count; ++i) {
+    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
+    real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
+    if (is_ours) {
+      simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
+    }
+  }
+  if (look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
+  Received reply{.data = simulated, .capacity = sizeof simulated};
+  if (ask({.call = Call::kWait, .a = static_cast<std::int64_t>(until.kind), .b = until.ns},
+          {simulated, asked * sizeof simulated[0]}, {}, &reply) < 0) {
+    return -1;
+  }
+  look_at_real(real, count);
+  int ready = 0;
+  std::size_t answered = 0;
+  for (nfds_t i = 0; i < count; ++i) {
+    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
+    interests[i].revents = is_ours ? simulated[answered++].ready : real[i].revents;
+    ready += interests[i].revents != 0;
+  }
+  return ready;
+}
+
+int sleep_until(Until until) { return wait(nullptr, 0, until) < 0 ? -1 : 0; }
+
+}  // namespace
+
+SIMBENCH_CALL int nanosleep(const timespec* interval, timespec* left) {
+  if (!is_simulated()) return SIMBENCH_REAL(nanosleep)(interval, left);
+  if (!is_time(*interval)) {
+    errno = EINVAL;
+    return -1;
+  }
+  if (left != nullptr) *left = {};
+  return sleep_until(after(interval));
+}
+
+SIMBENCH_CALL int clock_nanosleep(clockid_t clock, int flags, const timespec* time,
+                                  timespec* left) {
+  if (!is_simulated()) return SIMBENCH_REAL(clock_nanosleep)(clock, flags, time, left);
+  if (!is_time(*time)) return EINVAL;
+  if ((flags & TIMER_ABSTIME) == 0) return nanosleep(time, left) < 0 ? errno : 0;
+  const bool is_system = clock == CLOCK_REALTIME || clock == CLOCK_TAI;
+  const Until until{is_system ? Deadline::kAtSystemTime : Deadline::kAtMonotonicTime,
+                    nanoseconds(*time)};
+  return sleep_until(until) < 0 ? errno : 0;
+}
+
+SIMBENCH_CALL int usleep(useconds_t us) {
+  if (!is_simulated()) return SIMBENCH_REAL(usleep)(us);
+  return sleep_until({Deadline::kAfter, us * std::int64_t{1000}});
+}
+
+SIMBENCH_CALL unsigned int sleep(unsigned int seconds) {
+  if (!is_simulated()) return SIMBENCH_REAL(sleep)(seconds);
+  sleep_until({Deadline::kAfter, seconds * kSecond});
+  return 0;
+}
+
+SIMBENCH_CALL int poll(pollfd* interests, nfds_t count, int timeout_ms) {
+  if (!is_simulated()) return SIMBENCH_REAL(poll)(interests, count, timeout_ms);
+  return wait(interests, count, after_ms(timeout_ms));
+}
+
+SIMBENCH_CALL int poll_checked(pollfd* interests, nfds_t count, int timeout_ms,
+                               std::size_t size) __asm__("__poll_chk");
+int poll_checked(pollfd* interests, nfds_t count, int timeout_ms, std::size_t size) {
+  if (size / sizeof *interests < count) give_up("poll() beyond its array");
+  return poll(interests, count, timeout_ms);
+}
+
+SIMBENCH_CALL int ppoll(pollfd* interests, nfds_t count, const timespec* timeout,
+                        const sigset_t* mask) {
+  if (!is_simulated()) return SIMBENCH_REAL(ppoll)(interests, count, timeout, mask);
+  return wait(interests, count, after(timeout));
+}
+
+SIMBENCH_CALL int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout,
+                                const sigset_t* mask, std::size_t size) __asm__("__ppoll_chk");
+int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout, const sigset_t* mask,
+                  std::size_t size) {
+  if (size / sizeof *interests < count) give_up("ppoll() beyond its array");
+  return ppoll(interests, count, timeout, mask);
+}
+
+SIMBENCH_CALL int pselect(int count, fd_set* readers, fd_set* writers, fd_set* exceptions,
+                          const timespec* timeout, const sigset_t* mask) {
+  if (!is_simulated()) {
+    return SIMBENCH_REAL(pselect)(count, readers, writers, exceptions, timeout, mask);
+  }
+  pollfd interests[FD_SETSIZE];
+  nfds_t asked = 0;
+  const auto has = [](int fd, fd_set* set) { return set != nullptr && FD_ISSET(fd, set); };
+  for (int fd = 0; fd < count && fd < FD_SETSIZE; ++fd) {
+    const int events = (has(fd, readers) ? POLLIN : 0) | (has(fd, writers) ? POLLOUT : 0) |
+                       (has(fd, exceptions) ? POLLPRI : 0);
+    if (events != 0) interests[asked++] = {fd, static_cast<short>(events), 0};
+  }
+  if (wait(interests, asked, after(timeout)) < 0) return -1;
+  for (fd_set* set : {readers, writers, exceptions}) {
+    if (set != nullptr) FD_ZERO(set);
+  }
+  int ready = 0;
+  const auto answer = [&ready](const pollfd& interest, short asked_for, int is, fd_set* set) {
+    if ((interest.events & asked_for) == 0 || (interest.revents & is) == 0) return;
+    FD_SET(interest.fd, set);
+    ++ready;
+  };
+  for (nfds_t i = 0; i < asked; ++i) {
+    answer(interests[i], POLLIN, POLLIN | POLLHUP | POLLERR, readers);
+    answer(interests[i], POLLOUT, POLLOUT | POLLERR, writers);
+    answer(interests[i], POLLPRI, POLLPRI, exceptions);
+  }
+  return ready;
+}
+
+SIMBENCH_CALL int select(int count, fd_set* readers, fd_set* writers, fd_set* exceptions,
+                         timeval* timeout) {
+  if (!is_simulated()) {
+    return SIMBENCH_REAL(select)(count, readers, writers, exceptions, timeout);
+  }
+  if (timeout == nullptr) return pselect(count, readers, writers, exceptions, nullptr, nullptr);
+  const timespec interval{.tv_sec = timeout->tv_sec, .tv_nsec = timeout->tv_usec * 1000};
+  if (timeout->tv_sec < 0 || timeout->tv_usec < 0) {
+    errno = EINVAL;
+    return -1;
+  }
+  timespec begin{};
+  timespec end{};
+  clock_gettime(CLOCK_MONOTONIC, &begin);
+  const int ready = pselect(count, readers, writers, exceptions, &interval, nullptr);
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  // Linux says what is left.
+  const std::int64_t left_us =
+      (nanoseconds(interval) - (nanoseconds(end) - nanoseconds(begin))) / 1000;
+  const std::int64_t at_least = left_us > 0 ? left_us : 0;
+  *timeout = {.tv_sec = at_least / 1'000'000, .tv_usec = at_least % 1'000'000};
+  return ready;
+}
+
+namespace {
+
+// The descriptors that an epoll descriptor watches; few programs have more than one.
+struct Watched {
+  int epoll = -1;
+  int fd = -1;
+  epoll_event event{};
+};
+Watched watched[kMostInterests];
+
+Watched* find_watched(int epoll, int fd) {
+  for (Watched& each : watched) {
+    if (each.epoll == epoll && each.fd == fd) return &each;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+SIMBENCH_CALL int epoll_create1(int flags) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_create1)(flags);
+  const int fd = open_descriptor(Kind::kEpoll, false, (flags & EPOLL_CLOEXEC) != 0);
+  for (Watched& each : watched) {
+    if (each.epoll == fd) each = {};  // of a descriptor of this number that was closed
+  }
+  return fd;
+}
+
+SIMBENCH_CALL int epoll_create(int size) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_create)(size);
+  return epoll_create1(0);
+}
+
+SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_ctl)(epoll, operation, fd, event);
+  Watched* found = find_watched(epoll, fd);
+  if ((operation == EPOLL_CTL_ADD) == (found != nullptr)) {
+    errno = found != nullptr ? EEXIST : ENOENT;
+    return -1;
+  }
+  if (operation == EPOLL_CTL_DEL) {
+    *found = {};
+    return 0;
+  }
+  if ((event->events & (EPOLLET | EPOLLONESHOT)) != 0) {
+    give_up("epoll with EPOLLET or EPOLLONESHOT");
+  }
+  if (found == nullptr) found = find_watched(-1, -1);
+  if (found == nullptr) {
+    errno = ENOSPC;
+    return -1;
+  }
+  *found = {.epoll = epoll, .fd = fd, .event = *event};
+  return 0;
+}
+
+SIMBENCH_CALL int epoll_wait(int epoll, epoll_event* events, int most, int timeout_ms) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_wait)(epoll, events, most, timeout_ms);
+  pollfd interests[kMostInterests];
+  nfds_t asked = 0;
+  for (const Watched& each : watched) {
+    if (each.epoll != epoll) continue;
+    interests[asked++] = {each.fd, static_cast<short>(each.event.events), 0};
+  }
+  if (wait(interests, asked, after_ms(timeout_ms)) < 0) return -1;
+  int ready = 0;
+  for (nfds_t i = 0; i < asked && ready < most; ++i) {
+    if (interests[i].revents == 0) continue;
+    events[ready].events = static_cast<std::uint32_t>(interests[i].revents);
+    events[ready++].data = find_watched(epoll, interests[i].fd)->event.data;
+  }
+  return ready;
+}
+
+SIMBENCH_CALL int epoll_pwait(int epoll, epoll_event* events, int most, int timeout_ms,
+                              const sigset_t* mask) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_pwait)(epoll, events, most, timeout_ms, mask);
+  return epoll_wait(epoll, events, most, timeout_ms);
+}
+
+namespace {
+
+bool is_setting(const itimerspec& setting) {
+  return is_time(setting.it_value) && is_time(setting.it_interval);
+}
+
+TimerSetting to_setting(const itimerspec& setting) {
+  return {.left = nanoseconds(setting.it_value), .interval = nanoseconds(setting.it_interval)};
+}
+
+itimerspec from_setting(const TimerSetting& setting) {
+  itimerspec result{};
+  result.it_value = {setting.left / kSecond, setting.left % kSecond};
+  result.it_interval = {setting.interval / kSecond, setting.interval % kSecond};
+  return result;
+}
+
+}  // namespace
+
+std::int64_t read_timer(int fd, void* data, std::size_t size) {
+  if (size < sizeof(std::uint64_t)) {
+    errno = EINVAL;
+    return -1;
+  }
+  for (;;) {
+    const std::int64_t expirations = ask({.call = Call::kReadTimer, .fd = fd});
+    if (expirations >= 0) {
+      memcpy(data, &expirations, sizeof expirations);
+      return sizeof expirations;
+    }
+    pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
+    if (errno != EAGAIN || !is_blocking(fd) || wait(&interest, 1, {}) < 0) return -1;
+  }
+}
+
+SIMBENCH_CALL int timerfd_create(int clock, int flags) {
+  if (!is_simulated()) return SIMBENCH_REAL(timerfd_create)(clock, flags);
+  const int fd =
+      open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
+  if (fd >= 0 && ask({.call = Call::kOpenTimer, .fd = fd, .a = clock}) < 0) {
+    syscall(SYS_close, fd);
+    return -1;
+  }
+  return fd;
+}
+
+SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
+                                  itimerspec* before) {
+  if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
+  if (!is_setting(*setting)) {
+    errno = EINVAL;
+    return -1;
+  }
+  const TimerSetting wanted = to_setting(*setting);
+  TimerSetting old{};
+  Received reply{.data = &old, .capacity = sizeof old};
+  const bool is_absolute = (flags & TFD_TIMER_ABSTIME) != 0;
+  if (ask({.call = Call::kSetTimer, .fd = fd, .a = is_absolute ? 1 : 0}, {&wanted, sizeof wanted},
+          {}, &reply) < 0) {
+    return -1;
+  }
+  if (before != nullptr) *before = from_setting(old);
+  return 0;
+}
+
+SIMBENCH_CALL int timerfd_gettime(int fd, itimerspec* setting) {
+  if (!is_simulated()) return SIMBENCH_REAL(timerfd_gettime)(fd, setting);
+  TimerSetting now{};
+  Received reply{.data = &now, .capacity = sizeof now};
+  if (ask({.call = Call::kQueryTimer, .fd = fd}, {}, {}, &reply) < 0) return -1;
+  *setting = from_setting(now);
+  return 0;
+}
+
+}  // namespace simbench::shim

@@ -1,0 +1,84 @@
+// One process of the simulated world: a real program that lives while the world asks it to.
+//
+// It is started with the shim preloaded (shim/link.h) in a folder of its own, with an empty
+// environment but for what is stated, no input, and its output in a file of that folder. While it
+// computes, the world stands still: next() blocks until it asks for something, at most kPatience of
+// real time. The destructor kills it; it also dies with the thread that started it.
+//
+// Limits: kMostOutput bytes a file, kMostMemory of address space, no new privileges, no core dump.
+// Addresses are not randomised, so that its bytes repeat.
+//
+// Errors: ChildError where it cannot be started, one line. How it ended is ending().
+//
+//   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .folder = "/tmp/simbench-x/host1"});
+//   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
+//   print(child.ending());  // "exited with status 1: Could not open configuration file"
+#ifndef SIMBENCH_SIM_PROGRAMS_CHILD_H_
+#define SIMBENCH_SIM_PROGRAMS_CHILD_H_
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "algorithms/ports/host.h"
+#include "shim/protocol.h"
+
+namespace simbench::sim {
+
+class ChildError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ChildRequest {
+  shim::Request head;
+  Bytes data;
+};
+
+class Child {
+ public:
+  static constexpr std::chrono::seconds kPatience{30};
+  static constexpr std::size_t kMostOutput = std::size_t{64} << 20;
+  static constexpr std::size_t kMostMemory = std::size_t{4} << 30;
+
+  struct Settings {
+    std::vector<std::string> command;  // the program's absolute path, then its arguments
+    std::map<std::string, std::string> environment;
+    std::string folder;    // absolute; its working folder
+    std::string log_name;  // within the folder
+    std::string shim;      // absolute
+  };
+
+  explicit Child(const Settings& settings);
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // Nothing: it has ended, or has computed for longer than kPatience.
+  std::optional<ChildRequest> next();
+  void reply(std::int64_t value, int error, std::span<const std::byte> data);
+  // Kills it if it still runs; says how it ended, with the last line of its output.
+  std::string ending();
+
+ private:
+  std::string how_it_ended(bool itself, int status) const;
+  std::string last_line() const;
+
+  std::string log_;
+  int link_ = -1;
+  pid_t process_ = -1;
+  bool was_too_slow_ = false;
+  Bytes buffer_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_PROGRAMS_CHILD_H_
