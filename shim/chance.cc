@@ -71,13 +71,7 @@ SIMBENCH_CALL int open(const char* path, int flags, ...) {
   return open_path(AT_FDCWD, path, flags, mode);
 }
 
-SIMBENCH_CALL int open64(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const mode_t mode = mode_of(flags, arguments);
-  va_end(arguments);
-  return open_path(AT_FDCWD, path, flags, mode);
-}
+SIMBENCH_CALL int open64(const char* path, int flags, ...) __attribute__((alias("open")));
 
 SIMBENCH_CALL int openat(int folder, const char* path, int flags, ...) {
   va_list arguments;

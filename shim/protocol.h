@@ -49,7 +49,6 @@ enum class Deadline : std::int64_t { kNever, kAfter, kAtSystemTime, kAtMonotonic
 enum class SocketOption : std::int64_t {
   kReceiveStamps,   // software stamps of arrivals
   kTransmitStamps,  // software stamps of departures, in the error queue
-  kBroadcast,
 };
 
 struct Request {
@@ -68,12 +67,8 @@ struct Reply {
 };
 
 struct Identity {
-  std::int32_t process;   // what getpid() is
-  std::uint32_t address;  // the host's, host byte order
-  std::uint32_t hosts;    // in the network; their addresses follow each other from `first`
-  std::uint32_t first;    // address of host 0
-  std::uint32_t prefix;   // bits of the network
-  std::uint32_t reserved;
+  std::int32_t process = 0;   // what getpid() is
+  std::uint32_t address = 0;  // the host's, host byte order
 };
 
 struct Address {

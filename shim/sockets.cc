@@ -276,7 +276,6 @@ int set_socket_option(int fd, int option, const void* value, socklen_t size) {
     case SO_TIMESTAMPING_OLD:
       return set_timestamping(fd, number);
     case SO_BROADCAST:
-      return set_world_option(fd, SocketOption::kBroadcast, number != 0);
     case SO_REUSEADDR:
     case SO_REUSEPORT:
     case SO_PRIORITY:

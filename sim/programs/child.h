@@ -5,12 +5,15 @@
 // computes, the world stands still: next() blocks until it asks for something, at most kPatience of
 // real time. The destructor kills it; it also dies with the thread that started it.
 //
+// It has the rights of whoever runs the world, and a call that passes libc by reaches the real
+// kernel: run programs that you trust.
+//
 // Limits: kMostOutput bytes a file, kMostMemory of address space, no new privileges, no core dump.
 // Addresses are not randomised, so that its bytes repeat.
 //
 // Errors: ChildError where it cannot be started, one line. How it ended is ending().
 //
-//   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .folder = "/tmp/simbench-x/host1"});
+//   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
 //   print(child.ending());  // "exited with status 1: Could not open configuration file"
 #ifndef SIMBENCH_SIM_PROGRAMS_CHILD_H_

@@ -11,7 +11,7 @@ namespace simbench::sim {
 namespace {
 
 constexpr std::uint32_t kLoopback = 0x7F000001;
-constexpr std::size_t kPortBytes = 8;
+constexpr std::size_t kPortBytes = 4;
 constexpr std::uint16_t kFirstFreePort = 32'768;
 constexpr std::uint16_t kLastFreePort = 60'999;
 
@@ -20,7 +20,6 @@ void append_ports(Bytes& payload, std::uint16_t from, std::uint16_t to) {
   auto* end = reinterpret_cast<unsigned char*>(payload.data() + payload.size() - kPortBytes);
   boost::endian::store_big_u16(end, from);
   boost::endian::store_big_u16(end + 2, to);
-  boost::endian::store_big_u32(end + 4, 0);
 }
 
 }  // namespace

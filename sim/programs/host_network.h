@@ -1,11 +1,11 @@
 // UDP on the simulated network, as the programs of one host have it.
 //
 // Host i has the address 10.0.0.1 + i; a network has at most 65000 hosts. A datagram goes over the
-// port's channel to its host (algorithms/ports/host.h), with its two ports behind the payload:
-// eight bytes on the wire beside the headers that the network counts anyway. It is delivered to the
-// socket that is bound to its port, and to the sender if that is connected. Datagrams to the host
-// itself arrive at once. Those that nobody waits for are dropped, and so is what comes when a
-// socket holds kMostQueued.
+// port's channel to its host (algorithms/ports/host.h), with its two ports behind the payload: four
+// bytes on the wire beside the headers that the network counts anyway. It is delivered to the
+// socket that is bound to its port, unless that is connected to another. Datagrams to the host
+// itself arrive at once. There is no broadcast and no multicast: ENETUNREACH. Those that nobody
+// waits for are dropped, and so is what comes when a socket holds kMostQueued.
 //
 // pump(peer) is the receiving half, a coroutine for each peer: wake-ups cost what the scenario says
 // and stamps are taken where it says, as for any algorithm.
@@ -40,7 +40,6 @@ struct UdpSocket {
   std::optional<shim::Address> peer{};
   bool stamps_arrivals = false;
   bool stamps_departures = false;
-  bool may_broadcast = false;
   std::deque<QueuedDatagram> arrived{};
   std::deque<QueuedDatagram> departed{};  // the error queue: what has left, with its stamp
   std::function<void()> on_arrival{};
@@ -49,7 +48,6 @@ struct UdpSocket {
 class HostNetwork {
  public:
   static constexpr std::uint32_t kFirstAddress = 0x0A000001;
-  static constexpr std::uint32_t kPrefix = 16;
   static constexpr std::size_t kMostQueued = 256;
   static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated
 
@@ -57,7 +55,6 @@ class HostNetwork {
   HostNetwork(Host& host, std::size_t hosts) : host_(host), hosts_(hosts) {}
 
   std::uint32_t address() const { return address_of(host_.id()); }
-  std::size_t hosts() const { return hosts_; }
   static std::uint32_t address_of(PeerId host) { return kFirstAddress + host; }
 
   // These return an errno, or 0. A bound socket must be closed before it ends.

@@ -133,12 +133,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
 }
 
 shim::Identity Process::identity() const {
-  return {.process = static_cast<std::int32_t>(100 + number_),
-          .address = network_.address(),
-          .hosts = static_cast<std::uint32_t>(network_.hosts()),
-          .first = HostNetwork::kFirstAddress,
-          .prefix = HostNetwork::kPrefix,
-          .reserved = 0};
+  return {.process = static_cast<std::int32_t>(100 + number_), .address = network_.address()};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {
@@ -233,9 +228,6 @@ Process::Answer Process::set_option(UdpSocket& socket, shim::SocketOption option
       return {};
     case shim::SocketOption::kTransmitStamps:
       socket.stamps_departures = on;
-      return {};
-    case shim::SocketOption::kBroadcast:
-      socket.may_broadcast = on;
       return {};
   }
   return {.error = ENOPROTOOPT};
