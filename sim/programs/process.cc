@@ -75,7 +75,7 @@ void Process::count_request(Call call) {
 }
 
 Task<void> Process::serve() {
-  for (;;) {
+  while (!is_stopped_) {
     std::optional<ChildRequest> request = child_.next();
     if (!request) break;
     std::optional<Answer> given;
@@ -89,7 +89,13 @@ Task<void> Process::serve() {
     child_.reply(given->value, given->error, given->data);
   }
   const std::string how = child_.ending();
+  if (is_stopped_) co_return;
   ending_ = printable_name(ending_.empty() ? how : ending_);
+}
+
+void Process::stop() {
+  is_stopped_ = true;
+  woken_.notify();
 }
 
 Task<Process::Answer> Process::answer(ChildRequest request) {
@@ -379,7 +385,7 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
       interest.ready = readiness(interest);
       ready += interest.ready != 0;
     }
-    if (ready > 0 || is_past(kind, at)) {
+    if (ready > 0 || is_past(kind, at) || is_stopped_) {
       Answer answer{.value = ready};
       const auto bytes = std::as_bytes(std::span(interests));
       answer.data.assign(bytes.begin(), bytes.end());

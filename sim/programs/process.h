@@ -47,7 +47,9 @@ class Process {
 
   // Ends with the program.
   Task<void> serve();
-  // Why it ended, one line; empty while it runs.
+  // Ends it at its next wait, or the one that it is in.
+  void stop();
+  // Why it ended by itself, one line; empty while it runs, and once it is stopped.
   const std::string& ending() const { return ending_; }
 
  private:
@@ -105,6 +107,7 @@ class Process {
   std::map<int, Timer> timers_;
   Child child_;
   std::string ending_;
+  bool is_stopped_ = false;
   TrueTime waited_{};
   std::uint64_t asked_at_once_ = 0;
 };

@@ -1,0 +1,35 @@
+// The places in programs' commands, files and environment that differ from host to host.
+//
+//   {master}     the master's address
+//   {address}    the host's own
+//   {host}       its number, 0 for the master
+//   {interface}  its network interface
+//   {files}      the host's folder, which is the programs' working folder
+//
+// Other braces are text, unless they hold a lower-case word: that is likely a mistake.
+//
+//   fill("server {master} iburst", {.host = 3});               // "server 10.0.0.1 iburst"
+//   unknown_placeholder("server {mastr}");                     // "{mastr}"
+#ifndef SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+#define SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+
+#include <optional>
+#include <string>
+
+#include "algorithms/ports/exchange.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::sim {
+
+inline constexpr char kPlaceholders[] = "{master}, {address}, {host}, {interface}, {files}";
+
+std::string fill(std::string text, PeerId host);
+
+// The first placeholder that there is none of.
+std::optional<std::string> unknown_placeholder(const std::string& text);
+// The same in all texts of the programs.
+std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs);
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
