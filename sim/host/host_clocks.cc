@@ -41,7 +41,6 @@ Task<HostTime> ClockPort::now() {
   co_return interface_.read(parts_.clock.read(turn.start));
 }
 
-template <class Apply>
 Task<void> ClockPort::change(Apply apply) {
   const Change change = begin_change();
   if (change.effective > true_now()) {

@@ -103,7 +103,7 @@ class SimHost final : public Host {
   ~SimHost() override;
 
   PeerId id() const override { return id_; }
-  HostClock& clock() override { return clock_port_; }
+  ClockPort& clock() override { return clock_port_; }
   const SteadyClock& steady_clock() const override { return steady_port_; }
   HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
@@ -125,6 +125,8 @@ class SimHost final : public Host {
   // For its ports.
   const HostWorld& world() const { return world_; }
   const SystemClock& system_clock() const { return system_clock_; }
+  // For what the kernel does to the clock by itself, which costs no call.
+  SystemClock& system_clock() { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
   MessageStack& stack() { return stack_; }

@@ -169,8 +169,7 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
   if (clock != CLOCK_REALTIME) co_return Answer{.error = clock < 0 ? EOPNOTSUPP : EINVAL};
   if (reading < 0) co_return Answer{.error = EINVAL};
-  co_await host_.clock().set(from_epoch_ns(reading));
-  kernel_.was_set();
+  co_await kernel_.set(from_epoch_ns(reading));
   co_return Answer{};
 }
 

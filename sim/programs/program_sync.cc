@@ -49,6 +49,7 @@ class RunningPrograms {
     for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer != host_.id()) tasks.push_back(network_.pump(peer));
     }
+    tasks.push_back(kernel_.run());
     for (std::size_t i = 0; i < processes_.size(); ++i) tasks.push_back(serve(i, on_end));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
