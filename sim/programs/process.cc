@@ -80,6 +80,7 @@ Task<void> Process::serve() {
     if (!request) break;
     std::optional<Answer> given;
     try {
+      if (!request->is_whole) throw BadRequest("sent a request of a wrong size");
       count_request(request->head.call);
       given = co_await answer(std::move(*request));
     } catch (const BadRequest& bad) {
@@ -88,8 +89,7 @@ Task<void> Process::serve() {
     if (!given) break;
     child_.reply(given->value, given->error, given->data);
   }
-  const std::string how = child_.ending();
-  ending_ = printable_name(ending_.empty() ? how : ending_);
+  ending_ = printable_name(child_.ending(ending_));
 }
 
 Task<Process::Answer> Process::answer(ChildRequest request) {
