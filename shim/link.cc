@@ -77,9 +77,9 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
   return -1;
 }
 
-void give_up(const char* what) {
+void give_up(const char* what, const char* why) {
   // The world ends the program in place of a reply.
-  ask({.call = Call::kNote}, {what, strlen(what)});
+  ask({.call = Call::kNote}, {what, strlen(what)}, {why, strlen(why)});
   lose();
 }
 
@@ -125,22 +125,6 @@ SIMBENCH_CALL int close(int fd) {
 SIMBENCH_CALL int fclose(FILE* file) {
   forget(fileno(file));
   return SIMBENCH_REAL(fclose)(file);
-}
-
-SIMBENCH_CALL pid_t getpid() {
-  return is_simulated() ? own_identity.process : static_cast<pid_t>(syscall(SYS_getpid));
-}
-
-SIMBENCH_CALL pid_t fork() {
-  if (is_simulated()) give_up("fork: the program goes to the background; run it in the foreground");
-  return SIMBENCH_REAL(fork)();
-}
-
-SIMBENCH_CALL int daemon(int keep_folder, int keep_output) {
-  if (is_simulated()) {
-    give_up("daemon: the program goes to the background; run it in the foreground");
-  }
-  return SIMBENCH_REAL(daemon)(keep_folder, keep_output);
 }
 
 }  // namespace simbench::shim

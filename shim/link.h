@@ -45,7 +45,7 @@ const Identity& identity();
 std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
 
 // Says what cannot be simulated, and ends the program.
-[[noreturn]] void give_up(const char* what);
+[[noreturn]] void give_up(const char* what, const char* why = "");
 
 // What libc would have done.
 template <class Function>

@@ -16,6 +16,7 @@
 #include <initializer_list>
 
 #include "shim/link.h"
+#include "shim/refused_calls.h"
 
 namespace simbench::shim {
 namespace {
@@ -46,7 +47,7 @@ Until after_ms(int timeout_ms) {
 
 int look_at_real(pollfd* interests, nfds_t count) {
   const timespec now{};
-  return static_cast<int>(syscall(SYS_ppoll, interests, count, &now, nullptr, 8));
+  return static_cast<int>(syscall(SYS_ppoll, interests, count, &now, nullptr, kOfTheShim));
 }
 
 // As poll(): which of the descriptors are ready, at the latest then.

@@ -2,21 +2,28 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/close_range.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <thread>
+
+#include "sim/programs/confinement.h"
 
 namespace simbench::sim {
 namespace {
@@ -43,44 +50,66 @@ struct Plan {
   pid_t parent;
 };
 
+// Says why in the log, which is its error output by then.
+[[noreturn]] void fail(const char* what, int error) {
+  const char* why = strerrordesc_np(error);
+  for (const char* text : {what, ": ", why != nullptr ? why : "?", "\n"}) {
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+  }
+  _exit(kCannotRun);
+}
+
 void limit(__rlimit_resource resource, rlim_t most) {
   const rlimit both{.rlim_cur = most, .rlim_max = most};
   setrlimit(resource, &both);
 }
 
-[[noreturn]] void become(const Plan& plan) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != plan.parent) _exit(kCannotRun);
-  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  personality(ADDR_NO_RANDOMIZE);
+// Neither signals nor descriptors of the parent's are inherited.
+void forget_parent() {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (int each = 1; each < NSIG; ++each) signal(each, SIG_DFL);
+  umask(S_IWGRP | S_IWOTH);
+  syscall(SYS_close_range, 3, ~0U, CLOSE_RANGE_CLOEXEC);
+}
+
+[[noreturn]] void become(const Plan& plan, Confinement& confinement) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != plan.parent) _exit(kCannotRun);
+  forget_parent();
+  personality(ADDR_NO_RANDOMIZE);
   setpgid(0, 0);  // Ctrl-C at the terminal is the parent's to handle
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, Child::kMostOutput);
   limit(RLIMIT_AS, Child::kMostMemory);
+  limit(RLIMIT_NOFILE, Child::kMostDescriptors);
   if (chdir(plan.folder) != 0) _exit(kCannotRun);
   const int input = open("/dev/null", O_RDONLY);
   const int log = open(plan.log, O_WRONLY | O_CREAT | O_APPEND, 0600);
-  if (input < 0 || log < 0 || dup2(input, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0 ||
-      dup2(plan.link, kLink) < 0) {
+  if (input < 0 || log < 0 || dup2(input, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0) {
     _exit(kCannotRun);
   }
-  close(input);
-  close(log);
+  if (dup2(plan.link, kLink) < 0) fail("link", errno);
+  if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
+    fail(failure.what, failure.error);
+  }
   execve(plan.arguments[0], plan.arguments, plan.environment);
-  _exit(kCannotRun);
+  fail(plan.arguments[0], errno);
 }
 
 }  // namespace
 
 Child::Child(const Settings& settings)
-    : log_(settings.folder + "/" + settings.log_name), buffer_(shim::kMostData) {
-  std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw ChildError(fmt::format("{}: no link: {}", settings.command[0], std::strerror(errno)));
-  }
+    : name_(std::filesystem::path(settings.command.at(0)).filename()),
+      log_(settings.folder + "/" + settings.log_name),
+      patience_(settings.patience),
+      link_(settings.link),
+      buffer_(shim::kMostData) {
+  if (link_ < 0) start(settings);
+}
+
+void Child::start(const Settings& settings) {
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -90,6 +119,11 @@ Child::Child(const Settings& settings)
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
+  Confinement confinement(settings.folder, argument_pointers[0]);
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    throw ChildError(fmt::format("{}: no link: {}", name_, std::strerror(errno)));
+  }
   const Plan plan{.arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
                   .folder = settings.folder.c_str(),
@@ -97,27 +131,26 @@ Child::Child(const Settings& settings)
                   .link = ends[1],
                   .parent = getpid()};
   process_ = fork();
-  if (process_ == 0) become(plan);
+  if (process_ == 0) become(plan, confinement);
   const int error = errno;
   close(ends[1]);
   link_ = ends[0];
   if (process_ < 0) {
     close(link_);
-    throw ChildError(fmt::format("{}: fork: {}", settings.command[0], std::strerror(error)));
+    throw ChildError(fmt::format("{}: fork: {}", name_, std::strerror(error)));
   }
 }
 
 Child::~Child() {
-  ending();
+  end();
   close(link_);
 }
 
 std::optional<ChildRequest> Child::next() {
   pollfd waits{.fd = link_, .events = POLLIN, .revents = 0};
-  constexpr std::chrono::milliseconds kPatienceMs = kPatience;
   int ready = 0;
   do {
-    ready = poll(&waits, 1, static_cast<int>(kPatienceMs.count()));
+    ready = poll(&waits, 1, static_cast<int>(patience_.count()));
   } while (ready < 0 && errno == EINTR);
   if (ready == 0) was_too_slow_ = true;
   if (ready <= 0) return std::nullopt;
@@ -128,8 +161,11 @@ std::optional<ChildRequest> Child::next() {
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
   const ssize_t size = recvmsg(link_, &message, 0);
-  if (size < static_cast<ssize_t>(sizeof request.head)) return std::nullopt;
-  const std::size_t data_size = static_cast<std::size_t>(size) - sizeof request.head;
+  if (size <= 0) return std::nullopt;
+  has_asked_ = true;
+  const auto whole = static_cast<std::size_t>(size);
+  const std::size_t data_size = whole - std::min(whole, sizeof request.head);
+  request.is_whole = whole >= sizeof request.head && request.head.size == data_size;
   request.data.assign(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(data_size));
   return request;
 }
@@ -141,11 +177,19 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
-  sendmsg(link_, &message, MSG_NOSIGNAL);  // a program that is gone is found by next()
+  // A program that is gone is found by next(). One that takes no replies loses them.
+  sendmsg(link_, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
-std::string Child::ending() {
-  if (process_ < 0) return "";
+std::string Child::ending(const std::string& reason) {
+  const std::string how = end();
+  const std::string said = last_line();
+  return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,
+                     said.empty() ? "" : ": " + said);
+}
+
+std::string Child::end() {
+  if (process_ < 0) return "has closed its link";
   int status = 0;
   // One that has closed its link is exiting, and has a moment for it.
   pollfd link{.fd = link_, .events = 0, .revents = 0};
@@ -161,30 +205,51 @@ std::string Child::ending() {
     waitpid(process_, &status, 0);
   }
   process_ = -1;
-  const std::string said = last_line();
-  return how_it_ended(ended_itself, status) + (said.empty() ? "" : ": " + said);
+  return how_it_ended(ended_itself, status);
 }
+
+namespace {
+
+std::string signal_text(int number) {
+  switch (number) {
+    case SIGXFSZ:
+      return fmt::format("wrote more than {} MiB into a file", Child::kMostOutput >> 20U);
+    case SIGSYS:
+      return "made a system call that is not for programs of the simulated world";
+    default:
+      break;
+  }
+  const char* name = sigabbrev_np(number);
+  return fmt::format("was ended by signal {}", name != nullptr ? name : std::to_string(number));
+}
+
+}  // namespace
 
 std::string Child::how_it_ended(bool itself, int status) const {
-  if (was_too_slow_) return fmt::format("computed for {} s without waiting", kPatience.count());
-  if (!itself) return "was ended";
-  if (WIFSIGNALED(status)) {
-    const char* name = sigabbrev_np(WTERMSIG(status));
-    return fmt::format("was ended by signal {}", name != nullptr ? name : "?");
+  if (was_too_slow_) {
+    return fmt::format("computed for {} s without waiting",
+                       std::chrono::duration<double>(patience_).count());
   }
-  if (WEXITSTATUS(status) == kCannotRun) return "cannot be run";
-  return fmt::format("exited with status {}", WEXITSTATUS(status));
+  if (!itself) return "was ended";
+  if (WIFSIGNALED(status)) return signal_text(WTERMSIG(status));
+  if (WEXITSTATUS(status) == kCannotRun && !has_asked_) return "cannot be run";
+  return fmt::format("exited with status {}{}", WEXITSTATUS(status),
+                     has_asked_ ? "" : ", and the preloaded library was never loaded");
 }
 
+// Of a log that may be long, and need not have lines.
 std::string Child::last_line() const {
-  std::ifstream log(log_);
+  constexpr std::streamoff kMost = 400;
+  std::ifstream log(log_, std::ios::binary | std::ios::ate);
+  if (!log) return "";
+  const std::streamoff begin = std::max<std::streamoff>(0, log.tellg() - kMost);
+  log.seekg(begin);
   std::string line;
   std::string last;
   while (std::getline(log, line)) {
     if (!line.empty()) last = line;
   }
-  constexpr std::size_t kMost = 200;
-  return last.substr(0, kMost);
+  return last;
 }
 
 }  // namespace simbench::sim

@@ -3,19 +3,24 @@
 // It is started with the shim preloaded (shim/link.h) in a folder of its own, with an empty
 // environment but for what is stated, no input, and its output in a file of that folder. While it
 // computes, the world stands still: next() blocks until it asks for something, at most kPatience of
-// real time. The destructor kills it; it also dies with the thread that started it.
+// real time. The destructor kills it.
 //
-// It has the rights of whoever runs the world, and a call that passes libc by reaches the real
-// kernel: run programs that you trust.
+// It is confined (sim/programs/confinement.h): it writes in its folder only, and a call that passes
+// libc by and would reach the real clocks, a network or another process ends it, by name. It
+// inherits no descriptors and no signals, is one process, and sees itself as root of its host.
 //
-// Limits: kMostOutput bytes a file, kMostMemory of address space, no new privileges, no core dump.
+// Limits: kMostOutput bytes a file, kMostMemory of address space, kMostDescriptors, no core dump.
 // Addresses are not randomised, so that its bytes repeat.
+//
+// The library reaches only what loads libraries: look at the program first
+// (sim/programs/program_file.h). It dies with the thread that makes this, not with the last one of
+// the process, so that thread must outlive it; and with that thread, whatever ends it.
 //
 // Errors: ChildError where it cannot be started, one line. How it ended is ending().
 //
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
-//   print(child.ending());  // "exited with status 1: Could not open configuration file"
+//   print(child.ending());  // "chronyd: exited with status 1: Could not open configuration file"
 #ifndef SIMBENCH_SIM_PROGRAMS_CHILD_H_
 #define SIMBENCH_SIM_PROGRAMS_CHILD_H_
 
@@ -44,13 +49,15 @@ class ChildError : public std::runtime_error {
 struct ChildRequest {
   shim::Request head;
   Bytes data;
+  bool is_whole = false;  // there is a head, and as much data as it says
 };
 
 class Child {
  public:
   static constexpr std::chrono::seconds kPatience{30};
   static constexpr std::size_t kMostOutput = std::size_t{64} << 20;
-  static constexpr std::size_t kMostMemory = std::size_t{4} << 30;
+  static constexpr std::size_t kMostMemory = std::size_t{1} << 30;
+  static constexpr std::size_t kMostDescriptors = 1024;
 
   struct Settings {
     std::vector<std::string> command;  // the program's absolute path, then its arguments
@@ -58,6 +65,8 @@ class Child {
     std::string folder;    // absolute; its working folder
     std::string log_name;  // within the folder
     std::string shim;      // absolute
+    std::chrono::milliseconds patience = kPatience;
+    int link = -1;  // the other end of somebody else's link: nothing is started
   };
 
   explicit Child(const Settings& settings);
@@ -68,16 +77,23 @@ class Child {
   // Nothing: it has ended, or has computed for longer than kPatience.
   std::optional<ChildRequest> next();
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
-  // Kills it if it still runs; says how it ended, with the last line of its output.
-  std::string ending();
+  // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
+  // output.
+  std::string ending(const std::string& reason = "");
 
  private:
+  void start(const Settings& settings);
+  // Returns how it ended.
+  std::string end();
   std::string how_it_ended(bool itself, int status) const;
   std::string last_line() const;
 
+  std::string name_;
   std::string log_;
-  int link_ = -1;
+  std::chrono::milliseconds patience_;
+  int link_;
   pid_t process_ = -1;
+  bool has_asked_ = false;
   bool was_too_slow_ = false;
   Bytes buffer_;
 };

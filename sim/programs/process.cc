@@ -80,6 +80,7 @@ Task<void> Process::serve() {
     if (!request) break;
     std::optional<Answer> given;
     try {
+      if (!request->is_whole) throw BadRequest("sent a request of a wrong size");
       count_request(request->head.call);
       given = co_await answer(std::move(*request));
     } catch (const BadRequest& bad) {
@@ -88,9 +89,8 @@ Task<void> Process::serve() {
     if (!given) break;
     child_.reply(given->value, given->error, given->data);
   }
-  const std::string how = child_.ending();
-  if (is_stopped_) co_return;
-  ending_ = printable_name(ending_.empty() ? how : ending_);
+  const std::string how = child_.ending(ending_);
+  if (!is_stopped_) ending_ = printable_name(how);
 }
 
 void Process::stop() {

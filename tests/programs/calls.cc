@@ -338,7 +338,7 @@ int main(int count, char** words) {
   }
   if (std::strcmp(what, "garbage") == 0) {
     const int link = std::atoi(std::getenv("SIMBENCH_LINK"));
-    const unsigned char nonsense[40] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+    const unsigned char nonsense[32] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
     send(link, nonsense, sizeof nonsense, 0);
     pause();
   }

@@ -1,0 +1,131 @@
+// Who the program is: root on its simulated host, where every user and group exists and is root.
+//
+// Most of it the kernel's filter answers (Refusal::kIgnored in shim/refused_calls.h): calls that
+// drop or ask for rights succeed without effect. Here is what fills in memory. No user database of
+// the machine is read, so that a run is the same on all machines.
+#include <errno.h>
+#include <grp.h>
+#include <pwd.h>
+#include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include "shim/link.h"
+
+namespace simbench::shim {
+namespace {
+
+constexpr std::size_t kMostName = 64;
+
+char no_password[] = "x";
+char folder[] = ".";
+char shell[] = "/bin/false";
+char no_text[] = "";
+char* no_members[] = {nullptr};
+
+char user_name[kMostName];
+passwd user;
+char group_name[kMostName];
+group own_group;
+
+void fill_user(passwd& result, char* name) {
+  result = {};
+  result.pw_name = name;
+  result.pw_passwd = no_password;
+  result.pw_gecos = no_text;
+  result.pw_dir = folder;
+  result.pw_shell = shell;
+}
+
+void fill_group(group& result, char* name) {
+  result = {};
+  result.gr_name = name;
+  result.gr_passwd = no_password;
+  result.gr_mem = no_members;
+}
+
+bool copy(const char* name, char* room, std::size_t size) {
+  const std::size_t length = strlen(name);
+  if (length >= size) return false;
+  memcpy(room, name, length + 1);
+  return true;
+}
+
+}  // namespace
+
+SIMBENCH_CALL passwd* getpwnam(const char* name) {
+  if (!is_simulated()) return SIMBENCH_REAL(getpwnam)(name);
+  if (!copy(name, user_name, sizeof user_name)) return nullptr;
+  fill_user(user, user_name);
+  return &user;
+}
+
+SIMBENCH_CALL passwd* getpwuid(uid_t id) {
+  if (!is_simulated()) return SIMBENCH_REAL(getpwuid)(id);
+  return id == 0 ? getpwnam("root") : nullptr;
+}
+
+SIMBENCH_CALL int getpwnam_r(const char* name, passwd* result, char* room, std::size_t size,
+                             passwd** found) {
+  if (!is_simulated()) return SIMBENCH_REAL(getpwnam_r)(name, result, room, size, found);
+  *found = nullptr;
+  if (!copy(name, room, size)) return ERANGE;
+  fill_user(*result, room);
+  *found = result;
+  return 0;
+}
+
+SIMBENCH_CALL int getpwuid_r(uid_t id, passwd* result, char* room, std::size_t size,
+                             passwd** found) {
+  if (!is_simulated()) return SIMBENCH_REAL(getpwuid_r)(id, result, room, size, found);
+  *found = nullptr;
+  return id == 0 ? getpwnam_r("root", result, room, size, found) : 0;
+}
+
+SIMBENCH_CALL group* getgrnam(const char* name) {
+  if (!is_simulated()) return SIMBENCH_REAL(getgrnam)(name);
+  if (!copy(name, group_name, sizeof group_name)) return nullptr;
+  fill_group(own_group, group_name);
+  return &own_group;
+}
+
+SIMBENCH_CALL group* getgrgid(gid_t id) {
+  if (!is_simulated()) return SIMBENCH_REAL(getgrgid)(id);
+  return id == 0 ? getgrnam("root") : nullptr;
+}
+
+SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::size_t size,
+                             group** found) {
+  if (!is_simulated()) return SIMBENCH_REAL(getgrnam_r)(name, result, room, size, found);
+  *found = nullptr;
+  if (!copy(name, room, size)) return ERANGE;
+  fill_group(*result, room);
+  *found = result;
+  return 0;
+}
+
+SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size,
+                             group** found) {
+  if (!is_simulated()) return SIMBENCH_REAL(getgrgid_r)(id, result, room, size, found);
+  *found = nullptr;
+  return id == 0 ? getgrnam_r("root", result, room, size, found) : 0;
+}
+
+SIMBENCH_CALL int initgroups(const char* name, gid_t id) {
+  if (!is_simulated()) return SIMBENCH_REAL(initgroups)(name, id);
+  return 0;
+}
+
+SIMBENCH_CALL int getresuid(uid_t* own, uid_t* effective, uid_t* saved) {
+  if (!is_simulated()) return SIMBENCH_REAL(getresuid)(own, effective, saved);
+  *own = *effective = *saved = 0;
+  return 0;
+}
+
+SIMBENCH_CALL int getresgid(gid_t* own, gid_t* effective, gid_t* saved) {
+  if (!is_simulated()) return SIMBENCH_REAL(getresgid)(own, effective, saved);
+  *own = *effective = *saved = 0;
+  return 0;
+}
+
+}  // namespace simbench::shim

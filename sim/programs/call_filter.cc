@@ -1,0 +1,196 @@
+#include "sim/programs/call_filter.h"
+
+#include <linux/audit.h>
+#include <linux/futex.h>
+#include <linux/seccomp.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <time.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstddef>
+#include <initializer_list>
+#include <stdexcept>
+
+#include "shim/refused_calls.h"
+
+namespace simbench::sim {
+namespace {
+
+using shim::Refusal;
+using Code = std::vector<sock_filter>;
+
+#if defined(__x86_64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+constexpr std::uint32_t kOtherAbi = 0x40000000;  // x32
+#elif defined(__aarch64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+constexpr std::uint32_t kOtherAbi = 0x40000000;  // none
+#else
+#error "the numbers of this architecture's system calls are not known"
+#endif
+static_assert(std::endian::native == std::endian::little, "arguments are read in two halves");
+
+constexpr std::uint32_t kTrap = SECCOMP_RET_TRAP;
+constexpr std::uint32_t kAllow = SECCOMP_RET_ALLOW;
+constexpr std::uint32_t failing(std::uint32_t error) { return SECCOMP_RET_ERRNO | error; }
+
+constexpr sock_filter statement(int code, std::uint32_t k) {
+  return {.code = static_cast<std::uint16_t>(code), .jt = 0, .jf = 0, .k = k};
+}
+constexpr sock_filter verdict(std::uint32_t action) { return statement(BPF_RET | BPF_K, action); }
+constexpr sock_filter load(std::size_t offset) {
+  return statement(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset));
+}
+// The lower and upper half of an argument.
+constexpr sock_filter load_low(int argument) {
+  return load(offsetof(seccomp_data, args) + 8 * static_cast<std::size_t>(argument));
+}
+constexpr sock_filter load_high(int argument) {
+  return load(offsetof(seccomp_data, args) + 8 * static_cast<std::size_t>(argument) + 4);
+}
+// Goes on if the test holds, or else skips as many statements.
+constexpr sock_filter unless(int test, std::uint32_t k, std::size_t skipped) {
+  return {.code = static_cast<std::uint16_t>(BPF_JMP | test | BPF_K),
+          .jt = 0,
+          .jf = static_cast<std::uint8_t>(skipped),
+          .k = k};
+}
+
+void append(Code& code, const Code& more) { code.insert(code.end(), more.begin(), more.end()); }
+
+// What is done if what was loaded is the value; it must end with a verdict.
+Code on(std::uint32_t value, const Code& done) {
+  Code code{unless(BPF_JEQ, value, done.size())};
+  append(code, done);
+  return code;
+}
+
+Code one_of(int argument, std::initializer_list<std::uint32_t> values, std::uint32_t then,
+            std::uint32_t otherwise) {
+  Code code{load_low(argument)};
+  for (const std::uint32_t value : values) append(code, on(value, {verdict(then)}));
+  code.push_back(verdict(otherwise));
+  return code;
+}
+
+Code only_for(int argument, std::uint32_t value, std::uint32_t otherwise = kTrap) {
+  return one_of(argument, {value}, kAllow, otherwise);
+}
+
+// Waits on a lock that end at a time.
+Code futex() {
+  Code code{load_low(3), unless(BPF_JEQ, 0, 3), load_high(3), unless(BPF_JEQ, 0, 1),
+            verdict(kAllow)};
+  code.push_back(load_low(1));
+  code.push_back(statement(BPF_ALU | BPF_AND | BPF_K, static_cast<std::uint32_t>(FUTEX_CMD_MASK)));
+  for (const int wait : {FUTEX_WAIT, FUTEX_WAIT_BITSET, FUTEX_LOCK_PI, FUTEX_WAIT_REQUEUE_PI, 13}) {
+    append(code, on(static_cast<std::uint32_t>(wait), {verdict(kTrap)}));
+  }
+  code.push_back(verdict(kAllow));
+  return code;
+}
+
+// Threads only: a second one that asks the world names itself.
+Code clone() {
+  return {load_low(0), unless(BPF_JSET, CLONE_THREAD, 1), verdict(kAllow), verdict(kTrap)};
+}
+
+Code execute(const char* program) {
+  const auto address = reinterpret_cast<std::uintptr_t>(program);
+  return {load_low(0),  unless(BPF_JEQ, static_cast<std::uint32_t>(address), 3),
+          load_high(0), unless(BPF_JEQ, static_cast<std::uint32_t>(address >> 32U), 1),
+          verdict(kAllow), verdict(kTrap)};
+}
+
+// SIGSYS is the shim's.
+Code signal_action() {
+  Code code{load_low(0)};
+  append(code, on(SIGSYS, only_for(4, shim::kOfTheShim, failing(0))));
+  code.push_back(verdict(kAllow));
+  return code;
+}
+
+Code process_control() {
+  return one_of(0,
+                {PR_SET_PDEATHSIG, PR_SET_SECCOMP, PR_SET_SECUREBITS, PR_CAPBSET_DROP,
+                 PR_CAP_AMBIENT, PR_SET_KEEPCAPS},
+                failing(0), kAllow);
+}
+
+// The calls that the table calls partly refused, and those that it does not have.
+Code by_arguments(int number, const char* program) {
+  switch (number) {
+    case SYS_clock_gettime:
+      return one_of(0, {CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID}, kAllow, kTrap);
+    case SYS_socket:
+    case SYS_socketpair:
+      return only_for(0, AF_UNIX);
+#ifdef SYS_poll
+    case SYS_poll:
+      return only_for(2, 0);
+#endif
+    case SYS_ppoll:
+      return only_for(4, shim::kOfTheShim);
+    case SYS_futex:
+      return futex();
+    case SYS_clone:
+      return clone();
+    case SYS_execve:
+      return execute(program);
+    default:
+      throw std::logic_error("a call is partly refused, and no rule says which part");
+  }
+}
+
+std::uint32_t verdict_of(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kDenied:
+      return failing(EPERM);
+    case Refusal::kAbsent:
+      return failing(ENOSYS);
+    case Refusal::kIgnored:
+      return failing(0);
+    case Refusal::kNotIntercepted:
+    case Refusal::kForbidden:
+    case Refusal::kPartly:
+      break;
+  }
+  return kTrap;
+}
+
+}  // namespace
+
+std::vector<sock_filter> call_filter(const char* program) {
+  Code code{load(offsetof(seccomp_data, arch)), unless(BPF_JEQ, kArchitecture, 1),
+            statement(BPF_JMP | BPF_JA, 1), verdict(SECCOMP_RET_KILL_PROCESS),
+            load(offsetof(seccomp_data, nr))};
+  append(code, {unless(BPF_JGE, kOtherAbi, 1), verdict(SECCOMP_RET_KILL_PROCESS)});
+  append(code, {unless(BPF_JGT, shim::kYoungest, 1), verdict(failing(ENOSYS))});
+  for (const shim::RefusedCall& call : shim::kRefusedCalls) {
+    append(code, on(static_cast<std::uint32_t>(call.number),
+                    call.refusal == Refusal::kPartly ? by_arguments(call.number, program)
+                                                     : Code{verdict(verdict_of(call.refusal))}));
+  }
+  for (const int kill : {SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo,
+                         SYS_rt_tgsigqueueinfo}) {
+    append(code, on(static_cast<std::uint32_t>(kill), only_for(0, kOwnProcess, failing(ESRCH))));
+  }
+  append(code, on(SYS_prlimit64, only_for(0, 0, failing(EPERM))));
+  append(code, on(SYS_prctl, process_control()));
+  append(code, on(SYS_rt_sigaction, signal_action()));
+  code.push_back(verdict(kAllow));
+  return code;
+}
+
+void set_own_process(std::span<sock_filter> filter, std::uint32_t process) {
+  for (sock_filter& each : filter) {
+    if (each.k == kOwnProcess) each.k = process;
+  }
+}
+
+}  // namespace simbench::sim

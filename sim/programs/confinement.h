@@ -1,0 +1,69 @@
+// What a program of the simulated world cannot do to the machine on which it runs.
+//
+// Three barriers of the kernel, which hold whatever the program does, with or without libc:
+//
+//   rights     no capabilities, also as root, and none to gain; the calls that ask for rights or
+//              give them away succeed without effect (it is the root of a host that is not there)
+//   files      Landlock: it reads and executes what its caller may, and writes, makes and removes
+//              files in its own folder only, and /dev/null; no device takes a setting; neither
+//              signals nor abstract sockets leave it; no TCP (each as far as the kernel's Landlock
+//              goes)
+//   calls      a filter of system calls (shim/refused_calls.h): clocks, networks, waits, processes
+//              and the machine's state are out of reach. A call that the shim should have served
+//              stops the program, and the shim names it.
+//
+// Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError. For
+// other users the second barrier is then their ordinary rights over files, and no more.
+//
+// What remains: it reads all files that its caller may. Unix-domain sockets that others have put
+// into the file system can be connected to. A program that reads the time without a system call
+// (the vDSO, the processor's counter) sees the machine's own.
+//
+//   Confinement confinement("/tmp/host1", program);
+//   if (fork() == 0) {
+//     const Confinement::Failure failure = confinement.apply();
+//     if (failure.what == nullptr) execve(program, arguments, environment);
+//   }
+//
+// Source: capabilities(7), landlock(7), seccomp(2), Documentation/userspace-api/landlock.rst.
+#ifndef SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
+#define SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
+
+#include <linux/filter.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace simbench::sim {
+
+class ConfinementError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Confinement {
+ public:
+  struct Failure {
+    const char* what = nullptr;  // none
+    int error = 0;               // an errno
+  };
+
+  // The folder must be there. `program` is the very pointer that will be given to execve(): no other
+  // is executed. Throws ConfinementError.
+  Confinement(const std::string& folder, const char* program);
+  ~Confinement();
+  Confinement(const Confinement&) = delete;
+  Confinement& operator=(const Confinement&) = delete;
+
+  // In the child, between fork() and execve(): makes async-signal-safe calls only.
+  Failure apply();
+
+ private:
+  int rules_ = -1;  // Landlock's; none
+  std::vector<sock_filter> filter_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
