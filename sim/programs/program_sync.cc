@@ -39,7 +39,6 @@ class RunningPrograms {
       child.environment[name] = fill(value, host_.id());
     }
     processes_.emplace_back(host_, network_, kernel_, child, static_cast<std::uint32_t>(number));
-    names_.push_back(scenarios::program_name(command));
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -50,21 +49,19 @@ class RunningPrograms {
       if (peer != host_.id()) tasks.push_back(network_.pump(peer));
     }
     tasks.push_back(kernel_.run());
-    for (std::size_t i = 0; i < processes_.size(); ++i) tasks.push_back(serve(i, on_end));
+    for (Process& process : processes_) tasks.push_back(serve(process, on_end));
     if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
 
  private:
-  Task<void> serve(std::size_t number, std::function<void(const std::string&)> on_end) {
+  Task<void> serve(Process& process, std::function<void(const std::string&)> on_end) {
     const TrueTime begin = host_.true_now();
-    Process& process = processes_[number];
     co_await process.serve();
     if (process.ending().empty() || std::exchange(has_failed_, true)) co_return;
     const double after_s = to_seconds(host_.true_now() - begin);
-    on_end(after_s < 1 ? fmt::format("{}: {}", names_[number], process.ending())
-                       : fmt::format("{}: after {:.0f} s: {}", names_[number], after_s,
-                                     process.ending()));
+    on_end(after_s < 1 ? process.ending()
+                       : fmt::format("after {:.0f} s {}", after_s, process.ending()));
   }
 
   Task<void> stop_after(Nanoseconds duration) {
@@ -77,7 +74,6 @@ class RunningPrograms {
   HostNetwork network_;
   KernelClock kernel_;
   std::deque<Process> processes_;
-  std::vector<std::string> names_;
   bool has_failed_ = false;
 };
 
