@@ -43,6 +43,7 @@ class HostPrograms {
     for (PeerId peer = 0; peer < settings_.hosts; ++peer) {
       if (peer != host_.id()) tasks.push_back(network_.pump(peer));
     }
+    tasks.push_back(network_.stamp_departures());
     for (Process& process : processes_) tasks.push_back(serve(process));
     co_await join_all(std::move(tasks));
   }
