@@ -108,8 +108,7 @@ SIMBENCH_CALL ssize_t read(int fd, void* data, std::size_t size) {
       return fill(data, size);
     case Kind::kTimer:
       return read_timer(fd, data, size);
-    case Kind::kEpoll:
-    case Kind::kReal:
+    default:
       break;
   }
   return syscall(SYS_read, fd, data, size);

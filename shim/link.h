@@ -55,7 +55,11 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
-enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance };
+enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink };
+
+// Whether the world says when it is ready; of others, the kernel does.
+constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
+
 
 inline constexpr int kMostDescriptors = 1024;
 

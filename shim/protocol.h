@@ -41,15 +41,30 @@ enum class Call : std::uint32_t {
   kReceive,      // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload
   kClose,        // fd
   kRandom,       // a: how many -> data: bytes
+  kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
+  kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
+                  // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
 };
 
 // When a wait ends without anything being ready.
 enum class Deadline : std::int64_t { kNever, kAfter, kAtSystemTime, kAtMonotonicTime };
 
 enum class SocketOption : std::int64_t {
-  kReceiveStamps,   // software stamps of arrivals
-  kTransmitStamps,  // software stamps of departures, in the error queue
+  kReceiveStamps,   // of arrivals: StampKind as bits
+  kTransmitStamps,  // of departures, in the error queue: StampKind as bits -> value: the sent
+  kReuseAddress,    // SO_REUSEADDR, for those that follow: 0 or 1
+  kBroadcast,       // SO_BROADCAST
+  kUrgentErrors,    // SO_SELECT_ERR_QUEUE
+  kAllGroups,       // IP_MULTICAST_ALL
+  kLoopGroups,      // IP_MULTICAST_LOOP
 };
+
+enum StampKind : unsigned {
+  kSoftwareStamps = 1,
+  kHardwareStamps = 2,
+  kBothStamps = 4,  // departures have a stamp of each kind, in messages of their own
+};
+
 
 struct Request {
   Call call{};
@@ -67,8 +82,12 @@ struct Reply {
 };
 
 struct Identity {
-  std::int32_t process = 0;   // what getpid() is
-  std::uint32_t address = 0;  // the host's, host byte order
+  std::int32_t process = 0;         // what getpid() is
+  std::uint32_t address = 0;        // the host's; addresses are in host byte order
+  std::uint32_t netmask = 0;        // of its network
+  std::uint32_t first_address = 0;  // of "host0"
+  std::uint32_t hosts = 0;
+  std::uint32_t has_card_clock = 0;  // 0 or 1
 };
 
 struct Address {
@@ -92,9 +111,10 @@ struct TimerSetting {
 struct Arrival {
   Address from;
   Address to;
-  std::int64_t system;   // the software stamp; kNoStamp: none
-  std::uint32_t length;  // of the payload, also where less of it follows
-  std::uint32_t reserved;
+  std::int64_t system;    // the software stamp; kNoStamp: none
+  std::int64_t hardware;  // the card's; kNoStamp: none
+  std::uint32_t length;   // of the payload, also where less of it follows
+  std::uint32_t number;   // of the datagrams that the socket sent; 0 for arrivals
 };
 
 inline constexpr std::int64_t kNoStamp = INT64_MIN;

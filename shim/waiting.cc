@@ -60,7 +60,7 @@ int wait(pollfd* interests, nfds_t count, Until until) {
   Interest simulated[kMostInterests];
   std::size_t asked = 0;
   for (nfds_t i = 0; i < count; ++i) {
-    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
+    const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
       simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
@@ -76,7 +76,7 @@ int wait(pollfd* interests, nfds_t count, Until until) {
   int ready = 0;
   std::size_t answered = 0;
   for (nfds_t i = 0; i < count; ++i) {
-    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
+    const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
     interests[i].revents = is_ours ? simulated[answered++].ready : real[i].revents;
     ready += interests[i].revents != 0;
   }

@@ -58,6 +58,7 @@ namespace simbench::sim {
 
 class SimChannel;
 class SimHost;
+class SimMulticast;
 
 // The frames of the host's cameras for its programs: a queue that the rig fills.
 //
@@ -129,6 +130,8 @@ class SimHost final : public Host {
   SystemClock& system_clock() { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
+  SimChannel& datagram_channel(PeerId peer);
+  SimMulticast& multicast();
   MessageStack& stack() { return stack_; }
   // Null if the card takes no stamps.
   const NicClock* nic() const { return nic_.get(); }
@@ -177,6 +180,7 @@ class SimHost final : public Host {
   std::unique_ptr<SimPulseInput> trigger_;
   std::unique_ptr<SimFrameFeed> frame_feed_;
   std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
+  std::unique_ptr<SimMulticast> multicast_;
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;
 };
 

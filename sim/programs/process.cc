@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "recording/text_fields.h"
+#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 namespace {
@@ -26,30 +27,10 @@ constexpr Nanoseconds kLeastReading(20);
 
 // Times further away are never; sums of two of them still fit.
 constexpr std::int64_t kFarthest = std::int64_t{1} << 61;
-constexpr std::size_t kMostDescriptors = 1024;
-
-class BadRequest : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||
          clock == CLOCK_REALTIME_ALARM;
-}
-
-template <class T>
-Bytes bytes_of(const T& value) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  return {bytes.begin(), bytes.end()};
-}
-
-template <class T>
-T read_head(const Bytes& data) {
-  if (data.size() < sizeof(T)) throw BadRequest("too little data");
-  T value{};
-  std::memcpy(&value, data.data(), sizeof value);
-  return value;
 }
 
 }  // namespace
@@ -116,11 +97,14 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kName:
     case Call::kPeerName:
     case Call::kReceive:
+    case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
     case Call::kQueryTimer:
     case Call::kReadTimer:
       co_return of_timer(request);
+    case Call::kCardStamping:
+      co_return card_stamping(request.head.a);
     case Call::kHello:
       co_return Answer{.data = bytes_of(identity())};
     case Call::kRandom:
@@ -139,7 +123,12 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
 }
 
 shim::Identity Process::identity() const {
-  return {.process = static_cast<std::int32_t>(100 + number_), .address = network_.address()};
+  return {.process = static_cast<std::int32_t>(100 + number_),
+          .address = network_.address(),
+          .netmask = HostNetwork::kNetmask,
+          .first_address = HostNetwork::kFirstAddress,
+          .hosts = static_cast<std::uint32_t>(network_.hosts()),
+          .has_card_clock = host_.nic() != nullptr ? 1U : 0U};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {
@@ -180,86 +169,10 @@ Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
 }
 
-// Sockets.
-
-UdpSocket& Process::socket_of(int fd) {
-  const auto found = sockets_.find(fd);
-  if (found == sockets_.end()) throw BadRequest("used a socket that it never opened");
-  return found->second;
-}
-
-Process::Answer Process::open_socket(int fd) {
-  if (sockets_.size() + timers_.size() >= kMostDescriptors) return {.error = EMFILE};
-  UdpSocket& socket = sockets_[fd];
-  network_.close(socket);  // one that was left open under this number
-  socket = {};
-  socket.on_arrival = [this] { woken_.notify(); };
-  return {};
-}
-
-Process::Answer Process::close(int fd) {
-  if (const auto found = sockets_.find(fd); found != sockets_.end()) {
-    network_.close(found->second);
-    sockets_.erase(found);
-  }
-  timers_.erase(fd);
-  return {};
-}
-
-Process::Answer Process::of_socket(const ChildRequest& request) {
-  UdpSocket& socket = socket_of(request.head.fd);
-  switch (request.head.call) {
-    case Call::kBind:
-      return {.error = network_.bind(socket, read_head<shim::Address>(request.data))};
-    case Call::kConnect:
-      return {.error = network_.connect(socket, read_head<shim::Address>(request.data))};
-    case Call::kName:
-      return {.data = bytes_of(socket.local)};
-    case Call::kPeerName:
-      if (!socket.peer) return {.error = ENOTCONN};
-      return {.data = bytes_of(*socket.peer)};
-    case Call::kReceive:
-      return receive(socket, request.head.a);
-    default:
-      return set_option(socket, static_cast<shim::SocketOption>(request.head.a),
-                        request.head.b != 0);
-  }
-}
-
-Process::Answer Process::set_option(UdpSocket& socket, shim::SocketOption option, bool on) {
-  switch (option) {
-    case shim::SocketOption::kReceiveStamps:
-      socket.stamps_arrivals = on;
-      return {};
-    case shim::SocketOption::kTransmitStamps:
-      socket.stamps_departures = on;
-      return {};
-  }
-  return {.error = ENOPROTOOPT};
-}
-
-Process::Answer Process::receive(UdpSocket& socket, std::int64_t how) {
-  std::deque<QueuedDatagram>& queue = (how & 1) != 0 ? socket.departed : socket.arrived;
-  if (queue.empty()) return {.error = EAGAIN};
-  Answer answer{.data = bytes_of(queue.front().arrival)};
-  const Bytes& payload = queue.front().payload;
-  answer.data.insert(answer.data.end(), payload.begin(), payload.end());
-  if ((how & 2) == 0) queue.pop_front();
-  return answer;
-}
-
-Task<Process::Answer> Process::send(ChildRequest request) {
-  UdpSocket& socket = socket_of(request.head.fd);
-  const auto to = read_head<shim::Address>(request.data);
-  Bytes payload(request.data.begin() + sizeof to, request.data.end());
-  const int error = co_await network_.send(socket, to, std::move(payload));
-  co_return Answer{.error = error};
-}
-
 // Timers.
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
-  if (sockets_.size() + timers_.size() >= kMostDescriptors) return {.error = EMFILE};
+  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
   timers_[fd] = {.is_system = is_system(clock)};
   return {};
 }
@@ -306,9 +219,9 @@ Process::Answer Process::of_timer(const ChildRequest& request) {
 std::int16_t Process::readiness(const shim::Interest& interest) {
   if (const auto found = sockets_.find(interest.fd); found != sockets_.end()) {
     const UdpSocket& socket = found->second;
-    const int ready =
-        (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | (socket.departed.empty() ? 0 : POLLPRI);
     const int error = socket.departed.empty() ? 0 : POLLERR;
+    const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
+    const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
     return static_cast<std::int16_t>((ready & interest.events) | error);
   }
   if (const auto found = timers_.find(interest.fd); found != timers_.end()) {

@@ -79,7 +79,9 @@ class Process {
   Answer open_socket(int fd);
   Answer close(int fd);
   Answer of_socket(const ChildRequest& request);
-  static Answer set_option(UdpSocket& socket, shim::SocketOption option, bool on);
+  Answer card_stamping(std::int64_t wanted);
+  int join(UdpSocket& socket, bool joins, std::int64_t group);
+  static Answer set_option(UdpSocket& socket, shim::SocketOption option, std::int64_t value);
   static Answer receive(UdpSocket& socket, std::int64_t how);
   Task<Answer> send(ChildRequest request);
 

@@ -48,6 +48,7 @@ class RunningPrograms {
     for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer != host_.id()) tasks.push_back(network_.pump(peer));
     }
+    tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
     for (Process& process : processes_) tasks.push_back(serve(process, on_end));
     if (duration) tasks.push_back(stop_after(*duration));
