@@ -72,8 +72,10 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
   iovec in[] = {{&answer, sizeof answer}, {received.data, received.capacity}};
   if (transfer(false, in, 2) < static_cast<ssize_t>(sizeof answer)) lose();
   received.size = answer.size;
-  if (answer.error == 0) return answer.value;
-  errno = answer.error;
+  if ((answer.error & kHasExpirations) != 0) make_signals();
+  const int error = answer.error & ~kHasExpirations;
+  if (error == 0) return answer.value;
+  errno = error;
   return -1;
 }
 

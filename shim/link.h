@@ -14,6 +14,8 @@
 #ifndef SIMBENCH_SHIM_LINK_H_
 #define SIMBENCH_SHIM_LINK_H_
 
+#include <time.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -44,6 +46,11 @@ const Identity& identity();
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
 std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
 
+// Makes the signals of the timers that have expired, which the world tells with a reply.
+void make_signals();
+// How many of these signals have run a handler, so far.
+std::uint64_t handled_signals();
+
 // Says what cannot be simulated, and ends the program.
 [[noreturn]] void give_up(const char* what, const char* why = "");
 
@@ -68,6 +75,12 @@ Kind kind_of(int fd);
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
 bool is_blocking(int fd);
+
+bool is_time(const timespec& time);
+// Times beyond 292 years are never.
+std::int64_t nanoseconds(const timespec& time);
+TimerSetting to_setting(const itimerspec& setting);
+itimerspec from_setting(const TimerSetting& setting);
 
 // read() of a timer.
 std::int64_t read_timer(int fd, void* data, std::size_t size);

@@ -26,7 +26,8 @@ enum class Call : std::uint32_t {
   kReadClock,    // a: clockid -> value
   kSetClock,     // a: clockid, b: its new reading
   kAdjustClock,  // a: clockid, data: struct timex -> value: clock state, data: struct timex
-  kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data
+  kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data;
+                 // EINTR: a signal timer has expired, data: what is left, int64
   kOpenTimer,    // fd, a: clockid
   kSetTimer,     // fd, a: 1 if absolute, data: TimerSetting -> data: the setting before
   kReadTimer,    // fd -> value: expirations since the last; EAGAIN if none
@@ -44,6 +45,12 @@ enum class Call : std::uint32_t {
   kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
+  // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number that the
+  // shim gives them.
+  kSetSignalTimer,  // fd, a: 1 if absolute, b: clockid, data: TimerSetting -> data: the one before
+  kQuerySignalTimer,  // fd -> data: TimerSetting
+  kDropSignalTimer,   // fd
+  kTakeExpirations,   // -> data: Expiration[], of what the shim has not yet heard of
 };
 
 // When a wait ends without anything being ready.
@@ -74,6 +81,9 @@ struct Request {
   std::uint32_t size = 0;
   std::uint32_t reserved = 0;
 };
+
+// In a reply's error: signal timers have expired (kTakeExpirations).
+inline constexpr std::int32_t kHasExpirations = 1 << 30;
 
 struct Reply {
   std::int64_t value;
@@ -106,6 +116,11 @@ struct Interest {
 struct TimerSetting {
   std::int64_t left;      // until it expires, or the time at which it does; 0: disarmed
   std::int64_t interval;  // 0: once
+};
+
+struct Expiration {
+  std::int32_t timer;
+  std::uint32_t times;
 };
 
 struct Arrival {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -20,13 +21,11 @@ namespace simbench::sim {
 namespace {
 
 using shim::Call;
-using shim::Deadline;
 
 // What a reading of a clock takes where the scenario says less: a program may wait for a tick.
 constexpr Nanoseconds kLeastReading(20);
 
-// Times further away are never; sums of two of them still fit.
-constexpr std::int64_t kFarthest = std::int64_t{1} << 61;
+constexpr std::size_t kMostSignalTimers = 64;
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||
@@ -68,7 +67,8 @@ Task<void> Process::serve() {
       ending_ = bad.what();
     }
     if (!given) break;
-    child_.reply(given->value, given->error, given->data);
+    const std::int32_t told = has_expirations() ? shim::kHasExpirations : 0;
+    child_.reply(given->value, given->error | told, given->data);
   }
   const std::string how = child_.ending(ending_);
   if (!is_stopped_) ending_ = printable_name(how);
@@ -105,6 +105,12 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
       co_return of_timer(request);
     case Call::kCardStamping:
       co_return card_stamping(request.head.a);
+    case Call::kSetSignalTimer:
+    case Call::kQuerySignalTimer:
+    case Call::kDropSignalTimer:
+      co_return of_signal_timer(request);
+    case Call::kTakeExpirations:
+      co_return take_expirations();
     case Call::kHello:
       co_return Answer{.data = bytes_of(identity())};
     case Call::kRandom:
@@ -173,45 +179,70 @@ Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
   if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
-  timers_[fd] = {.is_system = is_system(clock)};
+  timers_.insert_or_assign(fd, ProcessTimer(host_, is_system(clock)));
   return {};
 }
 
-std::int64_t Process::now_of(const Timer& timer) const {
-  return timer.is_system ? epoch_ns(host_.system_clock().read(host_.true_now()))
-                         : nanoseconds_of(host_.steady_clock().now());
+namespace {
+
+shim::TimerSetting setting_in(const Bytes& data) {
+  const auto setting = read_head<shim::TimerSetting>(data);
+  if (setting.left < 0 || setting.interval < 0) throw BadRequest("set a timer to a negative time");
+  return setting;
 }
 
-void Process::expire(Timer& timer) const {
-  if (timer.next == 0) return;
-  const std::int64_t late = now_of(timer) - timer.next;
-  if (late < 0) return;
-  const std::int64_t times = timer.interval > 0 ? late / timer.interval + 1 : 1;
-  timer.expirations += times;
-  timer.next = timer.interval > 0 ? timer.next + times * timer.interval : 0;
-}
+}  // namespace
 
 Process::Answer Process::of_timer(const ChildRequest& request) {
   const auto found = timers_.find(request.head.fd);
   if (found == timers_.end()) throw BadRequest("used a timer that it never opened");
-  Timer& timer = found->second;
-  expire(timer);
+  ProcessTimer& timer = found->second;
   if (request.head.call == Call::kReadTimer) {
-    const std::int64_t expirations = std::exchange(timer.expirations, 0);
+    const std::int64_t expirations = timer.take();
     return {.value = expirations, .error = expirations == 0 ? EAGAIN : 0};
   }
-  const shim::TimerSetting before{.left = timer.next == 0 ? 0 : timer.next - now_of(timer),
-                                  .interval = timer.interval};
+  const shim::TimerSetting before = timer.setting();
   if (request.head.call == Call::kSetTimer) {
-    const auto wanted = read_head<shim::TimerSetting>(request.data);
-    if (wanted.left < 0 || wanted.interval < 0) throw BadRequest("set a timer to a negative time");
-    const std::int64_t left = std::min(wanted.left, kFarthest);
-    const bool is_absolute = request.head.a != 0;
-    timer.interval = std::min(wanted.interval, kFarthest);
-    timer.expirations = 0;
-    timer.next = left == 0 ? 0 : is_absolute ? left : now_of(timer) + left;
+    timer.set(setting_in(request.data), request.head.a != 0);
   }
   return {.data = bytes_of(before)};
+}
+
+Process::Answer Process::of_signal_timer(const ChildRequest& request) {
+  const int number = request.head.fd;
+  if (request.head.call == Call::kDropSignalTimer) {
+    signal_timers_.erase(number);
+    return {};
+  }
+  const auto found = signal_timers_.find(number);
+  const bool exists = found != signal_timers_.end();
+  const shim::TimerSetting before = exists ? found->second.setting() : shim::TimerSetting{};
+  if (request.head.call == Call::kSetSignalTimer) {
+    if (!exists && signal_timers_.size() >= kMostSignalTimers) return {.error = EAGAIN};
+    ProcessTimer timer(host_, is_system(request.head.b));
+    timer.set(setting_in(request.data), request.head.a != 0);
+    signal_timers_.insert_or_assign(number, timer);
+  }
+  return {.data = bytes_of(before)};
+}
+
+bool Process::has_expirations() {
+  return std::ranges::any_of(signal_timers_,
+                             [](auto& timer) { return timer.second.expirations() > 0; });
+}
+
+Process::Answer Process::take_expirations() {
+  Answer answer;
+  for (auto& [number, timer] : signal_timers_) {
+    const std::int64_t times = timer.take();
+    if (times == 0) continue;
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();  // DELAYTIMER_MAX
+    const shim::Expiration expiration{.timer = number,
+                                      .times = static_cast<std::uint32_t>(std::min(times, kMost))};
+    const Bytes bytes = bytes_of(expiration);
+    answer.data.insert(answer.data.end(), bytes.begin(), bytes.end());
+  }
+  return answer;
 }
 
 // Waits.
@@ -225,58 +256,23 @@ std::int16_t Process::readiness(const shim::Interest& interest) {
     return static_cast<std::int16_t>((ready & interest.events) | error);
   }
   if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
-    expire(found->second);
-    return found->second.expirations > 0 ? interest.events & POLLIN : 0;
+    return found->second.expirations() > 0 ? interest.events & POLLIN : 0;
   }
   return POLLNVAL;
 }
 
-namespace {
-
-// A system clock may be set while a program waits for it.
-constexpr Nanoseconds kLookAgain = std::chrono::seconds(1);
-
-}  // namespace
-
-std::optional<TrueTime> Process::look_at_system_time(std::int64_t at) const {
-  const HostTime wanted = from_epoch_ns(at);
-  const SystemClock& clock = host_.system_clock();
-  if (wanted > clock.read(host_.true_now()) + kLookAgain) return host_.true_now() + kLookAgain;
-  return clock.when(wanted, host_.true_now());
-}
-
-std::optional<TrueTime> Process::next_look(Deadline kind, std::int64_t at) const {
-  switch (kind) {
-    case Deadline::kNever:
-      return std::nullopt;
-    case Deadline::kAtSystemTime:
-      return look_at_system_time(at);
-    default:
-      return host_.next_look(SteadyTime(Nanoseconds(at)));
-  }
-}
-
-bool Process::is_past(Deadline kind, std::int64_t at) const {
-  switch (kind) {
-    case Deadline::kNever:
-      return false;
-    case Deadline::kAtSystemTime:
-      return epoch_ns(host_.system_clock().read(host_.true_now())) >= at;
-    default:
-      return host_.is_past(SteadyTime(Nanoseconds(at)));
-  }
-}
-
 std::optional<TrueTime> Process::next_timer(std::span<const shim::Interest> interests) {
   std::optional<TrueTime> next;
-  for (const shim::Interest& interest : interests) {
-    const auto found = timers_.find(interest.fd);
-    if (found == timers_.end() || found->second.next == 0) continue;
-    const Timer& timer = found->second;
-    const Deadline kind = timer.is_system ? Deadline::kAtSystemTime : Deadline::kAtMonotonicTime;
-    const std::optional<TrueTime> look = next_look(kind, timer.next);
+  const auto consider = [&next](const ProcessTimer& timer) {
+    const std::optional<TrueTime> look = timer.next_look();
     if (look && (!next || *look < *next)) next = look;
+  };
+  for (const shim::Interest& interest : interests) {
+    if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
+      consider(found->second);
+    }
   }
+  for (const auto& [number, timer] : signal_timers_) consider(timer);
   return next;
 }
 
@@ -285,25 +281,24 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
   if (!interests.empty()) {
     std::memcpy(interests.data(), request.data.data(), interests.size() * sizeof interests[0]);
   }
-  auto kind = static_cast<Deadline>(request.head.a);
-  std::int64_t at = std::clamp(request.head.b, std::int64_t{0}, kFarthest);
-  if (kind == Deadline::kAfter) {
-    at += nanoseconds_of(host_.steady_clock().now());
-    kind = Deadline::kAtMonotonicTime;
-  }
+  const WakeTime deadline =
+      wake_time(host_, static_cast<shim::Deadline>(request.head.a), request.head.b);
   for (;;) {
     std::int64_t ready = 0;
     for (shim::Interest& interest : interests) {
       interest.ready = readiness(interest);
       ready += interest.ready != 0;
     }
-    if (ready > 0 || is_past(kind, at) || is_stopped_) {
+    if (ready > 0 || is_past(host_, deadline) || is_stopped_) {
       Answer answer{.value = ready};
       const auto bytes = std::as_bytes(std::span(interests));
       answer.data.assign(bytes.begin(), bytes.end());
       co_return answer;
     }
-    std::optional<TrueTime> look = next_look(kind, at);
+    if (has_expirations()) {
+      co_return Answer{.error = EINTR, .data = bytes_of(left_ns(host_, deadline))};
+    }
+    std::optional<TrueTime> look = next_look(host_, deadline);
     const std::optional<TrueTime> timer = next_timer(interests);
     if (timer && (!look || *timer < *look)) look = timer;
     co_await woken_.wait(look);

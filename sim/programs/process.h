@@ -8,8 +8,8 @@
 // (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; a
 // network card's clock is EOPNOTSUPP.
 //
-// A wait for a system time looks at least every second whether the clock was set. A program that
-// asks kMostAtOnce times without waiting is ended.
+// A timer that makes a signal ends a wait; one that expires while the program computes is told with
+// the reply to what it asks next. A program that asks kMostAtOnce times without waiting is ended.
 //
 //   HostNetwork network(host, 6);
 //   KernelClock kernel(host);
@@ -31,6 +31,7 @@
 #include "sim/programs/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/kernel_clock.h"
+#include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
 
@@ -58,13 +59,6 @@ class Process {
     int error = 0;
     Bytes data{};
   };
-  struct Timer {
-    bool is_system = false;  // follows the system clock
-    std::int64_t next = 0;   // on its clock, ns; 0: disarmed
-    std::int64_t interval = 0;
-    std::int64_t expirations = 0;
-  };
-
   // Throws for a program that asks too often.
   void count_request(shim::Call call);
   // These throw for what is no request.
@@ -87,16 +81,13 @@ class Process {
 
   Answer open_timer(int fd, std::int64_t clock);
   Answer of_timer(const ChildRequest& request);
-  std::int64_t now_of(const Timer& timer) const;
-  // Counts what has expired until now.
-  void expire(Timer& timer) const;
+  Answer of_signal_timer(const ChildRequest& request);
+  Answer take_expirations();
+  // Whether a signal timer has expired that the program has not heard of.
+  bool has_expirations();
 
   Task<Answer> wait(ChildRequest request);
   std::int16_t readiness(const shim::Interest& interest);
-  bool is_past(shim::Deadline kind, std::int64_t at) const;
-  // When to look at the clock again; nothing: never.
-  std::optional<TrueTime> next_look(shim::Deadline kind, std::int64_t at) const;
-  std::optional<TrueTime> look_at_system_time(std::int64_t at) const;
   std::optional<TrueTime> next_timer(std::span<const shim::Interest> interests);
 
   SimHost& host_;
@@ -106,7 +97,8 @@ class Process {
   RandomStream chance_;
   WaitPoint woken_;
   std::map<int, UdpSocket> sockets_;
-  std::map<int, Timer> timers_;
+  std::map<int, ProcessTimer> timers_;         // by descriptor
+  std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
   Child child_;
   std::string ending_;
   bool is_stopped_ = false;

@@ -131,8 +131,15 @@ TEST_F(ProgramSyncTest, AProgramThatEndsIsAFailureWithItsLastWords) {
 TEST_F(ProgramSyncTest, WhatCannotBeSimulatedIsSaid) {
   EXPECT_THAT(ending_of("fork"), HasSubstr("goes to the background"));
   EXPECT_THAT(ending_of("thread"), HasSubstr("a second thread"));
+  EXPECT_THAT(ending_of("thread timer"), HasSubstr("SIGEV_THREAD"));
   EXPECT_THAT(ending_of("spin"), HasSubstr("never waits"));
   EXPECT_THAT(ending_of("garbage"), HasSubstr("asked what the world does not know"));
+}
+
+TEST_F(ProgramSyncTest, AnAlarmWithoutAHandlerEndsTheProgram) {
+  run({test_program("calls"), "echo"}, {test_program("calls"), "alarm"}, 2);
+  ASSERT_FALSE(outcomes_.empty());
+  EXPECT_THAT(outcomes_.front().message, HasSubstr("ended by signal ALRM"));
 }
 
 TEST_F(ProgramSyncTest, AProgramThatIsNotThereIsSaid) {
