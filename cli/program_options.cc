@@ -82,7 +82,7 @@ scenarios::Scenario load_with_programs(const std::string& scenario,
                                        const std::vector<std::string>& sets,
                                        const ProgramOptions& options,
                                        std::vector<std::string>& pipelines) {
-  app::use_programs({.log_folder = options.log_folder});
+  if (!options.log_folder.empty()) app::use_programs({.log_folder = options.log_folder});
   std::vector<scenarios::Override> overrides = overrides_of(sets);
   scenarios::Scenario loaded = scenarios::load_scenario(scenario, overrides);
   if (options.programs.empty()) return loaded;

@@ -16,44 +16,52 @@ using evaluation::Metric;
 using evaluation::Results;
 using evaluation::Row;
 
-std::vector<const Metric*> compared_metrics(evaluation::ResultKind kind) {
+struct Compared {
+  const Metric* metric;
+  const char* heading;
+};
+
+std::vector<Compared> compared_metrics(evaluation::ResultKind kind) {
   if (kind == evaluation::ResultKind::kClockRuns) {
-    return {&evaluation::metric("clock_spread_ms", kind), &evaluation::metric("rms_te_ms", kind)};
+    return {{&evaluation::metric("clock_spread_ms", kind), "spread"},
+            {&evaluation::metric("rms_te_ms", kind), "RMS TE"}};
   }
-  return {&evaluation::metric("amd_ms"), &evaluation::metric("host_error_ms")};
+  return {{&evaluation::metric("amd_ms"), "AMD"},
+          {&evaluation::metric("host_error_ms"), "host error"}};
 }
 
 std::string ratio_text(const Metric& metric, const Row& program, const Row& model) {
   const double ratio =
       evaluation::paired_ratio(metric.series(program), metric.series(model)).median;
-  return fmt::format("{} ({:+.0f} %)", number_text(ratio), 100 * (ratio - 1));
+  return significant_text(ratio);
 }
 
 }  // namespace
 
 std::optional<Block> program_gap_block(const Results& results) {
-  const std::vector<const Metric*> metrics = compared_metrics(results.kind);
+  const std::vector<Compared> compared = compared_metrics(results.kind);
   std::vector<Column> columns = {{"program", Align::kLeft}, {"model", Align::kLeft}};
-  for (const Metric* metric : metrics) {
-    for (const char* what : {"program", "model", "ratio"}) {
-      columns.push_back({fmt::format("{}\n{}", metric->title, what)});
-    }
+  for (const Compared& each : compared) {
+    columns.push_back({fmt::format("{}\nprogram ms", each.heading)});
+    columns.push_back({fmt::format("{}\nmodel ms", each.heading)});
+    columns.push_back({fmt::format("{}\nratio", each.heading)});
   }
   Table table(std::move(columns), 2);
   for (const Row& row : results.rows) {
     const Row* const model = row.model.empty() ? nullptr : find_row(results.rows, row.model);
     if (model == nullptr) continue;
     std::vector<std::string> cells = {row.pipeline, model->pipeline};
-    for (const Metric* metric : metrics) {
-      cells.push_back(number_text(metric->series(row).median));
-      cells.push_back(number_text(metric->series(*model).median));
-      cells.push_back(ratio_text(*metric, row, *model));
+    for (const Compared& each : compared) {
+      cells.push_back(significant_text(each.metric->series(row).median));
+      cells.push_back(significant_text(each.metric->series(*model).median));
+      cells.push_back(ratio_text(*each.metric, row, *model));
     }
     table.add(std::move(cells));
   }
   if (table.rows.empty()) return std::nullopt;
-  return Block{.heading = "Programs beside their models, in ms; the ratio is the program's value "
-                          "divided by the model's, seed by seed, its median",
+  return Block{.heading = "Programs beside their models",
+               .prose = {"ratio: the program's value divided by its model's, seed by seed; their "
+                         "median."},
                .table = std::move(table)};
 }
 
