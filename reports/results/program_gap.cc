@@ -60,9 +60,9 @@ std::optional<Block> program_gap_block(const Results& results) {
   }
   if (table.rows.empty()) return std::nullopt;
   return Block{.heading = "Programs beside their models",
+               .table = std::move(table),
                .prose = {"ratio: the program's value divided by its model's, seed by seed; their "
-                         "median."},
-               .table = std::move(table)};
+                         "median."}};
 }
 
 }  // namespace simbench::reports
