@@ -9,7 +9,7 @@
 // network card's clock is EOPNOTSUPP.
 //
 // A wait for a system time looks at least every second whether the clock was set. A program that
-// asks kMostAtOnce times without waiting is ended.
+// asks more than kMostASecond times within a second of simulated time is ended.
 //
 //   HostNetwork network(host, 6);
 //   KernelClock kernel(host);
@@ -36,7 +36,7 @@ namespace simbench::sim {
 
 class Process {
  public:
-  static constexpr std::uint64_t kMostAtOnce = 50'000;
+  static constexpr std::uint64_t kMostASecond = 50'000;
 
   // `number` tells the processes of a host apart. The references must outlive this.
   Process(SimHost& host, HostNetwork& network, KernelClock& kernel, const Child::Settings& settings,
@@ -64,7 +64,7 @@ class Process {
   };
 
   // Throws for a program that asks too often.
-  void count_request(shim::Call call);
+  void count_request();
   // These throw for what is no request.
   Task<Answer> answer(ChildRequest request);
   shim::Identity identity() const;
@@ -105,8 +105,8 @@ class Process {
   std::map<int, Timer> timers_;
   Child child_;
   std::string ending_;
-  TrueTime waited_{};
-  std::uint64_t asked_at_once_ = 0;
+  TrueTime counted_since_{};
+  std::uint64_t asked_ = 0;
 };
 
 }  // namespace simbench::sim
