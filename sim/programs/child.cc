@@ -86,7 +86,7 @@ void forget_parent() {
   limit(RLIMIT_NOFILE, Child::kMostDescriptors);
   if (chdir(plan.folder) != 0) _exit(kCannotRun);
   const int input = open("/dev/null", O_RDONLY);
-  const int log = open(plan.log, O_WRONLY | O_CREAT | O_APPEND, 0600);
+  const int log = open(plan.log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0600);
   if (input < 0 || log < 0 || dup2(input, 0) < 0 || dup2(log, 1) < 0 || dup2(log, 2) < 0) {
     _exit(kCannotRun);
   }

@@ -60,11 +60,11 @@ class Child {
   static constexpr std::size_t kMostDescriptors = 1024;
 
   struct Settings {
-    std::vector<std::string> command;  // the program's absolute path, then its arguments
-    std::map<std::string, std::string> environment;
-    std::string folder;    // absolute; its working folder
-    std::string log_name;  // within the folder
-    std::string shim;      // absolute
+    std::vector<std::string> command{};  // the program's absolute path, then its arguments
+    std::map<std::string, std::string> environment{};
+    std::string folder{};    // absolute; its working folder
+    std::string log_name{};  // within the folder
+    std::string shim{};      // absolute
     std::chrono::milliseconds patience = kPatience;
     int link = -1;  // the other end of somebody else's link: nothing is started
   };

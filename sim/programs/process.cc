@@ -26,6 +26,10 @@ using shim::Call;
 constexpr Nanoseconds kLeastReading(20);
 
 constexpr std::size_t kMostSignalTimers = 64;
+constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
+
+// Linux sets no clock later than that, so that 30 years can follow.
+constexpr std::int64_t kLatestSetting = INT64_MAX - 30 * 365 * 86'400 * kSecondNs;
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||
@@ -48,10 +52,16 @@ Process::~Process() {
   for (auto& [fd, socket] : sockets_) network_.close(socket);
 }
 
-void Process::count_request(Call call) {
-  asked_at_once_ = call == Call::kWait && host_.true_now() > waited_ ? 0 : asked_at_once_ + 1;
-  if (call == Call::kWait) waited_ = host_.true_now();
-  if (asked_at_once_ > kMostAtOnce) throw BadRequest("never waits");
+void Process::count_request() {
+  constexpr Nanoseconds kASecond = std::chrono::seconds(1);
+  if (host_.true_now() >= counted_since_ + kASecond) {
+    counted_since_ = host_.true_now();
+    asked_ = 0;
+  }
+  if (++asked_ > kMostASecond) {
+    throw BadRequest(
+        fmt::format("never waits: it asks more than {} times a second", kMostASecond));
+  }
 }
 
 Task<void> Process::serve() {
@@ -61,7 +71,7 @@ Task<void> Process::serve() {
     std::optional<Answer> given;
     try {
       if (!request->is_whole) throw BadRequest("sent a request of a wrong size");
-      count_request(request->head.call);
+      count_request();
       given = co_await answer(std::move(*request));
     } catch (const BadRequest& bad) {
       ending_ = bad.what();
@@ -122,8 +132,8 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kClose:
       co_return close(request.head.fd);
     case Call::kNote:
-      throw BadRequest(
-          std::string(reinterpret_cast<const char*>(request.data.data()), request.data.size()));
+      throw BadRequest(std::string(reinterpret_cast<const char*>(request.data.data()),
+                                   std::min(request.data.size(), kMostNote)));
   }
   throw BadRequest("asked what the world does not know");
 }
@@ -163,7 +173,7 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
 
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
   if (clock != CLOCK_REALTIME) co_return Answer{.error = clock < 0 ? EOPNOTSUPP : EINVAL};
-  if (reading < 0) co_return Answer{.error = EINVAL};
+  if (reading < 0 || reading >= kLatestSetting) co_return Answer{.error = EINVAL};
   co_await kernel_.set(from_epoch_ns(reading));
   co_return Answer{};
 }
@@ -268,9 +278,8 @@ std::optional<TrueTime> Process::next_timer(std::span<const shim::Interest> inte
     if (look && (!next || *look < *next)) next = look;
   };
   for (const shim::Interest& interest : interests) {
-    if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
-      consider(found->second);
-    }
+    const auto found = timers_.find(interest.fd);
+    if (found != timers_.end() && (interest.events & POLLIN) != 0) consider(found->second);
   }
   for (const auto& [number, timer] : signal_timers_) consider(timer);
   return next;

@@ -9,7 +9,8 @@
 // network card's clock is EOPNOTSUPP.
 //
 // A timer that makes a signal ends a wait; one that expires while the program computes is told with
-// the reply to what it asks next. A program that asks kMostAtOnce times without waiting is ended.
+// the reply to what it asks next. A program that asks more than kMostASecond times within a second
+// of simulated time is ended.
 //
 //   HostNetwork network(host, 6);
 //   KernelClock kernel(host);
@@ -37,7 +38,7 @@ namespace simbench::sim {
 
 class Process {
  public:
-  static constexpr std::uint64_t kMostAtOnce = 50'000;
+  static constexpr std::uint64_t kMostASecond = 50'000;
 
   // `number` tells the processes of a host apart. The references must outlive this.
   Process(SimHost& host, HostNetwork& network, KernelClock& kernel, const Child::Settings& settings,
@@ -60,7 +61,7 @@ class Process {
     Bytes data{};
   };
   // Throws for a program that asks too often.
-  void count_request(shim::Call call);
+  void count_request();
   // These throw for what is no request.
   Task<Answer> answer(ChildRequest request);
   shim::Identity identity() const;
@@ -102,8 +103,8 @@ class Process {
   Child child_;
   std::string ending_;
   bool is_stopped_ = false;
-  TrueTime waited_{};
-  std::uint64_t asked_at_once_ = 0;
+  TrueTime counted_since_{};
+  std::uint64_t asked_ = 0;
 };
 
 }  // namespace simbench::sim

@@ -1,0 +1,234 @@
+#include "sim/programs/confinement.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/landlock.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "sim/programs/child.h"
+#include "tests/scratch_folder.h"
+
+namespace simbench::sim {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class ConfinementTest : public testing::Test {
+ protected:
+  Child::Settings settings(std::vector<std::string> words) const {
+    words.insert(words.begin(), std::string(SIMBENCH_PROGRAMS) + "/simbench_escapes");
+    return {.command = std::move(words),
+            .environment = {},
+            .folder = folder_.path().string(),
+            .log_name = "program0.log",
+            .shim = SIMBENCH_SHIM};
+  }
+
+  // A world that grants every request, and no data but an identity.
+  std::string note_of(const Child::Settings& settings) const {
+    Child child(settings);
+    std::string reason;
+    while (const std::optional<ChildRequest> request = child.next()) {
+      if (request->head.call == shim::Call::kNote) {
+        reason.assign(reinterpret_cast<const char*>(request->data.data()), request->data.size());
+        break;
+      }
+      const shim::Identity identity{.process = 100, .address = 0};
+      child.reply(0, 0, std::as_bytes(std::span(&identity, 1)));
+    }
+    return child.ending(reason);
+  }
+  std::string note_of(const std::string& attempt) const { return note_of(settings({attempt})); }
+  // What it printed.
+  std::string output_of(std::vector<std::string> words) const {
+    note_of(settings(std::move(words)));
+    return folder_.content("program0.log");
+  }
+
+  const ScratchFolder folder_;
+};
+
+TEST_F(ConfinementTest, CallsThatPassLibcByAreNamed) {
+  for (const char* call : {"clock_settime", "settimeofday", "adjtimex", "clock_adjtime",
+                           "clock_gettime", "nanosleep", "ppoll", "futex", "timerfd_create",
+                           "clone", "execve"}) {
+    EXPECT_EQ(note_of(call), std::string("simbench_escapes: ") + call + " was not intercepted");
+  }
+  for (const char* family : {"internet", "netlink", "packet"}) {
+    EXPECT_EQ(note_of(family), "simbench_escapes: socket was not intercepted") << family;
+  }
+}
+
+TEST_F(ConfinementTest, CallsThatChangeTheMachineAreNamed) {
+  for (const char* call : {"ptrace", "mount", "sethostname", "vfork"}) {
+    EXPECT_EQ(note_of(call), std::string("simbench_escapes: ") + call +
+                                 " is not for programs of the simulated world");
+  }
+}
+
+TEST_F(ConfinementTest, OtherProgramsAreNotStarted) {
+  for (const char* call : {"posix_spawn", "system"}) {
+    EXPECT_EQ(note_of(call), std::string("simbench_escapes: ") + call +
+                                 ": the program starts another, which the world cannot follow");
+  }
+}
+
+TEST_F(ConfinementTest, ASecondThreadThatWaitsIsNamed) {
+  EXPECT_THAT(note_of("threads"), HasSubstr("a second thread"));
+}
+
+// The kernel ends it where the shim cannot.
+TEST_F(ConfinementTest, TheFilterHoldsWithoutTheShimsHelp) {
+  EXPECT_EQ(note_of("catch"), "simbench_escapes: clock_settime was not intercepted");
+  for (const char* attempt : {"block", "other_abi"}) {
+    EXPECT_EQ(note_of(attempt),
+              "simbench_escapes: made a system call that is not for programs of the simulated "
+              "world")
+        << attempt;
+  }
+}
+
+bool has_landlock() {
+  return syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) > 0;
+}
+
+TEST_F(ConfinementTest, ItWritesInItsFolderOnly) {
+  if (!has_landlock()) GTEST_SKIP() << "this kernel has no Landlock";
+  const ScratchFolder other;
+  EXPECT_EQ(output_of({"files", other / "outside.txt"}),
+            "write outside: EACCES\n"
+            "move outside: EACCES\n"
+            "remove: EACCES\n"
+            "device: EACCES\n"
+            "read: succeeded\n"
+            "null: succeeded\n"
+            "own: succeeded\n"
+            "folder: succeeded\n"
+            "move: succeeded\n"
+            "still there\n");
+  EXPECT_THAT(other.names(), testing::IsEmpty());
+}
+
+TEST_F(ConfinementTest, ItHasNoNeighbours) {
+  const int inherited = open("/dev/null", O_RDONLY);  // not marked to be closed
+  EXPECT_EQ(output_of({"neighbours"}),
+            "kill: ESRCH\n"
+            "io_uring: ENOSYS\n"
+            "shared memory: EPERM\n"
+            "limit: EPERM\n"
+            "link's name: EBADF\n"
+            "still there\n");
+  close(inherited);
+}
+
+TEST_F(ConfinementTest, ItIsRootOfItsHostAndOfNothingElse) {
+  EXPECT_EQ(output_of({"rights"}),
+            "setgroups: succeeded\n"
+            "setgid: succeeded\n"
+            "setuid: succeeded\n"
+            "user 0, group 0\n"
+            "keep: succeeded\n"
+            "mlockall: succeeded\n"
+            "real time: succeeded\n"
+            "priority: succeeded\n"
+            "owner: succeeded\n"
+            "gain: succeeded\n"
+            "_nobody_has_this_name is 0\n"
+            "capset: succeeded\n"
+            "capget: succeeded\n"
+            "capabilities 0 0\n"
+            "named: a message: No such file or directory\n"
+            "still there\n");
+}
+
+TEST_F(ConfinementTest, ItsOwnSignalsWork) {
+  EXPECT_EQ(output_of({"own_signals"}),
+            "got it\nraise: succeeded\ngot it\nkill: succeeded\nstill there\n");
+}
+
+TEST_F(ConfinementTest, HowItEndedIsSaid) {
+  EXPECT_EQ(note_of("crash"), "simbench_escapes: was ended by signal SEGV");
+  EXPECT_EQ(note_of("killed"), "simbench_escapes: was ended by signal KILL");
+  EXPECT_EQ(note_of("abort"), "simbench_escapes: was ended by signal ABRT: it cannot be");
+  EXPECT_EQ(note_of("nothing of this name"),
+            "simbench_escapes: exited with status 2: usage: escapes ATTEMPT [PATH]");
+}
+
+TEST_F(ConfinementTest, OutputMemoryAndPatienceHaveLimits) {
+  EXPECT_THAT(note_of("write"),
+              StartsWith("simbench_escapes: wrote more than 64 MiB into a file: xxxx"));
+  EXPECT_THAT(output_of({"allocate"}), HasSubstr("no memory after"));
+  Child::Settings patient = settings({"compute"});
+  patient.patience = std::chrono::milliseconds(100);
+  EXPECT_EQ(note_of(patient), "simbench_escapes: computed for 0.1 s without waiting");
+}
+
+TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {
+  Child::Settings missing = settings({});
+  missing.command = {folder_ / "missing"};
+  EXPECT_EQ(note_of(missing),
+            "missing: cannot be run: " + (folder_ / "missing") + ": No such file or directory");
+  EXPECT_THROW(Confinement(folder_ / "no folder", ""), ConfinementError);
+}
+
+// A child of `parent` that is no zombie; 0: none.
+pid_t child_of(pid_t parent) {
+  const std::string id = std::to_string(parent);
+  const std::string children = content("/proc/" + id + "/task/" + id + "/children");
+  return children.empty() ? 0 : std::stoi(children);
+}
+
+bool lives(pid_t process) {
+  const std::string status = content("/proc/" + std::to_string(process) + "/status");
+  return !status.empty() && status.find("State:\tZ") == std::string::npos;
+}
+
+template <class Condition>
+bool comes_true(Condition condition) {
+  for (int i = 0; i < 1000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+TEST_F(ConfinementTest, NoneIsLeftOfAWorldThatIsKilled) {
+  const pid_t world = fork();
+  ASSERT_GE(world, 0);
+  if (world == 0) {
+    note_of("compute");
+    _exit(0);
+  }
+  pid_t program = 0;
+  ASSERT_TRUE(comes_true([&] { return (program = child_of(world)) != 0; }));
+  ASSERT_TRUE(comes_true([&] { return folder_.names().size() == 1; })) << "it runs";
+  kill(world, SIGKILL);
+  waitpid(world, nullptr, 0);
+  EXPECT_TRUE(comes_true([&] { return !lives(program); }));
+}
+
+// Runs of a sweep are on threads that end before the process does.
+TEST_F(ConfinementTest, ItLivesAsLongAsTheThreadThatStartedItAndNoLonger) {
+  std::optional<Child> child;
+  std::thread([&] { child.emplace(settings({"compute"})); }).join();
+  std::string note = child->ending();
+  EXPECT_THAT(note, testing::AnyOf(EndsWith("was ended by signal KILL"), EndsWith("was ended")));
+}
+
+}  // namespace
+}  // namespace simbench::sim

@@ -1,0 +1,287 @@
+// What the world makes of requests that no honest program sends: it answers or ends the program with
+// a note, whatever the bytes are.
+#include "sim/programs/process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/timex.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+#include <iterator>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/loader.h"
+#include "tests/sim/host/service_world.h"
+
+namespace simbench::sim {
+namespace {
+
+using shim::Call;
+using shim::Request;
+using testing::HasSubstr;
+
+
+// A request as it is sent: the struct, then its data.
+using Packet = std::string;
+
+template <class T>
+std::string raw(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+Packet packet(Request head, const std::string& data = "") {
+  head.size = static_cast<std::uint32_t>(data.size());
+  return raw(head) + data;
+}
+
+// A program that has sent all its requests before it reads a reply.
+struct Heard {
+  std::vector<shim::Reply> replies;
+  std::string note;      // why it was ended; empty: it waits
+  bool is_sane = true;   // each reply is as long as it says
+};
+
+class ProcessTest : public testing::Test {
+ protected:
+  Heard hear(const std::vector<Packet>& packets, double seconds = 10) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    for (const Packet& each : packets) {
+      if (send(ends[1], each.data(), each.size(), MSG_DONTWAIT) < 0) break;  // the link is full
+    }
+    shutdown(ends[1], SHUT_WR);
+    Heard heard;
+    {
+      ServiceWorld world(
+          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}}));
+      world.spawn(serve(world.host(1), ends[0], heard));
+      world.run_until(seconds);
+    }
+    read_replies(ends[1], heard);
+    close(ends[1]);
+    return heard;
+  }
+
+ private:
+  static Task<void> serve(SimHost& host, int link, Heard& heard) {
+    HostNetwork network(host, 3);
+    KernelClock kernel(host);
+    Process process(host, network, kernel, {.command = {"program"}, .link = link}, 0);
+    co_await process.serve();
+    heard.note = process.ending();
+  }
+
+  static void read_replies(int link, Heard& heard) {
+    // That the world has closed its end without reading all comes before the replies.
+    int error = 0;
+    socklen_t error_size = sizeof error;
+    getsockopt(link, SOL_SOCKET, SO_ERROR, &error, &error_size);
+    std::string bytes(sizeof(shim::Reply) + 2 * shim::kMostData, '\0');
+    for (ssize_t size = 0; (size = recv(link, bytes.data(), bytes.size(), MSG_DONTWAIT)) > 0;) {
+      shim::Reply reply{};
+      std::memcpy(&reply, bytes.data(), sizeof reply);
+      const auto whole = static_cast<std::size_t>(size);
+      heard.is_sane = heard.is_sane && whole == sizeof reply + reply.size;
+      heard.replies.push_back(reply);
+    }
+  }
+};
+
+TEST_F(ProcessTest, AnswersWhatIsAsked) {
+  const Heard heard = hear({packet({.call = Call::kHello}),
+                            packet({.call = Call::kReadClock, .a = CLOCK_MONOTONIC}),
+                            packet({.call = Call::kRandom, .a = shim::kMostData})});
+  ASSERT_EQ(heard.replies.size(), 3U);
+  EXPECT_EQ(heard.replies[0].size, sizeof(shim::Identity));
+  EXPECT_EQ(heard.replies[2].size, shim::kMostData);
+  EXPECT_TRUE(heard.is_sane);
+  EXPECT_EQ(heard.note, "program: has closed its link");
+}
+
+TEST_F(ProcessTest, WhatIsNoRequestEndsTheProgram) {
+  const Packet hello = packet({.call = Call::kHello});
+  const auto note = [&](const Packet& bad) {
+    const Heard heard = hear({hello, bad, hello});
+    EXPECT_EQ(heard.replies.size(), 1U) << "nothing is answered after it";
+    return heard.note;
+  };
+  EXPECT_EQ(note("x"), "program: sent a request of a wrong size");
+  EXPECT_EQ(note(hello + "more"), "program: sent a request of a wrong size");
+  EXPECT_EQ(note(hello.substr(0, 31)), "program: sent a request of a wrong size");
+  EXPECT_EQ(note(packet({.call = Call::kNote}, std::string(shim::kMostData + 1, 'x'))),
+            "program: sent a request of a wrong size");
+  EXPECT_EQ(note(packet({.call = static_cast<Call>(99)})),
+            "program: asked what the world does not know");
+  EXPECT_EQ(note(packet({.call = Call::kBind, .fd = 7}, raw(shim::Address{}))),
+            "program: used a socket that it never opened");
+  EXPECT_EQ(note(packet({.call = Call::kReadTimer, .fd = 7})),
+            "program: used a timer that it never opened");
+  EXPECT_EQ(note(packet({.call = Call::kRandom, .a = -1})),
+            "program: asked for too many random bytes");
+  EXPECT_EQ(note(packet({.call = Call::kAdjustClock}, "short")), "program: too little data");
+}
+
+TEST_F(ProcessTest, ANoteIsOneLineOfBoundedLength) {
+  const Heard heard =
+      hear({packet({.call = Call::kNote}, std::string("\x1b[2J\nsecond line ") +
+                                              std::string(60'000, '\xFF'))});
+  EXPECT_THAT(heard.note, HasSubstr("\\x1b[2J\\x0asecond line \\xff"));
+  EXPECT_EQ(heard.note.find('\n'), std::string::npos);
+  EXPECT_LT(heard.note.size(), 2000U);
+}
+
+// More replies than the link holds: the world does not wait for the program to read them.
+TEST_F(ProcessTest, AProgramThatReadsNoRepliesHoldsNobodyUp) {
+  const std::vector<Packet> greedy(200, packet({.call = Call::kRandom, .a = shim::kMostData}));
+  EXPECT_EQ(hear(greedy).note, "program: has closed its link");
+}
+
+TEST_F(ProcessTest, ClocksAreNotSetWhereLinuxWouldNot) {
+  for (const std::int64_t reading : {std::int64_t{-1}, INT64_MAX, INT64_MAX - 1}) {
+    const Heard heard =
+        hear({packet({.call = Call::kSetClock, .a = CLOCK_REALTIME, .b = reading})});
+    ASSERT_EQ(heard.replies.size(), 1U);
+    EXPECT_EQ(heard.replies[0].error, EINVAL) << reading;
+  }
+}
+
+// The wait ends when the world does; a timer that nobody waits for does not keep the world busy.
+TEST_F(ProcessTest, ATimerThatIsNotAwaitedWakesNobody) {
+  const shim::TimerSetting often{.left = 1, .interval = 1};
+  const shim::Interest not_in_it{.fd = 5, .events = POLLOUT, .ready = 0};
+  const Heard heard = hear({packet({.call = Call::kOpenTimer, .fd = 5, .a = CLOCK_MONOTONIC}),
+                            packet({.call = Call::kSetTimer, .fd = 5}, raw(often)),
+                            packet({.call = Call::kWait}, raw(not_in_it))},
+                           3600);
+  EXPECT_EQ(heard.replies.size(), 2U);
+  EXPECT_EQ(heard.note, "") << "it waits for ever";
+}
+
+// Requests that are right in part.
+class Hostile {
+ public:
+  explicit Hostile(std::uint64_t seed) : random_(seed) {}
+
+  std::vector<Packet> packets(std::size_t count) {
+    std::vector<Packet> result{
+        packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM}),
+        packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
+        packet({.call = Call::kBind, .fd = 3}, raw(shim::Address{.host = 0, .port = 9, .reserved = 0}))};
+    while (result.size() < count) result.push_back(damaged(request()));
+    return result;
+  }
+
+ private:
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
+  bool one_in(std::size_t count) { return below(count) == 0; }
+
+  std::int64_t number() {
+    constexpr std::int64_t kNumbers[] = {
+        0,         1,         2,         3,    4,         -1,
+        9,         1'000,     65'536,    1'000'000'000,  INT64_MAX, INT64_MIN,
+        INT32_MAX, INT32_MIN, INT64_MAX / 2, 1'767'225'600'000'000'000};
+    const std::int64_t some = kNumbers[below(std::size(kNumbers))];
+    return one_in(4) ? static_cast<std::int64_t>(random_()) : some;
+  }
+  template <class T>
+  T small() {
+    return static_cast<T>(number());
+  }
+  shim::Address address() {
+    const std::uint32_t hosts[] = {0, 0x0A000001, 0x0A000002, 0x7F000001, small<std::uint32_t>()};
+    const std::uint16_t ports[] = {0, 9, 123, small<std::uint16_t>()};
+    return {.host = hosts[below(5)], .port = ports[below(4)], .reserved = 0};
+  }
+  std::string interests() {
+    std::string data;
+    for (std::size_t i = below(one_in(20) ? 8192 : 4); i > 0; --i) {
+      data += raw(shim::Interest{.fd = static_cast<std::int32_t>(3 + below(3)),
+                                 .events = small<std::int16_t>(),
+                                 .ready = 0});
+    }
+    return data;
+  }
+  std::string adjustment() {
+    timex setting{};
+    setting.modes = one_in(3) ? small<unsigned int>() : 1U << below(16);
+    setting.offset = number();
+    setting.freq = number();
+    setting.status = small<int>();
+    setting.constant = number();
+    setting.tick = one_in(2) ? 10'000 : number();
+    setting.time.tv_sec = number();
+    setting.time.tv_usec = number();
+    return raw(setting);
+  }
+  std::string data_of(Call call) {
+    switch (call) {
+      case Call::kAdjustClock:
+        return adjustment();
+      case Call::kWait:
+        return interests();
+      case Call::kSetTimer:
+        return raw(shim::TimerSetting{.left = number(), .interval = number()});
+      case Call::kBind:
+      case Call::kConnect:
+        return raw(address());
+      case Call::kSend:
+        return raw(address()) + std::string(below(one_in(5) ? shim::kMostData : 100), 'x');
+      default:
+        return one_in(10) ? std::string(below(200), 'x') : "";
+    }
+  }
+  Packet request() {
+    // The last call, and one that is none. Notes end the program, so there are few.
+    Call call{};
+    do {
+      call = static_cast<Call>(below(static_cast<std::size_t>(Call::kRandom) + 2));
+    } while (call == Call::kNote && !one_in(20));
+    const bool is_known = !one_in(30);
+    const bool is_timer = call >= Call::kOpenTimer && call <= Call::kQueryTimer;
+    const std::int32_t own = is_timer ? 4 : 3;
+    const Request head{.call = call,
+                       .fd = is_known ? own : small<std::int32_t>(),
+                       .a = one_in(2) ? static_cast<std::int64_t>(below(4)) : number(),
+                       .b = number()};
+    return packet(head, data_of(call));
+  }
+  Packet damaged(Packet bytes) {
+    if (!one_in(20)) return bytes;
+    if (one_in(2)) bytes.resize(below(bytes.size() + 1));
+    for (std::size_t i = below(4); i > 0 && !bytes.empty(); --i) {
+      bytes[below(bytes.size())] = static_cast<char>(random_());
+    }
+    return bytes;
+  }
+
+  std::mt19937_64 random_;
+};
+
+TEST_F(ProcessTest, HostileRequestsAreAnsweredOrEndTheProgram) {
+  constexpr std::uint64_t kPrograms = 300;
+  constexpr std::size_t kRequests = 60;
+  std::size_t answered = 0;
+  std::size_t ended = 0;
+  for (std::uint64_t seed = 1; seed <= kPrograms; ++seed) {
+    const Heard heard = hear(Hostile(seed).packets(kRequests));
+    EXPECT_TRUE(heard.is_sane) << "seed " << seed;
+    EXPECT_LT(heard.note.size(), 2000U) << "seed " << seed;
+    answered += heard.replies.size();
+    ended += heard.note.empty() ? 0 : 1;
+  }
+  EXPECT_GT(answered, 5 * kPrograms) << "most of them are understood";
+  EXPECT_GT(ended, kPrograms / 4);
+}
+
+}  // namespace
+}  // namespace simbench::sim
