@@ -27,11 +27,6 @@ int set_world_option(int fd, SocketOption option, std::int64_t value) {
                                .b = value}));
 }
 
-int set_stamps(int fd, Stamps stamps, int value) {
-  states[fd].stamps = value != 0 ? stamps : Stamps::kNone;
-  return set_world_option(fd, SocketOption::kReceiveStamps, value != 0 ? kSoftwareStamps : 0U);
-}
-
 std::int64_t kinds_of(unsigned flags, unsigned software, unsigned hardware) {
   const bool by_software =
       (flags & SOF_TIMESTAMPING_SOFTWARE) != 0 && (flags & software) != 0;
@@ -40,21 +35,29 @@ std::int64_t kinds_of(unsigned flags, unsigned software, unsigned hardware) {
          (by_card ? std::int64_t{kHardwareStamps} : 0);
 }
 
+int set_arrival_stamps(int fd) {
+  std::int64_t kinds = kinds_of(states[fd].timestamping, SOF_TIMESTAMPING_RX_SOFTWARE,
+                                SOF_TIMESTAMPING_RX_HARDWARE);
+  if (states[fd].stamps != Stamps::kNone) kinds |= kSoftwareStamps;
+  return set_world_option(fd, SocketOption::kReceiveStamps, kinds);
+}
+
+int set_stamps(int fd, Stamps stamps, int value) {
+  states[fd].stamps = value != 0 ? stamps : Stamps::kNone;
+  return set_arrival_stamps(fd);
+}
+
 int set_timestamping(int fd, int value) {
   const auto flags = static_cast<unsigned>(value);
-  const std::int64_t arrivals =
-      kinds_of(flags, SOF_TIMESTAMPING_RX_SOFTWARE, SOF_TIMESTAMPING_RX_HARDWARE);
   std::int64_t departures =
       kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
   if (departures != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0) departures |= kBothStamps;
   const bool counts_anew = (flags & ~states[fd].timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
   states[fd].timestamping = flags;
-  // Stamps of departures come in the same form.
-  states[fd].stamps = (arrivals | departures) != 0 ? Stamps::kTimestamping : Stamps::kNone;
   const std::int64_t sent = set_world_option(fd, SocketOption::kTransmitStamps, departures);
   if (sent < 0) return -1;
   if (counts_anew) states[fd].first_number = static_cast<std::uint32_t>(sent);
-  return set_world_option(fd, SocketOption::kReceiveStamps, arrivals);
+  return set_arrival_stamps(fd);
 }
 
 int set_receive_timeout(int fd, const void* value, socklen_t size) {

@@ -135,27 +135,32 @@ timespec to_timespec(std::int64_t ns) {
   return {.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
 }
 
-void add_stamp(const SocketState& state, bool is_error, Control& control) {
+// The stamps as SO_TIMESTAMPING has them: those that it was asked to report.
+void add_stamps(const SocketState& state, bool is_error, Control& control) {
   const Arrival& arrival = datagram.arrival;
-  const timespec software = to_timespec(arrival.system);
-  if (state.stamps == Stamps::kTimestamping) {
-    if (arrival.system == kNoStamp && arrival.hardware == kNoStamp) return;
-    const timespec stamps[3] = {software, {}, to_timespec(arrival.hardware)};
-    control.add(SOL_SOCKET, SCM_TIMESTAMPING, stamps, sizeof stamps);
-    if (is_error || arrival.hardware == kNoStamp) return;
-    if ((state.timestamping & SOF_TIMESTAMPING_OPT_PKTINFO) == 0) return;
-    scm_ts_pktinfo packet{};
-    packet.if_index = kInterface;
-    packet.pkt_length = static_cast<std::uint32_t>(kPacketHeads + arrival.length);
-    control.add(SOL_SOCKET, SCM_TIMESTAMPING_PKTINFO, &packet, sizeof packet);
-    return;
-  }
-  if (arrival.system == kNoStamp) return;
+  const bool by_software = (state.timestamping & SOF_TIMESTAMPING_SOFTWARE) != 0;
+  const bool by_card = (state.timestamping & SOF_TIMESTAMPING_RAW_HARDWARE) != 0;
+  const timespec stamps[3] = {to_timespec(by_software ? arrival.system : kNoStamp),
+                              {},
+                              to_timespec(by_card ? arrival.hardware : kNoStamp)};
+  if (stamps[0].tv_sec == 0 && stamps[2].tv_sec == 0) return;
+  control.add(SOL_SOCKET, SCM_TIMESTAMPING, stamps, sizeof stamps);
+  const bool wants_packet = (state.timestamping & SOF_TIMESTAMPING_OPT_PKTINFO) != 0;
+  if (is_error || stamps[2].tv_sec == 0 || !wants_packet) return;
+  scm_ts_pktinfo packet{};
+  packet.if_index = kInterface;
+  packet.pkt_length = static_cast<std::uint32_t>(kPacketHeads + arrival.length);
+  control.add(SOL_SOCKET, SCM_TIMESTAMPING_PKTINFO, &packet, sizeof packet);
+}
+
+void add_older_stamp(const SocketState& state, Control& control) {
+  if (datagram.arrival.system == kNoStamp) return;
+  const timespec stamp = to_timespec(datagram.arrival.system);
   if (state.stamps == Stamps::kTimeval) {
-    const timeval rounded{.tv_sec = software.tv_sec, .tv_usec = software.tv_nsec / 1000};
+    const timeval rounded{.tv_sec = stamp.tv_sec, .tv_usec = stamp.tv_nsec / 1000};
     control.add(SOL_SOCKET, SCM_TIMESTAMP, &rounded, sizeof rounded);
   } else if (state.stamps == Stamps::kTimespec) {
-    control.add(SOL_SOCKET, SCM_TIMESTAMPNS, &software, sizeof software);
+    control.add(SOL_SOCKET, SCM_TIMESTAMPNS, &stamp, sizeof stamp);
   }
 }
 
@@ -195,7 +200,8 @@ ssize_t receive_message(int fd, msghdr& message, int flags) {
                 static_cast<sockaddr*>(message.msg_name), &message.msg_namelen);
   Control control(message);
   const SocketState& state = state_of(fd);
-  add_stamp(state, is_error, control);
+  if (!is_error) add_older_stamp(state, control);
+  add_stamps(state, is_error, control);
   if (is_error) add_error(state, control);
   if (state.wants_destination) add_destination(is_error, control);
   return static_cast<ssize_t>((flags & MSG_TRUNC) != 0 ? datagram.size : copied);

@@ -18,8 +18,8 @@ namespace simbench::shim {
 // The host's network interface; the loopback has number 1.
 inline constexpr int kInterface = 2;
 
-// How a socket hands over the stamps of arrivals.
-enum class Stamps : std::uint8_t { kNone, kTimeval, kTimespec, kTimestamping };
+// The software stamps of arrivals by the older options; beside those of SO_TIMESTAMPING.
+enum class Stamps : std::uint8_t { kNone, kTimeval, kTimespec };
 
 struct SocketState {
   int type = SOCK_DGRAM;
