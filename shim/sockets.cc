@@ -292,6 +292,8 @@ int set_socket_option(int fd, int option, const void* value, socklen_t size) {
 
 }  // namespace
 
+void copy_socket_state(int from, int to) { states[to] = states[from]; }
+
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   if (!is_simulated() || domain == AF_UNIX) return SIMBENCH_REAL(socket)(domain, type, protocol);
   const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
