@@ -4,11 +4,12 @@
 
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "evaluation/run/pipeline_choice.h"
+#include "sim/programs/find_program.h"
 #include "sim/programs/placeholders.h"
+#include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
 
 namespace simbench::app {
@@ -16,39 +17,43 @@ namespace {
 
 using scenarios::HostPrograms;
 
-// Something that programs need and this machine lacks; one line.
-class Missing : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+std::filesystem::path own_folder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
 
 // As built, and as installed.
 std::string find_shim() {
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   for (const char* place : {"../lib/libsimbench_shim.so", "../lib/simbench/libsimbench_shim.so"}) {
-    const std::filesystem::path path = (own / place).lexically_normal();
+    const std::filesystem::path path = (own_folder() / place).lexically_normal();
     if (std::filesystem::exists(path)) return path.string();
   }
-  throw Missing(fmt::format("libsimbench_shim.so is not beside {}, where it is installed",
-                            own.string()));
+  throw sim::ProgramError(fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
+                                      "installed in full?",
+                                      own_folder().string()));
 }
 
-std::string find_program(const std::string& word) {
-  if (word.starts_with("/")) return word;
-  for (const char* folder : {"/usr/local/sbin", "/usr/local/bin", "/usr/sbin", "/usr/bin"}) {
-    const std::filesystem::path path = std::filesystem::path(folder) / word;
-    if (std::filesystem::exists(path)) return path.string();
-  }
-  throw Missing(fmt::format("{}: not found", word));
+// The packages that tools/setup has unpacked, of a program that lies in a build folder.
+std::string unpacked_packages() {
+  const std::filesystem::path packages =
+      (own_folder() / "../../deps").lexically_normal();
+  return std::filesystem::is_directory(packages) ? packages.string() : "";
 }
 
+// With absolute paths and what the programs' libraries need.
 HostPrograms found(HostPrograms programs) {
   if (const auto unknown = sim::unknown_placeholder(programs)) {
-    throw Missing(fmt::format("found the placeholder {}, allowed: {}", *unknown,
-                              sim::kPlaceholders));
+    throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
+                                        sim::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
-    for (HostPrograms::Command& command : *role) command.front() = find_program(command.front());
+    for (HostPrograms::Command& command : *role) {
+      const sim::FoundProgram program = sim::find_program(command.front(), unpacked_packages());
+      command.erase(command.begin());
+      command.insert(command.begin(), program.words.begin(), program.words.end());
+      if (!program.library_path.empty()) {
+        programs.environment["LD_LIBRARY_PATH"] = program.library_path;
+      }
+    }
   }
   return programs;
 }
@@ -65,7 +70,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
   try {
     settings.shim = find_shim();
     settings.programs = found(std::move(settings.programs));
-  } catch (const Missing& missing) {
+  } catch (const sim::ProgramError& missing) {
     problem = missing.what();
   }
   HostSyncEntry entry;

@@ -1,6 +1,6 @@
 // Pipelines whose host synchronisation is real programs: what they need of this machine.
 //
-// Programs are found before the run (bare names as the shell would, sim/programs/program_file.h),
+// Programs are found before the run (bare names as the shell would, sim/programs/find_program.h),
 // and so is the preloaded library that is installed beside this program. What is missing is one
 // line, with what would help; the pipelines of algorithms go on.
 //

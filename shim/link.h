@@ -75,6 +75,12 @@ Kind kind_of(int fd);
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
 bool is_blocking(int fd);
+// The world's number of a descriptor, which duplicates share; of others and of signal timers,
+// which are below 0, the number itself. ask() translates a request's `fd`.
+int number_of(int fd);
+// `to` is a duplicate of `from` by the kernel's word, or -1: returns it, or -1 with errno.
+int duplicate_descriptor(int from, int to);
+void copy_socket_state(int from, int to);
 
 bool is_time(const timespec& time);
 // Times beyond 292 years are never.

@@ -5,8 +5,9 @@
 // a process asks for something that takes time. Both ends are one machine: integers are in its byte
 // order, and struct timex is the kernel's.
 //
-// A request or reply is its struct, then `size` bytes of data. Descriptors are the program's own
-// numbers. Times are nanoseconds. `error` is an errno, or 0.
+// A request or reply is its struct, then `size` bytes of data. Descriptors have numbers that the
+// shim gives them, the program's own if it has no duplicates. Times are nanoseconds. `error` is an
+// errno, or 0.
 //
 // Untrusted: the world checks every number of a request (sim/programs/requests.h).
 #ifndef SIMBENCH_SHIM_PROTOCOL_H_
@@ -45,8 +46,8 @@ enum class Call : std::uint32_t {
   kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
-  // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number that the
-  // shim gives them.
+  // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number below 0
+  // that the shim gives them.
   kSetSignalTimer,  // fd, a: 1 if absolute, b: clockid, data: TimerSetting -> data: the one before
   kQuerySignalTimer,  // fd -> data: TimerSetting
   kDropSignalTimer,   // fd

@@ -76,7 +76,7 @@ int set_timer(int number, bool is_absolute, const itimerspec& setting, itimerspe
   TimerSetting old{};
   Received reply{.data = &old, .capacity = sizeof old};
   const Request request{.call = Call::kSetSignalTimer,
-                        .fd = number,
+                        .fd = -1 - number,
                         .a = is_absolute ? 1 : 0,
                         .b = timers[number].clock};
   if (ask(request, {&wanted, sizeof wanted}, {}, &reply) < 0) return -1;
@@ -87,7 +87,7 @@ int set_timer(int number, bool is_absolute, const itimerspec& setting, itimerspe
 itimerspec query_timer(int number) {
   TimerSetting now{};
   Received reply{.data = &now, .capacity = sizeof now};
-  ask({.call = Call::kQuerySignalTimer, .fd = number}, {}, {}, &reply);
+  ask({.call = Call::kQuerySignalTimer, .fd = -1 - number}, {}, {}, &reply);
   return from_setting(now);
 }
 
@@ -113,7 +113,7 @@ SignalTimer* find_timer(timer_t id) {
   return nullptr;
 }
 
-int number_of(const SignalTimer* timer) { return static_cast<int>(timer - timers); }
+int index_of(const SignalTimer* timer) { return static_cast<int>(timer - timers); }
 
 bool is_clock_of_timers(clockid_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME ||
@@ -146,7 +146,7 @@ void make_signals() {
   Received reply{.data = expirations, .capacity = sizeof expirations};
   ask({.call = Call::kTakeExpirations}, {}, {}, &reply);
   for (std::size_t i = 0; i < reply.size / sizeof expirations[0]; ++i) {
-    make_signal(expirations[i].timer, static_cast<int>(expirations[i].times));
+    make_signal(-1 - expirations[i].timer, static_cast<int>(expirations[i].times));
   }
   errno = before;
 }
@@ -219,14 +219,14 @@ SIMBENCH_CALL int timer_settime(timer_t id, int flags, const itimerspec* setting
   if (!is_simulated()) return SIMBENCH_REAL(timer_settime)(id, flags, setting, before);
   const SignalTimer* timer = find_timer(id);
   if (timer == nullptr) return -1;
-  return set_timer(number_of(timer), (flags & TIMER_ABSTIME) != 0, *setting, before);
+  return set_timer(index_of(timer), (flags & TIMER_ABSTIME) != 0, *setting, before);
 }
 
 SIMBENCH_CALL int timer_gettime(timer_t id, itimerspec* setting) {
   if (!is_simulated()) return SIMBENCH_REAL(timer_gettime)(id, setting);
   const SignalTimer* timer = find_timer(id);
   if (timer == nullptr) return -1;
-  *setting = query_timer(number_of(timer));
+  *setting = query_timer(index_of(timer));
   return 0;
 }
 
@@ -241,7 +241,7 @@ SIMBENCH_CALL int timer_delete(timer_t id) {
   SignalTimer* timer = find_timer(id);
   if (timer == nullptr) return -1;
   *timer = {};
-  return static_cast<int>(ask({.call = Call::kDropSignalTimer, .fd = number_of(timer)}));
+  return static_cast<int>(ask({.call = Call::kDropSignalTimer, .fd = -1 - index_of(timer)}));
 }
 
 SIMBENCH_CALL int pause() {

@@ -246,6 +246,8 @@ int address_call(int fd, Call call, const sockaddr* name, socklen_t size) {
 
 }  // namespace
 
+void copy_socket_state(int from, int to) { states[to] = states[from]; }
+
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   if (!is_simulated() || domain == AF_UNIX) return SIMBENCH_REAL(socket)(domain, type, protocol);
   if (domain == AF_NETLINK) return open_netlink(type, protocol);

@@ -105,7 +105,8 @@ int wait(pollfd* interests, nfds_t count, Until until, const sigset_t* signals =
     const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
-      simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
+      simulated[asked++] = {
+          .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
     }
   }
   if (look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
