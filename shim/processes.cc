@@ -23,12 +23,6 @@ SIMBENCH_CALL pid_t getpid() {
   return is_simulated() ? identity().process : static_cast<pid_t>(syscall(SYS_getpid));
 }
 
-SIMBENCH_CALL int kill(pid_t process, int signal) {
-  const bool is_own = is_simulated() && process == identity().process;
-  return static_cast<int>(
-      syscall(SYS_kill, is_own ? syscall(SYS_getpid) : static_cast<long>(process), signal));
-}
-
 SIMBENCH_CALL pid_t fork() {
   if (is_simulated()) give_up("fork", kBackground);
   return SIMBENCH_REAL(fork)();

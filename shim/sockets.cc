@@ -246,7 +246,7 @@ int address_call(int fd, Call call, const sockaddr* name, socklen_t size) {
 
 }  // namespace
 
-void copy_socket_state(int from, int to) { states[to] = states[from]; }
+void copy_socket_state(int from, int to) { state_of(to) = state_of(from); }
 
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   if (!is_simulated() || domain == AF_UNIX) return SIMBENCH_REAL(socket)(domain, type, protocol);

@@ -28,15 +28,16 @@ class RunningPrograms {
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
              const std::string& folder) {
     const std::size_t number = processes_.size();
+    const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
     Child::Settings child{.command = {},
                           .environment = {},
                           .folder = folder,
                           .log_name = fmt::format("{}_{}.log", number,
                                                   scenarios::program_name(command)),
                           .shim = settings.shim};
-    for (const std::string& word : command) child.command.push_back(fill(word, host_.id()));
+    for (const std::string& word : command) child.command.push_back(fill(word, places));
     for (const auto& [name, value] : settings.programs.environment) {
-      child.environment[name] = fill(value, host_.id());
+      child.environment[name] = fill(value, places);
     }
     processes_.emplace_back(host_, network_, kernel_, child, static_cast<std::uint32_t>(number));
   }
@@ -101,20 +102,22 @@ std::vector<std::string> ProgramSync::notes() const {
   return notes;
 }
 
-std::string ProgramSync::make_folder(PeerId host, std::uint64_t seed) {
+std::string ProgramSync::make_folder(SimHost& host) {
   std::filesystem::path folder;
   if (settings_.log_folder.empty()) {
     if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
     folder = temporary_->path();
   } else {
     folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
-             fmt::format("seed{}", seed);
+             fmt::format("seed{}", host.world().run_seed);
   }
-  folder /= fmt::format("host{}", host);
+  folder /= fmt::format("host{}", host.id());
   std::filesystem::remove_all(folder);  // an earlier run's drift file would be this one's
   std::filesystem::create_directories(folder);
+  const HostPlaces places{.host = host.id(), .drift = host.stored_frequency()};
   for (const auto& [name, content] : settings_.programs.files) {
-    std::ofstream(folder / name) << fill(content, host);
+    if (lacks_drift(content, places)) continue;
+    std::ofstream(folder / name) << fill(content, places);
   }
   return folder.string();
 }
@@ -130,7 +133,7 @@ void ProgramSync::fail(Host& host, const std::string& ending) {
 Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
   SimHost& own = simulated(host);
   RunningPrograms programs(own, settings_.hosts);
-  const std::string folder = make_folder(host.id(), own.world().run_seed);
+  const std::string folder = make_folder(own);
   for (const HostPrograms::Command& command : commands) {
     programs.start(command, settings_, folder);
   }

@@ -35,6 +35,8 @@
 
 namespace simbench::sim {
 
+class SimHost;
+
 struct ProgramSettings {
   std::string pipeline;               // its name
   scenarios::HostPrograms programs;  // the first word of each command is an absolute path
@@ -56,7 +58,7 @@ class ProgramSync final : public HostSync {
  private:
   Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);
   // Empty, and made.
-  std::string make_folder(PeerId host, std::uint64_t seed);
+  std::string make_folder(SimHost& host);
   void fail(Host& host, const std::string& ending);
 
   ProgramSettings settings_;
