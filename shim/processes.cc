@@ -14,7 +14,8 @@
 namespace simbench::shim {
 namespace {
 
-constexpr char kBackground[] = ": the program goes to the background; run it in the foreground";
+constexpr char kBackground[] =
+    ": the program starts a helper or goes to the background; run it as one process in the foreground";
 constexpr char kAnother[] = ": the program starts another, which the world cannot follow";
 
 }  // namespace

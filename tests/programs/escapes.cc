@@ -119,6 +119,11 @@ void rights() {
   const sched_param priority{.sched_priority = 50};
   say("real time", sched_setscheduler(0, SCHED_FIFO, &priority));
   say("priority", setpriority(PRIO_PROCESS, 0, -20));
+  const rlimit more{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
+  say("limit", setrlimit(RLIMIT_CORE, &more));
+  rlimit now{};
+  getrlimit(RLIMIT_CORE, &now);
+  std::printf("core files of %d bytes\n", static_cast<int>(now.rlim_max));
   say("owner", chown("/etc/hostname", 1, 1));
   say("gain", prctl(PR_SET_PDEATHSIG, 0));
   const passwd* user = getpwnam("_nobody_has_this_name");

@@ -146,6 +146,8 @@ TEST_F(ConfinementTest, ItIsRootOfItsHostAndOfNothingElse) {
             "mlockall: succeeded\n"
             "real time: succeeded\n"
             "priority: succeeded\n"
+            "limit: succeeded\n"
+            "core files of 0 bytes\n"
             "owner: succeeded\n"
             "gain: succeeded\n"
             "_nobody_has_this_name is 0\n"
