@@ -2,7 +2,6 @@
 // foreground. Those that libc starts with all signals blocked are named here, since the kernel's
 // filter (shim/refused_calls.h) could only kill; so is fork(), for a better text. And the program's
 // own number, which the world gives.
-#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,19 +14,14 @@ namespace simbench::shim {
 namespace {
 
 constexpr char kBackground[] =
-    ": the program starts a helper or goes to the background; run it as one process in the foreground";
+    ": the program starts a helper or goes to the background; run it as one process in the "
+    "foreground";
 constexpr char kAnother[] = ": the program starts another, which the world cannot follow";
 
 }  // namespace
 
 SIMBENCH_CALL pid_t getpid() {
   return is_simulated() ? identity().process : static_cast<pid_t>(syscall(SYS_getpid));
-}
-
-SIMBENCH_CALL int kill(pid_t process, int signal) {
-  const bool is_own = is_simulated() && process == identity().process;
-  return static_cast<int>(
-      syscall(SYS_kill, is_own ? syscall(SYS_getpid) : static_cast<long>(process), signal));
 }
 
 SIMBENCH_CALL pid_t fork() {

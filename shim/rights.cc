@@ -109,8 +109,7 @@ SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::s
   return 0;
 }
 
-SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size,
-                             group** found) {
+SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size, group** found) {
   if (!is_simulated()) return SIMBENCH_REAL(getgrgid_r)(id, result, room, size, found);
   *found = nullptr;
   return id == 0 ? getgrnam_r("root", result, room, size, found) : 0;
