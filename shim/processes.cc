@@ -2,7 +2,6 @@
 // foreground. Those that libc starts with all signals blocked are named here, since the kernel's
 // filter (shim/refused_calls.h) could only kill; so is fork(), for a better text. And the program's
 // own number, which the world gives.
-#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +13,9 @@
 namespace simbench::shim {
 namespace {
 
-constexpr char kBackground[] = ": the program goes to the background; run it in the foreground";
+constexpr char kBackground[] =
+    ": the program starts a helper or goes to the background; run it as one process in the "
+    "foreground";
 constexpr char kAnother[] = ": the program starts another, which the world cannot follow";
 
 }  // namespace

@@ -34,8 +34,8 @@ struct RefusedCall {
   const char* name;
 };
 
-// What the shim says in an argument that the kernel does not read: of rt_sigaction(), that this
-// handler is its own; of ppoll(), that it only looks.
+// What the shim says in the fifth argument, which the kernel does not read: of rt_sigaction(), that
+// this handler is its own; of ppoll() and rt_sigtimedwait(), that it only looks.
 inline constexpr std::uint32_t kOfTheShim = 0x5348494D;
 
 inline constexpr int kYoungest = SYS_set_mempolicy_home_node;
@@ -66,7 +66,7 @@ inline constexpr RefusedCall kRefusedCalls[] = {
     SIMBENCH_REFUSED(kNotIntercepted, timer_create),
     SIMBENCH_REFUSED(kNotIntercepted, setitimer),
     SIMBENCH_REFUSED(kNotIntercepted, rt_sigsuspend),
-    SIMBENCH_REFUSED(kNotIntercepted, rt_sigtimedwait),
+    SIMBENCH_REFUSED(kPartly, rt_sigtimedwait),
     SIMBENCH_REFUSED(kPartly, futex),
     SIMBENCH_REFUSED(kAbsent, futex_waitv),
     SIMBENCH_REFUSED(kAbsent, io_uring_setup),

@@ -5,8 +5,13 @@
 // the machine is read, so that a run is the same on all machines.
 #include <errno.h>
 #include <grp.h>
+#include <linux/capability.h>
 #include <pwd.h>
+#include <stdarg.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -104,8 +109,7 @@ SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::s
   return 0;
 }
 
-SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size,
-                             group** found) {
+SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size, group** found) {
   if (!is_simulated()) return SIMBENCH_REAL(getgrgid_r)(id, result, room, size, found);
   *found = nullptr;
   return id == 0 ? getgrnam_r("root", result, room, size, found) : 0;
@@ -115,6 +119,35 @@ SIMBENCH_CALL int initgroups(const char* name, gid_t id) {
   if (!is_simulated()) return SIMBENCH_REAL(initgroups)(name, id);
   return 0;
 }
+
+// Daemons look whether they could set clocks. The wrapper of capget() has no header of libc's.
+SIMBENCH_CALL int capget(__user_cap_header_struct* head, __user_cap_data_struct* sets) {
+  if (!is_simulated() || sets == nullptr) {
+    return static_cast<int>(syscall(SYS_capget, head, sets));
+  }
+  const int count = head->version == _LINUX_CAPABILITY_VERSION_1 ? 1 : _LINUX_CAPABILITY_U32S_3;
+  for (int i = 0; i < count; ++i) sets[i] = {.effective = ~0U, .permitted = ~0U, .inheritable = 0};
+  return 0;
+}
+
+SIMBENCH_CALL int prctl(int option, ...) {
+  va_list arguments;
+  va_start(arguments, option);
+  unsigned long words[4];
+  for (unsigned long& word : words) word = va_arg(arguments, unsigned long);
+  va_end(arguments);
+  if (is_simulated() && option == PR_CAPBSET_READ && words[0] <= CAP_LAST_CAP) return 1;
+  return static_cast<int>(syscall(SYS_prctl, option, words[0], words[1], words[2], words[3]));
+}
+
+// Root raises its limits; here they stay as they are.
+SIMBENCH_CALL int set_limit(int resource, const rlimit* limits) __asm__("setrlimit");
+int set_limit(int resource, const rlimit* limits) {
+  const long done = syscall(SYS_prlimit64, 0, resource, limits, nullptr);
+  return is_simulated() && done < 0 && errno == EPERM ? 0 : static_cast<int>(done);
+}
+SIMBENCH_CALL int set_limit64(int resource, const rlimit* limits) __asm__("setrlimit64");
+int set_limit64(int resource, const rlimit* limits) { return set_limit(resource, limits); }
 
 SIMBENCH_CALL int getresuid(uid_t* own, uid_t* effective, uid_t* saved) {
   if (!is_simulated()) return SIMBENCH_REAL(getresuid)(own, effective, saved);

@@ -1,4 +1,5 @@
 // The system log: a program's messages go to its own error output, and none to the machine's.
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <sys/syscall.h>
@@ -18,7 +19,8 @@ int log_mask = LOG_UPTO(LOG_DEBUG);
 void log_message(int priority, const char* format, va_list arguments) {
   if ((log_mask & LOG_MASK(LOG_PRI(priority))) == 0) return;
   char text[kMostMessage];
-  const int head = snprintf(text, sizeof text, "%s: ", log_name != nullptr ? log_name : "syslog");
+  const char* name = log_name != nullptr ? log_name : program_invocation_short_name;
+  const int head = snprintf(text, sizeof text, "%s: ", name);
   const int begin = head < kMostMessage / 2 ? head : 0;
   const int body = vsnprintf(text + begin, sizeof text - begin - 1, format, arguments);
   int size = begin + (body < 0 ? 0 : body);

@@ -102,8 +102,8 @@ Code clone() {
 
 Code execute(const char* program) {
   const auto address = reinterpret_cast<std::uintptr_t>(program);
-  return {load_low(0),  unless(BPF_JEQ, static_cast<std::uint32_t>(address), 3),
-          load_high(0), unless(BPF_JEQ, static_cast<std::uint32_t>(address >> 32U), 1),
+  return {load_low(0),     unless(BPF_JEQ, static_cast<std::uint32_t>(address), 3),
+          load_high(0),    unless(BPF_JEQ, static_cast<std::uint32_t>(address >> 32U), 1),
           verdict(kAllow), verdict(kTrap)};
 }
 
@@ -135,6 +135,7 @@ Code by_arguments(int number, const char* program) {
       return only_for(2, 0);
 #endif
     case SYS_ppoll:
+    case SYS_rt_sigtimedwait:
       return only_for(4, shim::kOfTheShim);
     case SYS_futex:
       return futex();
@@ -176,8 +177,8 @@ std::vector<sock_filter> call_filter(const char* program) {
                     call.refusal == Refusal::kPartly ? by_arguments(call.number, program)
                                                      : Code{verdict(verdict_of(call.refusal))}));
   }
-  for (const int kill : {SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo,
-                         SYS_rt_tgsigqueueinfo}) {
+  for (const int kill :
+       {SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo}) {
     append(code, on(static_cast<std::uint32_t>(kill), only_for(0, kOwnProcess, failing(ESRCH))));
   }
   append(code, on(SYS_prlimit64, only_for(0, 0, failing(EPERM))));

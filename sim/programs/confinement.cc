@@ -23,9 +23,9 @@ namespace {
 // As far as the newest kernel goes; the headers may be older.
 constexpr std::uint64_t kRead =
     LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
-constexpr std::uint64_t kMakeAndRemove = 0x1FF0;  // each kind of file, since version 1
-constexpr std::uint64_t kRefer = 1U << 13U;       // since version 2: links and moves
-constexpr std::uint64_t kTruncate = 1U << 14U;    // 3
+constexpr std::uint64_t kMakeAndRemove = 0x1FF0;      // each kind of file, since version 1
+constexpr std::uint64_t kRefer = 1U << 13U;           // since version 2: links and moves
+constexpr std::uint64_t kTruncate = 1U << 14U;        // 3
 constexpr std::uint64_t kDeviceSettings = 1U << 15U;  // 5: ioctl()
 constexpr std::uint64_t kTcp = 3;                     // 4: bind and connect
 constexpr std::uint64_t kScopes = 3;                  // 6: abstract sockets and signals
@@ -58,8 +58,7 @@ bool allow_below(int rules, const char* path, std::uint64_t rights) {
   const int folder = open(path, O_PATH | O_CLOEXEC);
   if (folder < 0) return false;
   const landlock_path_beneath_attr rule{.allowed_access = rights, .parent_fd = folder};
-  const long added =
-      syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+  const long added = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
   const int error = errno;
   close(folder);
   errno = error;
@@ -77,8 +76,7 @@ int landlock_rules(const std::string& folder) {
         "simbench as another user");
   }
   const auto [handled, size] = rules_of(version);
-  const int rules =
-      static_cast<int>(syscall(SYS_landlock_create_ruleset, &handled, size, 0));
+  const int rules = static_cast<int>(syscall(SYS_landlock_create_ruleset, &handled, size, 0));
   const std::uint64_t null_rights = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE;
   if (rules >= 0 && allow_below(rules, "/", kRead) &&
       allow_below(rules, "/dev/null", null_rights) &&

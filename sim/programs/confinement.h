@@ -12,8 +12,8 @@
 //              and the machine's state are out of reach. A call that the shim should have served
 //              stops the program, and the shim names it.
 //
-// Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError. For
-// other users the second barrier is then their ordinary rights over files, and no more.
+// Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
+// For other users the second barrier is then their ordinary rights over files, and no more.
 //
 // What remains: it reads all files that its caller may. Unix-domain sockets that others have put
 // into the file system can be connected to. A program that reads the time without a system call
@@ -49,8 +49,8 @@ class Confinement {
     int error = 0;               // an errno
   };
 
-  // The folder must be there. `program` is the very pointer that will be given to execve(): no other
-  // is executed. Throws ConfinementError.
+  // The folder must be there. `program` is the very pointer that will be given to execve(): no
+  // other is executed. Throws ConfinementError.
   Confinement(const std::string& folder, const char* program);
   ~Confinement();
   Confinement(const Confinement&) = delete;

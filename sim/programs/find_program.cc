@@ -27,8 +27,8 @@ constexpr char kMultiarch[] = "aarch64-linux-gnu";
 
 const std::map<std::string, const char*>& packages_of_programs() {
   static const std::map<std::string, const char*> kPackages = {
-      {"chronyd", "chrony"},   {"ntpd", "ntpsec"},      {"phc2sys", "linuxptp"},
-      {"ptp4l", "linuxptp"},   {"python3", "python3"},  {"timemaster", "linuxptp"},
+      {"chronyd", "chrony"}, {"ntpd", "ntpsec"},     {"phc2sys", "linuxptp"},
+      {"ptp4l", "linuxptp"}, {"python3", "python3"}, {"timemaster", "linuxptp"},
       {"ts2phc", "linuxptp"}};
   return kPackages;
 }
@@ -63,9 +63,9 @@ std::string library_path(const std::string& root) {
 [[noreturn]] void say_missing(const std::string& name) {
   const auto known = packages_of_programs().find(name);
   if (known == packages_of_programs().end()) {
-    throw ProgramError(fmt::format(
-        "{} is not there; write its absolute path, or put its folder into {}", name,
-        kProgramsVariable));
+    throw ProgramError(
+        fmt::format("{} is not there; write its absolute path, or put its folder into {}", name,
+                    kProgramsVariable));
   }
   throw ProgramError(
       fmt::format("{} is not there; it is in the Debian package {}, which tools/setup "
@@ -79,8 +79,8 @@ std::string program_path(const std::string& word, const std::string& packages) {
   if (word.empty()) throw ProgramError("a command without a program");
   if (word.front() == '/') return word;
   if (word.find('/') != std::string::npos) {
-    throw ProgramError(fmt::format(
-        "found \"{}\", a relative path; write an absolute one or a bare name", word));
+    throw ProgramError(
+        fmt::format("found \"{}\", a relative path; write an absolute one or a bare name", word));
   }
   std::vector<fs::path> folders = own_folders();
   const auto add = [&folders](const std::string& root) {
@@ -97,7 +97,8 @@ std::string program_path(const std::string& word, const std::string& packages) {
 
 FoundProgram find_program(const std::string& word, const std::string& packages) {
   const std::string path = program_path(word, packages);
-  const bool is_unpacked = !packages.empty() && path.starts_with((fs::path(packages) / "").string());
+  const bool is_unpacked =
+      !packages.empty() && path.starts_with((fs::path(packages) / "").string());
   return {.words = program_command(path),
           .library_path = is_unpacked ? library_path(packages) : ""};
 }

@@ -28,7 +28,8 @@ struct FoundProgram {
 
 inline constexpr char kProgramsVariable[] = "SIMBENCH_PROGRAMS";
 
-// The file's path; the file is not looked at. `packages` is the root of unpacked packages ("": none).
+// The file's path; the file is not looked at. `packages` is the root of unpacked packages ("":
+// none).
 std::string program_path(const std::string& word, const std::string& packages = "");
 
 FoundProgram find_program(const std::string& word, const std::string& packages = "");

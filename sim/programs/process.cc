@@ -59,8 +59,7 @@ void Process::count_request() {
     asked_ = 0;
   }
   if (++asked_ > kMostASecond) {
-    throw BadRequest(
-        fmt::format("never waits: it asks more than {} times a second", kMostASecond));
+    throw BadRequest(fmt::format("never waits: it asks more than {} times a second", kMostASecond));
   }
 }
 

@@ -177,7 +177,8 @@ std::vector<std::string> program_command(const std::string& path) {
     check_elf(path, file);
     return {path};
   }
-  if (file.text(0, 2) != "#!") refuse(path, "is neither a program nor a script that begins with #!");
+  if (file.text(0, 2) != "#!")
+    refuse(path, "is neither a program nor a script that begins with #!");
   std::vector<std::string> words = interpreter_of(path, file);
   words.push_back(path);
   return words;

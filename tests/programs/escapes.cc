@@ -70,7 +70,9 @@ void timer() { say("timerfd", syscall(SYS_timerfd_create, CLOCK_MONOTONIC, 0)); 
 void new_process() { say("clone", syscall(SYS_clone, SIGCHLD, 0, 0, 0, 0)); }
 void old_vfork() { say("vfork", vfork()); }  // NOLINT: it is refused
 void execute() { say("execve", execve("/bin/true", no_words, no_words)); }
-void spawn() { say("posix_spawn", posix_spawn(nullptr, "/bin/true", nullptr, nullptr, no_words, no_words)); }
+void spawn() {
+  say("posix_spawn", posix_spawn(nullptr, "/bin/true", nullptr, nullptr, no_words, no_words));
+}
 void shell() { say("system", system("true")); }
 void trace() { say("ptrace", syscall(SYS_ptrace, 16, getppid(), 0, 0)); }
 void mount_there() { say("mount", syscall(SYS_mount, "none", ".", "tmpfs", 0, nullptr)); }
@@ -119,6 +121,11 @@ void rights() {
   const sched_param priority{.sched_priority = 50};
   say("real time", sched_setscheduler(0, SCHED_FIFO, &priority));
   say("priority", setpriority(PRIO_PROCESS, 0, -20));
+  const rlimit more{.rlim_cur = RLIM_INFINITY, .rlim_max = RLIM_INFINITY};
+  say("limit", setrlimit(RLIMIT_CORE, &more));
+  rlimit now{};
+  getrlimit(RLIMIT_CORE, &now);
+  std::printf("core files of %d bytes\n", static_cast<int>(now.rlim_max));
   say("owner", chown("/etc/hostname", 1, 1));
   say("gain", prctl(PR_SET_PDEATHSIG, 0));
   const passwd* user = getpwnam("_nobody_has_this_name");
@@ -136,7 +143,6 @@ void rights() {
 void own_signals() {
   signal(SIGUSR1, [](int) { std::puts("got it"); });
   say("raise", raise(SIGUSR1));
-  say("kill", kill(getpid(), SIGUSR1));
 }
 
 // What does not end, or ends badly.
@@ -157,7 +163,7 @@ void compute() {
   for (volatile unsigned int i = 0;;) i = i + 1;
 }
 void crash() { *reinterpret_cast<volatile int*>(8) = 1; }
-void be_killed() { kill(getpid(), SIGKILL); }
+void be_killed() { raise(SIGKILL); }
 void abort_it() {
   std::puts("it cannot be");
   std::fflush(stdout);

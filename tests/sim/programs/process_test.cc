@@ -1,5 +1,5 @@
-// What the world makes of requests that no honest program sends: it answers or ends the program with
-// a note, whatever the bytes are.
+// What the world makes of requests that no honest program sends: it answers or ends the program
+// with a note, whatever the bytes are.
 #include "sim/programs/process.h"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,6 @@ using shim::Call;
 using shim::Request;
 using testing::HasSubstr;
 
-
 // A request as it is sent: the struct, then its data.
 using Packet = std::string;
 
@@ -47,8 +46,8 @@ Packet packet(Request head, const std::string& data = "") {
 // A program that has sent all its requests before it reads a reply.
 struct Heard {
   std::vector<shim::Reply> replies;
-  std::string note;      // why it was ended; empty: it waits
-  bool is_sane = true;   // each reply is as long as it says
+  std::string note;     // why it was ended; empty: it waits
+  bool is_sane = true;  // each reply is as long as it says
 };
 
 class ProcessTest : public testing::Test {
@@ -132,9 +131,8 @@ TEST_F(ProcessTest, WhatIsNoRequestEndsTheProgram) {
 }
 
 TEST_F(ProcessTest, ANoteIsOneLineOfBoundedLength) {
-  const Heard heard =
-      hear({packet({.call = Call::kNote}, std::string("\x1b[2J\nsecond line ") +
-                                              std::string(60'000, '\xFF'))});
+  const Heard heard = hear({packet(
+      {.call = Call::kNote}, std::string("\x1b[2J\nsecond line ") + std::string(60'000, '\xFF'))});
   EXPECT_THAT(heard.note, HasSubstr("\\x1b[2J\\x0asecond line \\xff"));
   EXPECT_EQ(heard.note.find('\n'), std::string::npos);
   EXPECT_LT(heard.note.size(), 2000U);
@@ -173,10 +171,10 @@ class Hostile {
   explicit Hostile(std::uint64_t seed) : random_(seed) {}
 
   std::vector<Packet> packets(std::size_t count) {
-    std::vector<Packet> result{
-        packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM}),
-        packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
-        packet({.call = Call::kBind, .fd = 3}, raw(shim::Address{.host = 0, .port = 9, .reserved = 0}))};
+    std::vector<Packet> result{packet({.call = Call::kOpenSocket, .fd = 3, .a = SOCK_DGRAM}),
+                               packet({.call = Call::kOpenTimer, .fd = 4, .a = CLOCK_REALTIME}),
+                               packet({.call = Call::kBind, .fd = 3},
+                                      raw(shim::Address{.host = 0, .port = 9, .reserved = 0}))};
     while (result.size() < count) result.push_back(damaged(request()));
     return result;
   }
@@ -186,10 +184,22 @@ class Hostile {
   bool one_in(std::size_t count) { return below(count) == 0; }
 
   std::int64_t number() {
-    constexpr std::int64_t kNumbers[] = {
-        0,         1,         2,         3,    4,         -1,
-        9,         1'000,     65'536,    1'000'000'000,  INT64_MAX, INT64_MIN,
-        INT32_MAX, INT32_MIN, INT64_MAX / 2, 1'767'225'600'000'000'000};
+    constexpr std::int64_t kNumbers[] = {0,
+                                         1,
+                                         2,
+                                         3,
+                                         4,
+                                         -1,
+                                         9,
+                                         1'000,
+                                         65'536,
+                                         1'000'000'000,
+                                         INT64_MAX,
+                                         INT64_MIN,
+                                         INT32_MAX,
+                                         INT32_MIN,
+                                         INT64_MAX / 2,
+                                         1'767'225'600'000'000'000};
     const std::int64_t some = kNumbers[below(std::size(kNumbers))];
     return one_in(4) ? static_cast<std::int64_t>(random_()) : some;
   }

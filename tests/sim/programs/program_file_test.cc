@@ -68,8 +68,7 @@ TEST_F(ProgramFileTest, WhatIsNoProgramIsSaid) {
   EXPECT_EQ(refusal("/dev/null"), "is no file");
   EXPECT_EQ(refusal(executable(content(real_program()), 0644)), "is not executable");
   for (const char* text : {"", "\x7f", "print('hello')\n"}) {
-    EXPECT_EQ(refusal(executable(text)),
-              "is neither a program nor a script that begins with #!");
+    EXPECT_EQ(refusal(executable(text)), "is neither a program nor a script that begins with #!");
   }
 }
 
