@@ -42,6 +42,9 @@ enum class Call : std::uint32_t {
   kClose,        // fd
   kRandom,       // a: how many -> data: bytes
   kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
+  kReadCard,     // a: how many -> data: CardSample[]
+  kCountInput,   // fd -> value: bytes that the next read would give
+  kLocalActivity,  // another program of the host may have something to read, or a peer less
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
 };
@@ -72,8 +75,13 @@ struct Request {
   std::int64_t a = 0;
   std::int64_t b = 0;
   std::uint32_t size = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t flags = 0;  // WaitFlag
 };
+
+// A wait that watches real descriptors too ends when another program of the host may have made one
+// ready: the value is kLookAgain, and the data the interests and the wait's deadline (int64).
+enum WaitFlag : std::uint32_t { kWatchesReal = 1 };
+inline constexpr std::int64_t kLookAgain = INT64_MIN;
 
 struct Reply {
   std::int64_t value;
@@ -106,6 +114,17 @@ struct Interest {
 struct TimerSetting {
   std::int64_t left;      // until it expires, or the time at which it does; 0: disarmed
   std::int64_t interval;  // 0: once
+};
+
+// The clock of the network card, where a clockid is asked for; no clock has this number.
+inline constexpr std::int64_t kCardClock = -1;
+inline constexpr std::int32_t kMostCardRate = 62'499'999;  // ppb
+
+// A reading of the card's clock between two of the system's.
+struct CardSample {
+  std::int64_t before;
+  std::int64_t card;
+  std::int64_t after;
 };
 
 struct Arrival {

@@ -1,7 +1,8 @@
 // Waiting: sleeps, select, poll, epoll and timers.
 //
 // A wait asks the world which of its descriptors are ready, and how long to wait. Real descriptors
-// (files, pipes, Unix-domain sockets) are looked at before and after; they end no wait.
+// (files, pipes, Unix-domain sockets) are looked at before and after, and whenever another program
+// of the host has done something that may have made one ready.
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -56,22 +57,32 @@ int wait(pollfd* interests, nfds_t count, Until until) {
     return -1;
   }
   pollfd real[kMostInterests];
-  Interest simulated[kMostInterests];
+  Interest simulated[kMostInterests + 1];  // and the deadline
   std::size_t asked = 0;
+  bool watches_real = false;
   for (nfds_t i = 0; i < count; ++i) {
     const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
+    watches_real |= !is_ours && interests[i].fd >= 0;
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
       simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
     }
   }
-  if (look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
-  Received reply{.data = simulated, .capacity = sizeof simulated};
-  if (ask({.call = Call::kWait, .a = static_cast<std::int64_t>(until.kind), .b = until.ns},
-          {simulated, asked * sizeof simulated[0]}, {}, &reply) < 0) {
-    return -1;
+  std::int64_t answer = kLookAgain;
+  while (answer == kLookAgain) {
+    if (watches_real && look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
+    Received reply{.data = simulated, .capacity = sizeof simulated};
+    answer = ask({.call = Call::kWait,
+                  .a = static_cast<std::int64_t>(until.kind),
+                  .b = until.ns,
+                  .flags = watches_real ? kWatchesReal : 0U},
+                 {simulated, asked * sizeof simulated[0]}, {}, &reply);
+    if (answer == -1) return -1;
+    if (until.kind != Deadline::kAfter || answer != kLookAgain) continue;
+    until.kind = Deadline::kAtMonotonicTime;
+    memcpy(&until.ns, simulated + asked, sizeof until.ns);
   }
-  look_at_real(real, count);
+  if (watches_real) look_at_real(real, count);
   int ready = 0;
   std::size_t answered = 0;
   for (nfds_t i = 0; i < count; ++i) {

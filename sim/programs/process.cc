@@ -35,15 +35,18 @@ bool is_system(std::int64_t clock) {
 
 }  // namespace
 
-Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel,
+Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
                  const Child::Settings& settings, std::uint32_t number)
     : host_(host),
       network_(network),
       kernel_(kernel),
+      card_(card),
       number_(number),
       chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
       woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings) {}
+      child_(settings) {
+  network_.watch_local_activity(woken_);
+}
 
 Process::~Process() {
   for (auto& [fd, socket] : sockets_) network_.close(socket);
@@ -69,6 +72,7 @@ Task<void> Process::serve() {
     if (!given) break;
     child_.reply(given->value, given->error, given->data);
   }
+  network_.report_local_activity();
   const std::string how = child_.ending();
   ending_ = printable_name(ending_.empty() ? how : ending_);
 }
@@ -91,6 +95,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kName:
     case Call::kPeerName:
     case Call::kReceive:
+    case Call::kCountInput:
     case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
@@ -99,6 +104,11 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
       co_return of_timer(request);
     case Call::kCardStamping:
       co_return card_stamping(request.head.a);
+    case Call::kReadCard:
+      co_return co_await read_card(request.head.a);
+    case Call::kLocalActivity:
+      network_.report_local_activity();
+      co_return Answer{};
     case Call::kHello:
       co_return Answer{.data = bytes_of(identity())};
     case Call::kRandom:
@@ -136,7 +146,11 @@ Process::Answer Process::random_bytes(std::int64_t count) {
 }
 
 Task<Process::Answer> Process::read_clock(std::int64_t clock) {
-  if (clock < 0) co_return Answer{.error = EOPNOTSUPP};
+  if (clock == shim::kCardClock) {
+    const CardClock::Reading card = co_await card_.read();
+    co_return Answer{.value = card.sample.card, .error = card.error};
+  }
+  if (clock < 0) co_return Answer{.error = EINVAL};
   const TrueTime asked = host_.true_now();
   std::int64_t reading = 0;
   if (is_system(clock)) {
@@ -150,16 +164,24 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
 }
 
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
-  if (clock != CLOCK_REALTIME) co_return Answer{.error = clock < 0 ? EOPNOTSUPP : EINVAL};
   if (reading < 0) co_return Answer{.error = EINVAL};
+  if (clock == shim::kCardClock) {
+    const int error = co_await card_.set(reading);
+    co_return Answer{.error = error};
+  }
+  if (clock != CLOCK_REALTIME) co_return Answer{.error = EINVAL};
   co_await host_.clock().set(from_epoch_ns(reading));
   kernel_.was_set();
   co_return Answer{};
 }
 
 Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
-  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const auto wanted = read_head<timex>(request.data);
+  if (request.head.a == shim::kCardClock) {
+    const KernelClock::Answer card = co_await card_.adjust(wanted);
+    co_return Answer{.value = card.state, .error = card.error, .data = bytes_of(card.now)};
+  }
+  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const KernelClock::Answer given = co_await kernel_.adjust(wanted);
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
 }
@@ -286,6 +308,8 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
     at += nanoseconds_of(host_.steady_clock().now());
     kind = Deadline::kAtMonotonicTime;
   }
+  const bool watches_real = (request.head.flags & shim::kWatchesReal) != 0;
+  const std::uint64_t activity = network_.local_activity();
   for (;;) {
     std::int64_t ready = 0;
     for (shim::Interest& interest : interests) {
@@ -296,6 +320,12 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
       Answer answer{.value = ready};
       const auto bytes = std::as_bytes(std::span(interests));
       answer.data.assign(bytes.begin(), bytes.end());
+      co_return answer;
+    }
+    if (watches_real && network_.local_activity() != activity) {
+      Answer answer{.value = shim::kLookAgain, .data = std::move(request.data)};
+      const Bytes deadline = bytes_of(at);
+      answer.data.insert(answer.data.end(), deadline.begin(), deadline.end());
       co_return answer;
     }
     std::optional<TrueTime> look = next_look(kind, at);

@@ -30,7 +30,8 @@ class HostPrograms {
         settings_(settings),
         folder_(std::filesystem::path(settings.folder) / fmt::format("host{}", host.id())),
         network_(host, settings.hosts),
-        kernel_(host) {
+        kernel_(host),
+        card_(host) {
     std::filesystem::create_directories(folder_);
     for (const auto& [name, content] : settings.files) {
       std::ofstream(folder_ / name) << filled(content);
@@ -70,7 +71,7 @@ class HostPrograms {
       child.environment[name] = filled(value);
     }
     const auto number = static_cast<std::uint32_t>(processes_.size());
-    processes_.emplace_back(host_, network_, kernel_, child, number);
+    processes_.emplace_back(host_, network_, kernel_, card_, child, number);
   }
 
   Task<void> serve(Process& process) {
@@ -87,6 +88,7 @@ class HostPrograms {
   std::filesystem::path folder_;
   HostNetwork network_;
   KernelClock kernel_;
+  CardClock card_;
   std::deque<Process> processes_;
   bool has_failed_ = false;
 };
