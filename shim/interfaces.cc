@@ -9,12 +9,8 @@
 #include <net/if.h>
 #include <net/if_arp.h>
 #include <netpacket/packet.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include "shim/sockets.h"
 
@@ -94,7 +90,7 @@ int state_stamping(ethtool_ts_info& info) {
   info.so_timestamping =
       SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
   info.phc_index = -1;
-  if (!identity().has_card_clock) return 0;
+  if (identity().has_card_clock == 0) return 0;
   info.so_timestamping |= SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE |
                           SOF_TIMESTAMPING_RAW_HARDWARE;
   info.phc_index = 0;
@@ -134,7 +130,7 @@ int get_stamping(hwtstamp_config& config) {
 }
 
 int ask_card_stamping(const InterfaceFacts& facts, unsigned long what, const ifreq& request) {
-  if (facts.index != kInterface || !identity().has_card_clock) return refuse(EOPNOTSUPP);
+  if (facts.index != kInterface || identity().has_card_clock == 0) return refuse(EOPNOTSUPP);
   if (request.ifr_data == nullptr) return refuse(EFAULT);
   auto& config = *reinterpret_cast<hwtstamp_config*>(request.ifr_data);
   return what == SIOCSHWTSTAMP ? set_stamping(config) : get_stamping(config);
@@ -181,23 +177,16 @@ int ask_interface(unsigned long what, ifreq& request) {
   }
 }
 
-// Requests about interfaces, which any socket takes.
-bool is_about_interfaces(unsigned long what) {
-  return (what >= SIOCGIFNAME && what <= SIOCSIFMAP) || what == SIOCETHTOOL ||
-         what == SIOCSHWTSTAMP || what == SIOCGHWTSTAMP || what == SIOCGIFINDEX;
-}
-
 }  // namespace
 
-SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
-  va_list arguments;
-  va_start(arguments, what);
-  void* argument = va_arg(arguments, void*);
-  va_end(arguments);
-  if (!is_simulated()) return static_cast<int>(syscall(SYS_ioctl, fd, what, argument));
+bool is_about_interfaces(unsigned long what) {
+  return (what >= SIOCGIFNAME && what <= SIOCSIFMAP) || what == SIOCETHTOOL ||
+         what == SIOCSHWTSTAMP || what == SIOCGHWTSTAMP;
+}
+
+int interface_ioctl(unsigned long what, void* argument) {
   if (what == SIOCGIFCONF) return list_interfaces(*static_cast<ifconf*>(argument));
-  if (is_about_interfaces(what)) return ask_interface(what, *static_cast<ifreq*>(argument));
-  return static_cast<int>(syscall(SYS_ioctl, fd, what, argument));
+  return ask_interface(what, *static_cast<ifreq*>(argument));
 }
 
 SIMBENCH_CALL unsigned int if_nametoindex(const char* name) {

@@ -35,6 +35,10 @@ InterfaceFacts interface_at(int place);
 bool find_interface(const char* name, InterfaceFacts& found);
 bool find_interface(unsigned index, InterfaceFacts& found);
 
+// Requests of ioctl() about interfaces, which any socket takes.
+bool is_about_interfaces(unsigned long what);
+int interface_ioctl(unsigned long what, void* argument);
+
 }  // namespace simbench::shim
 
 #endif  // SIMBENCH_SHIM_INTERFACES_H_

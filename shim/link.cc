@@ -12,6 +12,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "shim/local.h"
+
 namespace simbench::shim {
 namespace {
 
@@ -119,6 +121,10 @@ int number_of(int fd) { return kind_of(fd) == Kind::kReal ? fd : numbers[fd]; }
 
 Kind kind_of(int fd) { return fd >= 0 && fd < kMostDescriptors ? kinds[fd] : Kind::kReal; }
 
+void set_kind(int fd, Kind kind) {
+  if (fd >= 0 && fd < kMostDescriptors) kinds[fd] = kind;
+}
+
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec) {
   const int fd = eventfd(0, (nonblocking ? EFD_NONBLOCK : 0) | (close_on_exec ? EFD_CLOEXEC : 0));
   if (fd < 0) return -1;
@@ -158,8 +164,11 @@ bool is_blocking(int fd) { return (syscall(SYS_fcntl, fd, F_GETFL) & O_NONBLOCK)
 
 SIMBENCH_CALL int close(int fd) {
   if (is_simulated() && fd == world_link) return 0;  // daemons close all that they do not know
+  const bool was_local = is_local(fd);
   release(fd);
-  return static_cast<int>(syscall(SYS_close, fd));
+  const int result = static_cast<int>(syscall(SYS_close, fd));
+  if (was_local) local_closed();
+  return result;
 }
 
 SIMBENCH_CALL int fclose(FILE* file) {

@@ -62,7 +62,7 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
-enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink };
+enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink, kLocal, kCard };
 
 // Whether the world says when it is ready; of others, the kernel does.
 constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
@@ -71,6 +71,8 @@ constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind
 inline constexpr int kMostDescriptors = 1024;
 
 Kind kind_of(int fd);
+// Nothing for -1.
+void set_kind(int fd, Kind kind);
 // A number that stands for something of the world, or -1 with errno. The kernel keeps it taken,
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);

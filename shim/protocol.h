@@ -44,6 +44,9 @@ enum class Call : std::uint32_t {
   kClose,        // fd
   kRandom,       // a: how many -> data: bytes
   kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
+  kReadCard,     // a: how many -> data: CardSample[]
+  kCountInput,   // fd -> value: bytes that the next read would give
+  kLocalActivity,  // another program of the host may have something to read, or a peer less
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
   // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number below 0
@@ -80,11 +83,15 @@ struct Request {
   std::int64_t a = 0;
   std::int64_t b = 0;
   std::uint32_t size = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t flags = 0;  // WaitFlag
 };
 
 // In a reply's error: signal timers have expired (kTakeExpirations).
 inline constexpr std::int32_t kHasExpirations = 1 << 30;
+
+// A wait that watches real descriptors too ends with EAGAIN when another program of the host may
+// have made one ready. Its data is then what is left until the deadline (int64), as with EINTR.
+enum WaitFlag : std::uint32_t { kWatchesReal = 1 };
 
 struct Reply {
   std::int64_t value;
@@ -122,6 +129,17 @@ struct TimerSetting {
 struct Expiration {
   std::int32_t timer;
   std::uint32_t times;
+};
+
+// The clock of the network card, where a clockid is asked for; no clock has this number.
+inline constexpr std::int64_t kCardClock = -1;
+inline constexpr std::int32_t kMostCardRate = 62'499'999;  // ppb
+
+// A reading of the card's clock between two of the system's.
+struct CardSample {
+  std::int64_t before;
+  std::int64_t card;
+  std::int64_t after;
 };
 
 struct Arrival {

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "shim/local.h"
 #include "shim/netlink.h"
 #include "shim/sockets.h"
 
@@ -244,12 +245,16 @@ int address_call(int fd, Call call, const sockaddr* name, socklen_t size) {
   return static_cast<int>(ask({.call = call, .fd = fd}, {&address, sizeof address}));
 }
 
+// What goes through sendmsg() and recvmsg() is not: the world's, routing and local sockets.
+bool is_real(int fd) { return !is_socket(fd) && !is_netlink(fd) && !is_local(fd); }
+
 }  // namespace
 
 void copy_socket_state(int from, int to) { state_of(to) = state_of(from); }
 
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
-  if (!is_simulated() || domain == AF_UNIX) return SIMBENCH_REAL(socket)(domain, type, protocol);
+  if (!is_simulated()) return SIMBENCH_REAL(socket)(domain, type, protocol);
+  if (domain == AF_UNIX) return local_socket(domain, type, protocol);
   if (domain == AF_NETLINK) return open_netlink(type, protocol);
   const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (domain != AF_INET || kind != SOCK_DGRAM) {
@@ -268,12 +273,14 @@ SIMBENCH_CALL int socket(int domain, int type, int protocol) {
 }
 
 SIMBENCH_CALL int bind(int fd, const sockaddr* name, socklen_t size) {
+  if (is_local(fd)) return local_bind(fd, name, size);
   if (is_netlink(fd)) return 0;
   if (!is_socket(fd)) return SIMBENCH_REAL(bind)(fd, name, size);
   return address_call(fd, Call::kBind, name, size);
 }
 
 SIMBENCH_CALL int connect(int fd, const sockaddr* name, socklen_t size) {
+  if (is_local(fd)) return local_connect(fd, name, size);
   if (!is_socket(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
   return address_call(fd, Call::kConnect, name, size);
 }
@@ -290,6 +297,7 @@ SIMBENCH_CALL int getpeername(int fd, sockaddr* name, socklen_t* size) {
 }
 
 SIMBENCH_CALL ssize_t sendmsg(int fd, const msghdr* message, int flags) {
+  if (is_local(fd)) return local_sendmsg(fd, message, flags);
   if (is_netlink(fd)) return netlink_send(fd, *message);
   if (!is_socket(fd)) return SIMBENCH_REAL(sendmsg)(fd, message, flags);
   return send_message(fd, *message);
@@ -307,7 +315,7 @@ SIMBENCH_CALL int sendmmsg(int fd, mmsghdr* messages, unsigned int count, int fl
 
 SIMBENCH_CALL ssize_t sendto(int fd, const void* data, std::size_t size, int flags,
                              const sockaddr* to, socklen_t to_size) {
-  if (!is_socket(fd) && !is_netlink(fd)) {
+  if (is_real(fd)) {
     return SIMBENCH_REAL(sendto)(fd, data, size, flags, to, to_size);
   }
   iovec piece{.iov_base = const_cast<void*>(data), .iov_len = size};
@@ -320,11 +328,12 @@ SIMBENCH_CALL ssize_t sendto(int fd, const void* data, std::size_t size, int fla
 }
 
 SIMBENCH_CALL ssize_t send(int fd, const void* data, std::size_t size, int flags) {
-  if (!is_socket(fd) && !is_netlink(fd)) return SIMBENCH_REAL(send)(fd, data, size, flags);
+  if (is_real(fd)) return SIMBENCH_REAL(send)(fd, data, size, flags);
   return sendto(fd, data, size, flags, nullptr, 0);
 }
 
 SIMBENCH_CALL ssize_t recvmsg(int fd, msghdr* message, int flags) {
+  if (is_local(fd)) return local_recvmsg(fd, message, flags);
   if (is_netlink(fd)) return netlink_receive(fd, *message, flags);
   if (!is_socket(fd)) return SIMBENCH_REAL(recvmsg)(fd, message, flags);
   return receive_message(fd, *message, flags);
@@ -345,7 +354,7 @@ SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int fl
 
 SIMBENCH_CALL ssize_t recvfrom(int fd, void* data, std::size_t size, int flags, sockaddr* from,
                                socklen_t* from_size) {
-  if (!is_socket(fd) && !is_netlink(fd)) {
+  if (is_real(fd)) {
     return SIMBENCH_REAL(recvfrom)(fd, data, size, flags, from, from_size);
   }
   iovec piece{.iov_base = data, .iov_len = size};
@@ -360,7 +369,7 @@ SIMBENCH_CALL ssize_t recvfrom(int fd, void* data, std::size_t size, int flags, 
 }
 
 SIMBENCH_CALL ssize_t recv(int fd, void* data, std::size_t size, int flags) {
-  if (!is_socket(fd) && !is_netlink(fd)) return SIMBENCH_REAL(recv)(fd, data, size, flags);
+  if (is_real(fd)) return SIMBENCH_REAL(recv)(fd, data, size, flags);
   return recvfrom(fd, data, size, flags, nullptr, nullptr);
 }
 

@@ -1,7 +1,8 @@
 // Waiting: sleeps, select, poll, epoll and timers.
 //
 // A wait asks the world which of its descriptors are ready, and how long to wait. Real descriptors
-// (files, pipes, Unix-domain sockets) are looked at before and after; they end no wait.
+// (files, pipes, Unix-domain sockets) are looked at before and after, and whenever another program
+// of the host has done something that may have made one ready.
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -65,24 +66,28 @@ class Mask {
   sigset_t before_{};
 };
 
-// Asks until something is ready, the time has come, or a handler has run: EINTR. Signals without a
-// handler do not end a wait. What is left goes to `left_ns`.
-std::int64_t ask_to_wait(Until until, Sent interests, Received answer, std::int64_t* left_ns) {
+// Asks until something is ready or the time has come. Fails with EINTR once a handler has run, and
+// with EAGAIN when real descriptors should be looked at; what is left goes to `until` and `left_ns`.
+// Signals without a handler do not end a wait.
+std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Received answer,
+                         std::int64_t* left_ns) {
   for (;;) {
     const std::uint64_t before = handled_signals();
     Received reply = answer;
-    const std::int64_t ready =
-        ask({.call = Call::kWait, .a = static_cast<std::int64_t>(until.kind), .b = until.ns},
-            interests, {}, &reply);
-    if (ready >= 0 || errno != EINTR) return ready;
+    const std::int64_t ready = ask({.call = Call::kWait,
+                                    .a = static_cast<std::int64_t>(until.kind),
+                                    .b = until.ns,
+                                    .flags = watches_real ? kWatchesReal : 0U},
+                                   interests, {}, &reply);
+    if (ready >= 0 || (errno != EINTR && errno != EAGAIN)) return ready;
+    const int reason = handled_signals() != before ? EINTR : errno;
     std::int64_t left = 0;
     memcpy(&left, answer.data, sizeof left);
     if (left_ns != nullptr) *left_ns = left;
-    if (handled_signals() != before) {
-      errno = EINTR;
-      return -1;
-    }
     if (until.kind == Deadline::kAfter) until.ns = left;
+    if (reason == EINTR && handled_signals() == before) continue;
+    errno = reason;
+    return -1;
   }
 }
 
@@ -101,21 +106,25 @@ int wait(pollfd* interests, nfds_t count, Until until, const sigset_t* signals =
   pollfd real[kMostInterests];
   Interest simulated[kMostInterests];
   std::size_t asked = 0;
+  bool watches_real = false;
   for (nfds_t i = 0; i < count; ++i) {
     const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
+    watches_real |= !is_ours && interests[i].fd >= 0;
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
       simulated[asked++] = {
           .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
     }
   }
-  if (look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
   Interest answered[kMostInterests];
-  if (ask_to_wait(until, {simulated, asked * sizeof simulated[0]},
-                  {.data = answered, .capacity = sizeof answered}, left_ns) < 0) {
-    return -1;
+  std::int64_t is_ready = -1;
+  while (is_ready < 0) {
+    if (watches_real && look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
+    is_ready = ask_to_wait(until, watches_real, {simulated, asked * sizeof simulated[0]},
+                           {.data = answered, .capacity = sizeof answered}, left_ns);
+    if (is_ready < 0 && errno != EAGAIN) return -1;
   }
-  look_at_real(real, count);
+  if (watches_real) look_at_real(real, count);
   int ready = 0;
   std::size_t looked_at = 0;
   for (nfds_t i = 0; i < count; ++i) {

@@ -118,6 +118,13 @@ Task<void> NicClock::step(Nanoseconds offset) {
   co_await wait_until(call.turn.end);
 }
 
+Task<void> NicClock::set(HardwareTime value) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.set(host_.true_now(), HostTime(value.time_since_epoch()));
+  co_await wait_until(call.turn.end);
+}
+
 Task<void> NicClock::adjust_frequency(double ppb) {
   const Call call = begin_call();
   co_await wait_until(call.touch);

@@ -134,6 +134,8 @@ class NicClock final : public HardwareClock {
 
   Task<CrossStamp> cross_stamp() override;
   Task<void> step(Nanoseconds offset) override;
+  // As step(), to a reading.
+  Task<void> set(HardwareTime value);
   Task<void> adjust_frequency(double ppb) override;
 
   // The stamp of an event at `at`, with noise from `draw`.

@@ -135,6 +135,7 @@ class SimHost final : public Host {
   MessageStack& stack() { return stack_; }
   // Null if the card takes no stamps.
   const NicClock* nic() const { return nic_.get(); }
+  NicClock* nic() { return nic_.get(); }
   // The delay that a burst of load adds to the wake-up for an event with the key (what, a, b).
   Nanoseconds load_delay(ComponentKey what, std::uint64_t a, std::uint64_t b) {
     return host_load_.delay(true_now(), what, a, b);

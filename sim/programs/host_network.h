@@ -100,6 +100,12 @@ class HostNetwork {
   CardStamping card_stamping() const { return card_stamping_; }
   void set_card_stamping(CardStamping stamping) { card_stamping_ = stamping; }
 
+  // What the host's programs do to each other over real sockets: counted, and told to those that
+  // wait. A watcher must outlive the programs.
+  void watch_local_activity(WaitPoint& watcher) { watchers_.push_back(&watcher); }
+  void report_local_activity();
+  std::uint64_t local_activity() const { return local_activity_; }
+
   // Receives from a peer, for ever.
   Task<void> pump(PeerId peer);
   // Stamps what leaves, for ever.
@@ -136,6 +142,8 @@ class HostNetwork {
   CardStamping card_stamping_{};
   std::deque<Leaving> leaving_;
   WaitPoint has_left_;
+  std::vector<WaitPoint*> watchers_;
+  std::uint64_t local_activity_ = 0;
 };
 
 }  // namespace simbench::sim

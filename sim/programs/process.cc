@@ -38,15 +38,18 @@ bool is_system(std::int64_t clock) {
 
 }  // namespace
 
-Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel,
+Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
                  const Child::Settings& settings, std::uint32_t number)
     : host_(host),
       network_(network),
       kernel_(kernel),
+      card_(card),
       number_(number),
       chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
       woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings) {}
+      child_(settings) {
+  network_.watch_local_activity(woken_);
+}
 
 Process::~Process() {
   for (auto& [fd, socket] : sockets_) network_.close(socket);
@@ -79,6 +82,7 @@ Task<void> Process::serve() {
     const std::int32_t told = has_expirations() ? shim::kHasExpirations : 0;
     child_.reply(given->value, given->error | told, given->data);
   }
+  if (!is_stopped_) network_.report_local_activity();
   const std::string how = child_.ending(ending_);
   if (!is_stopped_) ending_ = printable_name(how);
 }
@@ -106,6 +110,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kName:
     case Call::kPeerName:
     case Call::kReceive:
+    case Call::kCountInput:
     case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
@@ -120,6 +125,11 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
       co_return of_signal_timer(request);
     case Call::kTakeExpirations:
       co_return take_expirations();
+    case Call::kReadCard:
+      co_return co_await read_card(request.head.a);
+    case Call::kLocalActivity:
+      network_.report_local_activity();
+      co_return Answer{};
     case Call::kHello:
       co_return Answer{.data = bytes_of(identity())};
     case Call::kRandom:
@@ -157,7 +167,11 @@ Process::Answer Process::random_bytes(std::int64_t count) {
 }
 
 Task<Process::Answer> Process::read_clock(std::int64_t clock) {
-  if (clock < 0) co_return Answer{.error = EOPNOTSUPP};
+  if (clock == shim::kCardClock) {
+    const CardClock::Reading card = co_await card_.read();
+    co_return Answer{.value = card.sample.card, .error = card.error};
+  }
+  if (clock < 0) co_return Answer{.error = EINVAL};
   const TrueTime asked = host_.true_now();
   std::int64_t reading = 0;
   if (is_system(clock)) {
@@ -171,15 +185,23 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
 }
 
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
-  if (clock != CLOCK_REALTIME) co_return Answer{.error = clock < 0 ? EOPNOTSUPP : EINVAL};
   if (reading < 0 || reading >= kLatestSetting) co_return Answer{.error = EINVAL};
+  if (clock == shim::kCardClock) {
+    const int error = co_await card_.set(reading);
+    co_return Answer{.error = error};
+  }
+  if (clock != CLOCK_REALTIME) co_return Answer{.error = EINVAL};
   co_await kernel_.set(from_epoch_ns(reading));
   co_return Answer{};
 }
 
 Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
-  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const auto wanted = read_head<timex>(request.data);
+  if (request.head.a == shim::kCardClock) {
+    const KernelClock::Answer card = co_await card_.adjust(wanted);
+    co_return Answer{.value = card.state, .error = card.error, .data = bytes_of(card.now)};
+  }
+  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const KernelClock::Answer given = co_await kernel_.adjust(wanted);
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
 }
@@ -291,6 +313,8 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
   }
   const WakeTime deadline =
       wake_time(host_, static_cast<shim::Deadline>(request.head.a), request.head.b);
+  const bool watches_real = (request.head.flags & shim::kWatchesReal) != 0;
+  const std::uint64_t activity = network_.local_activity();
   for (;;) {
     std::int64_t ready = 0;
     for (shim::Interest& interest : interests) {
@@ -303,8 +327,10 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
       answer.data.assign(bytes.begin(), bytes.end());
       co_return answer;
     }
-    if (has_expirations()) {
-      co_return Answer{.error = EINTR, .data = bytes_of(left_ns(host_, deadline))};
+    const bool looks_again = watches_real && network_.local_activity() != activity;
+    if (looks_again || has_expirations()) {
+      co_return Answer{.error = looks_again ? EAGAIN : EINTR,
+                       .data = bytes_of(left_ns(host_, deadline))};
     }
     std::optional<TrueTime> look = next_look(host_, deadline);
     const std::optional<TrueTime> timer = next_timer(interests);

@@ -5,8 +5,11 @@
 // sends, wake-ups. Requests are not trusted: one that is no request ends the program, with a note.
 //
 // Clocks: CLOCK_REALTIME and its kin are the host's system clock, all monotonic ones its oscillator
-// (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; a
-// network card's clock is EOPNOTSUPP.
+// (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; the
+// network card's has no number of its own (shim::kCardClock).
+//
+// Programs of a host may speak over real sockets (Unix-domain): who waits for one looks again
+// whenever another says that it did something there, or has ended.
 //
 // A timer that makes a signal ends a wait; one that expires while the program computes is told with
 // the reply to what it asks next. A program that asks more than kMostASecond times within a second
@@ -14,7 +17,8 @@
 //
 //   HostNetwork network(host, 6);
 //   KernelClock kernel(host);
-//   Process process(host, network, kernel, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
+//   CardClock card(host);
+//   Process process(host, network, kernel, card, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
 //   boost::asio::co_spawn(context, process.serve(), boost::asio::detached);
 #ifndef SIMBENCH_SIM_PROGRAMS_PROCESS_H_
 #define SIMBENCH_SIM_PROGRAMS_PROCESS_H_
@@ -29,6 +33,7 @@
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/card_clock.h"
 #include "sim/programs/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/kernel_clock.h"
@@ -41,8 +46,8 @@ class Process {
   static constexpr std::uint64_t kMostASecond = 50'000;
 
   // `number` tells the processes of a host apart. The references must outlive this.
-  Process(SimHost& host, HostNetwork& network, KernelClock& kernel, const Child::Settings& settings,
-          std::uint32_t number);
+  Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
+          const Child::Settings& settings, std::uint32_t number);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -74,6 +79,7 @@ class Process {
   Answer open_socket(int fd);
   Answer close(int fd);
   Answer of_socket(const ChildRequest& request);
+  Task<Answer> read_card(std::int64_t count);
   Answer card_stamping(std::int64_t wanted);
   int join(UdpSocket& socket, bool joins, std::int64_t group);
   static Answer set_option(UdpSocket& socket, shim::SocketOption option, std::int64_t value);
@@ -94,6 +100,7 @@ class Process {
   SimHost& host_;
   HostNetwork& network_;
   KernelClock& kernel_;
+  CardClock& card_;
   std::uint32_t number_;
   RandomStream chance_;
   WaitPoint woken_;

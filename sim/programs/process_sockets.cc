@@ -47,21 +47,16 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
       return {.data = bytes_of(*socket.peer)};
     case Call::kReceive:
       return receive(socket, request.head.a);
+    case Call::kCountInput:
+      return {.value = socket.arrived.empty()
+                           ? 0
+                           : static_cast<std::int64_t>(socket.arrived.front().payload.size())};
     case Call::kJoin:
       return {.error = join(socket, request.head.a != 0, request.head.b)};
     default:
       return set_option(socket, static_cast<shim::SocketOption>(request.head.a),
                         request.head.b);
   }
-}
-
-Process::Answer Process::card_stamping(std::int64_t wanted) {
-  if (host_.nic() == nullptr) return {.error = EOPNOTSUPP};
-  if (wanted >= 0) {
-    network_.set_card_stamping({.arrivals = (wanted & 1) != 0, .departures = (wanted & 2) != 0});
-  }
-  const CardStamping now = network_.card_stamping();
-  return {.value = (now.arrivals ? 1 : 0) | (now.departures ? 2 : 0)};
 }
 
 int Process::join(UdpSocket& socket, bool joins, std::int64_t group) {

@@ -23,7 +23,7 @@ using scenarios::HostPrograms;
 class RunningPrograms {
  public:
   RunningPrograms(SimHost& host, std::size_t hosts)
-      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host) {}
+      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
 
   void start(const HostPrograms::Command& command, const ProgramSettings& settings,
              const std::string& folder) {
@@ -39,7 +39,8 @@ class RunningPrograms {
     for (const auto& [name, value] : settings.programs.environment) {
       child.environment[name] = fill(value, places);
     }
-    processes_.emplace_back(host_, network_, kernel_, child, static_cast<std::uint32_t>(number));
+    processes_.emplace_back(host_, network_, kernel_, card_, child,
+                            static_cast<std::uint32_t>(number));
   }
 
   // `on_end` gets the last words of the first program that ends by itself.
@@ -75,6 +76,7 @@ class RunningPrograms {
   std::size_t hosts_;
   HostNetwork network_;
   KernelClock kernel_;
+  CardClock card_;
   std::deque<Process> processes_;
   bool has_failed_ = false;
 };
