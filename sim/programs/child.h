@@ -8,6 +8,9 @@
 // It has the rights of whoever runs the world, and a call that passes libc by reaches the real
 // kernel: run programs that you trust.
 //
+// It runs on the CPU of the thread that serves it: one of the two waits always, and to wake another
+// CPU costs more than most requests.
+//
 // Limits: kMostOutput bytes a file, kMostMemory of address space, no new privileges, no core dump.
 // Addresses are not randomised, so that its bytes repeat.
 //
@@ -72,12 +75,14 @@ class Child {
   std::string ending();
 
  private:
+  void follow_thread();
   std::string how_it_ended(bool itself, int status) const;
   std::string last_line() const;
 
   std::string log_;
   int link_ = -1;
   pid_t process_ = -1;
+  int cpu_ = -1;  // the one that it is bound to
   bool was_too_slow_ = false;
   Bytes buffer_;
 };
