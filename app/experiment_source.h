@@ -58,7 +58,7 @@ class ExperimentSource final : public RecordingSource {
 
   const scenarios::Scenario& scenario_;
   ExperimentOptions options_;
-  hardware::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   KeptRecording played_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/program_pipelines.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/help.h"
@@ -125,6 +126,7 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   cli::hold_standard_descriptors();
   cli::choose_message_format(arguments);
   reports::set_page_width(cli::width_of_output());
+  app::use_programs();
   try {
     if (extras.farm == nullptr) cli::become_mpi_program(arguments);
     return parse_and_run(arguments, extras);

@@ -23,8 +23,8 @@
 // are cut to that; what is further than 63 years away is never.
 //
 // The rate is a sum of parts (Setting::rate): the frequency that stays, and a slew that ends. What
-// disciplines a clock by a loop of its own, as the Linux kernel's PLL and FLL do, is another part
-// of that sum: a setting for each of its updates, planned as the end of a slew is.
+// disciplines a clock by a loop of its own, as the Linux kernel's PLL and FLL do, gives it a
+// frequency for each of its seconds (sim/programs/kernel_clock.h).
 //
 // Complexity: reading the present O(1), some nanoseconds; the past O(log n) of n adjustments.
 // Source: docs/design.md sections 4, 5 and 7; docs/reference/calibration.md section 2 ("Host

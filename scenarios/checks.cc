@@ -358,6 +358,28 @@ void check_published(const Scenario& scenario, const std::string& pointer,
   }
 }
 
+// A plain name in a host's folder, and a variable that leaves the loader alone.
+void check_programs(const Scenario& scenario, const std::string& pointer,
+                    const HostPrograms& programs) {
+  for (const auto& [name, content] : programs.files) {
+    if (name.empty() || name.starts_with(".") || name.find('/') != std::string::npos) {
+      fail_at(scenario, child_pointer(pointer + "/files", name),
+              fmt::format("found \"{}\", allowed: a file name without \"/\" that does not begin "
+                          "with a dot",
+                          shown_text(name)));
+    }
+  }
+  for (const auto& [name, value] : programs.environment) {
+    if (name.empty() || name.find('=') != std::string::npos || name.starts_with("LD_") ||
+        name.starts_with("SIMBENCH_")) {
+      fail_at(scenario, child_pointer(pointer + "/environment", name),
+              fmt::format("found \"{}\", allowed: a name without \"=\" that does not begin with "
+                          "LD_ or SIMBENCH_",
+                          shown_text(name)));
+    }
+  }
+}
+
 void check_pipelines(const Scenario& scenario) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scenario.pipelines.size(); ++i) {
@@ -369,6 +391,9 @@ void check_pipelines(const Scenario& scenario) {
               fmt::format("found a second \"{}\", allowed a name for each pipeline", name));
     }
     names.push_back(name);
+    if (const std::optional<HostPrograms>& programs = scenario.pipelines[i].programs) {
+      check_programs(scenario, fmt::format("/pipelines/{}/host_sync/program", i), *programs);
+    }
   }
   check_published(scenario, "/published", scenario.published, names);
   if (scenario.studio) {

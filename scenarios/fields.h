@@ -205,7 +205,30 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Usb, bandwidth_mb_per_s, sharing
                                                 host_jitter_correlation, spike_probability,
                                                 spike_max_transfers, delivery_quantiles_ms,
                                                 delivery_correlation, backend_stamp)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pipeline, name, host_sync, device_time, gathering)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(HostPrograms, master, slave, files, environment,
+                                                run_before_capture_s, run_during_capture, model)
+
+// A host_sync is the name of an algorithm, or an object with programs.
+inline void to_json(nlohmann::json& out, const Pipeline& pipeline) {
+  out = {{"name", pipeline.name},
+         {"host_sync", pipeline.host_sync},
+         {"device_time", pipeline.device_time},
+         {"gathering", pipeline.gathering}};
+  if (pipeline.programs) out["host_sync"] = {{"program", *pipeline.programs}};
+}
+inline void from_json(const nlohmann::json& in, Pipeline& pipeline) {
+  in.at("name").get_to(pipeline.name);
+  in.at("device_time").get_to(pipeline.device_time);
+  in.at("gathering").get_to(pipeline.gathering);
+  const nlohmann::json& host_sync = in.at("host_sync");
+  if (host_sync.is_string()) {
+    host_sync.get_to(pipeline.host_sync);
+    pipeline.programs.reset();
+  } else {
+    pipeline.programs = host_sync.at("program").get<HostPrograms>();
+    pipeline.host_sync = "program " + program_name(pipeline.programs->slave.front());
+  }
+}
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, stream, table, gathering_interval_periods,
                                    rmdv_median)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, amd_ms, rmdv_ms)

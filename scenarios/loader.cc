@@ -147,8 +147,12 @@ std::string no_such_key(const std::string& pointer, const std::string& key, cons
                                      : fmt::format("{}?", fmt::join(similar, " or ")));
 }
 
-json& element(json& array, const std::string& pointer, const std::string& key,
-              const std::string& label) {
+// "-" becomes the index of a new element.
+json& element(json& array, const std::string& pointer, std::string& key, const std::string& label) {
+  if (key == "-") {
+    key = std::to_string(array.size());
+    return array.emplace_back();
+  }
   const bool is_index =
       !key.empty() && key.size() < 10 && (key == "0" || key[0] != '0') &&
       std::all_of(key.begin(), key.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -174,13 +178,14 @@ std::vector<std::string> optional_members(const nlohmann::ordered_json* node) {
 // exist, except for /algorithms/NAME/PARAMETER (the algorithms declare their own parameters and
 // defaults) and for members that the schema calls optional. Throws InputError.
 void apply_override(const Override& setting, std::size_t level, json& document, Places& places) {
-  const std::string& pointer = setting.pointer;
   const std::string label =
-      fmt::format("--set {}={}", shown_text(pointer), shown_text(setting.value));
-  if (!is_utf8(pointer) || !is_utf8(setting.value)) {
+      setting.label.empty()
+          ? fmt::format("--set {}={}", shown_text(setting.pointer), shown_text(setting.value))
+          : setting.label;
+  if (!is_utf8(setting.pointer) || !is_utf8(setting.value)) {
     throw InputError(label + ": found bytes that are no UTF-8 text");
   }
-  const std::vector<std::string> keys = keys_of(pointer, label);
+  std::vector<std::string> keys = keys_of(setting.pointer, label);
   const json value = parse_value(setting.value, label);
   const bool is_parameter = is_algorithm_parameter(keys);
 
@@ -188,7 +193,7 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
   json* parent = nullptr;
   std::string walked;
   const nlohmann::ordered_json* schema = &ordered_schema();
-  for (const std::string& key : keys) {
+  for (std::string& key : keys) {
     const std::vector<std::string> optional = optional_members(schema);
     const bool may_create = is_parameter || std::ranges::find(optional, key) != optional.end();
     parent = target;
@@ -215,13 +220,13 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
   } else {
     *target = value;
   }
-  places.erase(pointer);
+  places.erase(walked);
   Place place;
   place.label = label;
-  place.set_pointer = pointer;
+  place.set_pointer = walked;
   place.is_set = true;
   place.level = level;
-  places.set(pointer, std::move(place));
+  places.set(walked, std::move(place));
 }
 
 // One file as written, checked by itself.

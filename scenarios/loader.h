@@ -31,10 +31,12 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// One --set /json/pointer=value. A value that does not parse as JSON is text.
+// One --set /json/pointer=value. A value that does not parse as JSON is text. The last key "-" of an
+// array appends to it (RFC 6901).
 struct Override {
   std::string pointer;
   std::string value;
+  std::string label{};  // what messages call it; empty: "--set /json/pointer=value"
 };
 
 // The source of each JSON pointer of a resolved scenario: a file and line, or a --set.

@@ -7,6 +7,11 @@
 
 namespace simbench::scenarios {
 
+std::string program_name(const HostPrograms::Command& command) {
+  const std::string& program = command.front();
+  return program.substr(program.rfind('/') + 1);
+}
+
 const Stream* Cameras::stream(StreamKind kind) const {
   const auto found = std::ranges::find(streams, kind, &Stream::kind);
   return found == streams.end() ? nullptr : &*found;

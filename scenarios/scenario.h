@@ -394,12 +394,31 @@ struct LeapSecond {
 using Fault =
     std::variant<CameraVanishes, LateFirstFrame, ClockStep, HostStops, LinkStops, LeapSecond>;
 
-// One choice for each stage, by the names under which algorithms are registered.
+// Real programs that synchronise the hosts' clocks (sim/programs/program_sync.h).
+struct HostPrograms {
+  using Command = std::vector<std::string>;  // the program and its arguments
+  std::vector<Command> master;
+  std::vector<Command> slave;
+  std::map<std::string, std::string> files{};  // contents by name, in each host's folder
+  std::map<std::string, std::string> environment{};
+  double run_before_capture_s = 0;
+  bool run_during_capture = true;
+  std::string model{};  // the pipeline whose algorithm models them; empty: none
+
+  bool operator==(const HostPrograms&) const = default;
+};
+
+// The last part of the path: "chronyd".
+std::string program_name(const HostPrograms::Command& command);
+
+// One choice for each stage, by the names under which algorithms are registered. Programs take the
+// place of an algorithm; host_sync is then "program" and the name of the slaves' first one.
 struct Pipeline {
   std::string name;
   std::string host_sync;
   std::string device_time;
   std::string gathering;
+  std::optional<HostPrograms> programs{};
 };
 
 // A parameter of an algorithm, which the algorithm's registration checks.

@@ -10,7 +10,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "shim/card.h"
 #include "shim/link.h"
+#include "shim/local.h"
 
 namespace simbench::shim {
 namespace {
@@ -35,6 +37,7 @@ ssize_t fill(void* data, std::size_t size) {
 
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
+  if (is_card(path)) return open_card(flags);
   return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
 }
 
@@ -108,8 +111,9 @@ SIMBENCH_CALL ssize_t read(int fd, void* data, std::size_t size) {
       return fill(data, size);
     case Kind::kTimer:
       return read_timer(fd, data, size);
-    case Kind::kEpoll:
-    case Kind::kReal:
+    case Kind::kLocal:
+      return local_read(fd, data, size);
+    default:
       break;
   }
   return syscall(SYS_read, fd, data, size);
@@ -124,6 +128,7 @@ ssize_t read_checked(int fd, void* data, std::size_t size, std::size_t room) {
 
 SIMBENCH_CALL ssize_t write(int fd, const void* data, std::size_t size) {
   if (kind_of(fd) == Kind::kSocket) return send(fd, data, size, 0);
+  if (is_local(fd)) return local_write(fd, data, size);
   return syscall(SYS_write, fd, data, size);
 }
 

@@ -4,6 +4,7 @@
 #include <sys/timex.h>
 #include <time.h>
 
+#include "shim/card.h"
 #include "shim/link.h"
 
 namespace simbench::shim {
@@ -23,22 +24,28 @@ std::int64_t set_clock(clockid_t clock, std::int64_t sec, std::int64_t ns) {
     errno = EINVAL;
     return -1;
   }
-  return ask({.call = Call::kSetClock, .a = clock, .b = sec * kSecond + ns});
+  std::int64_t known = 0;
+  if (!world_clock(clock, known)) return -1;
+  return ask({.call = Call::kSetClock, .a = known, .b = sec * kSecond + ns});
 }
 
 int adjust(clockid_t clock, timex* setting) {
+  std::int64_t known = 0;
+  if (!world_clock(clock, known)) return -1;
   Received reply{.data = setting, .capacity = sizeof *setting};
   return static_cast<int>(
-      ask({.call = Call::kAdjustClock, .a = clock}, {setting, sizeof *setting}, {}, &reply));
+      ask({.call = Call::kAdjustClock, .a = known}, {setting, sizeof *setting}, {}, &reply));
 }
 
 }  // namespace
 
 SIMBENCH_CALL int clock_gettime(clockid_t clock, timespec* time) {
   if (!is_simulated()) return SIMBENCH_REAL(clock_gettime)(clock, time);
+  std::int64_t known = 0;
+  if (!world_clock(clock, known)) return -1;
   const int before = errno;
   errno = 0;
-  const std::int64_t ns = ask({.call = Call::kReadClock, .a = clock});
+  const std::int64_t ns = ask({.call = Call::kReadClock, .a = known});
   if (ns == -1 && errno != 0) return -1;
   errno = before;
   *time = to_timespec(ns);

@@ -12,6 +12,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "shim/local.h"
+
 namespace simbench::shim {
 namespace {
 
@@ -19,6 +21,9 @@ int world_link = -1;
 long asking_thread = 0;
 Identity own_identity{};
 Kind kinds[kMostDescriptors];
+// What the world calls them: descriptors that were duplicated have one number.
+int numbers[kMostDescriptors];
+int descriptors_of[kMostDescriptors];  // by number: how many
 
 ssize_t transfer(bool is_request, iovec* pieces, std::size_t count) {
   msghdr message{};
@@ -60,6 +65,7 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
     give_up("a second thread or process that waits or asks for the time");
   }
   Request header = request;
+  header.fd = number_of(request.fd);
   header.size = static_cast<std::uint32_t>(head.size + tail.size);
   iovec out[] = {{&header, sizeof header},
                  {const_cast<void*>(head.data), head.size},
@@ -72,8 +78,10 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
   iovec in[] = {{&answer, sizeof answer}, {received.data, received.capacity}};
   if (transfer(false, in, 2) < static_cast<ssize_t>(sizeof answer)) lose();
   received.size = answer.size;
-  if (answer.error == 0) return answer.value;
-  errno = answer.error;
+  if ((answer.error & kHasExpirations) != 0) make_signals();
+  const int error = answer.error & ~kHasExpirations;
+  if (error == 0) return answer.value;
+  errno = error;
   return -1;
 }
 
@@ -89,7 +97,33 @@ void* find_real(const char* name) {
   return function;
 }
 
+namespace {
+
+// Tells the world when it was the last.
+void release(int fd) {
+  if (kind_of(fd) == Kind::kReal) return;
+  const bool is_last = --descriptors_of[numbers[fd]] == 0;
+  if (is_last && (kinds[fd] == Kind::kSocket || kinds[fd] == Kind::kTimer)) {
+    ask({.call = Call::kClose, .fd = fd});
+  }
+  kinds[fd] = Kind::kReal;
+}
+
+void name_descriptor(int fd, Kind kind, int number) {
+  kinds[fd] = kind;
+  numbers[fd] = number;
+  ++descriptors_of[number];
+}
+
+}  // namespace
+
+int number_of(int fd) { return kind_of(fd) == Kind::kReal ? fd : numbers[fd]; }
+
 Kind kind_of(int fd) { return fd >= 0 && fd < kMostDescriptors ? kinds[fd] : Kind::kReal; }
+
+void set_kind(int fd, Kind kind) {
+  if (fd >= 0 && fd < kMostDescriptors) kinds[fd] = kind;
+}
 
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec) {
   const int fd = eventfd(0, (nonblocking ? EFD_NONBLOCK : 0) | (close_on_exec ? EFD_CLOEXEC : 0));
@@ -99,31 +133,46 @@ int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec) {
     errno = EMFILE;
     return -1;
   }
-  kinds[fd] = kind;
+  release(fd);  // of one that is no more
+  int number = fd;
+  while (descriptors_of[number] != 0) number = (number + 1) % kMostDescriptors;
+  name_descriptor(fd, kind, number);
   return fd;
+}
+
+int duplicate_descriptor(int from, int to) {
+  if (to < 0) return -1;
+  const Kind kind = kind_of(from);
+  if (kind == Kind::kEpoll) give_up("a duplicate of an epoll descriptor");
+  if (to >= kMostDescriptors && kind != Kind::kReal) {
+    syscall(SYS_close, to);
+    errno = EMFILE;
+    return -1;
+  }
+  if (from == to) return to;
+  const int number = number_of(from);
+  if (kind != Kind::kReal) ++descriptors_of[number];  // though `to` were the last but this
+  release(to);
+  if (kind == Kind::kReal) return to;
+  --descriptors_of[number];
+  name_descriptor(to, kind, number);
+  if (kind == Kind::kSocket) copy_socket_state(from, to);
+  return to;
 }
 
 bool is_blocking(int fd) { return (syscall(SYS_fcntl, fd, F_GETFL) & O_NONBLOCK) == 0; }
 
-namespace {
-
-void forget(int fd) {
-  if (kind_of(fd) == Kind::kReal) return;
-  if (kinds[fd] == Kind::kSocket || kinds[fd] == Kind::kTimer)
-    ask({.call = Call::kClose, .fd = fd});
-  kinds[fd] = Kind::kReal;
-}
-
-}  // namespace
-
 SIMBENCH_CALL int close(int fd) {
   if (is_simulated() && fd == world_link) return 0;  // daemons close all that they do not know
-  forget(fd);
-  return static_cast<int>(syscall(SYS_close, fd));
+  const bool was_local = is_local(fd);
+  release(fd);
+  const int result = static_cast<int>(syscall(SYS_close, fd));
+  if (was_local) local_closed();
+  return result;
 }
 
 SIMBENCH_CALL int fclose(FILE* file) {
-  forget(fileno(file));
+  release(fileno(file));
   return SIMBENCH_REAL(fclose)(file);
 }
 

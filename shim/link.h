@@ -14,6 +14,8 @@
 #ifndef SIMBENCH_SHIM_LINK_H_
 #define SIMBENCH_SHIM_LINK_H_
 
+#include <time.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -44,6 +46,11 @@ const Identity& identity();
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
 std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Received* reply = nullptr);
 
+// Makes the signals of the timers that have expired, which the world tells with a reply.
+void make_signals();
+// How many of these signals have run a handler, so far.
+std::uint64_t handled_signals();
+
 // Says what cannot be simulated, and ends the program.
 [[noreturn]] void give_up(const char* what, const char* why = "");
 
@@ -55,15 +62,33 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
-enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance };
+enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink, kLocal, kCard };
+
+// Whether the world says when it is ready; of others, the kernel does.
+constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
+
 
 inline constexpr int kMostDescriptors = 1024;
 
 Kind kind_of(int fd);
+// Nothing for -1.
+void set_kind(int fd, Kind kind);
 // A number that stands for something of the world, or -1 with errno. The kernel keeps it taken,
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
 bool is_blocking(int fd);
+// The world's number of a descriptor, which duplicates share; of others and of signal timers,
+// which are below 0, the number itself. ask() translates a request's `fd`.
+int number_of(int fd);
+// `to` is a duplicate of `from` by the kernel's word, or -1: returns it, or -1 with errno.
+int duplicate_descriptor(int from, int to);
+void copy_socket_state(int from, int to);
+
+bool is_time(const timespec& time);
+// Times beyond 292 years are never.
+std::int64_t nanoseconds(const timespec& time);
+TimerSetting to_setting(const itimerspec& setting);
+itimerspec from_setting(const TimerSetting& setting);
 
 // read() of a timer.
 std::int64_t read_timer(int fd, void* data, std::size_t size);

@@ -5,8 +5,9 @@
 // a process asks for something that takes time. Both ends are one machine: integers are in its byte
 // order, and struct timex is the kernel's.
 //
-// A request or reply is its struct, then `size` bytes of data. Descriptors are the program's own
-// numbers. Times are nanoseconds. `error` is an errno, or 0.
+// A request or reply is its struct, then `size` bytes of data. Descriptors have numbers that the
+// shim gives them, the program's own if it has no duplicates. Times are nanoseconds. `error` is an
+// errno, or 0.
 //
 // Untrusted: the world checks every number of a request (sim/programs/requests.h).
 #ifndef SIMBENCH_SHIM_PROTOCOL_H_
@@ -26,7 +27,8 @@ enum class Call : std::uint32_t {
   kReadClock,    // a: clockid -> value
   kSetClock,     // a: clockid, b: its new reading
   kAdjustClock,  // a: clockid, data: struct timex -> value: clock state, data: struct timex
-  kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data
+  kWait,         // a: Deadline, b: its time, data: Interest[] -> value: how many are ready, data;
+                 // EINTR: a signal timer has expired, data: what is left, int64
   kOpenTimer,    // fd, a: clockid
   kSetTimer,     // fd, a: 1 if absolute, data: TimerSetting -> data: the setting before
   kReadTimer,    // fd -> value: expirations since the last; EAGAIN if none
@@ -41,15 +43,39 @@ enum class Call : std::uint32_t {
   kReceive,      // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload
   kClose,        // fd
   kRandom,       // a: how many -> data: bytes
+  kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
+  kReadCard,     // a: how many -> data: CardSample[]
+  kCountInput,   // fd -> value: bytes that the next read would give
+  kLocalActivity,  // another program of the host may have something to read, or a peer less
+  kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
+                  // before -> value: what it stamps; EOPNOTSUPP without a clock on the card
+  // Timers that make signals, of alarm(), setitimer() and timer_create(); `fd` is a number below 0
+  // that the shim gives them.
+  kSetSignalTimer,  // fd, a: 1 if absolute, b: clockid, data: TimerSetting -> data: the one before
+  kQuerySignalTimer,  // fd -> data: TimerSetting
+  kDropSignalTimer,   // fd
+  kTakeExpirations,   // -> data: Expiration[], of what the shim has not yet heard of
 };
 
 // When a wait ends without anything being ready.
 enum class Deadline : std::int64_t { kNever, kAfter, kAtSystemTime, kAtMonotonicTime };
 
 enum class SocketOption : std::int64_t {
-  kReceiveStamps,   // software stamps of arrivals
-  kTransmitStamps,  // software stamps of departures, in the error queue
+  kReceiveStamps,   // of arrivals: StampKind as bits
+  kTransmitStamps,  // of departures, in the error queue: StampKind as bits -> value: the sent
+  kReuseAddress,    // SO_REUSEADDR, for those that follow: 0 or 1
+  kBroadcast,       // SO_BROADCAST
+  kUrgentErrors,    // SO_SELECT_ERR_QUEUE
+  kAllGroups,       // IP_MULTICAST_ALL
+  kLoopGroups,      // IP_MULTICAST_LOOP
 };
+
+enum StampKind : unsigned {
+  kSoftwareStamps = 1,
+  kHardwareStamps = 2,
+  kBothStamps = 4,  // departures have a stamp of each kind, in messages of their own
+};
+
 
 struct Request {
   Call call{};
@@ -57,8 +83,15 @@ struct Request {
   std::int64_t a = 0;
   std::int64_t b = 0;
   std::uint32_t size = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t flags = 0;  // WaitFlag
 };
+
+// In a reply's error: signal timers have expired (kTakeExpirations).
+inline constexpr std::int32_t kHasExpirations = 1 << 30;
+
+// A wait that watches real descriptors too ends with EAGAIN when another program of the host may
+// have made one ready. Its data is then what is left until the deadline (int64), as with EINTR.
+enum WaitFlag : std::uint32_t { kWatchesReal = 1 };
 
 struct Reply {
   std::int64_t value;
@@ -67,8 +100,12 @@ struct Reply {
 };
 
 struct Identity {
-  std::int32_t process = 0;   // what getpid() is
-  std::uint32_t address = 0;  // the host's, host byte order
+  std::int32_t process = 0;         // what getpid() is
+  std::uint32_t address = 0;        // the host's; addresses are in host byte order
+  std::uint32_t netmask = 0;        // of its network
+  std::uint32_t first_address = 0;  // of "host0"
+  std::uint32_t hosts = 0;
+  std::uint32_t has_card_clock = 0;  // 0 or 1
 };
 
 struct Address {
@@ -89,12 +126,29 @@ struct TimerSetting {
   std::int64_t interval;  // 0: once
 };
 
+struct Expiration {
+  std::int32_t timer;
+  std::uint32_t times;
+};
+
+// The clock of the network card, where a clockid is asked for; no clock has this number.
+inline constexpr std::int64_t kCardClock = -1;
+inline constexpr std::int32_t kMostCardRate = 62'499'999;  // ppb
+
+// A reading of the card's clock between two of the system's.
+struct CardSample {
+  std::int64_t before;
+  std::int64_t card;
+  std::int64_t after;
+};
+
 struct Arrival {
   Address from;
   Address to;
-  std::int64_t system;   // the software stamp; kNoStamp: none
-  std::uint32_t length;  // of the payload, also where less of it follows
-  std::uint32_t reserved;
+  std::int64_t system;    // the software stamp; kNoStamp: none
+  std::int64_t hardware;  // the card's; kNoStamp: none
+  std::uint32_t length;   // of the payload, also where less of it follows
+  std::uint32_t number;   // of the datagrams that the socket sent; 0 for arrivals
 };
 
 inline constexpr std::int64_t kNoStamp = INT64_MIN;

@@ -1,9 +1,8 @@
-// UDP sockets of the simulated network; all others are the real ones (Unix-domain) or refused.
+// Datagram sockets of the simulated network; all others are the real ones (Unix-domain) or refused.
 #include <arpa/inet.h>
 #include <errno.h>
 #include <linux/errqueue.h>
 #include <linux/net_tstamp.h>
-#include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <string.h>
@@ -14,24 +13,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "shim/link.h"
+#include "shim/local.h"
+#include "shim/netlink.h"
+#include "shim/sockets.h"
 
 namespace simbench::shim {
-namespace {
-
-constexpr int kInterface = 2;  // the index of the host's network interface; 1 is the loopback
-
-// How a socket hands over the stamps of arrivals.
-enum class Stamps : std::uint8_t { kNone, kTimeval, kTimespec, kTimestamping };
-
-struct SocketState {
-  Stamps stamps = Stamps::kNone;
-  bool wants_destination = false;  // IP_PKTINFO
-  std::int64_t timeout_ns = -1;    // SO_RCVTIMEO
-};
-SocketState states[kMostDescriptors];
-
-bool is_ours(int fd) { return kind_of(fd) == Kind::kSocket; }
 
 bool read_address(const sockaddr* name, socklen_t size, Address& address) {
   if (name == nullptr || size < sizeof(sockaddr_in) || name->sa_family != AF_INET) {
@@ -53,6 +39,8 @@ void write_address(const Address& address, sockaddr* name, socklen_t* size) {
   memcpy(name, &in, *size < sizeof in ? *size : sizeof in);
   *size = sizeof in;
 }
+
+namespace {
 
 // The message of a transmit stamp is the packet as it left: Ethernet, IPv4, UDP, payload.
 constexpr std::size_t kPacketHeads = 14 + 20 + 8;
@@ -84,7 +72,7 @@ Datagram datagram;  // the one at hand; a program has one thread
 bool wait_for_datagram(int fd, int flags) {
   if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return false;
   pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-  const std::int64_t ns = states[fd].timeout_ns;
+  const std::int64_t ns = state_of(fd).timeout_ns;
   const timespec timeout{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
   if (ppoll(&interest, 1, ns < 0 ? nullptr : &timeout, nullptr) > 0) return true;
   errno = EAGAIN;
@@ -102,11 +90,14 @@ bool take_datagram(int fd, int flags) {
       datagram.size = reply.size - sizeof(Arrival);
       memcpy(datagram.bytes + kPacketHeads, reply_data + sizeof(Arrival), datagram.size);
       datagram.begin = kPacketHeads;
-      if ((flags & MSG_ERRQUEUE) != 0) {
-        write_heads(datagram.arrival, datagram.bytes);
-        datagram.begin = 0;
-        datagram.size += kPacketHeads;
+      if ((flags & MSG_ERRQUEUE) == 0) return true;
+      if ((state_of(fd).timestamping & SOF_TIMESTAMPING_OPT_TSONLY) != 0) {
+        datagram.size = 0;
+        return true;
       }
+      write_heads(datagram.arrival, datagram.bytes);
+      datagram.begin = 0;
+      datagram.size += kPacketHeads;
       return true;
     }
     if (errno != EAGAIN || !wait_for_datagram(fd, flags)) return false;
@@ -140,24 +131,57 @@ class Control {
   std::size_t room_;
 };
 
-void add_stamp(const SocketState& state, Control& control) {
-  const std::int64_t ns = datagram.arrival.system;
-  if (ns == kNoStamp) return;
-  const timespec stamp{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
-  switch (state.stamps) {
-    case Stamps::kNone:
-      return;
-    case Stamps::kTimeval: {
-      const timeval rounded{.tv_sec = stamp.tv_sec, .tv_usec = stamp.tv_nsec / 1000};
-      return control.add(SOL_SOCKET, SCM_TIMESTAMP, &rounded, sizeof rounded);
-    }
-    case Stamps::kTimespec:
-      return control.add(SOL_SOCKET, SCM_TIMESTAMPNS, &stamp, sizeof stamp);
-    case Stamps::kTimestamping: {
-      const timespec stamps[3] = {stamp, {}, {}};
-      return control.add(SOL_SOCKET, SCM_TIMESTAMPING, stamps, sizeof stamps);
-    }
+timespec to_timespec(std::int64_t ns) {
+  if (ns == kNoStamp) return {};
+  return {.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
+}
+
+// The stamps as SO_TIMESTAMPING has them: those that it was asked to report.
+void add_stamps(const SocketState& state, bool is_error, Control& control) {
+  const Arrival& arrival = datagram.arrival;
+  const bool by_software = (state.timestamping & SOF_TIMESTAMPING_SOFTWARE) != 0;
+  const bool by_card = (state.timestamping & SOF_TIMESTAMPING_RAW_HARDWARE) != 0;
+  const timespec stamps[3] = {to_timespec(by_software ? arrival.system : kNoStamp),
+                              {},
+                              to_timespec(by_card ? arrival.hardware : kNoStamp)};
+  if (stamps[0].tv_sec == 0 && stamps[2].tv_sec == 0) return;
+  control.add(SOL_SOCKET, SCM_TIMESTAMPING, stamps, sizeof stamps);
+  const bool wants_packet = (state.timestamping & SOF_TIMESTAMPING_OPT_PKTINFO) != 0;
+  if (is_error || stamps[2].tv_sec == 0 || !wants_packet) return;
+  scm_ts_pktinfo packet{};
+  packet.if_index = kInterface;
+  packet.pkt_length = static_cast<std::uint32_t>(kPacketHeads + arrival.length);
+  control.add(SOL_SOCKET, SCM_TIMESTAMPING_PKTINFO, &packet, sizeof packet);
+}
+
+void add_older_stamp(const SocketState& state, Control& control) {
+  if (datagram.arrival.system == kNoStamp) return;
+  const timespec stamp = to_timespec(datagram.arrival.system);
+  if (state.stamps == Stamps::kTimeval) {
+    const timeval rounded{.tv_sec = stamp.tv_sec, .tv_usec = stamp.tv_nsec / 1000};
+    control.add(SOL_SOCKET, SCM_TIMESTAMP, &rounded, sizeof rounded);
+  } else if (state.stamps == Stamps::kTimespec) {
+    control.add(SOL_SOCKET, SCM_TIMESTAMPNS, &stamp, sizeof stamp);
   }
+}
+
+void add_error(const SocketState& state, Control& control) {
+  sock_extended_err error{};
+  error.ee_errno = ENOMSG;
+  error.ee_origin = SO_EE_ORIGIN_TIMESTAMPING;
+  error.ee_info = SCM_TSTAMP_SND;
+  if ((state.timestamping & SOF_TIMESTAMPING_OPT_ID) != 0) {
+    error.ee_data = datagram.arrival.number - state.first_number;
+  }
+  control.add(IPPROTO_IP, IP_RECVERR, &error, sizeof error);
+}
+
+void add_destination(bool is_error, Control& control) {
+  in_pktinfo to{};
+  to.ipi_ifindex = kInterface;
+  to.ipi_spec_dst.s_addr = htonl(identity().address);
+  to.ipi_addr.s_addr = htonl(is_error ? identity().address : datagram.arrival.to.host);
+  control.add(IPPROTO_IP, IP_PKTINFO, &to, sizeof to);
 }
 
 ssize_t receive_message(int fd, msghdr& message, int flags) {
@@ -176,22 +200,11 @@ ssize_t receive_message(int fd, msghdr& message, int flags) {
   write_address(is_error ? datagram.arrival.to : datagram.arrival.from,
                 static_cast<sockaddr*>(message.msg_name), &message.msg_namelen);
   Control control(message);
-  const SocketState& state = states[fd];
-  add_stamp(state, control);
-  if (is_error) {
-    sock_extended_err error{};
-    error.ee_errno = ENOMSG;
-    error.ee_origin = SO_EE_ORIGIN_TIMESTAMPING;
-    error.ee_info = SCM_TSTAMP_SND;
-    control.add(IPPROTO_IP, IP_RECVERR, &error, sizeof error);
-  }
-  if (state.wants_destination) {
-    in_pktinfo to{};
-    to.ipi_ifindex = kInterface;
-    to.ipi_spec_dst.s_addr = htonl(identity().address);
-    to.ipi_addr.s_addr = htonl(is_error ? identity().address : datagram.arrival.to.host);
-    control.add(IPPROTO_IP, IP_PKTINFO, &to, sizeof to);
-  }
+  const SocketState& state = state_of(fd);
+  if (!is_error) add_older_stamp(state, control);
+  add_stamps(state, is_error, control);
+  if (is_error) add_error(state, control);
+  if (state.wants_destination) add_destination(is_error, control);
   return static_cast<ssize_t>((flags & MSG_TRUNC) != 0 ? datagram.size : copied);
 }
 
@@ -232,68 +245,17 @@ int address_call(int fd, Call call, const sockaddr* name, socklen_t size) {
   return static_cast<int>(ask({.call = call, .fd = fd}, {&address, sizeof address}));
 }
 
-int set_world_option(int fd, SocketOption option, bool on) {
-  return static_cast<int>(ask({.call = Call::kSetOption,
-                               .fd = fd,
-                               .a = static_cast<std::int64_t>(option),
-                               .b = on ? 1 : 0}));
-}
-
-int set_stamps(int fd, Stamps stamps, int value) {
-  states[fd].stamps = value != 0 ? stamps : Stamps::kNone;
-  return set_world_option(fd, SocketOption::kReceiveStamps, value != 0);
-}
-
-int set_timestamping(int fd, int flags) {
-  constexpr int kHardware =
-      SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
-  // As a driver without hardware stamps: it takes the flags, and stamps nothing.
-  const bool is_reported = (flags & SOF_TIMESTAMPING_SOFTWARE) != 0;
-  const bool departures = is_reported && (flags & SOF_TIMESTAMPING_TX_SOFTWARE) != 0;
-  if ((flags & ~kHardware) == 0 && flags != 0) return 0;
-  if (set_world_option(fd, SocketOption::kTransmitStamps, departures) < 0) return -1;
-  const bool arrivals = is_reported && (flags & SOF_TIMESTAMPING_RX_SOFTWARE) != 0;
-  // Stamps of departures come in the same form.
-  states[fd].stamps = arrivals || departures ? Stamps::kTimestamping : Stamps::kNone;
-  return set_world_option(fd, SocketOption::kReceiveStamps, arrivals);
-}
-
-int set_socket_option(int fd, int option, const void* value, socklen_t size) {
-  if (option == SO_RCVTIMEO_OLD && size >= sizeof(timeval)) {
-    timeval timeout{};
-    memcpy(&timeout, value, sizeof timeout);
-    const std::int64_t ns = timeout.tv_sec * kSecond + timeout.tv_usec * 1000;
-    states[fd].timeout_ns = ns == 0 ? -1 : ns;
-    return 0;
-  }
-  int number = 0;
-  if (size >= sizeof number) memcpy(&number, value, sizeof number);
-  switch (option) {
-    case SO_TIMESTAMP_OLD:
-      return set_stamps(fd, Stamps::kTimeval, number);
-    case SO_TIMESTAMPNS_OLD:
-      return set_stamps(fd, Stamps::kTimespec, number);
-    case SO_TIMESTAMPING_OLD:
-      return set_timestamping(fd, number);
-    case SO_BROADCAST:
-    case SO_REUSEADDR:
-    case SO_REUSEPORT:
-    case SO_PRIORITY:
-    case SO_RCVBUF:
-    case SO_SNDBUF:
-    case SO_BINDTODEVICE:
-    case SO_SELECT_ERR_QUEUE:
-      return 0;  // nothing that a message of the simulated network would notice
-    default:
-      errno = ENOPROTOOPT;
-      return -1;
-  }
-}
+// What goes through sendmsg() and recvmsg() is not: the world's, routing and local sockets.
+bool is_real(int fd) { return !is_socket(fd) && !is_netlink(fd) && !is_local(fd); }
 
 }  // namespace
 
+void copy_socket_state(int from, int to) { state_of(to) = state_of(from); }
+
 SIMBENCH_CALL int socket(int domain, int type, int protocol) {
-  if (!is_simulated() || domain == AF_UNIX) return SIMBENCH_REAL(socket)(domain, type, protocol);
+  if (!is_simulated()) return SIMBENCH_REAL(socket)(domain, type, protocol);
+  if (domain == AF_UNIX) return local_socket(domain, type, protocol);
+  if (domain == AF_NETLINK) return open_netlink(type, protocol);
   const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (domain != AF_INET || kind != SOCK_DGRAM) {
     errno = domain == AF_INET ? EPROTONOSUPPORT : EAFNOSUPPORT;
@@ -302,7 +264,7 @@ SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   const int fd =
       open_descriptor(Kind::kSocket, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
-  states[fd] = {};
+  state_of(fd) = {.type = kind};
   if (ask({.call = Call::kOpenSocket, .fd = fd, .a = kind}) < 0) {
     syscall(SYS_close, fd);
     return -1;
@@ -311,55 +273,38 @@ SIMBENCH_CALL int socket(int domain, int type, int protocol) {
 }
 
 SIMBENCH_CALL int bind(int fd, const sockaddr* name, socklen_t size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(bind)(fd, name, size);
+  if (is_local(fd)) return local_bind(fd, name, size);
+  if (is_netlink(fd)) return 0;
+  if (!is_socket(fd)) return SIMBENCH_REAL(bind)(fd, name, size);
   return address_call(fd, Call::kBind, name, size);
 }
 
 SIMBENCH_CALL int connect(int fd, const sockaddr* name, socklen_t size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
+  if (is_local(fd)) return local_connect(fd, name, size);
+  if (!is_socket(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
   return address_call(fd, Call::kConnect, name, size);
 }
 
 SIMBENCH_CALL int getsockname(int fd, sockaddr* name, socklen_t* size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(getsockname)(fd, name, size);
+  if (is_netlink(fd)) return netlink_name(name, size);
+  if (!is_socket(fd)) return SIMBENCH_REAL(getsockname)(fd, name, size);
   return name_of(fd, Call::kName, name, size);
 }
 
 SIMBENCH_CALL int getpeername(int fd, sockaddr* name, socklen_t* size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(getpeername)(fd, name, size);
+  if (!is_socket(fd)) return SIMBENCH_REAL(getpeername)(fd, name, size);
   return name_of(fd, Call::kPeerName, name, size);
 }
 
-SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, socklen_t size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(setsockopt)(fd, level, option, value, size);
-  if (level == SOL_SOCKET) return set_socket_option(fd, option, value, size);
-  if (level == IPPROTO_IP) {
-    int number = 0;
-    if (size >= sizeof number) memcpy(&number, value, sizeof number);
-    if (option == IP_PKTINFO) states[fd].wants_destination = number != 0;
-    return 0;
-  }
-  errno = ENOPROTOOPT;
-  return -1;
-}
-
-SIMBENCH_CALL int getsockopt(int fd, int level, int option, void* value, socklen_t* size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
-  int number = 0;
-  if (level == SOL_SOCKET && option == SO_TYPE) number = SOCK_DGRAM;
-  if (level == SOL_SOCKET && option == SO_DOMAIN) number = AF_INET;
-  memcpy(value, &number, *size < sizeof number ? *size : sizeof number);
-  *size = sizeof number;
-  return 0;
-}
-
 SIMBENCH_CALL ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(sendmsg)(fd, message, flags);
+  if (is_local(fd)) return local_sendmsg(fd, message, flags);
+  if (is_netlink(fd)) return netlink_send(fd, *message);
+  if (!is_socket(fd)) return SIMBENCH_REAL(sendmsg)(fd, message, flags);
   return send_message(fd, *message);
 }
 
 SIMBENCH_CALL int sendmmsg(int fd, mmsghdr* messages, unsigned int count, int flags) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(sendmmsg)(fd, messages, count, flags);
+  if (!is_socket(fd)) return SIMBENCH_REAL(sendmmsg)(fd, messages, count, flags);
   for (unsigned int i = 0; i < count; ++i) {
     const ssize_t sent = send_message(fd, messages[i].msg_hdr);
     if (sent < 0) return i > 0 ? static_cast<int>(i) : -1;
@@ -370,29 +315,33 @@ SIMBENCH_CALL int sendmmsg(int fd, mmsghdr* messages, unsigned int count, int fl
 
 SIMBENCH_CALL ssize_t sendto(int fd, const void* data, std::size_t size, int flags,
                              const sockaddr* to, socklen_t to_size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(sendto)(fd, data, size, flags, to, to_size);
+  if (is_real(fd)) {
+    return SIMBENCH_REAL(sendto)(fd, data, size, flags, to, to_size);
+  }
   iovec piece{.iov_base = const_cast<void*>(data), .iov_len = size};
   msghdr message{};
   message.msg_name = const_cast<sockaddr*>(to);
   message.msg_namelen = to_size;
   message.msg_iov = &piece;
   message.msg_iovlen = 1;
-  return send_message(fd, message);
+  return sendmsg(fd, &message, flags);
 }
 
 SIMBENCH_CALL ssize_t send(int fd, const void* data, std::size_t size, int flags) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(send)(fd, data, size, flags);
+  if (is_real(fd)) return SIMBENCH_REAL(send)(fd, data, size, flags);
   return sendto(fd, data, size, flags, nullptr, 0);
 }
 
 SIMBENCH_CALL ssize_t recvmsg(int fd, msghdr* message, int flags) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(recvmsg)(fd, message, flags);
+  if (is_local(fd)) return local_recvmsg(fd, message, flags);
+  if (is_netlink(fd)) return netlink_receive(fd, *message, flags);
+  if (!is_socket(fd)) return SIMBENCH_REAL(recvmsg)(fd, message, flags);
   return receive_message(fd, *message, flags);
 }
 
 SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int flags,
                            timespec* timeout) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(recvmmsg)(fd, messages, count, flags, timeout);
+  if (!is_socket(fd)) return SIMBENCH_REAL(recvmmsg)(fd, messages, count, flags, timeout);
   for (unsigned int i = 0; i < count; ++i) {
     const bool may_wait = i == 0 || (flags & MSG_WAITFORONE) == 0;
     const int each = (flags & ~MSG_WAITFORONE) | (may_wait ? 0 : MSG_DONTWAIT);
@@ -405,20 +354,22 @@ SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int fl
 
 SIMBENCH_CALL ssize_t recvfrom(int fd, void* data, std::size_t size, int flags, sockaddr* from,
                                socklen_t* from_size) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(recvfrom)(fd, data, size, flags, from, from_size);
+  if (is_real(fd)) {
+    return SIMBENCH_REAL(recvfrom)(fd, data, size, flags, from, from_size);
+  }
   iovec piece{.iov_base = data, .iov_len = size};
   msghdr message{};
   message.msg_name = from;
   message.msg_namelen = from_size != nullptr ? *from_size : 0;
   message.msg_iov = &piece;
   message.msg_iovlen = 1;
-  const ssize_t received = receive_message(fd, message, flags);
+  const ssize_t received = recvmsg(fd, &message, flags);
   if (received >= 0 && from_size != nullptr) *from_size = message.msg_namelen;
   return received;
 }
 
 SIMBENCH_CALL ssize_t recv(int fd, void* data, std::size_t size, int flags) {
-  if (!is_ours(fd)) return SIMBENCH_REAL(recv)(fd, data, size, flags);
+  if (is_real(fd)) return SIMBENCH_REAL(recv)(fd, data, size, flags);
   return recvfrom(fd, data, size, flags, nullptr, nullptr);
 }
 

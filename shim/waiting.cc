@@ -1,7 +1,8 @@
 // Waiting: sleeps, select, poll, epoll and timers.
 //
 // A wait asks the world which of its descriptors are ready, and how long to wait. Real descriptors
-// (files, pipes, Unix-domain sockets) are looked at before and after; they end no wait.
+// (files, pipes, Unix-domain sockets) are looked at before and after, and whenever another program
+// of the host has done something that may have made one ready.
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -28,15 +29,6 @@ struct Until {
   std::int64_t ns = 0;
 };
 
-bool is_time(const timespec& time) {
-  return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < kSecond;
-}
-
-// Times beyond 292 years are never.
-std::int64_t nanoseconds(const timespec& time) {
-  return time.tv_sec >= INT64_MAX / kSecond ? INT64_MAX : time.tv_sec * kSecond + time.tv_nsec;
-}
-
 Until after(const timespec* timeout) {
   return timeout == nullptr ? Until{} : Until{Deadline::kAfter, nanoseconds(*timeout)};
 }
@@ -50,8 +42,63 @@ int look_at_real(pollfd* interests, nfds_t count) {
   return static_cast<int>(syscall(SYS_ppoll, interests, count, &now, nullptr, kOfTheShim));
 }
 
+// The signal mask of ppoll() and its kin, while they wait.
+class Mask {
+ public:
+  explicit Mask(const sigset_t* wanted) : is_set_(wanted != nullptr) {
+    if (!is_set_) return;
+    sigset_t pending{};
+    sigpending(&pending);
+    for (int signal = 1; signal < NSIG; ++signal) {
+      has_handled_ |= sigismember(&pending, signal) == 1 && sigismember(wanted, signal) == 0;
+    }
+    sigprocmask(SIG_SETMASK, wanted, &before_);
+  }
+  ~Mask() {
+    if (is_set_) sigprocmask(SIG_SETMASK, &before_, nullptr);
+  }
+  // Whether it let a signal through that had waited.
+  bool has_handled() const { return has_handled_; }
+
+ private:
+  bool is_set_;
+  bool has_handled_ = false;
+  sigset_t before_{};
+};
+
+// Asks until something is ready or the time has come. Fails with EINTR once a handler has run, and
+// with EAGAIN when real descriptors should be looked at; what is left goes to `until` and `left_ns`.
+// Signals without a handler do not end a wait.
+std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Received answer,
+                         std::int64_t* left_ns) {
+  for (;;) {
+    const std::uint64_t before = handled_signals();
+    Received reply = answer;
+    const std::int64_t ready = ask({.call = Call::kWait,
+                                    .a = static_cast<std::int64_t>(until.kind),
+                                    .b = until.ns,
+                                    .flags = watches_real ? kWatchesReal : 0U},
+                                   interests, {}, &reply);
+    if (ready >= 0 || (errno != EINTR && errno != EAGAIN)) return ready;
+    const int reason = handled_signals() != before ? EINTR : errno;
+    std::int64_t left = 0;
+    memcpy(&left, answer.data, sizeof left);
+    if (left_ns != nullptr) *left_ns = left;
+    if (until.kind == Deadline::kAfter) until.ns = left;
+    if (reason == EINTR && handled_signals() == before) continue;
+    errno = reason;
+    return -1;
+  }
+}
+
 // As poll(): which of the descriptors are ready, at the latest then.
-int wait(pollfd* interests, nfds_t count, Until until) {
+int wait(pollfd* interests, nfds_t count, Until until, const sigset_t* signals = nullptr,
+         std::int64_t* left_ns = nullptr) {
+  const Mask mask(signals);
+  if (mask.has_handled()) {
+    errno = EINTR;
+    return -1;
+  }
   if (count > kMostInterests) {
     errno = EINVAL;
     return -1;
@@ -59,33 +106,48 @@ int wait(pollfd* interests, nfds_t count, Until until) {
   pollfd real[kMostInterests];
   Interest simulated[kMostInterests];
   std::size_t asked = 0;
+  bool watches_real = false;
   for (nfds_t i = 0; i < count; ++i) {
-    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
+    const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
+    watches_real |= !is_ours && interests[i].fd >= 0;
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
-      simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
+      simulated[asked++] = {
+          .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
     }
   }
-  if (look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
-  Received reply{.data = simulated, .capacity = sizeof simulated};
-  if (ask({.call = Call::kWait, .a = static_cast<std::int64_t>(until.kind), .b = until.ns},
-          {simulated, asked * sizeof simulated[0]}, {}, &reply) < 0) {
-    return -1;
+  Interest answered[kMostInterests];
+  std::int64_t is_ready = -1;
+  while (is_ready < 0) {
+    if (watches_real && look_at_real(real, count) > 0) until = {Deadline::kAfter, 0};
+    is_ready = ask_to_wait(until, watches_real, {simulated, asked * sizeof simulated[0]},
+                           {.data = answered, .capacity = sizeof answered}, left_ns);
+    if (is_ready < 0 && errno != EAGAIN) return -1;
   }
-  look_at_real(real, count);
+  if (watches_real) look_at_real(real, count);
   int ready = 0;
-  std::size_t answered = 0;
+  std::size_t looked_at = 0;
   for (nfds_t i = 0; i < count; ++i) {
-    const bool is_ours = kind_of(interests[i].fd) != Kind::kReal;
-    interests[i].revents = is_ours ? simulated[answered++].ready : real[i].revents;
+    const bool is_ours = is_of_the_world(kind_of(interests[i].fd));
+    interests[i].revents = is_ours ? answered[looked_at++].ready : real[i].revents;
     ready += interests[i].revents != 0;
   }
   return ready;
 }
 
-int sleep_until(Until until) { return wait(nullptr, 0, until) < 0 ? -1 : 0; }
+int sleep_until(Until until, std::int64_t* left_ns = nullptr) {
+  return wait(nullptr, 0, until, nullptr, left_ns) < 0 ? -1 : 0;
+}
 
 }  // namespace
+
+bool is_time(const timespec& time) {
+  return time.tv_sec >= 0 && time.tv_nsec >= 0 && time.tv_nsec < kSecond;
+}
+
+std::int64_t nanoseconds(const timespec& time) {
+  return time.tv_sec >= INT64_MAX / kSecond ? INT64_MAX : time.tv_sec * kSecond + time.tv_nsec;
+}
 
 SIMBENCH_CALL int nanosleep(const timespec* interval, timespec* left) {
   if (!is_simulated()) return SIMBENCH_REAL(nanosleep)(interval, left);
@@ -93,8 +155,10 @@ SIMBENCH_CALL int nanosleep(const timespec* interval, timespec* left) {
     errno = EINVAL;
     return -1;
   }
-  if (left != nullptr) *left = {};
-  return sleep_until(after(interval));
+  std::int64_t left_ns = 0;
+  const int result = sleep_until(after(interval), &left_ns);
+  if (left != nullptr && result < 0) *left = {left_ns / kSecond, left_ns % kSecond};
+  return result;
 }
 
 SIMBENCH_CALL int clock_nanosleep(clockid_t clock, int flags, const timespec* time,
@@ -115,8 +179,9 @@ SIMBENCH_CALL int usleep(useconds_t us) {
 
 SIMBENCH_CALL unsigned int sleep(unsigned int seconds) {
   if (!is_simulated()) return SIMBENCH_REAL(sleep)(seconds);
-  sleep_until({Deadline::kAfter, seconds * kSecond});
-  return 0;
+  std::int64_t left_ns = 0;
+  if (sleep_until({Deadline::kAfter, seconds * kSecond}, &left_ns) == 0) return 0;
+  return static_cast<unsigned int>(left_ns / kSecond);
 }
 
 SIMBENCH_CALL int poll(pollfd* interests, nfds_t count, int timeout_ms) {
@@ -134,7 +199,7 @@ int poll_checked(pollfd* interests, nfds_t count, int timeout_ms, std::size_t si
 SIMBENCH_CALL int ppoll(pollfd* interests, nfds_t count, const timespec* timeout,
                         const sigset_t* mask) {
   if (!is_simulated()) return SIMBENCH_REAL(ppoll)(interests, count, timeout, mask);
-  return wait(interests, count, after(timeout));
+  return wait(interests, count, after(timeout), mask);
 }
 
 SIMBENCH_CALL int ppoll_checked(pollfd* interests, nfds_t count, const timespec* timeout,
@@ -158,7 +223,7 @@ SIMBENCH_CALL int pselect(int count, fd_set* readers, fd_set* writers, fd_set* e
                        (has(fd, exceptions) ? POLLPRI : 0);
     if (events != 0) interests[asked++] = {fd, static_cast<short>(events), 0};
   }
-  if (wait(interests, asked, after(timeout)) < 0) return -1;
+  if (wait(interests, asked, after(timeout), mask) < 0) return -1;
   for (fd_set* set : {readers, writers, exceptions}) {
     if (set != nullptr) FD_ZERO(set);
   }
@@ -256,15 +321,16 @@ SIMBENCH_CALL int epoll_ctl(int epoll, int operation, int fd, epoll_event* event
   return 0;
 }
 
-SIMBENCH_CALL int epoll_wait(int epoll, epoll_event* events, int most, int timeout_ms) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_wait)(epoll, events, most, timeout_ms);
+SIMBENCH_CALL int epoll_pwait(int epoll, epoll_event* events, int most, int timeout_ms,
+                              const sigset_t* mask) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_pwait)(epoll, events, most, timeout_ms, mask);
   pollfd interests[kMostInterests];
   nfds_t asked = 0;
   for (const Watched& each : watched) {
     if (each.epoll != epoll) continue;
     interests[asked++] = {each.fd, static_cast<short>(each.event.events), 0};
   }
-  if (wait(interests, asked, after_ms(timeout_ms)) < 0) return -1;
+  if (wait(interests, asked, after_ms(timeout_ms), mask) < 0) return -1;
   int ready = 0;
   for (nfds_t i = 0; i < asked && ready < most; ++i) {
     if (interests[i].revents == 0) continue;
@@ -274,10 +340,9 @@ SIMBENCH_CALL int epoll_wait(int epoll, epoll_event* events, int most, int timeo
   return ready;
 }
 
-SIMBENCH_CALL int epoll_pwait(int epoll, epoll_event* events, int most, int timeout_ms,
-                              const sigset_t* mask) {
-  if (!is_simulated()) return SIMBENCH_REAL(epoll_pwait)(epoll, events, most, timeout_ms, mask);
-  return epoll_wait(epoll, events, most, timeout_ms);
+SIMBENCH_CALL int epoll_wait(int epoll, epoll_event* events, int most, int timeout_ms) {
+  if (!is_simulated()) return SIMBENCH_REAL(epoll_wait)(epoll, events, most, timeout_ms);
+  return epoll_pwait(epoll, events, most, timeout_ms, nullptr);
 }
 
 namespace {
@@ -285,6 +350,8 @@ namespace {
 bool is_setting(const itimerspec& setting) {
   return is_time(setting.it_value) && is_time(setting.it_interval);
 }
+
+}  // namespace
 
 TimerSetting to_setting(const itimerspec& setting) {
   return {.left = nanoseconds(setting.it_value), .interval = nanoseconds(setting.it_interval)};
@@ -296,8 +363,6 @@ itimerspec from_setting(const TimerSetting& setting) {
   result.it_interval = {setting.interval / kSecond, setting.interval % kSecond};
   return result;
 }
-
-}  // namespace
 
 std::int64_t read_timer(int fd, void* data, std::size_t size) {
   if (size < sizeof(std::uint64_t)) {

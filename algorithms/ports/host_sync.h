@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "algorithms/ports/host.h"
@@ -35,6 +36,8 @@ class HostSync {
   virtual InitialClocks initial_clocks() const { return InitialClocks::kUnsynchronised; }
   // For a service: how long it runs before the capture. Nothing: it ends by itself.
   virtual std::optional<Nanoseconds> warm_up() const { return std::nullopt; }
+  // What the run should say beside its numbers, a line each.
+  virtual std::vector<std::string> notes() const { return {}; }
   virtual Task<void> run_master(Host& host, std::vector<PeerId> slaves) = 0;
   virtual Task<void> run_slave(Host& host, PeerId master) = 0;
 };

@@ -6,6 +6,7 @@
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
 #include "evaluation/clock_run/clock_evaluation.h"
 #include "reports/clocks/clock_report.h"
@@ -21,6 +22,7 @@ Examples:
   simbench clocks --scenario 6host_star --pipelines chrony,ntp --seeds 32 --format json > ntp.json
   simbench clocks --scenario 6host_lan_day --duration-s 86400 --figure day.svg
   simbench clocks --scenario my_rig.json --output results/clocks
+  simbench clocks --scenario 6host_star --program chronyd --pipelines chrony --seeds 2
 
 There are no cameras and no trigger: only hosts, clocks and network, from a cold start. After
 --duration-s the master is unreachable for 600 s, then 3600 s show how the hosts recover.
@@ -31,6 +33,7 @@ struct ClocksOptions {
   std::string scenario;
   evaluation::ClockOptions clocks;
   std::vector<std::string> sets;
+  ProgramOptions programs;
   std::string format;
   std::string output;
   std::string figure;
@@ -44,7 +47,7 @@ reports::PlotFormat plot_format(const std::string& path) {
                               "', allowed: a name that ends in .svg or .pdf");
 }
 
-int clocks(const ClocksOptions& options) {
+int clocks(ClocksOptions options) {
   std::optional<reports::PlotFormat> plot;
   std::optional<reports::OutputFile> figure;  // refuses before the work what cannot be written
   if (!options.figure.empty()) {
@@ -52,8 +55,8 @@ int clocks(const ClocksOptions& options) {
     figure.emplace(options.figure);
   }
   app::RunArchive archive(options.command);
-  const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  const scenarios::Scenario scenario = load_with_programs(
+      options.scenario, options.sets, options.programs, options.clocks.pipelines);
   evaluation::check_clock_options(scenario, options.clocks);
   print_warnings(scenarios::warnings(scenario));
   archive.open(options.output);
@@ -93,6 +96,7 @@ void add_clocks_command(CommandLine& line) {
   command.jobs(clocks_options.jobs);
   command.pipelines(clocks_options.pipelines);
   command.sets(options->sets);
+  add_program_options(command, options->programs);
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.text("--output", "DIR", options->output,
                "Write a result archive to this folder: manifest.json, results.json, curves.csv,\n"

@@ -106,6 +106,12 @@ std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
                                          const std::string& pipeline) {
   const evaluation::PipelineChoice choice =
       evaluation::choose_pipelines(scenario, {pipeline}).front();
+  if (choice.pipeline.programs) {
+    throw scenarios::InputError(
+        fmt::format("pipeline '{}': its programs run on simulated hosts only; on real ones start "
+                    "them yourself, with host_sync \"free_running\"",
+                    pipeline));
+  }
   for (const Need need : choice.host_sync.info.needs) {
     if (const char* what = lacking(need)) {
       throw scenarios::InputError(

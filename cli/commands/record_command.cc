@@ -7,6 +7,7 @@
 #include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
 #include "cli/rig_backend.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -39,6 +40,7 @@ struct RecordOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> pipelines;
   std::vector<std::string> sets;
+  ProgramOptions programs;
   std::uint64_t repeats = 1;
   BackendOptions backend;
   std::string output;
@@ -82,9 +84,9 @@ void check_collect_options(const RecordOptions& options, std::size_t pipelines) 
   }
 }
 
-int record(const RecordOptions& options) {
+int record(RecordOptions options) {
   const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+      load_with_programs(options.scenario, options.sets, options.programs, options.pipelines);
   const std::vector<evaluation::PipelineChoice> choices =
       evaluation::choose_pipelines(scenario, options.pipelines);
   print_warnings(scenarios::warnings(scenario));
@@ -128,6 +130,7 @@ void add_record_command(CommandLine& line) {
   command.seed("--seed", options->seed, "The first seed. Default: 1");
   command.pipelines(options->pipelines);
   command.count("--repeats", options->repeats, "Captures of each pipeline. Default: 1");
+  add_program_options(command, options->programs);
   command.sets(options->sets);
   add_backend_options(command, options->backend);
   command.text("--collect", "SESSION", options->backend.collect_session,

@@ -8,6 +8,7 @@
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
 #include "cli/rig_backend.h"
 #include "evaluation/budget/budget.h"
@@ -28,6 +29,7 @@ Examples:
   simbench run --scenario 3cam_1host_30fps --format json > results.json
   simbench run --scenario 18cam_6host_45fps_lan --pipelines yoon2021_both --budget
   simbench run --scenario 3cam_1host_30fps --output results/monday
+  simbench run --scenario 18cam_6host_45fps_lan --program mine=my_daemon.json --seeds 4
   simbench run --scenario 18cam_6host_45fps --backend hardware --rig rig.json --key-file rig.key
 
 On a real rig it captures each pipeline --seeds times (default: once) and prints the simulator's
@@ -40,6 +42,7 @@ struct RunOptions {
   evaluation::EvaluationOptions evaluation;
   BackendOptions backend;
   std::vector<std::string> sets;
+  ProgramOptions programs;
   std::string format;
   std::string output;
   bool budget = false;
@@ -155,11 +158,11 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
   return kOk;
 }
 
-int run(const RunOptions& options) {
+int run(RunOptions options) {
   check_budget_options(options);
   app::RunArchive archive(options.command);
-  const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+  const scenarios::Scenario scenario = load_with_programs(
+      options.scenario, options.sets, options.programs, options.evaluation.pipelines);
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(archive));
@@ -191,6 +194,7 @@ void add_run_command(CommandLine& line) {
   command.jobs(evaluation.jobs);
   command.pipelines(evaluation.pipelines);
   command.sets(options->sets);
+  add_program_options(command, options->programs);
   add_backend_options(command, options->backend);
   command.format(options->format, {"table", "markdown", "csv", "json"});
   command.text("--output", "DIR", options->output,

@@ -11,6 +11,7 @@
 #include "app/interrupt.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reports/text/output_file.h"
@@ -41,6 +42,7 @@ struct TraceCommandOptions {
   std::string pipeline;
   std::uint64_t seed = 1;
   std::vector<std::string> sets;
+  ProgramOptions programs;
   std::string format = "chrome";
   std::string output = "-";
   std::optional<double> from_ms;
@@ -112,9 +114,12 @@ class Output {
 
 int run_trace(const TraceCommandOptions& options) {
   const reports::TraceOptions wanted = trace_options(options);
+  std::vector<std::string> programs;
   const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
-  const evaluation::PipelineChoice choice = choose(scenario, options.pipeline);
+      load_with_programs(options.scenario, options.sets, options.programs, programs);
+  const bool is_of_program = options.pipeline.empty() && !options.programs.programs.empty();
+  const evaluation::PipelineChoice choice =
+      choose(scenario, is_of_program ? scenario.pipelines.back().name : options.pipeline);
   print_warnings(scenarios::warnings(scenario));
   Output output(options.output);
   const auto trace = watched<reports::Trace>([&](const evaluation::Progress&) {
@@ -151,6 +156,7 @@ void add_trace_command(CommandLine& line) {
   command.seed("--seed", options->seed, "The seed of the run. Default: 1");
   command.text("--pipeline", "NAME", options->pipeline,
                "The pipeline to run. Default: yoon2021_both, else the scenario's first");
+  add_program_options(command, options->programs);
   command.sets(options->sets);
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();

@@ -162,7 +162,10 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.cameras.skew_of_camera_ppm.clear();
   }
   if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
-  if (ideal.has(Stage::kHostClock)) world.pipelines.front().host_sync = kOracle;
+  if (ideal.has(Stage::kHostClock)) {
+    world.pipelines.front().host_sync = kOracle;
+    world.pipelines.front().programs.reset();
+  }
   if (ideal.has(Stage::kGathering)) world.pipelines.front().gathering = kOracle;
   return world;
 }

@@ -1,6 +1,7 @@
 #include "evaluation/clock_run/clock_evaluation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -40,9 +41,15 @@ Chosen choose_clock_runs(const Scenario& scenario, const std::vector<std::string
   for (PipelineChoice& choice : choose_pipelines(scenario, names)) {
     const bool is_known =
         std::any_of(chosen.choices.begin(), chosen.choices.end(), [&](const PipelineChoice& other) {
-          return other.pipeline.host_sync == choice.pipeline.host_sync;
+          return other.pipeline.host_sync == choice.pipeline.host_sync &&
+                 other.pipeline.programs == choice.pipeline.programs;
         });
     if (names.empty() && is_known) continue;
+    if (!choice.problem.empty()) {
+      chosen.left_out.push_back(
+          fmt::format("pipeline {}: {}; left out", choice.pipeline.name, choice.problem));
+      continue;
+    }
     if (const char* what = lacking_world(choice)) {
       const std::string problem = fmt::format(
           "pipeline {}: host_sync \"{}\" needs {}, which a run of the clocks alone does "
@@ -144,7 +151,8 @@ class ClockEvaluation {
     scored.seed.host_errors_ms = std::move(score.host_errors_ms);
     scored.seed.cost = {.events = cost.events,
                         .simulated_seconds = to_seconds(span.duration + kMasterLostFor + kRecovery),
-                        .trace_hash = cost.trace_hash};
+                        .trace_hash = cost.trace_hash,
+                        .notes = host_sync->notes()};
     scored.curves = std::move(score.curves);
     if (seed == options_.first_seed) scored.readings = std::move(score.readings);
     return scored;
@@ -214,8 +222,11 @@ void check_clock_options(const Scenario& scenario, const ClockOptions& options) 
                     "--from-s",
                     options.duration_s, options.from_s + kFewestReadings, kFewestReadings));
   }
-  if (choose_clock_runs(scenario, options.pipelines).choices.empty()) {
-    throw scenarios::InputError("the scenario has no pipeline whose hosts run without cameras");
+  if (const Chosen chosen = choose_clock_runs(scenario, options.pipelines);
+      chosen.choices.empty()) {
+    throw scenarios::InputError(
+        fmt::format("the scenario has no pipeline whose hosts run without cameras: {}",
+                    fmt::join(chosen.left_out, "; ")));
   }
   if (scenario.hosts.count < 2) {
     throw scenarios::InputError(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -207,10 +208,26 @@ const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const 
                      unknown(name, known));
 }
 
+ProgramMaker& program_maker() {
+  static ProgramMaker maker;
+  return maker;
+}
+
+ProgramEntry host_sync_of(const Scenario& scenario, std::size_t index) {
+  const scenarios::Pipeline& pipeline = scenario.pipelines[index];
+  if (!pipeline.programs) {
+    return {algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms())};
+  }
+  if (!program_maker()) {
+    scenarios::fail_at(scenario, fmt::format("/pipelines/{}/host_sync", index),
+                       "found programs, allowed here: an algorithm");
+  }
+  return program_maker()(scenario, pipeline);
+}
+
 PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
-  const HostSyncEntry& host_sync =
-      algorithm_at(scenario, index, "host_sync", pipeline.host_sync, host_sync_algorithms());
+  const auto [host_sync, problem] = host_sync_of(scenario, index);
   const DeviceTimeName variants = parse_device_time_name(pipeline.device_time);
   const DeviceTimeEntry& device_time =
       algorithm_at(scenario, index, "device_time", variants.base, device_time_algorithms());
@@ -231,12 +248,15 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
                            .device_time_variants = variants,
                            .device_time_parameters = parameters_of(scenario, device_time.info),
                            .gathering = gathering,
-                           .gathering_parameters = parameters_of(scenario, gathering.info)};
+                           .gathering_parameters = parameters_of(scenario, gathering.info),
+                           .problem = problem};
   check_can_be_made(scenario, choice);
   return choice;
 }
 
 }  // namespace
+
+void set_program_maker(ProgramMaker maker) { program_maker() = std::move(maker); }
 
 std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
                                              const std::vector<std::string>& names) {
@@ -296,12 +316,15 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
 
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                          RecordingSink& sink, WorldObserver* observer) {
+  if (!choice.problem.empty()) throw RecordingFailed(choice.problem);
   const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
-  return source.record({.seed = seed,
-                        .pipeline = choice.pipeline.name,
-                        .host_sync = host_sync.get(),
-                        .observer = observer},
-                       sink);
+  RecordingCost cost = source.record({.seed = seed,
+                                      .pipeline = choice.pipeline.name,
+                                      .host_sync = host_sync.get(),
+                                      .observer = observer},
+                                     sink);
+  std::ranges::move(host_sync->notes(), std::back_inserter(cost.notes));
+  return cost;
 }
 
 SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,

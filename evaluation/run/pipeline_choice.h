@@ -6,6 +6,10 @@
 // other, and an algorithm that needs what the scenario's world lacks (AlgorithmInfo::needs). The
 // name of a device_time may have the suffixes of its variants (algorithms/device_time/variants.h).
 //
+// Programs in place of a host_sync are the application's (set_program_maker): evaluation knows no
+// simulator. Those that cannot run here refuse nothing: their pipeline has no captures, and says
+// why.
+//
 //   for (const PipelineChoice& choice : choose_pipelines(scenario, {"yoon2021_both"})) {
 //     PipelineScorer scorer(scorer_setup(scenario, choice));
 //     const SeedScore score = score_run(source, choice, /*seed=*/1, scorer, scorer);
@@ -14,6 +18,7 @@
 #define SIMBENCH_EVALUATION_RUN_PIPELINE_CHOICE_H_
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,7 +39,21 @@ struct PipelineChoice {
   Parameters device_time_parameters;
   GatheringEntry gathering;
   Parameters gathering_parameters;
+  std::string problem{};  // why its programs cannot run, one line
 };
+
+// The host synchronisation that a pipeline's programs are, and why they cannot run here, one line;
+// empty if they can.
+struct ProgramEntry {
+  HostSyncEntry entry;
+  std::string problem{};
+};
+using ProgramMaker =
+    std::function<ProgramEntry(const scenarios::Scenario&, const scenarios::Pipeline&)>;
+
+// From now on; not thread-safe: before running anything. Without it pipelines with programs are
+// refused.
+void set_program_maker(ProgramMaker maker);
 
 // Returns the named pipelines in the given order; all of the scenario if `names` is empty. Throws
 // scenarios::InputError for an unknown pipeline or algorithm (naming the known ones), a pipeline
@@ -46,7 +65,8 @@ std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario
 // all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.
 ScorerSetup scorer_setup(const scenarios::Scenario& scenario, const PipelineChoice& choice);
 
-// Records one capture of the pipeline, with a host_sync of its own. `observer` may be null.
+// Records one capture of the pipeline, with a host_sync of its own. `observer` may be null. Throws
+// RecordingFailed for a choice with a problem.
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                          RecordingSink& sink, WorldObserver* observer = nullptr);
 

@@ -67,6 +67,7 @@ struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string host_sync;
   std::string device_time;
   std::string gathering;
+  std::string model;     // of real programs: the pipeline that models them; empty: none
   bool offline = false;  // device_time needs the whole recording
   // The weakest of the seeds that were recorded; kNone if none was.
   GroundTruth ground_truth = GroundTruth::kSimulation;

@@ -31,7 +31,7 @@
 
 #include "hardware/clock/monotonic_time.h"
 #include "hardware/experiment/child_process.h"
-#include "hardware/experiment/temporary_folder.h"
+#include "recording/temporary_folder.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
 #include "scenarios/scenario.h"

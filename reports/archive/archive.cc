@@ -171,6 +171,7 @@ Row read_stages(const JsonNode& node) {
   row.host_sync = node["host_sync"].text();
   row.device_time = node["device_time"].text();
   row.gathering = node["gathering"].text();
+  if (node.has("model")) row.model = node["model"].text();
   return row;
 }
 

@@ -12,7 +12,9 @@
 #include "recording/version.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
+#include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
+#include "reports/results/program_gap.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -130,6 +132,12 @@ Document clock_document(const ClockResults& results, const std::string& summary)
                     .head = results_head(results.results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
+  if (std::optional<Block> gap = program_gap_block(results.results)) {
+    blocks.push_back(std::move(*gap));
+  }
+  if (const std::vector<std::string> notes = note_lines(results.results); !notes.empty()) {
+    blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+  }
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves()) {
     if (!curve.in_text) continue;
     blocks.push_back({.heading = curve.title, .table = over_tau_table(results, curve)});
@@ -164,6 +172,8 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
                 {"p95", evaluation::mean_of_existing(row.clock_spread_p95_ms.values)},
                 {"max", largest(row.clock_spread_max_ms.values)},
                 {"values", row.clock_spread_ms.values}}}};
+  if (!row.model.empty()) all["model"] = row.model;
+  all["notes"] = row.notes;
   for (const evaluation::ClockCurve& curve : evaluation::clock_curves())
     all[curve.id] = curve_points_json(curves.*curve.points);
   all["max_te_ms"] = largest(row.max_te_ms.values);

@@ -43,6 +43,7 @@ Json row_json(const evaluation::Row& row) {
               {"device_time", row.device_time},
               {"gathering", row.gathering},
               {"offline", row.offline}};
+  if (!row.model.empty()) all["model"] = row.model;
   for (const evaluation::Metric& metric : evaluation::metrics()) {
     Json& object = *metric.json_in == '\0' ? all : all[metric.json_in];
     object[metric.member()] = metric_json(metric, row);

@@ -8,6 +8,7 @@
 
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/program_gap.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -304,6 +305,7 @@ Document results_document(const Results& results, const std::string& summary) {
   if (has_time_errors(results)) {
     blocks.push_back({.heading = "Time error of the hosts", .table = time_errors_table(results)});
   }
+  if (std::optional<Block> gap = program_gap_block(results)) blocks.push_back(std::move(*gap));
   if (gatherings_differ(results)) {
     blocks.push_back({.heading = "Gathered sets, over all seeds",
                       .table = sets_table(pointers_to(results.rows))});

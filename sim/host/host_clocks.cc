@@ -41,7 +41,6 @@ Task<HostTime> ClockPort::now() {
   co_return interface_.read(parts_.clock.read(turn.start));
 }
 
-template <class Apply>
 Task<void> ClockPort::change(Apply apply) {
   const Change change = begin_change();
   if (change.effective > true_now()) {
@@ -116,6 +115,13 @@ Task<void> NicClock::step(Nanoseconds offset) {
   const Call call = begin_call();
   co_await wait_until(call.touch);
   clock_.set(host_.true_now(), clock_.read(host_.true_now()) + offset);
+  co_await wait_until(call.turn.end);
+}
+
+Task<void> NicClock::set(HardwareTime value) {
+  const Call call = begin_call();
+  co_await wait_until(call.touch);
+  clock_.set(host_.true_now(), HostTime(value.time_since_epoch()));
   co_await wait_until(call.turn.end);
 }
 

@@ -16,6 +16,7 @@
 #define SIMBENCH_SIM_HOST_HOST_CLOCKS_H_
 
 #include <algorithm>
+#include <functional>
 #include <string>
 
 #include "algorithms/ports/host.h"
@@ -79,6 +80,11 @@ class ClockPort final : public HostClock {
   Task<void> adjust_frequency(double ppb) override;
   Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
 
+  // Any other call that changes the clock: `apply` runs when the change counts. What it refers to
+  // must outlive the call.
+  using Apply = std::function<void(SystemClock& clock, TrueTime at)>;
+  Task<void> change(Apply apply);
+
  private:
   struct Change {
     TrueTime effective;
@@ -87,9 +93,6 @@ class ClockPort final : public HostClock {
 
   TrueTime true_now() const { return parts_.context.engine().now(); }
   Change begin_change();
-  // Makes a change by `apply(clock, now)`.
-  template <class Apply>
-  Task<void> change(Apply apply);
   // Schedules the report of a slew's end.
   void settle_in_time();
   void settle();
@@ -131,6 +134,8 @@ class NicClock final : public HardwareClock {
 
   Task<CrossStamp> cross_stamp() override;
   Task<void> step(Nanoseconds offset) override;
+  // As step(), to a reading.
+  Task<void> set(HardwareTime value);
   Task<void> adjust_frequency(double ppb) override;
 
   // The stamp of an event at `at`, with noise from `draw`.

@@ -14,9 +14,7 @@ namespace {
 constexpr ComponentKey kStreamSendCost("host: cost of sending on a stream");
 constexpr ComponentKey kDatagramSendCost("host: cost of sending a datagram");
 constexpr ComponentKey kHardwareReceipt("host: hardware receive stamp");
-constexpr ComponentKey kHardwareTransmission("host: hardware transmit stamp");
 constexpr ComponentKey kLateWakeUp("host: late wake-up");
-constexpr std::size_t kStampsKept = 4096;
 
 }  // namespace
 
@@ -30,9 +28,7 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
       send_cost_ms_(host.world().hosts.send_cost_ms +
                     host.world().load.session(host.id(), peer).send_cost_ms),
       arrived_(host.world().context, host.name("receive from host" + std::to_string(peer))),
-      left_(host.world().context, host.name("transmit stamp to host" + std::to_string(peer))),
-      passed_(host.world().context,
-              host.name("hardware transmit stamp to host" + std::to_string(peer))) {}
+      departures_(host, "host" + std::to_string(peer)) {}
 
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
@@ -121,56 +117,16 @@ MessageKey SimChannel::key_from_peer(MessageId id) const {
 }
 
 Task<std::optional<HostTime>> SimChannel::transmit_stamp(MessageId id, SteadyTime deadline) {
-  if (!stamps_in_kernel_) co_return std::nullopt;
-  while (!has_left(id)) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    co_await left_.wait(host_.next_look(deadline));
-  }
-  const Sent* message = sent(id);
-  if (message == nullptr) co_return std::nullopt;
-  co_return message->left;
+  return departures_.stamp(id, deadline);
 }
 
 Task<std::optional<HardwareTime>> SimChannel::hardware_transmit_stamp(MessageId id,
                                                                       SteadyTime deadline) {
-  const NicClock* nic = host_.nic();
-  if (nic == nullptr) co_return std::nullopt;
-  while (!has_left(id)) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    co_await passed_.wait(host_.next_look(deadline));
-  }
-  const Sent* message = sent(id);
-  if (message == nullptr) co_return std::nullopt;
-  const TrueTime passed = message->passed;
-  while (passed > host_.true_now()) {
-    if (host_.is_past(deadline)) co_return std::nullopt;
-    const std::optional<TrueTime> look = host_.next_look(deadline);
-    co_await passed_.wait(look ? std::min(*look, passed) : passed);
-  }
-  RandomStream draw(host_.world().run_seed, kHardwareTransmission, direction_of(host_.id(), peer_),
-                    key_of(id));
-  co_return nic->stamp(passed, draw);
-}
-
-const SimChannel::Sent* SimChannel::sent(MessageId id) const {
-  if (id < first_sent_) return nullptr;
-  const Sent& message = sent_[static_cast<std::size_t>(id - first_sent_)];
-  return message.has_left ? &message : nullptr;
+  return departures_.hardware_stamp(id, key_to_peer(id), deadline);
 }
 
 void SimChannel::on_left(MessageId first, std::size_t count, TrueTime passed) {
-  if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
-  const HostTime stamp =
-      host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
-  // A send that was cancelled has left a gap.
-  sent_.resize(static_cast<std::size_t>(first - first_sent_));
-  sent_.insert(sent_.end(), count, {.has_left = true, .left = stamp, .passed = passed});
-  while (sent_.size() > kStampsKept) {
-    sent_.pop_front();
-    ++first_sent_;
-  }
-  left_.notify();
-  passed_.notify();
+  departures_.on_left(first, count, passed);
 }
 
 }  // namespace simbench::sim

@@ -15,8 +15,7 @@
 //
 // Stamps: at "application", the receive stamp is the reading of the system clock, through its
 // interface, when receive() returns, and there are no transmit stamps; at "kernel", both are taken
-// by the host's stack, on the clock's ticks but not rounded to the interface's resolution. Stamps
-// of the last 4096 messages are kept.
+// by the host's stack, on the clock's ticks but not rounded to the interface's resolution.
 //
 // Hardware stamps are those of the host's card, if it stamps (sim/host/host_clocks.h). A burst of
 // load (sim/network/load.h) makes the wake-up longer.
@@ -27,11 +26,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 #include "algorithms/ports/host.h"
 #include "sim/engine/virtual_executor.h"
+#include "sim/host/departures.h"
 #include "sim/host/message_stack.h"
 #include "sim/network/network.h"
 
@@ -50,13 +49,10 @@ class SimChannel final : public MessageChannel, private Endpoint {
   Task<std::optional<HardwareTime>> hardware_transmit_stamp(MessageId id,
                                                             SteadyTime deadline) override;
 
- private:
-  struct Sent {
-    bool has_left = false;  // false: the send was cancelled
-    HostTime left{};        // the kernel's stamp
-    TrueTime passed{};      // when its last bit passes the card
-  };
+  // The number that a message to a group takes on the way to the peer (sim/host/sim_multicast.h).
+  Network::Recipient next_of_group() { return {.path = path_, .id = next_id_++}; }
 
+ private:
   void on_arrival() override;
   Nanoseconds to_card(MessageId first) override;
   void on_left(MessageId first, std::size_t count, TrueTime passed) override;
@@ -67,9 +63,6 @@ class SimChannel final : public MessageChannel, private Endpoint {
   static TrueTime stamp_of(const ArrivedMessage& message) {
     return message.stamped.value_or(message.at);
   }
-  bool has_left(MessageId id) const { return id < first_sent_ + sent_.size(); }
-  // A message that has left; null if it never did or is no longer kept.
-  const Sent* sent(MessageId id) const;
   MessageKey key_to_peer(MessageId id) const;
   MessageKey key_from_peer(MessageId id) const;
   // The key of the message's own draws.
@@ -85,10 +78,7 @@ class SimChannel final : public MessageChannel, private Endpoint {
   double send_cost_ms_;
   MessageId next_id_ = 0;
   WaitPoint arrived_;
-  WaitPoint left_;
-  WaitPoint passed_;
-  MessageId first_sent_ = 0;  // the message of sent_.front()
-  std::deque<Sent> sent_;
+  Departures departures_;
 };
 
 }  // namespace simbench::sim

@@ -4,6 +4,7 @@
 #include "sim/host/host_clocks.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_channel.h"
+#include "sim/host/sim_multicast.h"
 
 namespace simbench::sim {
 namespace {
@@ -76,6 +77,15 @@ FrameFeed* SimHost::frame_feed() {
 
 std::optional<StoredFrequency> SimHost::stored_frequency() {
   return world_.drift_files.read(id_, true_now());
+}
+
+SimChannel& SimHost::datagram_channel(PeerId peer) {
+  return static_cast<SimChannel&>(open_channel(peer, Transport::kDatagram));
+}
+
+SimMulticast& SimHost::multicast() {
+  if (multicast_ == nullptr) multicast_ = std::make_unique<SimMulticast>(*this);
+  return *multicast_;
 }
 
 MessageChannel& SimHost::open_channel(PeerId peer, Transport transport) {

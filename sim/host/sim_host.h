@@ -58,6 +58,7 @@ namespace simbench::sim {
 
 class SimChannel;
 class SimHost;
+class SimMulticast;
 
 // The frames of the host's cameras for its programs: a queue that the rig fills.
 //
@@ -103,7 +104,7 @@ class SimHost final : public Host {
   ~SimHost() override;
 
   PeerId id() const override { return id_; }
-  HostClock& clock() override { return clock_port_; }
+  ClockPort& clock() override { return clock_port_; }
   const SteadyClock& steady_clock() const override { return steady_port_; }
   HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
@@ -125,11 +126,16 @@ class SimHost final : public Host {
   // For its ports.
   const HostWorld& world() const { return world_; }
   const SystemClock& system_clock() const { return system_clock_; }
+  // For what the kernel does to the clock by itself, which costs no call.
+  SystemClock& system_clock() { return system_clock_; }
   const ClockInterface& clock_interface() const { return interface_; }
   Cpu& cpu() { return cpu_; }
+  SimChannel& datagram_channel(PeerId peer);
+  SimMulticast& multicast();
   MessageStack& stack() { return stack_; }
   // Null if the card takes no stamps.
   const NicClock* nic() const { return nic_.get(); }
+  NicClock* nic() { return nic_.get(); }
   // The delay that a burst of load adds to the wake-up for an event with the key (what, a, b).
   Nanoseconds load_delay(ComponentKey what, std::uint64_t a, std::uint64_t b) {
     return host_load_.delay(true_now(), what, a, b);
@@ -175,6 +181,7 @@ class SimHost final : public Host {
   std::unique_ptr<SimPulseInput> trigger_;
   std::unique_ptr<SimFrameFeed> frame_feed_;
   std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
+  std::unique_ptr<SimMulticast> multicast_;
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;
 };
 

@@ -99,6 +99,55 @@ void Network::send_segment(Segment segment) {
   path.sender->on_left(first, count, passed);
 }
 
+void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
+                            Bytes message, Endpoint& sender) {
+  Segment segment{.bytes = static_cast<double>(message.size())};
+  const TrueTime at_card = engine_.now() + sender.to_card(id);
+  const TrueTime passed = rate_.is_infinite()
+                              ? at_card
+                              : host_ports_[from].pass(at_card, on_the_line(segment));
+  segment.left = engine_.now();
+  segment.at_switch = passed;
+  segment.switch_number = switch_of(from);
+  segment.messages.push_back(std::move(message));
+  GroupMessage to_all{std::move(segment), std::move(recipients)};
+  if (rate_.is_infinite()) {
+    replicate(to_all, passed);
+  } else {
+    forward(std::move(to_all), passed);
+  }
+  sender.on_left(id, 1, passed);
+}
+
+void Network::replicate(const GroupMessage& message, TrueTime at) {
+  const std::int64_t here = message.segment.switch_number;
+  const Nanoseconds duration = on_the_line(message.segment);
+  GroupMessage down{message.segment, {}};
+  GroupMessage up{message.segment, {}};
+  for (const Recipient& recipient : message.recipients) {
+    const PeerId to = paths_[recipient.path].to;
+    if (!rate_.is_infinite() && switch_of(to) != here) {
+      (switch_of(to) > here ? up : down).recipients.push_back(recipient);
+      continue;
+    }
+    Segment copy = message.segment;
+    copy.path = recipient.path;
+    copy.first = recipient.id;
+    travel(keep(std::move(copy)), rate_.is_infinite() ? at : switch_ports_[to].pass(at, duration));
+  }
+  down.segment.switch_number = here - 1;
+  up.segment.switch_number = here + 1;
+  const auto ports = 2 * static_cast<std::size_t>(here);
+  if (!down.recipients.empty()) forward(std::move(down), trunk_ports_[ports].pass(at, duration));
+  if (!up.recipients.empty()) forward(std::move(up), trunk_ports_[ports + 1].pass(at, duration));
+}
+
+void Network::forward(GroupMessage message, TrueTime at) {
+  const std::uint32_t id = group_messages_.add();
+  group_messages_[id] = std::move(message);
+  engine_.schedule(at, handler_id_, kGroupAtSwitch, id);
+}
+
 void Network::send_capture_traffic(PeerId from, double bytes) {
   if (rate_.is_infinite() || outages_.unreachable(from, engine_.now())) return;
   Port& port = host_ports_[from];
@@ -110,6 +159,10 @@ void Network::handle(const Event& event) {
   switch (static_cast<EventKind>(event.kind)) {
     case kAtSwitch:
       pass_switch(event.subject, event.time);
+      break;
+    case kGroupAtSwitch:
+      group_messages_.release(event.subject);
+      replicate(std::exchange(group_messages_[event.subject], {}), event.time);
       break;
     case kArrival:
       arrive(event.subject);

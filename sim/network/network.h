@@ -24,6 +24,10 @@
 // retransmit. A switch with PTP (sim/network/switch_clock.h) corrects datagrams that are event
 // messages for their time in the switch.
 //
+// A datagram to a group of hosts (sim/network/groups.h) leaves its host once, passes the host's port
+// and each trunk once, and is replicated in the switches towards the members' ports. From there on
+// each copy is a datagram like others, with a number of its own on its path.
+//
 // Capture traffic: the frames that a host sends on pass its port like messages, in the order of
 // their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
 // of the host wait behind it; those to the host do not. A frame that finds more than a second of
@@ -53,6 +57,7 @@
 #include "sim/engine/engine.h"
 #include "sim/engine/slots.h"
 #include "sim/faults/faults.h"
+#include "sim/network/groups.h"
 #include "sim/network/link_latency.h"
 #include "sim/network/load.h"
 #include "sim/network/nagle.h"
@@ -126,6 +131,16 @@ class Network : private EventHandler {
   // Message `id` leaves the host now; ids count from 0 on each path.
   void send(PathId path, MessageId id, Bytes message);
 
+  // Where a copy of a message to a group goes, and its number there.
+  struct Recipient {
+    PathId path = 0;
+    MessageId id = 0;
+  };
+  // Message `id` to a group leaves host `from` now, towards these; `sender` is notified of it alone.
+  void send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients, Bytes message,
+                     Endpoint& sender);
+  Groups& groups() { return groups_; }
+
   // Notifies `observer`, which must outlive the network's events, of every message when its arrival
   // is known: as it leaves the sender or, with a bandwidth, the sender's port. Duplicates and
   // capture traffic are not reported.
@@ -159,7 +174,12 @@ class Network : private EventHandler {
   };
   // As Linux' tcp_retries2.
   static constexpr int kMaxRetransmissions = 15;
-  enum EventKind : std::uint16_t { kAtSwitch, kArrival, kAckDue, kAckArrival };
+  enum EventKind : std::uint16_t { kAtSwitch, kGroupAtSwitch, kArrival, kAckDue, kAckArrival };
+  // A message to a group on its way to the last switch; its segment has no path yet.
+  struct GroupMessage {
+    Segment segment;
+    std::vector<Recipient> recipients;
+  };
 
   void handle(const Event& event) override;
 
@@ -177,6 +197,11 @@ class Network : private EventHandler {
   }
   // The segment, which is at switch `number` of its way, has come to its next port.
   void pass_switch(SegmentId id, TrueTime at);
+  // The message, which is at switch `number` of its way, goes to the members' ports there and on to
+  // its neighbours.
+  void replicate(const GroupMessage& message, TrueTime at);
+  // It comes to its next switch at `at`.
+  void forward(GroupMessage message, TrueTime at);
   void deliver(SegmentId id, TrueTime arrival, std::uint32_t copy);
   // Counts the segment's messages and reports to the observer that they arrive then, or never.
   void report(const Segment& segment, std::optional<TrueTime> arrival);
@@ -208,6 +233,8 @@ class Network : private EventHandler {
   std::deque<Path> paths_;
   std::unordered_map<std::uint64_t, PathId> path_ids_[2];  // by transport, then direction
   Slots<Segment> segments_;
+  Slots<GroupMessage> group_messages_;
+  Groups groups_;
 };
 
 }  // namespace simbench::sim

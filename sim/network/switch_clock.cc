@@ -23,9 +23,16 @@ constexpr std::byte kLowNibble{0x0F};
 constexpr std::byte kLastEventType{3};
 constexpr std::byte kVersion{2};
 constexpr std::size_t kEventMessageBytes = 44;
+constexpr std::size_t kLengthBegin = 2;
+constexpr std::size_t kMostTrailer = 8;
 constexpr std::size_t kCorrectionBegin = 8;
 constexpr std::size_t kCorrectionEnd = 16;
 constexpr double kUnitsPerNs = 65536;
+
+std::size_t stated_length(const Bytes& message) {
+  return std::to_integer<std::size_t>(message[kLengthBegin]) << 8 |
+         std::to_integer<std::size_t>(message[kLengthBegin + 1]);
+}
 
 }  // namespace
 
@@ -44,8 +51,11 @@ SwitchClock::SwitchClock(const scenarios::Network& network, std::uint64_t run_se
 }
 
 bool SwitchClock::corrects(const Bytes& message) const {
-  return kind_ != SwitchClockKind::kNone && message.size() >= kEventMessageBytes &&
-         (message[0] & kLowNibble) <= kLastEventType && (message[1] & kLowNibble) == kVersion;
+  if (kind_ == SwitchClockKind::kNone || message.size() < kEventMessageBytes) return false;
+  const std::size_t length = stated_length(message);
+  return (message[0] & kLowNibble) <= kLastEventType && (message[1] & kLowNibble) == kVersion &&
+         length >= kEventMessageBytes && length <= message.size() &&
+         message.size() - length <= kMostTrailer;
 }
 
 void SwitchClock::correct(Bytes& message, const Passage& passage, Nanoseconds residence,

@@ -5,42 +5,71 @@
 #include <cerrno>
 #include <utility>
 
+#include "sim/host/sim_channel.h"
+#include "sim/host/sim_multicast.h"
 #include "sim/programs/kernel_clock.h"
 
 namespace simbench::sim {
 namespace {
 
-constexpr std::uint32_t kLoopback = 0x7F000001;
-constexpr std::size_t kPortBytes = 4;
+constexpr std::size_t kTrailerBytes = 8;
 constexpr std::uint16_t kFirstFreePort = 32'768;
 constexpr std::uint16_t kLastFreePort = 60'999;
+constexpr std::uint32_t kBroadcast = 0xFFFFFFFF;
+constexpr std::uint32_t kNetBroadcast = HostNetwork::kFirstAddress | ~HostNetwork::kNetmask;
 
-void append_ports(Bytes& payload, std::uint16_t from, std::uint16_t to) {
-  payload.resize(payload.size() + kPortBytes);
-  auto* end = reinterpret_cast<unsigned char*>(payload.data() + payload.size() - kPortBytes);
-  boost::endian::store_big_u16(end, from);
-  boost::endian::store_big_u16(end + 2, to);
+bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
+bool is_multicast(std::uint32_t address) { return address >> 28 == 0xE; }
+
+// The payload as it travels.
+Bytes with_trailer(const QueuedDatagram& datagram) {
+  Bytes message = datagram.payload;
+  message.resize(message.size() + kTrailerBytes);
+  auto* end = reinterpret_cast<unsigned char*>(message.data() + message.size() - kTrailerBytes);
+  boost::endian::store_big_u32(end, datagram.arrival.to.host);
+  boost::endian::store_big_u16(end + 4, datagram.arrival.from.port);
+  boost::endian::store_big_u16(end + 6, datagram.arrival.to.port);
+  return message;
+}
+
+std::int64_t stamp_ns(const std::optional<HostTime>& stamp) {
+  return stamp ? epoch_ns(*stamp) : shim::kNoStamp;
+}
+
+std::int64_t stamp_ns(const std::optional<HardwareTime>& stamp) {
+  return stamp ? nanoseconds_of(*stamp) + kEpochNs : shim::kNoStamp;
 }
 
 }  // namespace
 
-bool HostNetwork::is_taken(std::uint16_t port, const UdpSocket* except) const {
-  return std::ranges::any_of(bound_, [port, except](const UdpSocket* each) {
-    return each != except && each->local.port == port;
+HostNetwork::HostNetwork(SimHost& host, std::size_t hosts)
+    : host_(host),
+      hosts_(hosts),
+      has_left_(host.world().context, host.name("programs' messages pass the card")) {
+  host_.world().network.groups().join(Groups::kEveryone, host_.id());
+}
+
+bool HostNetwork::is_taken(shim::Address address, const UdpSocket& by) const {
+  return std::ranges::any_of(bound_, [&](const UdpSocket* each) {
+    const bool is_same_host =
+        each->local.host == 0 || address.host == 0 || each->local.host == address.host;
+    return each != &by && each->local.port == address.port && is_same_host &&
+           !(each->shares_port && by.shares_port);
   });
 }
 
 int HostNetwork::bind(UdpSocket& socket, shim::Address address) {
   if (socket.local.port != 0) return EINVAL;
-  const bool is_own =
-      address.host == 0 || address.host == this->address() || address.host == kLoopback;
+  const bool is_own = address.host == 0 || address.host == this->address() ||
+                      is_loopback(address.host) || group_of(address.host);
   if (!is_own) return EADDRNOTAVAIL;
   if (address.port == 0) {
     socket.local.host = address.host;
     return bind_somewhere(socket);
   }
-  if (is_taken(address.port, &socket)) return EADDRINUSE;
+  if (is_taken(address, socket)) return EADDRINUSE;
   socket.local = address;
+  socket.number = ++sockets_bound_;
   bound_.push_back(&socket);
   return 0;
 }
@@ -49,8 +78,11 @@ int HostNetwork::bind_somewhere(UdpSocket& socket) {
   for (int tried = 0; tried <= kLastFreePort - kFirstFreePort; ++tried) {
     const std::uint16_t port = next_port_;
     next_port_ = port == kLastFreePort ? kFirstFreePort : static_cast<std::uint16_t>(port + 1);
-    if (is_taken(port, &socket)) continue;
+    const bool is_free = std::ranges::none_of(
+        bound_, [port](const UdpSocket* each) { return each->local.port == port; });
+    if (!is_free) continue;
     socket.local.port = port;
+    socket.number = ++sockets_bound_;
     bound_.push_back(&socket);
     return 0;
   }
@@ -58,85 +90,218 @@ int HostNetwork::bind_somewhere(UdpSocket& socket) {
 }
 
 int HostNetwork::connect(UdpSocket& socket, shim::Address peer) {
+  if (group_of(peer.host) == Groups::kEveryone && !socket.may_broadcast) return EACCES;
   if (socket.local.port == 0) {
     const int error = bind_somewhere(socket);
     if (error != 0) return error;
   }
   socket.peer = peer;
-  if (socket.local.host == 0) socket.local.host = address();
+  if (socket.local.host == 0) socket.local.host = is_loopback(peer.host) ? peer.host : address();
   return 0;
 }
 
-void HostNetwork::close(UdpSocket& socket) { std::erase(bound_, &socket); }
+int HostNetwork::join(UdpSocket& socket, std::uint32_t group) {
+  if (!is_multicast(group)) return EINVAL;
+  if (!socket.groups.insert(group).second) return EADDRINUSE;
+  if (++joined_[group] == 1) host_.world().network.groups().join(group, host_.id());
+  return 0;
+}
+
+int HostNetwork::leave(UdpSocket& socket, std::uint32_t group) {
+  if (socket.groups.erase(group) == 0) return EADDRNOTAVAIL;
+  if (--joined_[group] == 0) host_.world().network.groups().leave(group, host_.id());
+  return 0;
+}
+
+void HostNetwork::close(UdpSocket& socket) {
+  while (!socket.groups.empty()) leave(socket, *socket.groups.begin());
+  std::erase(bound_, &socket);
+}
+
+std::optional<std::uint32_t> HostNetwork::group_of(std::uint32_t address) {
+  if (is_multicast(address)) return address;
+  if (address == kBroadcast || address == kNetBroadcast) return Groups::kEveryone;
+  return std::nullopt;
+}
 
 Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) {
   if (to.port == 0) {
     if (!socket.peer) co_return EDESTADDRREQ;
     to = *socket.peer;
   }
+  const std::optional<std::uint32_t> group = group_of(to.host);
+  if (group == Groups::kEveryone && !socket.may_broadcast) co_return EACCES;
   if (socket.local.port == 0) {
     const int error = bind_somewhere(socket);
     if (error != 0) co_return error;
   }
   if (payload.size() > kMostPayload) co_return EMSGSIZE;
-  const shim::Address from{.host = address(), .port = socket.local.port, .reserved = 0};
-  if (to.host == address() || to.host == kLoopback) {
-    deliver(from, to, std::move(payload), std::nullopt);
+  const bool is_inward = is_loopback(to.host);
+  const auto length = static_cast<std::uint32_t>(payload.size());
+  QueuedDatagram datagram{
+      .arrival = {.from = {.host = is_inward ? to.host : address(),
+                           .port = socket.local.port,
+                           .reserved = 0},
+                  .to = to,
+                  .system = shim::kNoStamp,
+                  .hardware = shim::kNoStamp,
+                  .length = length,
+                  .number = socket.sent++},
+      .payload = std::move(payload)};
+  if (is_inward || to.host == address()) {
+    deliver(datagram);
     co_return 0;
   }
+  if (group) co_return co_await send_to_group(socket, *group, std::move(datagram));
   if (to.host < kFirstAddress || to.host - kFirstAddress >= hosts_) co_return ENETUNREACH;
-  const PeerId peer = to.host - kFirstAddress;
-  MessageChannel& channel = host_.open_channel(peer, Transport::kDatagram);
-  Bytes message = payload;
-  append_ports(message, from.port, to.port);
-  const MessageId id = co_await channel.send(std::move(message));
-  if (!socket.stamps_departures) co_return 0;
+  co_return co_await send_to_peer(socket, to.host - kFirstAddress, std::move(datagram));
+}
+
+Task<int> HostNetwork::send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram) {
+  SimChannel& channel = host_.datagram_channel(peer);
+  const MessageId id = co_await channel.send(with_trailer(datagram));
+  if (socket.departure_stamps == 0) co_return 0;
   const std::optional<HostTime> left =
       co_await channel.transmit_stamp(id, host_.steady_clock().now());
-  if (!left || socket.departed.size() == kMostQueued) co_return 0;
-  const auto length = static_cast<std::uint32_t>(payload.size());
-  socket.departed.push_back(
-      {.arrival =
-           {.from = from, .to = to, .system = epoch_ns(*left), .length = length, .reserved = 0},
-       .payload = std::move(payload)});
+  keep_stamps(socket, left,
+              {.socket = socket.number, .peer = peer, .message = id, .datagram = std::move(datagram)});
   co_return 0;
 }
 
-Task<void> HostNetwork::pump(PeerId peer) {
-  MessageChannel& channel = host_.open_channel(peer, Transport::kDatagram);
+Task<int> HostNetwork::send_to_group(UdpSocket& socket, std::uint32_t group,
+                                     QueuedDatagram datagram) {
+  SimMulticast& multicast = host_.multicast();
+  const MessageId id = co_await multicast.send(group, with_trailer(datagram));
+  if (socket.hears_itself) deliver_to_all(datagram);
+  if (socket.departure_stamps == 0) co_return 0;
+  const std::optional<HostTime> left =
+      co_await multicast.transmit_stamp(id, host_.steady_clock().now());
+  keep_stamps(socket, left,
+              {.socket = socket.number, .message = id, .datagram = std::move(datagram)});
+  co_return 0;
+}
+
+void HostNetwork::keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving) {
+  const unsigned wanted = socket.departure_stamps;
+  const bool by_card =
+      (wanted & shim::kHardwareStamps) != 0 && card_stamping_.departures && host_.nic() != nullptr;
+  // As Linux, which takes both only where both are asked for.
+  const bool by_software =
+      (wanted & shim::kSoftwareStamps) != 0 && (!by_card || (wanted & shim::kBothStamps) != 0);
+  if (by_software && left) {
+    QueuedDatagram stamped = leaving.datagram;
+    stamped.arrival.system = stamp_ns(left);
+    queue_departure(socket, std::move(stamped));
+  }
+  if (!by_card) return;
+  leaving_.push_back(std::move(leaving));
+  has_left_.notify();
+}
+
+void HostNetwork::queue_departure(UdpSocket& socket, QueuedDatagram datagram) {
+  if (socket.departed.size() == kMostQueued) return;
+  socket.departed.push_back(std::move(datagram));
+  socket.on_arrival();
+}
+
+Task<void> HostNetwork::stamp_departures() {
   for (;;) {
-    std::optional<ReceivedMessage> message =
-        co_await channel.receive(host_.steady_clock().now() + kIdle);
-    if (!message || message->bytes.size() < kPortBytes) continue;
-    Bytes& bytes = message->bytes;
-    const auto* ports =
-        reinterpret_cast<const unsigned char*>(bytes.data() + bytes.size() - kPortBytes);
-    const shim::Address from{
-        .host = address_of(peer), .port = boost::endian::load_big_u16(ports), .reserved = 0};
-    const shim::Address to{
-        .host = address(), .port = boost::endian::load_big_u16(ports + 2), .reserved = 0};
-    bytes.resize(bytes.size() - kPortBytes);
-    deliver(from, to, std::move(bytes), message->received);
+    while (leaving_.empty()) co_await has_left_.wait();
+    Leaving leaving = std::move(leaving_.front());
+    leaving_.pop_front();
+    const SteadyTime deadline = host_.steady_clock().now() + kStampTimeout;
+    std::optional<HardwareTime> stamp;
+    if (leaving.peer) {
+      stamp = co_await host_.datagram_channel(*leaving.peer)
+                  .hardware_transmit_stamp(leaving.message, deadline);
+    } else {
+      stamp = co_await host_.multicast().hardware_transmit_stamp(leaving.message, deadline);
+    }
+    const auto found = std::ranges::find_if(
+        bound_, [&](const UdpSocket* each) { return each->number == leaving.socket; });
+    if (!stamp || found == bound_.end()) continue;
+    leaving.datagram.arrival.hardware = stamp_ns(stamp);
+    queue_departure(**found, std::move(leaving.datagram));
   }
 }
 
-void HostNetwork::deliver(shim::Address from, shim::Address to, Bytes payload,
-                          std::optional<HostTime> stamp) {
-  const auto wants = [&from, &to](const UdpSocket* each) {
-    return each->local.port == to.port &&
-           (!each->peer || (each->peer->host == from.host && each->peer->port == from.port));
+void HostNetwork::report_local_activity() {
+  ++local_activity_;
+  for (WaitPoint* each : watchers_) each->notify();
+}
+
+Task<void> HostNetwork::pump(PeerId peer) {
+  SimChannel& channel = host_.datagram_channel(peer);
+  for (;;) {
+    std::optional<ReceivedMessage> message =
+        co_await channel.receive(host_.steady_clock().now() + kIdle);
+    if (!message || message->bytes.size() < kTrailerBytes) continue;
+    Bytes& bytes = message->bytes;
+    const std::size_t length = bytes.size() - kTrailerBytes;
+    const auto* trailer = reinterpret_cast<const unsigned char*>(bytes.data() + length);
+    const shim::Address to{.host = boost::endian::load_big_u32(trailer),
+                           .port = boost::endian::load_big_u16(trailer + 6),
+                           .reserved = 0};
+    const shim::Address from{.host = address_of(peer),
+                             .port = boost::endian::load_big_u16(trailer + 4),
+                             .reserved = 0};
+    bytes.resize(length);
+    std::optional<HardwareTime> by_card;
+    if (card_stamping_.arrivals) by_card = message->received_hardware;
+    const QueuedDatagram datagram{.arrival = {.from = from,
+                                              .to = to,
+                                              .system = stamp_ns(message->received),
+                                              .hardware = stamp_ns(by_card),
+                                              .length = static_cast<std::uint32_t>(length),
+                                              .number = 0},
+                                  .payload = std::move(bytes)};
+    if (group_of(to.host)) {
+      deliver_to_all(datagram);
+    } else {
+      deliver(datagram);
+    }
+  }
+}
+
+namespace {
+
+bool is_for(const UdpSocket& socket, const shim::Arrival& arrival) {
+  return socket.local.port == arrival.to.port &&
+         (socket.local.host == 0 || socket.local.host == arrival.to.host) &&
+         (!socket.peer || (socket.peer->host == arrival.from.host &&
+                           socket.peer->port == arrival.from.port));
+}
+
+}  // namespace
+
+void HostNetwork::deliver(const QueuedDatagram& datagram) {
+  UdpSocket* best = nullptr;
+  const auto states = [](const UdpSocket& socket) {
+    return (socket.peer ? 2 : 0) + (socket.local.host != 0 ? 1 : 0);
   };
-  const auto found = std::ranges::find_if(bound_, wants);
-  if (found == bound_.end() || (*found)->arrived.size() == kMostQueued) return;
-  UdpSocket& socket = **found;
-  const bool is_stamped = stamp && socket.stamps_arrivals;
-  const auto length = static_cast<std::uint32_t>(payload.size());
-  socket.arrived.push_back({.arrival = {.from = from,
-                                        .to = to,
-                                        .system = is_stamped ? epoch_ns(*stamp) : shim::kNoStamp,
-                                        .length = length,
-                                        .reserved = 0},
-                            .payload = std::move(payload)});
+  for (UdpSocket* each : bound_) {
+    if (!is_for(*each, datagram.arrival)) continue;
+    if (best == nullptr || states(*each) >= states(*best)) best = each;
+  }
+  if (best != nullptr) queue_arrival(*best, datagram);
+}
+
+void HostNetwork::deliver_to_all(const QueuedDatagram& datagram) {
+  const std::uint32_t group = datagram.arrival.to.host;
+  for (UdpSocket* each : bound_) {
+    if (!is_for(*each, datagram.arrival)) continue;
+    const bool takes = !is_multicast(group) || each->groups.contains(group) ||
+                       (each->takes_all_groups && joined_[group] > 0);
+    if (takes) queue_arrival(*each, datagram);
+  }
+}
+
+void HostNetwork::queue_arrival(UdpSocket& socket, QueuedDatagram datagram) {
+  if (socket.arrived.size() == kMostQueued) return;
+  shim::Arrival& arrival = datagram.arrival;
+  if ((socket.arrival_stamps & shim::kSoftwareStamps) == 0) arrival.system = shim::kNoStamp;
+  if ((socket.arrival_stamps & shim::kHardwareStamps) == 0) arrival.hardware = shim::kNoStamp;
+  socket.arrived.push_back(std::move(datagram));
   socket.on_arrival();
 }
 

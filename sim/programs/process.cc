@@ -8,65 +8,48 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "recording/text_fields.h"
+#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 namespace {
 
 using shim::Call;
-using shim::Deadline;
 
 // What a reading of a clock takes where the scenario says less: a program may wait for a tick.
 constexpr Nanoseconds kLeastReading(20);
 
-// Times further away are never; sums of two of them still fit.
-constexpr std::int64_t kFarthest = std::int64_t{1} << 61;
-constexpr std::size_t kMostDescriptors = 1024;
+constexpr std::size_t kMostSignalTimers = 64;
 constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
 
 // Linux sets no clock later than that, so that 30 years can follow.
 constexpr std::int64_t kLatestSetting = INT64_MAX - 30 * 365 * 86'400 * kSecondNs;
-
-class BadRequest : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||
          clock == CLOCK_REALTIME_ALARM;
 }
 
-template <class T>
-Bytes bytes_of(const T& value) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  return {bytes.begin(), bytes.end()};
-}
-
-template <class T>
-T read_head(const Bytes& data) {
-  if (data.size() < sizeof(T)) throw BadRequest("too little data");
-  T value{};
-  std::memcpy(&value, data.data(), sizeof value);
-  return value;
-}
-
 }  // namespace
 
-Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel,
+Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
                  const Child::Settings& settings, std::uint32_t number)
     : host_(host),
       network_(network),
       kernel_(kernel),
+      card_(card),
       number_(number),
       chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
       woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings) {}
+      child_(settings) {
+  network_.watch_local_activity(woken_);
+}
 
 Process::~Process() {
   for (auto& [fd, socket] : sockets_) network_.close(socket);
@@ -84,7 +67,7 @@ void Process::count_request() {
 }
 
 Task<void> Process::serve() {
-  for (;;) {
+  while (!is_stopped_) {
     std::optional<ChildRequest> request = child_.next();
     if (!request) break;
     std::optional<Answer> given;
@@ -96,9 +79,17 @@ Task<void> Process::serve() {
       ending_ = bad.what();
     }
     if (!given) break;
-    child_.reply(given->value, given->error, given->data);
+    const std::int32_t told = has_expirations() ? shim::kHasExpirations : 0;
+    child_.reply(given->value, given->error | told, given->data);
   }
-  ending_ = printable_name(child_.ending(ending_));
+  if (!is_stopped_) network_.report_local_activity();
+  const std::string how = child_.ending(ending_);
+  if (!is_stopped_) ending_ = printable_name(how);
+}
+
+void Process::stop() {
+  is_stopped_ = true;
+  woken_.notify();
 }
 
 Task<Process::Answer> Process::answer(ChildRequest request) {
@@ -119,11 +110,26 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kName:
     case Call::kPeerName:
     case Call::kReceive:
+    case Call::kCountInput:
+    case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
     case Call::kQueryTimer:
     case Call::kReadTimer:
       co_return of_timer(request);
+    case Call::kCardStamping:
+      co_return card_stamping(request.head.a);
+    case Call::kSetSignalTimer:
+    case Call::kQuerySignalTimer:
+    case Call::kDropSignalTimer:
+      co_return of_signal_timer(request);
+    case Call::kTakeExpirations:
+      co_return take_expirations();
+    case Call::kReadCard:
+      co_return co_await read_card(request.head.a);
+    case Call::kLocalActivity:
+      network_.report_local_activity();
+      co_return Answer{};
     case Call::kHello:
       co_return Answer{.data = bytes_of(identity())};
     case Call::kRandom:
@@ -142,7 +148,12 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
 }
 
 shim::Identity Process::identity() const {
-  return {.process = static_cast<std::int32_t>(100 + number_), .address = network_.address()};
+  return {.process = static_cast<std::int32_t>(100 + number_),
+          .address = network_.address(),
+          .netmask = HostNetwork::kNetmask,
+          .first_address = HostNetwork::kFirstAddress,
+          .hosts = static_cast<std::uint32_t>(network_.hosts()),
+          .has_card_clock = host_.nic() != nullptr ? 1U : 0U};
 }
 
 Process::Answer Process::random_bytes(std::int64_t count) {
@@ -156,7 +167,11 @@ Process::Answer Process::random_bytes(std::int64_t count) {
 }
 
 Task<Process::Answer> Process::read_clock(std::int64_t clock) {
-  if (clock < 0) co_return Answer{.error = EOPNOTSUPP};
+  if (clock == shim::kCardClock) {
+    const CardClock::Reading card = co_await card_.read();
+    co_return Answer{.value = card.sample.card, .error = card.error};
+  }
+  if (clock < 0) co_return Answer{.error = EINVAL};
   const TrueTime asked = host_.true_now();
   std::int64_t reading = 0;
   if (is_system(clock)) {
@@ -170,139 +185,95 @@ Task<Process::Answer> Process::read_clock(std::int64_t clock) {
 }
 
 Task<Process::Answer> Process::set_clock(std::int64_t clock, std::int64_t reading) {
-  if (clock != CLOCK_REALTIME) co_return Answer{.error = clock < 0 ? EOPNOTSUPP : EINVAL};
   if (reading < 0 || reading >= kLatestSetting) co_return Answer{.error = EINVAL};
-  co_await host_.clock().set(from_epoch_ns(reading));
-  kernel_.was_set();
+  if (clock == shim::kCardClock) {
+    const int error = co_await card_.set(reading);
+    co_return Answer{.error = error};
+  }
+  if (clock != CLOCK_REALTIME) co_return Answer{.error = EINVAL};
+  co_await kernel_.set(from_epoch_ns(reading));
   co_return Answer{};
 }
 
 Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
-  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const auto wanted = read_head<timex>(request.data);
+  if (request.head.a == shim::kCardClock) {
+    const KernelClock::Answer card = co_await card_.adjust(wanted);
+    co_return Answer{.value = card.state, .error = card.error, .data = bytes_of(card.now)};
+  }
+  if (request.head.a != CLOCK_REALTIME) co_return Answer{.error = EOPNOTSUPP};
   const KernelClock::Answer given = co_await kernel_.adjust(wanted);
   co_return Answer{.value = given.state, .error = given.error, .data = bytes_of(given.now)};
-}
-
-// Sockets.
-
-UdpSocket& Process::socket_of(int fd) {
-  const auto found = sockets_.find(fd);
-  if (found == sockets_.end()) throw BadRequest("used a socket that it never opened");
-  return found->second;
-}
-
-Process::Answer Process::open_socket(int fd) {
-  if (sockets_.size() + timers_.size() >= kMostDescriptors) return {.error = EMFILE};
-  UdpSocket& socket = sockets_[fd];
-  network_.close(socket);  // one that was left open under this number
-  socket = {};
-  socket.on_arrival = [this] { woken_.notify(); };
-  return {};
-}
-
-Process::Answer Process::close(int fd) {
-  if (const auto found = sockets_.find(fd); found != sockets_.end()) {
-    network_.close(found->second);
-    sockets_.erase(found);
-  }
-  timers_.erase(fd);
-  return {};
-}
-
-Process::Answer Process::of_socket(const ChildRequest& request) {
-  UdpSocket& socket = socket_of(request.head.fd);
-  switch (request.head.call) {
-    case Call::kBind:
-      return {.error = network_.bind(socket, read_head<shim::Address>(request.data))};
-    case Call::kConnect:
-      return {.error = network_.connect(socket, read_head<shim::Address>(request.data))};
-    case Call::kName:
-      return {.data = bytes_of(socket.local)};
-    case Call::kPeerName:
-      if (!socket.peer) return {.error = ENOTCONN};
-      return {.data = bytes_of(*socket.peer)};
-    case Call::kReceive:
-      return receive(socket, request.head.a);
-    default:
-      return set_option(socket, static_cast<shim::SocketOption>(request.head.a),
-                        request.head.b != 0);
-  }
-}
-
-Process::Answer Process::set_option(UdpSocket& socket, shim::SocketOption option, bool on) {
-  switch (option) {
-    case shim::SocketOption::kReceiveStamps:
-      socket.stamps_arrivals = on;
-      return {};
-    case shim::SocketOption::kTransmitStamps:
-      socket.stamps_departures = on;
-      return {};
-  }
-  return {.error = ENOPROTOOPT};
-}
-
-Process::Answer Process::receive(UdpSocket& socket, std::int64_t how) {
-  std::deque<QueuedDatagram>& queue = (how & 1) != 0 ? socket.departed : socket.arrived;
-  if (queue.empty()) return {.error = EAGAIN};
-  Answer answer{.data = bytes_of(queue.front().arrival)};
-  const Bytes& payload = queue.front().payload;
-  answer.data.insert(answer.data.end(), payload.begin(), payload.end());
-  if ((how & 2) == 0) queue.pop_front();
-  return answer;
-}
-
-Task<Process::Answer> Process::send(ChildRequest request) {
-  UdpSocket& socket = socket_of(request.head.fd);
-  const auto to = read_head<shim::Address>(request.data);
-  Bytes payload(request.data.begin() + sizeof to, request.data.end());
-  const int error = co_await network_.send(socket, to, std::move(payload));
-  co_return Answer{.error = error};
 }
 
 // Timers.
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
-  if (sockets_.size() + timers_.size() >= kMostDescriptors) return {.error = EMFILE};
-  timers_[fd] = {.is_system = is_system(clock)};
+  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
+  timers_.insert_or_assign(fd, ProcessTimer(host_, is_system(clock)));
   return {};
 }
 
-std::int64_t Process::now_of(const Timer& timer) const {
-  return timer.is_system ? epoch_ns(host_.system_clock().read(host_.true_now()))
-                         : nanoseconds_of(host_.steady_clock().now());
+namespace {
+
+shim::TimerSetting setting_in(const Bytes& data) {
+  const auto setting = read_head<shim::TimerSetting>(data);
+  if (setting.left < 0 || setting.interval < 0) throw BadRequest("set a timer to a negative time");
+  return setting;
 }
 
-void Process::expire(Timer& timer) const {
-  if (timer.next == 0) return;
-  const std::int64_t late = now_of(timer) - timer.next;
-  if (late < 0) return;
-  const std::int64_t times = timer.interval > 0 ? late / timer.interval + 1 : 1;
-  timer.expirations += times;
-  timer.next = timer.interval > 0 ? timer.next + times * timer.interval : 0;
-}
+}  // namespace
 
 Process::Answer Process::of_timer(const ChildRequest& request) {
   const auto found = timers_.find(request.head.fd);
   if (found == timers_.end()) throw BadRequest("used a timer that it never opened");
-  Timer& timer = found->second;
-  expire(timer);
+  ProcessTimer& timer = found->second;
   if (request.head.call == Call::kReadTimer) {
-    const std::int64_t expirations = std::exchange(timer.expirations, 0);
+    const std::int64_t expirations = timer.take();
     return {.value = expirations, .error = expirations == 0 ? EAGAIN : 0};
   }
-  const shim::TimerSetting before{.left = timer.next == 0 ? 0 : timer.next - now_of(timer),
-                                  .interval = timer.interval};
+  const shim::TimerSetting before = timer.setting();
   if (request.head.call == Call::kSetTimer) {
-    const auto wanted = read_head<shim::TimerSetting>(request.data);
-    if (wanted.left < 0 || wanted.interval < 0) throw BadRequest("set a timer to a negative time");
-    const std::int64_t left = std::min(wanted.left, kFarthest);
-    const bool is_absolute = request.head.a != 0;
-    timer.interval = std::min(wanted.interval, kFarthest);
-    timer.expirations = 0;
-    timer.next = left == 0 ? 0 : is_absolute ? left : now_of(timer) + left;
+    timer.set(setting_in(request.data), request.head.a != 0);
   }
   return {.data = bytes_of(before)};
+}
+
+Process::Answer Process::of_signal_timer(const ChildRequest& request) {
+  const int number = request.head.fd;
+  if (request.head.call == Call::kDropSignalTimer) {
+    signal_timers_.erase(number);
+    return {};
+  }
+  const auto found = signal_timers_.find(number);
+  const bool exists = found != signal_timers_.end();
+  const shim::TimerSetting before = exists ? found->second.setting() : shim::TimerSetting{};
+  if (request.head.call == Call::kSetSignalTimer) {
+    if (!exists && signal_timers_.size() >= kMostSignalTimers) return {.error = EAGAIN};
+    ProcessTimer timer(host_, is_system(request.head.b));
+    timer.set(setting_in(request.data), request.head.a != 0);
+    signal_timers_.insert_or_assign(number, timer);
+  }
+  return {.data = bytes_of(before)};
+}
+
+bool Process::has_expirations() {
+  return std::ranges::any_of(signal_timers_,
+                             [](auto& timer) { return timer.second.expirations() > 0; });
+}
+
+Process::Answer Process::take_expirations() {
+  Answer answer;
+  for (auto& [number, timer] : signal_timers_) {
+    const std::int64_t times = timer.take();
+    if (times == 0) continue;
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();  // DELAYTIMER_MAX
+    const shim::Expiration expiration{.timer = number,
+                                      .times = static_cast<std::uint32_t>(std::min(times, kMost))};
+    const Bytes bytes = bytes_of(expiration);
+    answer.data.insert(answer.data.end(), bytes.begin(), bytes.end());
+  }
+  return answer;
 }
 
 // Waits.
@@ -310,65 +281,28 @@ Process::Answer Process::of_timer(const ChildRequest& request) {
 std::int16_t Process::readiness(const shim::Interest& interest) {
   if (const auto found = sockets_.find(interest.fd); found != sockets_.end()) {
     const UdpSocket& socket = found->second;
-    const int ready =
-        (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | (socket.departed.empty() ? 0 : POLLPRI);
     const int error = socket.departed.empty() ? 0 : POLLERR;
+    const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
+    const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
     return static_cast<std::int16_t>((ready & interest.events) | error);
   }
   if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
-    expire(found->second);
-    return found->second.expirations > 0 ? interest.events & POLLIN : 0;
+    return found->second.expirations() > 0 ? interest.events & POLLIN : 0;
   }
   return POLLNVAL;
 }
 
-namespace {
-
-// A system clock may be set while a program waits for it.
-constexpr Nanoseconds kLookAgain = std::chrono::seconds(1);
-
-}  // namespace
-
-std::optional<TrueTime> Process::look_at_system_time(std::int64_t at) const {
-  const HostTime wanted = from_epoch_ns(at);
-  const SystemClock& clock = host_.system_clock();
-  if (wanted > clock.read(host_.true_now()) + kLookAgain) return host_.true_now() + kLookAgain;
-  return clock.when(wanted, host_.true_now());
-}
-
-std::optional<TrueTime> Process::next_look(Deadline kind, std::int64_t at) const {
-  switch (kind) {
-    case Deadline::kNever:
-      return std::nullopt;
-    case Deadline::kAtSystemTime:
-      return look_at_system_time(at);
-    default:
-      return host_.next_look(SteadyTime(Nanoseconds(at)));
-  }
-}
-
-bool Process::is_past(Deadline kind, std::int64_t at) const {
-  switch (kind) {
-    case Deadline::kNever:
-      return false;
-    case Deadline::kAtSystemTime:
-      return epoch_ns(host_.system_clock().read(host_.true_now())) >= at;
-    default:
-      return host_.is_past(SteadyTime(Nanoseconds(at)));
-  }
-}
-
 std::optional<TrueTime> Process::next_timer(std::span<const shim::Interest> interests) {
   std::optional<TrueTime> next;
+  const auto consider = [&next](const ProcessTimer& timer) {
+    const std::optional<TrueTime> look = timer.next_look();
+    if (look && (!next || *look < *next)) next = look;
+  };
   for (const shim::Interest& interest : interests) {
     const auto found = timers_.find(interest.fd);
-    const bool is_awaited = (interest.events & POLLIN) != 0;
-    if (!is_awaited || found == timers_.end() || found->second.next == 0) continue;
-    const Timer& timer = found->second;
-    const Deadline kind = timer.is_system ? Deadline::kAtSystemTime : Deadline::kAtMonotonicTime;
-    const std::optional<TrueTime> look = next_look(kind, timer.next);
-    if (look && (!next || *look < *next)) next = look;
+    if (found != timers_.end() && (interest.events & POLLIN) != 0) consider(found->second);
   }
+  for (const auto& [number, timer] : signal_timers_) consider(timer);
   return next;
 }
 
@@ -377,25 +311,28 @@ Task<Process::Answer> Process::wait(ChildRequest request) {
   if (!interests.empty()) {
     std::memcpy(interests.data(), request.data.data(), interests.size() * sizeof interests[0]);
   }
-  auto kind = static_cast<Deadline>(request.head.a);
-  std::int64_t at = std::clamp(request.head.b, std::int64_t{0}, kFarthest);
-  if (kind == Deadline::kAfter) {
-    at += nanoseconds_of(host_.steady_clock().now());
-    kind = Deadline::kAtMonotonicTime;
-  }
+  const WakeTime deadline =
+      wake_time(host_, static_cast<shim::Deadline>(request.head.a), request.head.b);
+  const bool watches_real = (request.head.flags & shim::kWatchesReal) != 0;
+  const std::uint64_t activity = network_.local_activity();
   for (;;) {
     std::int64_t ready = 0;
     for (shim::Interest& interest : interests) {
       interest.ready = readiness(interest);
       ready += interest.ready != 0;
     }
-    if (ready > 0 || is_past(kind, at)) {
+    if (ready > 0 || is_past(host_, deadline) || is_stopped_) {
       Answer answer{.value = ready};
       const auto bytes = std::as_bytes(std::span(interests));
       answer.data.assign(bytes.begin(), bytes.end());
       co_return answer;
     }
-    std::optional<TrueTime> look = next_look(kind, at);
+    const bool looks_again = watches_real && network_.local_activity() != activity;
+    if (looks_again || has_expirations()) {
+      co_return Answer{.error = looks_again ? EAGAIN : EINTR,
+                       .data = bytes_of(left_ns(host_, deadline))};
+    }
+    std::optional<TrueTime> look = next_look(host_, deadline);
     const std::optional<TrueTime> timer = next_timer(interests);
     if (timer && (!look || *timer < *look)) look = timer;
     co_await woken_.wait(look);

@@ -5,15 +5,20 @@
 // sends, wake-ups. Requests are not trusted: one that is no request ends the program, with a note.
 //
 // Clocks: CLOCK_REALTIME and its kin are the host's system clock, all monotonic ones its oscillator
-// (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; a
-// network card's clock is EOPNOTSUPP.
+// (which the kernel's rate corrections do not touch, unlike Linux'), CPU clocks likewise; the
+// network card's has no number of its own (shim::kCardClock).
 //
-// A wait for a system time looks at least every second whether the clock was set. A program that
-// asks more than kMostASecond times within a second of simulated time is ended.
+// Programs of a host may speak over real sockets (Unix-domain): who waits for one looks again
+// whenever another says that it did something there, or has ended.
+//
+// A timer that makes a signal ends a wait; one that expires while the program computes is told with
+// the reply to what it asks next. A program that asks more than kMostASecond times within a second
+// of simulated time is ended.
 //
 //   HostNetwork network(host, 6);
 //   KernelClock kernel(host);
-//   Process process(host, network, kernel, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
+//   CardClock card(host);
+//   Process process(host, network, kernel, card, {.command = {"/usr/sbin/chronyd", "-d"}}, 1);
 //   boost::asio::co_spawn(context, process.serve(), boost::asio::detached);
 #ifndef SIMBENCH_SIM_PROGRAMS_PROCESS_H_
 #define SIMBENCH_SIM_PROGRAMS_PROCESS_H_
@@ -28,9 +33,11 @@
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/card_clock.h"
 #include "sim/programs/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/kernel_clock.h"
+#include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
 
@@ -39,15 +46,17 @@ class Process {
   static constexpr std::uint64_t kMostASecond = 50'000;
 
   // `number` tells the processes of a host apart. The references must outlive this.
-  Process(SimHost& host, HostNetwork& network, KernelClock& kernel, const Child::Settings& settings,
-          std::uint32_t number);
+  Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardClock& card,
+          const Child::Settings& settings, std::uint32_t number);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
   // Ends with the program.
   Task<void> serve();
-  // Why it ended, one line; empty while it runs.
+  // Ends it at its next wait, or the one that it is in.
+  void stop();
+  // Why it ended by itself, one line; empty while it runs, and once it is stopped.
   const std::string& ending() const { return ending_; }
 
  private:
@@ -56,13 +65,6 @@ class Process {
     int error = 0;
     Bytes data{};
   };
-  struct Timer {
-    bool is_system = false;  // follows the system clock
-    std::int64_t next = 0;   // on its clock, ns; 0: disarmed
-    std::int64_t interval = 0;
-    std::int64_t expirations = 0;
-  };
-
   // Throws for a program that asks too often.
   void count_request();
   // These throw for what is no request.
@@ -77,34 +79,37 @@ class Process {
   Answer open_socket(int fd);
   Answer close(int fd);
   Answer of_socket(const ChildRequest& request);
-  static Answer set_option(UdpSocket& socket, shim::SocketOption option, bool on);
+  Task<Answer> read_card(std::int64_t count);
+  Answer card_stamping(std::int64_t wanted);
+  int join(UdpSocket& socket, bool joins, std::int64_t group);
+  static Answer set_option(UdpSocket& socket, shim::SocketOption option, std::int64_t value);
   static Answer receive(UdpSocket& socket, std::int64_t how);
   Task<Answer> send(ChildRequest request);
 
   Answer open_timer(int fd, std::int64_t clock);
   Answer of_timer(const ChildRequest& request);
-  std::int64_t now_of(const Timer& timer) const;
-  // Counts what has expired until now.
-  void expire(Timer& timer) const;
+  Answer of_signal_timer(const ChildRequest& request);
+  Answer take_expirations();
+  // Whether a signal timer has expired that the program has not heard of.
+  bool has_expirations();
 
   Task<Answer> wait(ChildRequest request);
   std::int16_t readiness(const shim::Interest& interest);
-  bool is_past(shim::Deadline kind, std::int64_t at) const;
-  // When to look at the clock again; nothing: never.
-  std::optional<TrueTime> next_look(shim::Deadline kind, std::int64_t at) const;
-  std::optional<TrueTime> look_at_system_time(std::int64_t at) const;
   std::optional<TrueTime> next_timer(std::span<const shim::Interest> interests);
 
   SimHost& host_;
   HostNetwork& network_;
   KernelClock& kernel_;
+  CardClock& card_;
   std::uint32_t number_;
   RandomStream chance_;
   WaitPoint woken_;
   std::map<int, UdpSocket> sockets_;
-  std::map<int, Timer> timers_;
+  std::map<int, ProcessTimer> timers_;         // by descriptor
+  std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
   Child child_;
   std::string ending_;
+  bool is_stopped_ = false;
   TrueTime counted_since_{};
   std::uint64_t asked_ = 0;
 };

@@ -1,8 +1,8 @@
 #include "sim/programs/program_sync.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <boost/algorithm/string/replace.hpp>
 #include <deque>
 #include <filesystem>
 #include <fstream>
@@ -11,81 +11,72 @@
 
 #include "algorithms/host_sync/join.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/placeholders.h"
 #include "sim/programs/process.h"
 
 namespace simbench::sim {
 namespace {
 
-std::string dotted(std::uint32_t address) {
-  return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 255, address >> 8 & 255,
-                     address & 255);
-}
+using scenarios::HostPrograms;
 
 // The programs of one host.
-class HostPrograms {
+class RunningPrograms {
  public:
-  HostPrograms(SimHost& host, const ProgramSettings& settings,
-               const std::vector<ProgramSettings::Command>& commands)
-      : host_(host),
-        settings_(settings),
-        folder_(std::filesystem::path(settings.folder) / fmt::format("host{}", host.id())),
-        network_(host, settings.hosts),
-        kernel_(host) {
-    std::filesystem::create_directories(folder_);
-    for (const auto& [name, content] : settings.files) {
-      std::ofstream(folder_ / name) << filled(content);
+  RunningPrograms(SimHost& host, std::size_t hosts)
+      : host_(host), hosts_(hosts), network_(host, hosts), kernel_(host), card_(host) {}
+
+  void start(const HostPrograms::Command& command, const ProgramSettings& settings,
+             const std::string& folder) {
+    const std::size_t number = processes_.size();
+    const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
+    Child::Settings child{.command = {},
+                          .environment = {},
+                          .folder = folder,
+                          .log_name = fmt::format("{}_{}.log", number,
+                                                  scenarios::program_name(command)),
+                          .shim = settings.shim};
+    for (const std::string& word : command) child.command.push_back(fill(word, places));
+    for (const auto& [name, value] : settings.programs.environment) {
+      child.environment[name] = fill(value, places);
     }
-    for (const ProgramSettings::Command& command : commands) start(command);
+    processes_.emplace_back(host_, network_, kernel_, card_, child,
+                            static_cast<std::uint32_t>(number));
   }
 
-  Task<void> run() {
+  // `on_end` gets the last words of the first program that ends by itself.
+  Task<void> run(std::optional<Nanoseconds> duration,
+                 std::function<void(const std::string&)> on_end) {
     std::vector<Task<void>> tasks;
-    for (PeerId peer = 0; peer < settings_.hosts; ++peer) {
+    for (PeerId peer = 0; peer < hosts_; ++peer) {
       if (peer != host_.id()) tasks.push_back(network_.pump(peer));
     }
-    for (Process& process : processes_) tasks.push_back(serve(process));
+    tasks.push_back(network_.stamp_departures());
+    tasks.push_back(kernel_.run());
+    for (Process& process : processes_) tasks.push_back(serve(process, on_end));
+    if (duration) tasks.push_back(stop_after(*duration));
     co_await join_all(std::move(tasks));
   }
 
  private:
-  std::string filled(std::string text) const {
-    const std::pair<const char*, std::string> places[] = {
-        {"{master}", dotted(HostNetwork::address_of(0))},
-        {"{address}", dotted(network_.address())},
-        {"{host}", std::to_string(host_.id())},
-        {"{files}", "."}};
-    for (const auto& [place, value] : places) boost::replace_all(text, place, value);
-    return text;
-  }
-
-  void start(const ProgramSettings::Command& command) {
-    Child::Settings child{.command = {},
-                          .environment = {},
-                          .folder = folder_.string(),
-                          .log_name = fmt::format("program{}.log", processes_.size()),
-                          .shim = settings_.shim};
-    for (const std::string& word : command) child.command.push_back(filled(word));
-    for (const auto& [name, value] : settings_.environment) {
-      child.environment[name] = filled(value);
-    }
-    const auto number = static_cast<std::uint32_t>(processes_.size());
-    processes_.emplace_back(host_, network_, kernel_, child, number);
-  }
-
-  Task<void> serve(Process& process) {
+  Task<void> serve(Process& process, std::function<void(const std::string&)> on_end) {
+    const TrueTime begin = host_.true_now();
     co_await process.serve();
-    if (std::exchange(has_failed_, true)) co_return;
-    host_.report_outcome({.slave = host_.id(),
-                          .synchronised = false,
-                          .passes = 0,
-                          .message = fmt::format("host {}: {}", host_.id(), process.ending())});
+    if (process.ending().empty() || std::exchange(has_failed_, true)) co_return;
+    const double after_s = to_seconds(host_.true_now() - begin);
+    on_end(after_s < 1 ? process.ending()
+                       : fmt::format("after {:.0f} s {}", after_s, process.ending()));
+  }
+
+  Task<void> stop_after(Nanoseconds duration) {
+    co_await host_.sleep_for(duration);
+    for (Process& process : processes_) process.stop();
   }
 
   SimHost& host_;
-  const ProgramSettings& settings_;
-  std::filesystem::path folder_;
+  std::size_t hosts_;
   HostNetwork network_;
   KernelClock kernel_;
+  CardClock card_;
   std::deque<Process> processes_;
   bool has_failed_ = false;
 };
@@ -98,14 +89,67 @@ SimHost& simulated(Host& host) {
 
 }  // namespace
 
+ProgramSync::ProgramSync(ProgramSettings settings) : settings_(std::move(settings)) {}
+
+std::optional<Nanoseconds> ProgramSync::warm_up() const {
+  return from_ms(1e3 * settings_.programs.run_before_capture_s);
+}
+
+std::vector<std::string> ProgramSync::notes() const {
+  std::vector<std::string> notes;
+  for (const auto& [ending, hosts] : endings_) {
+    notes.push_back(fmt::format("{} {}: {}", hosts.size() == 1 ? "host" : "hosts",
+                                fmt::join(hosts, ", "), ending));
+  }
+  return notes;
+}
+
+std::string ProgramSync::make_folder(SimHost& host) {
+  std::filesystem::path folder;
+  if (settings_.log_folder.empty()) {
+    if (temporary_ == nullptr) temporary_ = std::make_unique<TemporaryFolder>();
+    folder = temporary_->path();
+  } else {
+    folder = std::filesystem::absolute(settings_.log_folder) / settings_.pipeline /
+             fmt::format("seed{}", host.world().run_seed);
+  }
+  folder /= fmt::format("host{}", host.id());
+  std::filesystem::remove_all(folder);  // an earlier run's drift file would be this one's
+  std::filesystem::create_directories(folder);
+  const HostPlaces places{.host = host.id(), .drift = host.stored_frequency()};
+  for (const auto& [name, content] : settings_.programs.files) {
+    if (lacks_drift(content, places)) continue;
+    std::ofstream(folder / name) << fill(content, places);
+  }
+  return folder.string();
+}
+
+void ProgramSync::fail(Host& host, const std::string& ending) {
+  endings_[ending].push_back(host.id());
+  host.report_outcome({.slave = host.id(),
+                       .synchronised = false,
+                       .passes = 0,
+                       .message = fmt::format("host {}: {}", host.id(), ending)});
+}
+
+Task<void> ProgramSync::run(Host& host, std::vector<HostPrograms::Command> commands) {
+  SimHost& own = simulated(host);
+  RunningPrograms programs(own, settings_.hosts);
+  const std::string folder = make_folder(own);
+  for (const HostPrograms::Command& command : commands) {
+    programs.start(command, settings_, folder);
+  }
+  std::optional<Nanoseconds> duration;
+  if (!settings_.programs.run_during_capture) duration = warm_up();
+  co_await programs.run(duration, [this, &host](const std::string& ending) { fail(host, ending); });
+}
+
 Task<void> ProgramSync::run_master(Host& host, std::vector<PeerId> /*slaves*/) {
-  HostPrograms programs(simulated(host), settings_, settings_.master);
-  co_await programs.run();
+  return run(host, settings_.programs.master);
 }
 
 Task<void> ProgramSync::run_slave(Host& host, PeerId /*master*/) {
-  HostPrograms programs(simulated(host), settings_, settings_.slave);
-  co_await programs.run();
+  return run(host, settings_.programs.slave);
 }
 
 }  // namespace simbench::sim

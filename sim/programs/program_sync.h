@@ -1,54 +1,69 @@
 // Host synchronisation by real programs: their processes on each host, in the simulated world.
 //
 // Every host runs the programs of its role, the master's or a slave's, from the beginning of the
-// run; they end with the world. In commands, files and the environment, {master} is the master's
-// address, {address} and {host} are the host's own address and number, {files} is its folder. Files
-// are written there first.
+// run; they end with the world, or when the capture begins where they do not run during it. Each
+// host has a folder of its own, in which its programs run; the files are written there first, with
+// their placeholders filled in (sim/programs/placeholders.h), and what the programs print goes to
+// "0_chronyd.log", by number and name.
 //
-// The first program of a host that ends is the host's failure, with its last words; nobody says
-// that a host is synchronised.
+// The first program of a host that ends is the host's failure, and a note with its last words;
+// nobody says that a host is synchronised.
 //
 // Only one process runs at a time, and time moves only when all wait: the same scenario and seed
 // give the same bytes. For the simulated world only: other hosts are a std::logic_error.
 //
-//   ProgramSync chronyd({.master = {{"/usr/sbin/chronyd", "-d", "-f", "server.conf"}},
-//                        .slave = {{"/usr/sbin/chronyd", "-d", "-f", "client.conf"}},
-//                        .files = {{"client.conf", "server {master} iburst"}}});
+//   ProgramSync chronyd({.pipeline = "chronyd",
+//                        .programs = {.master = {{"/usr/sbin/chronyd", "-d", "-f", "server.conf"}},
+//                                     .slave = {{"/usr/sbin/chronyd", "-d", "-f", "client.conf"}},
+//                                     .files = {{"client.conf", "server {master} iburst"}}},
+//                        .shim = "/usr/lib/simbench/libsimbench_shim.so",
+//                        .hosts = 6});
 #ifndef SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
 #define SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "recording/temporary_folder.h"
+#include "scenarios/scenario.h"
 
 namespace simbench::sim {
 
+class SimHost;
+
 struct ProgramSettings {
-  using Command = std::vector<std::string>;
-  std::vector<Command> master;  // the first word is an absolute path
-  std::vector<Command> slave;
-  std::map<std::string, std::string> files;  // contents by name
-  std::map<std::string, std::string> environment;
-  Nanoseconds run_before_capture{};
-  std::string shim;    // the library's absolute path
-  std::string folder;  // where the hosts' folders are made: "host0", ...
+  std::string pipeline;               // its name
+  scenarios::HostPrograms programs;  // the first word of each command is an absolute path
+  std::string shim;                   // the library's absolute path
+  // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
+  std::string log_folder{};
   std::size_t hosts = 0;
 };
 
 class ProgramSync final : public HostSync {
  public:
-  explicit ProgramSync(ProgramSettings settings) : settings_(std::move(settings)) {}
+  explicit ProgramSync(ProgramSettings settings);
 
-  std::optional<Nanoseconds> warm_up() const override { return settings_.run_before_capture; }
+  std::optional<Nanoseconds> warm_up() const override;
+  std::vector<std::string> notes() const override;
   Task<void> run_master(Host& host, std::vector<PeerId> slaves) override;
   Task<void> run_slave(Host& host, PeerId master) override;
 
  private:
+  Task<void> run(Host& host, std::vector<scenarios::HostPrograms::Command> commands);
+  // Empty, and made.
+  std::string make_folder(SimHost& host);
+  void fail(Host& host, const std::string& ending);
+
   ProgramSettings settings_;
+  std::unique_ptr<TemporaryFolder> temporary_;
+  std::map<std::string, std::vector<PeerId>> endings_;  // the hosts whose programs ended so
 };
 
 }  // namespace simbench::sim

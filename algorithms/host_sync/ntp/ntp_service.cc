@@ -89,7 +89,9 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
       settings_(settings),
       association_(host, server, settings.stamps),
       filter_(settings.discipline.precision_s),
-      discipline_(started(settings.discipline, host.stored_frequency())),
+      discipline_(started(settings.discipline, settings.reads_drift_file
+                                                   ? host.stored_frequency()
+                                                   : std::nullopt)),
       start_(host.steady_clock().now()),
       broadcast_delay_s_(settings.broadcast_delay_s / 2),
       outcome_(host) {}
@@ -308,6 +310,7 @@ struct NtpForm {
   int poll_min = 6;
   int poll_max = 10;
   double service_hours = 16;
+  bool reads_drift_file = true;
 };
 
 std::vector<ParameterSpec> ntp_parameters(const NtpForm& form) {
@@ -362,10 +365,11 @@ HostSyncEntry ntp(const NtpForm& form) {
   entry.info.summary = form.summary;
   entry.info.source = "RFC 5905; docs/reference/host_sync.md section 2";
   entry.info.parameters = ntp_parameters(form);
-  entry.make = [mode = form.mode, loop = form.loop](const Parameters& parameters) {
+  entry.make = [form](const Parameters& parameters) {
     NtpSettings settings;
-    settings.mode = mode;
-    settings.discipline.loop = loop;
+    settings.mode = form.mode;
+    settings.reads_drift_file = form.reads_drift_file;
+    settings.discipline.loop = form.loop;
     settings.discipline.step_s = parameters.number("step_ms") * 1e-3;
     settings.discipline.step_out_s = parameters.number("step_out_s");
     settings.discipline.panic_s = parameters.number("panic_s");
@@ -388,6 +392,10 @@ std::vector<HostSyncEntry> host_sync_ntp() {
       ntp({.name = "ntp",
            .family = "ntp",
            .summary = "ntpd as Linux runs it: clock filter, the kernel's PLL/FLL, adaptive poll"}),
+      ntp({.name = "ntp_first_run",
+           .family = "ntp",
+           .summary = "ntp on a host that has no drift file yet",
+           .reads_drift_file = false}),
       ntp({.name = "ntp_lan",
            .family = "ntp_lan",
            .summary = "ntpd at its best on a LAN: ntp with polls of 8 and 16 s",

@@ -55,6 +55,7 @@ struct NtpSettings {
   NtpDisciplineSettings discipline;
   NtpStamps stamps = NtpStamps::kApplication;
   bool initial_burst = true;
+  bool reads_drift_file = true;
   Nanoseconds broadcast_interval = from_ms(64e3);
   double broadcast_delay_s = 0.004;  // round trip, of broadcast_fixed
   Nanoseconds service_time = from_ms(16 * 3600e3);

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "hardware/experiment/child_process.h"
-#include "hardware/experiment/temporary_folder.h"
+#include "recording/temporary_folder.h"
 #include "tests/hardware/experiment/in_sandbox.h"
 
 namespace simbench::hardware {

@@ -33,12 +33,23 @@ struct Seen {
 class Probe : public Endpoint {
  public:
   Probe(Network& network, const Engine& engine, PeerId from, PeerId to, Transport transport)
-      : network_(network), engine_(engine), path_(network.open(from, to, transport, *this)) {}
+      : network_(network),
+        engine_(engine),
+        from_(from),
+        path_(network.open(from, to, transport, *this)) {}
 
   void send(std::uint8_t number, std::size_t bytes = 1) {
     Bytes message(bytes);
     message[0] = std::byte{number};
     network_.send(path_, next_++, std::move(message));
+  }
+  // From this probe's host, one copy to the other end of each of these.
+  void send_to_group(const std::vector<Probe*>& to, std::uint8_t number, std::size_t bytes) {
+    std::vector<Network::Recipient> recipients;
+    for (Probe* each : to) recipients.push_back({each->path_, each->next_++});
+    Bytes message(bytes);
+    message[0] = std::byte{number};
+    network_.send_to_group(from_, left_ms.size(), std::move(recipients), std::move(message), *this);
   }
   void on_arrival() override {
     for (const ArrivedMessage& message : network_.inbox(path_)) {
@@ -57,6 +68,7 @@ class Probe : public Endpoint {
  private:
   Network& network_;
   const Engine& engine_;
+  PeerId from_;
   PathId path_;
   MessageId next_ = 0;
 };
@@ -75,6 +87,12 @@ class World {
   }
   void send_at(double ms, Probe& probe, std::uint8_t number, std::size_t bytes = 1) {
     engine_.call_at(at_ms(ms), [&probe, number, bytes] { probe.send(number, bytes); });
+  }
+  // To a group: the other ends of these probes, which must live as long as the world.
+  void send_to_group_at(double ms, Probe& sender, const std::vector<Probe*>& to,
+                        std::uint8_t number, std::size_t bytes) {
+    engine_.call_at(at_ms(ms),
+                    [&sender, &to, number, bytes] { sender.send_to_group(to, number, bytes); });
   }
   void run() { engine_.run(); }
 
@@ -121,6 +139,57 @@ TEST(NetworkTest, SwitchesInALinePassMessagesOn) {
   EXPECT_NEAR(near.arrived[0].at_ms, 10 + 2 * 0.1 + 0.01 + 1, 1e-6);
   ASSERT_EQ(to_far.arrived.size(), 1u);
   EXPECT_NEAR(to_far.arrived[0].at_ms, 20 + 4 * 0.1 + 3 * 0.01 + 1, 1e-6);
+}
+
+// 1250 bytes at 100 Mbit/s: 0.1 ms on each wire. Sent one by one they would queue on the sender's port
+// and on the trunks.
+TEST(NetworkTest, AMessageToAGroupPassesEachPortOnce) {
+  scenarios::Network parameters = plain_network();
+  parameters.bandwidth_mbit_per_s = 100;
+  parameters.switch_of_host = {1, 1, 1, 0, 2, 2, 3, 3};
+  World world(parameters);
+  std::vector<Probe*> senders;
+  std::vector<Probe*> members;
+  for (const PeerId to : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    senders.push_back(&world.probe(0, to, Transport::kDatagram));
+    members.push_back(&world.probe(to, 0, Transport::kDatagram));
+  }
+  Probe& outside = world.probe(7, 0, Transport::kDatagram);
+  world.probe(0, 7, Transport::kDatagram);
+  world.send_to_group_at(0, *senders[0], senders, 9, 1250);
+  world.run();
+  const std::vector<double> expected_ms = {1.2, 1.2, 1.3, 1.3, 1.3, 1.4};
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    ASSERT_EQ(numbers(members[i]->arrived), std::vector<std::uint8_t>{9}) << "member " << i;
+    EXPECT_NEAR(members[i]->arrived[0].at_ms, expected_ms[i], 1e-6) << "member " << i;
+  }
+  EXPECT_TRUE(outside.arrived.empty());
+  EXPECT_EQ(senders[0]->left_ms, std::vector<double>{0});
+}
+
+TEST(NetworkTest, CopiesForAGroupHaveTheDrawsOfTheirOwnPaths) {
+  scenarios::Network parameters = plain_network();
+  parameters.latency_exponential_ms = 5;
+  std::vector<std::vector<double>> at_ms;
+  for (const bool at_once : {false, true}) {
+    World world(parameters);
+    std::vector<Probe*> senders;
+    std::vector<Probe*> members;
+    for (const PeerId to : {1u, 2u}) {
+      senders.push_back(&world.probe(0, to, Transport::kDatagram));
+      members.push_back(&world.probe(to, 0, Transport::kDatagram));
+    }
+    if (at_once) {
+      world.send_to_group_at(3, *senders[0], senders, 1, 10);
+    } else {
+      for (Probe* each : senders) world.send_at(3, *each, 1, 10);
+    }
+    world.run();
+    for (const Probe* each : members) at_ms.push_back(times(each->arrived));
+  }
+  EXPECT_NE(at_ms[0], at_ms[1]) << "seed " << kNetworkSeed;
+  EXPECT_EQ(at_ms[2], at_ms[0]) << "seed " << kNetworkSeed;
+  EXPECT_EQ(at_ms[3], at_ms[1]) << "seed " << kNetworkSeed;
 }
 
 TEST(NetworkTest, TrunksQueueWhatSharesThem) {

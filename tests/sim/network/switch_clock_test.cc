@@ -19,6 +19,7 @@ Bytes ptp(std::uint8_t type, std::int64_t correction = 0, std::size_t size = 44)
   Bytes message(size);
   message[0] = std::byte{static_cast<std::uint8_t>(0xF0 | type)};  // transportSpecific is no matter
   message[1] = std::byte{0x12};                                    // minor version 1
+  message[3] = static_cast<std::byte>(size);
   auto field = static_cast<std::uint64_t>(correction);
   for (std::size_t i = 16; i-- > 8; field >>= 8) message[i] = static_cast<std::byte>(field & 0xFF);
   return message;
@@ -45,6 +46,17 @@ TEST(SwitchClock, KnowsEventMessagesOfVersion2) {
   }
   EXPECT_FALSE(clock.corrects(ptp(0, 0, 43)));
   EXPECT_TRUE(clock.corrects(ptp(0, 0, 100)));
+  Bytes with_trailer = ptp(0);
+  with_trailer.resize(52);
+  EXPECT_TRUE(clock.corrects(with_trailer));
+  with_trailer.resize(53);
+  EXPECT_FALSE(clock.corrects(with_trailer));
+  // An NTP request of stratum 2 begins like an event message of version 2.
+  Bytes ntp(48);
+  ntp[0] = std::byte{0x23};
+  ntp[1] = std::byte{2};
+  ntp[2] = std::byte{6};
+  EXPECT_FALSE(clock.corrects(ntp));
   Bytes version_1 = ptp(0);
   version_1[1] = std::byte{1};
   EXPECT_FALSE(clock.corrects(version_1));

@@ -1,5 +1,6 @@
 #include "sim/programs/program_sync.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -24,7 +25,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-using Command = ProgramSettings::Command;
+using Command = scenarios::HostPrograms::Command;
 
 constexpr std::size_t kHosts = 3;
 
@@ -43,14 +44,16 @@ class ProgramSyncTest : public testing::Test {
   // Runs it for a while; returns each host's first output.
   std::vector<std::string> run(Command master, Command slave, double seconds,
                                std::uint64_t seed = 1) {
+    host_folder_ = fmt::format("{}/test/seed{}/host", folder_, seed);
+    const std::string logs[] = {"0_" + scenarios::program_name(master) + ".log",
+                                "0_" + scenarios::program_name(slave) + ".log"};
     std::filesystem::remove_all(folder_);
-    ProgramSync sync({.master = {std::move(master)},
-                      .slave = {std::move(slave)},
-                      .files = {{"address.txt", "{host} of {master}: {address}\n"}},
-                      .environment = {},
-                      .run_before_capture = {},
+    ProgramSync sync({.pipeline = "test",
+                      .programs = {.master = {std::move(master)},
+                                   .slave = {std::move(slave)},
+                                   .files = {{"address.txt", "{host} of {master}: {address}\n"}}},
                       .shim = SIMBENCH_SHIM,
-                      .folder = folder_,
+                      .log_folder = folder_,
                       .hosts = kHosts});
     ServiceWorld world(star(), seed);
     world.start(sync);
@@ -59,15 +62,14 @@ class ProgramSyncTest : public testing::Test {
     outcomes_ = world.record.outcomes;
     std::vector<std::string> outputs;
     for (std::size_t host = 0; host < kHosts; ++host) {
-      outputs.push_back(content(host, "program0.log"));
+      outputs.push_back(content(host, logs[host > 0]));
     }
     return outputs;
   }
 
   std::string content(std::size_t host, const std::string& name) const {
-    const auto path = std::filesystem::path(folder_) / ("host" + std::to_string(host)) / name;
     std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
+    text << std::ifstream(fmt::format("{}{}/{}", host_folder_, host, name)).rdbuf();
     return text.str();
   }
 
@@ -79,6 +81,7 @@ class ProgramSyncTest : public testing::Test {
 
   const std::string folder_ = testing::TempDir() + "/programs" +
                               testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::string host_folder_;
   double largest_error_s_ = 0;
   std::vector<SyncOutcome> outcomes_;
 };
@@ -128,8 +131,15 @@ TEST_F(ProgramSyncTest, AProgramThatEndsIsAFailureWithItsLastWords) {
 TEST_F(ProgramSyncTest, WhatCannotBeSimulatedIsSaid) {
   EXPECT_THAT(ending_of("fork"), HasSubstr("goes to the background"));
   EXPECT_THAT(ending_of("thread"), HasSubstr("a second thread"));
+  EXPECT_THAT(ending_of("thread timer"), HasSubstr("SIGEV_THREAD"));
   EXPECT_THAT(ending_of("spin"), HasSubstr("never waits"));
   EXPECT_THAT(ending_of("garbage"), HasSubstr("asked what the world does not know"));
+}
+
+TEST_F(ProgramSyncTest, AnAlarmWithoutAHandlerEndsTheProgram) {
+  run({test_program("calls"), "echo"}, {test_program("calls"), "alarm"}, 2);
+  ASSERT_FALSE(outcomes_.empty());
+  EXPECT_THAT(outcomes_.front().message, HasSubstr("ended by signal ALRM"));
 }
 
 TEST_F(ProgramSyncTest, AProgramThatIsNotThereIsSaid) {

@@ -3,9 +3,33 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace simbench {
 namespace {
+
+TEST(KernelLoop, EachSecondTakesAWholePart) {
+  KernelLoop kernel;
+  kernel.set_constant(4);
+  kernel.update(-64e-3, 0);
+  EXPECT_EQ(kernel.next_part_s(), -1e-3);
+  EXPECT_EQ(kernel.next_second(), -1e-3);
+  EXPECT_EQ(kernel.offset_s(), -63e-3);
+  int seconds = 1;
+  for (; kernel.next_second() != 0; ++seconds) ASSERT_LT(seconds, 10'000);
+  EXPECT_NEAR(kernel.offset_s(), 0, 64.1e-9 / 4294967296.0) << "what the kernel cannot divide";
+  EXPECT_NEAR(seconds, std::log(1e6 * 4294967296.0) * 63.5, 2);
+}
+
+TEST(KernelLoop, TheFllsFlagBeginsItAt256Seconds) {
+  for (const auto& [mu_s, fll] : {std::pair{255.0, 0.0}, std::pair{256.0, 1e-3 / 4 / 256}}) {
+    KernelLoop kernel;
+    kernel.set_constant(10);
+    const KernelLoop::Mode mode = kernel.update(1e-3, mu_s, true);
+    EXPECT_EQ(mode, fll > 0 ? KernelLoop::Mode::kFll : KernelLoop::Mode::kPll);
+    EXPECT_NEAR(kernel.frequency(), fll + 1e-3 * mu_s / (16384.0 * 16384), 1e-18) << mu_s;
+  }
+}
 
 TEST(NtpKernelLoop, EachSecondTakesItsPartOfTheOffset) {
   for (const int constant : {0, 3, 6, 10}) {

@@ -2,8 +2,8 @@
 //
 //   TemporaryFolder folder;
 //   use(folder.file("rig.json"));
-#ifndef SIMBENCH_HARDWARE_EXPERIMENT_TEMPORARY_FOLDER_H_
-#define SIMBENCH_HARDWARE_EXPERIMENT_TEMPORARY_FOLDER_H_
+#ifndef SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_
+#define SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_
 
 #include <stdlib.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-namespace simbench::hardware {
+namespace simbench {
 
 class TemporaryFolder {
  public:
@@ -36,6 +36,6 @@ class TemporaryFolder {
   std::string path_;
 };
 
-}  // namespace simbench::hardware
+}  // namespace simbench
 
-#endif  // SIMBENCH_HARDWARE_EXPERIMENT_TEMPORARY_FOLDER_H_
+#endif  // SIMBENCH_RECORDING_TEMPORARY_FOLDER_H_

@@ -1,0 +1,96 @@
+#include "app/program_pipelines.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "evaluation/run/pipeline_choice.h"
+#include "sim/programs/find_program.h"
+#include "sim/programs/placeholders.h"
+#include "sim/programs/program_file.h"
+#include "sim/programs/program_sync.h"
+
+namespace simbench::app {
+namespace {
+
+using scenarios::HostPrograms;
+
+std::filesystem::path own_folder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+// As built, and as installed.
+std::string find_shim() {
+  for (const char* place : {"../lib/libsimbench_shim.so", "../lib/simbench/libsimbench_shim.so"}) {
+    const std::filesystem::path path = (own_folder() / place).lexically_normal();
+    if (std::filesystem::exists(path)) return path.string();
+  }
+  throw sim::ProgramError(fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
+                                      "installed in full?",
+                                      own_folder().string()));
+}
+
+// The packages that tools/setup has unpacked, of a program that lies in a build folder.
+std::string unpacked_packages() {
+  const std::filesystem::path packages =
+      (own_folder() / "../../deps").lexically_normal();
+  return std::filesystem::is_directory(packages) ? packages.string() : "";
+}
+
+// With absolute paths and what the programs' libraries need.
+HostPrograms found(HostPrograms programs) {
+  if (const auto unknown = sim::unknown_placeholder(programs)) {
+    throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
+                                        sim::kPlaceholders));
+  }
+  for (auto* role : {&programs.master, &programs.slave}) {
+    for (HostPrograms::Command& command : *role) {
+      const sim::FoundProgram program = sim::find_program(command.front(), unpacked_packages());
+      command.erase(command.begin());
+      command.insert(command.begin(), program.words.begin(), program.words.end());
+      if (!program.library_path.empty()) {
+        programs.environment["LD_LIBRARY_PATH"] = program.library_path;
+      }
+    }
+  }
+  return programs;
+}
+
+evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
+                                  const scenarios::Pipeline& pipeline,
+                                  const ProgramOptions& options) {
+  sim::ProgramSettings settings{.pipeline = pipeline.name,
+                                .programs = *pipeline.programs,
+                                .shim = "",
+                                .log_folder = options.log_folder,
+                                .hosts = static_cast<std::size_t>(scenario.hosts.count)};
+  std::string problem;
+  try {
+    settings.shim = find_shim();
+    settings.programs = found(std::move(settings.programs));
+  } catch (const sim::ProgramError& missing) {
+    problem = missing.what();
+  }
+  HostSyncEntry entry;
+  entry.info = {.name = pipeline.host_sync,
+                .family = pipeline.host_sync,
+                .summary = "real programs",
+                .source = "the programs"};
+  entry.make = [settings = std::move(settings)](const Parameters&) {
+    return std::make_unique<sim::ProgramSync>(settings);
+  };
+  return {.entry = std::move(entry), .problem = std::move(problem)};
+}
+
+}  // namespace
+
+void use_programs(const ProgramOptions& options) {
+  evaluation::set_program_maker(
+      [options](const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
+        return entry_of(scenario, pipeline, options);
+      });
+}
+
+}  // namespace simbench::app

@@ -1,0 +1,27 @@
+// Pipelines whose host synchronisation is real programs: what they need of this machine.
+//
+// Programs are found before the run (bare names as the shell would, sim/programs/find_program.h),
+// and so is the preloaded library that is installed beside this program. What is missing is one
+// line, with what would help; the pipelines of algorithms go on.
+//
+//   use_programs({.log_folder = "logs"});  // once, before running anything
+//   evaluation::evaluate(scenario, make_source, options, progress);
+#ifndef SIMBENCH_APP_PROGRAM_PIPELINES_H_
+#define SIMBENCH_APP_PROGRAM_PIPELINES_H_
+
+#include <string>
+
+namespace simbench::app {
+
+struct ProgramOptions {
+  // Where the hosts' folders stay, in PIPELINE/seed1/host0, with what the programs printed; empty:
+  // nowhere.
+  std::string log_folder{};
+};
+
+// Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
+void use_programs(const ProgramOptions& options = {});
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_PROGRAM_PIPELINES_H_

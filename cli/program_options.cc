@@ -1,0 +1,104 @@
+#include "cli/program_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/program_pipelines.h"
+#include "scenarios/document.h"
+#include "scenarios/fields.h"
+#include "scenarios/input_file.h"
+#include "scenarios/loader.h"
+
+namespace simbench::cli {
+namespace {
+
+using nlohmann::json;
+using scenarios::InputError;
+
+constexpr const char* kBuiltin = "leaderboard_programs";  // the scenario with the built-in rows
+constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+
+struct NamedProgram {
+  std::string name;
+  json pipeline;
+};
+
+NamedProgram builtin(const std::string& name, const std::string& label) {
+  std::vector<std::string> known;
+  for (const scenarios::Pipeline& pipeline : scenarios::load_scenario(kBuiltin).pipelines) {
+    if (!pipeline.programs) continue;
+    if (pipeline.name == name) {
+      return {name, {{"host_sync", {{"program", *pipeline.programs}}}}};
+    }
+    known.push_back(pipeline.name);
+  }
+  throw InputError(fmt::format("{}: found no file, allowed: NAME=FILE.json, or one of {}", label,
+                               fmt::join(known, ", ")));
+}
+
+// {here} in the file is its folder.
+NamedProgram from_file(const std::string& name, const std::string& path, const std::string& label) {
+  try {
+    const std::filesystem::path here = std::filesystem::absolute(path).parent_path();
+    const std::string quoted = json(here.lexically_normal().string()).dump();
+    std::string text = file_content(path, kMostBytes);
+    boost::replace_all(text, "{here}", quoted.substr(1, quoted.size() - 2));
+    json pipeline = scenarios::parse_document(text).root;
+    if (!pipeline.is_object() || !pipeline.contains("host_sync")) {
+      throw InputError(label +
+                       ": found no \"host_sync\", allowed: {\"host_sync\": {\"program\": ...}}");
+    }
+    return {name, std::move(pipeline)};
+  } catch (const FileError& error) {
+    throw InputError(fmt::format("{}: {}", label, error.what()));
+  } catch (const scenarios::DocumentError& error) {
+    throw InputError(fmt::format("{}: {}", label, error.what()));
+  }
+}
+
+NamedProgram read_program(const std::string& text, const std::string& label) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return builtin(text, label);
+  return from_file(text.substr(0, equals), text.substr(equals + 1), label);
+}
+
+}  // namespace
+
+void add_program_options(Command& command, ProgramOptions& options) {
+  command.texts("--program", "NAME=FILE.json", options.programs,
+                "Also run this pipeline, whose hosts are synchronised by real programs,\n"
+                "repeatable (docs/your_program.md); a name alone is a built-in one");
+  command.text("--program-log", "DIR", options.log_folder,
+               "Keep what programs print, and their files, in DIR/PIPELINE/seed1/host0");
+}
+
+scenarios::Scenario load_with_programs(const std::string& scenario,
+                                       const std::vector<std::string>& sets,
+                                       const ProgramOptions& options,
+                                       std::vector<std::string>& pipelines) {
+  if (!options.log_folder.empty()) app::use_programs({.log_folder = options.log_folder});
+  std::vector<scenarios::Override> overrides = overrides_of(sets);
+  scenarios::Scenario loaded = scenarios::load_scenario(scenario, overrides);
+  if (options.programs.empty()) return loaded;
+  const scenarios::Pipeline first = loaded.pipelines.front();
+  for (const std::string& text : options.programs) {
+    const std::string label = "--program " + scenarios::shown_text(text);
+    NamedProgram program = read_program(text, label);
+    program.pipeline["name"] = program.name;
+    program.pipeline.emplace("device_time", first.device_time);
+    program.pipeline.emplace("gathering", first.gathering);
+    overrides.push_back({"/pipelines/-", program.pipeline.dump(), label});
+    if (!pipelines.empty() && std::ranges::find(pipelines, program.name) == pipelines.end()) {
+      pipelines.push_back(program.name);
+    }
+  }
+  return scenarios::load_scenario(scenario, overrides);
+}
+
+}  // namespace simbench::cli

@@ -1,0 +1,35 @@
+// The options of commands that run real programs on the simulated hosts: --program, --program-log.
+//
+//   ProgramOptions programs;
+//   add_program_options(command, programs);
+//   const scenarios::Scenario scenario =
+//       load_with_programs(options.scenario, options.sets, programs, options.pipelines);
+#ifndef SIMBENCH_CLI_PROGRAM_OPTIONS_H_
+#define SIMBENCH_CLI_PROGRAM_OPTIONS_H_
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::cli {
+
+struct ProgramOptions {
+  std::vector<std::string> programs;  // NAME=FILE.json, or the name of a built-in row
+  std::string log_folder;
+};
+
+void add_program_options(Command& command, ProgramOptions& options);
+
+// The scenario with a pipeline more for each program, which is added to `pipelines` if those are
+// chosen. What a FILE does not state of device_time and gathering is the scenario's first
+// pipeline's. Throws scenarios::InputError.
+scenarios::Scenario load_with_programs(const std::string& scenario,
+                                       const std::vector<std::string>& sets,
+                                       const ProgramOptions& options,
+                                       std::vector<std::string>& pipelines);
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_PROGRAM_OPTIONS_H_

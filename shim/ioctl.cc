@@ -1,0 +1,47 @@
+// ioctl(): of the network's interfaces, of the card's clock, and of the world's sockets.
+#include <sys/ioctl.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "shim/card.h"
+#include "shim/interfaces.h"
+#include "shim/link.h"
+
+namespace simbench::shim {
+namespace {
+
+int real_ioctl(int fd, unsigned long what, void* argument) {
+  return static_cast<int>(syscall(SYS_ioctl, fd, what, argument));
+}
+
+// What the next read of a socket would give.
+int count_input(int fd, int& count) {
+  const std::int64_t size = ask({.call = Call::kCountInput, .fd = fd});
+  if (size < 0) return -1;
+  count = static_cast<int>(size);
+  return 0;
+}
+
+}  // namespace
+
+SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
+  va_list arguments;
+  va_start(arguments, what);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (!is_simulated()) return real_ioctl(fd, what, argument);
+  if (is_about_interfaces(what)) return interface_ioctl(what, argument);
+  const Kind kind = kind_of(fd);
+  if (kind == Kind::kCard) return card_ioctl(what, argument);
+  if (kind == Kind::kSocket && what == FIONREAD) {
+    return count_input(fd, *static_cast<int*>(argument));
+  }
+  // The rest, FIONBIO among it, is the descriptor's own.
+  return real_ioctl(fd, what, argument);
+}
+
+}  // namespace simbench::shim

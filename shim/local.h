@@ -1,0 +1,35 @@
+// Sockets between the programs of a host: Unix-domain sockets, which are the real ones.
+//
+// Paths below /var/run and /run are those of the program's working folder instead, so that hosts do
+// not meet there. A program that waits for such a socket waits in simulated time: whoever writes to
+// one, connects or closes it tells the world, which lets the others of its host look again.
+//
+//   if (is_local(fd)) return local_bind(fd, name, size);
+#ifndef SIMBENCH_SHIM_LOCAL_H_
+#define SIMBENCH_SHIM_LOCAL_H_
+
+#include <sys/socket.h>
+#include <sys/types.h>
+
+#include "shim/link.h"
+
+namespace simbench::shim {
+
+inline bool is_local(int fd) { return kind_of(fd) == Kind::kLocal; }
+
+// As the calls without "local_".
+int local_socket(int domain, int type, int protocol);
+int local_bind(int fd, const sockaddr* name, socklen_t size);
+int local_connect(int fd, const sockaddr* name, socklen_t size);
+ssize_t local_sendmsg(int fd, const msghdr* message, int flags);
+ssize_t local_recvmsg(int fd, msghdr* message, int flags);
+int local_accept(int fd, sockaddr* name, socklen_t* size, int flags);
+ssize_t local_read(int fd, void* data, std::size_t size);
+ssize_t local_write(int fd, const void* data, std::size_t size);
+
+// The descriptor has been closed.
+void local_closed();
+
+}  // namespace simbench::shim
+
+#endif  // SIMBENCH_SHIM_LOCAL_H_

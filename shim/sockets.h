@@ -1,0 +1,45 @@
+// What the shim itself keeps of a socket of the simulated network, and addresses.
+//
+//   Address to{};
+//   if (!read_address(name, size, to)) return -1;
+//   if (state_of(fd).wants_destination) add_destination();
+#ifndef SIMBENCH_SHIM_SOCKETS_H_
+#define SIMBENCH_SHIM_SOCKETS_H_
+
+#include <sys/socket.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "shim/link.h"
+
+namespace simbench::shim {
+
+// The host's network interface; the loopback has number 1.
+inline constexpr int kInterface = 2;
+
+// The software stamps of arrivals by the older options; beside those of SO_TIMESTAMPING.
+enum class Stamps : std::uint8_t { kNone, kTimeval, kTimespec };
+
+struct SocketState {
+  int type = SOCK_DGRAM;
+  Stamps stamps = Stamps::kNone;
+  bool wants_destination = false;  // IP_PKTINFO
+  bool shares_port = false;        // SO_REUSEADDR
+  bool may_broadcast = false;      // SO_BROADCAST
+  unsigned timestamping = 0;       // SO_TIMESTAMPING
+  std::uint32_t first_number = 0;  // from which SOF_TIMESTAMPING_OPT_ID counts
+  std::int64_t timeout_ns = -1;    // SO_RCVTIMEO
+};
+
+bool is_socket(int fd);
+SocketState& state_of(int fd);
+
+// False with errno.
+bool read_address(const sockaddr* name, socklen_t size, Address& address);
+// Cut to *size, which becomes the whole size.
+void write_address(const Address& address, sockaddr* name, socklen_t* size);
+
+}  // namespace simbench::shim
+
+#endif  // SIMBENCH_SHIM_SOCKETS_H_

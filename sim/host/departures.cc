@@ -1,0 +1,74 @@
+#include "sim/host/departures.h"
+
+#include <algorithm>
+
+#include "sim/host/host_clocks.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kHardwareTransmission("host: hardware transmit stamp");
+constexpr std::size_t kStampsKept = 4096;
+
+}  // namespace
+
+Departures::Departures(SimHost& host, const std::string& to)
+    : host_(host),
+      stamps_in_kernel_(host.world().network_parameters.stamp_point ==
+                        scenarios::StampPoint::kKernel),
+      left_(host.world().context, host.name("transmit stamp to " + to)),
+      passed_(host.world().context, host.name("hardware transmit stamp to " + to)) {}
+
+void Departures::on_left(MessageId first, std::size_t count, TrueTime passed) {
+  if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
+  const HostTime stamp =
+      host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
+  sent_.resize(static_cast<std::size_t>(first - first_sent_));
+  sent_.insert(sent_.end(), count, {.has_left = true, .left = stamp, .passed = passed});
+  while (sent_.size() > kStampsKept) {
+    sent_.pop_front();
+    ++first_sent_;
+  }
+  left_.notify();
+  passed_.notify();
+}
+
+Task<std::optional<HostTime>> Departures::stamp(MessageId id, SteadyTime deadline) {
+  if (!stamps_in_kernel_) co_return std::nullopt;
+  while (!has_left(id)) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await left_.wait(host_.next_look(deadline));
+  }
+  const Sent* message = sent(id);
+  if (message == nullptr) co_return std::nullopt;
+  co_return message->left;
+}
+
+Task<std::optional<HardwareTime>> Departures::hardware_stamp(MessageId id, MessageKey key,
+                                                             SteadyTime deadline) {
+  const NicClock* nic = host_.nic();
+  if (nic == nullptr) co_return std::nullopt;
+  while (!has_left(id)) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    co_await passed_.wait(host_.next_look(deadline));
+  }
+  const Sent* message = sent(id);
+  if (message == nullptr) co_return std::nullopt;
+  const TrueTime passed = message->passed;
+  while (passed > host_.true_now()) {
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    const std::optional<TrueTime> look = host_.next_look(deadline);
+    co_await passed_.wait(look ? std::min(*look, passed) : passed);
+  }
+  RandomStream draw(host_.world().run_seed, kHardwareTransmission, key.direction, key.message);
+  co_return nic->stamp(passed, draw);
+}
+
+const Departures::Sent* Departures::sent(MessageId id) const {
+  if (id < first_sent_) return nullptr;
+  const Sent& message = sent_[static_cast<std::size_t>(id - first_sent_)];
+  return message.has_left ? &message : nullptr;
+}
+
+}  // namespace simbench::sim

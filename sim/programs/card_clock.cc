@@ -1,0 +1,63 @@
+#include "sim/programs/card_clock.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+namespace simbench::sim {
+namespace {
+
+constexpr double kPpbPerUnit = 1e3 / 65536;
+// Larger steps are refused: no clock is off by 30 years.
+constexpr long kMostCardSeconds = 1'000'000'000;
+
+}  // namespace
+
+Task<CardClock::Reading> CardClock::read() {
+  NicClock* clock = host_.nic();
+  if (clock == nullptr) co_return Reading{.error = EOPNOTSUPP};
+  const CrossStamp stamp = co_await clock->cross_stamp();
+  co_return Reading{.sample = {.before = epoch_ns(stamp.before),
+                               .card = nanoseconds_of(stamp.hardware) + kEpochNs,
+                               .after = epoch_ns(stamp.after)}};
+}
+
+Task<int> CardClock::set(std::int64_t ns) {
+  NicClock* clock = host_.nic();
+  if (clock == nullptr) co_return EOPNOTSUPP;
+  if (std::abs(ns / kSecondNs - kEpochNs / kSecondNs) > kMostCardSeconds) co_return EINVAL;
+  co_await clock->set(HardwareTime(Nanoseconds(ns - kEpochNs)));
+  co_return 0;
+}
+
+Task<KernelClock::Answer> CardClock::adjust(timex request) {
+  KernelClock::Answer answer{.state = 0, .error = 0, .now = request};
+  NicClock* clock = host_.nic();
+  if (clock == nullptr) {
+    answer.error = EOPNOTSUPP;
+  } else if ((request.modes & ADJ_SETOFFSET) != 0) {
+    const std::int64_t unit_ns = (request.modes & ADJ_NANO) != 0 ? 1 : 1'000;
+    const bool is_time = request.time.tv_usec >= 0 && request.time.tv_usec < kSecondNs / unit_ns;
+    if (!is_time || std::abs(request.time.tv_sec / 2) > kMostCardSeconds / 2) {
+      answer.error = EINVAL;
+      co_return answer;
+    }
+    co_await clock->step(
+        Nanoseconds(request.time.tv_sec * kSecondNs + request.time.tv_usec * unit_ns));
+  } else if ((request.modes & ADJ_FREQUENCY) != 0) {
+    const double ppb = static_cast<double>(request.freq) * kPpbPerUnit;
+    if (std::abs(ppb) > shim::kMostCardRate) {
+      answer.error = ERANGE;
+      co_return answer;
+    }
+    frequency_ = request.freq;
+    co_await clock->adjust_frequency(ppb);
+  } else if (request.modes == 0) {
+    answer.now.freq = frequency_;
+  } else {
+    answer.error = EOPNOTSUPP;
+  }
+  co_return answer;
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,73 @@
+#include "sim/programs/placeholders.h"
+
+#include <fmt/format.h>
+
+#include <boost/algorithm/string/replace.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "sim/programs/host_network.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr char kNtpDrift[] = "{ntp_drift}";
+constexpr char kChronyDrift[] = "{chrony_drift}";
+
+std::string dotted(std::uint32_t address) {
+  return fmt::format("{}.{}.{}.{}", address >> 24, address >> 16 & 255, address >> 8 & 255,
+                     address & 255);
+}
+
+}  // namespace
+
+std::string fill(std::string text, const HostPlaces& places) {
+  const double correction_ppm = places.drift ? places.drift->ppb * 1e-3 : 0;
+  const double error_ppm = places.drift ? places.drift->error_ppb * 1e-3 : 0;
+  const std::pair<const char*, std::string> values[] = {
+      {"{master}", dotted(HostNetwork::address_of(0))},
+      {"{address}", dotted(HostNetwork::address_of(places.host))},
+      {"{host}", std::to_string(places.host)},
+      {"{interface}", "eth0"},
+      {"{files}", "."},
+      {kNtpDrift, fmt::format("{:.6f}", correction_ppm)},
+      {kChronyDrift, fmt::format("{:.6f} {:.6f}", -correction_ppm, error_ppm)}};
+  for (const auto& [place, value] : values) boost::replace_all(text, place, value);
+  return text;
+}
+
+bool lacks_drift(const std::string& text, const HostPlaces& places) {
+  if (places.drift) return false;
+  return text.find(kNtpDrift) != std::string::npos || text.find(kChronyDrift) != std::string::npos;
+}
+
+std::optional<std::string> unknown_placeholder(const std::string& text) {
+  constexpr std::string_view kWord = "abcdefghijklmnopqrstuvwxyz_";
+  const std::string filled = fill(text, {});
+  for (std::size_t at = filled.find('{'); at != std::string::npos; at = filled.find('{', at + 1)) {
+    const std::size_t end = filled.find_first_not_of(kWord, at + 1);
+    if (end != std::string::npos && end > at + 1 && filled[end] == '}') {
+      return filled.substr(at, end + 1 - at);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs) {
+  std::optional<std::string> found;
+  const auto look = [&found](const std::string& text) {
+    if (!found) found = unknown_placeholder(text);
+  };
+  for (const auto* role : {&programs.master, &programs.slave}) {
+    for (const auto& command : *role) {
+      for (const std::string& word : command) look(word);
+    }
+  }
+  for (const auto& [name, content] : programs.files) look(content);
+  for (const auto& [name, value] : programs.environment) look(value);
+  return found;
+}
+
+}  // namespace simbench::sim

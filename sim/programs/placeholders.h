@@ -1,0 +1,48 @@
+// The places in programs' commands, files and environment that differ from host to host.
+//
+//   {master}        the master's address
+//   {address}       the host's own
+//   {host}          its number, 0 for the master
+//   {interface}     its network interface
+//   {files}         the host's folder, which is the programs' working folder
+//   {ntp_drift}     what ntpd's drift file says: the correction in use when it was written, in ppm
+//   {chrony_drift}  what chronyd's says: how fast the clock was, and the error of that, in ppm
+//
+// The last two are of hosts that have a drift file (scenario /hosts/drift_file). A file whose text
+// has them is there on those alone: it is what an earlier run left.
+//
+// Other braces are text, unless they hold a lower-case word: that is likely a mistake.
+//
+//   fill("server {master} iburst", {.host = 3});  // "server 10.0.0.1 iburst"
+//   unknown_placeholder("server {mastr}");        // "{mastr}"
+#ifndef SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+#define SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+
+#include <optional>
+#include <string>
+
+#include "algorithms/ports/host.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::sim {
+
+inline constexpr char kPlaceholders[] =
+    "{master}, {address}, {host}, {interface}, {files}, {ntp_drift}, {chrony_drift}";
+
+struct HostPlaces {
+  PeerId host = 0;
+  std::optional<StoredFrequency> drift{};
+};
+
+std::string fill(std::string text, const HostPlaces& places);
+// Whether it needs a drift file that the host does not have.
+bool lacks_drift(const std::string& text, const HostPlaces& places);
+
+// The first placeholder that there is none of.
+std::optional<std::string> unknown_placeholder(const std::string& text);
+// The same in all texts of the programs.
+std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs);
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
