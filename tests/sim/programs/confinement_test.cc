@@ -159,8 +159,7 @@ TEST_F(ConfinementTest, ItIsRootOfItsHostAndOfNothingElse) {
 }
 
 TEST_F(ConfinementTest, ItsOwnSignalsWork) {
-  EXPECT_EQ(output_of({"own_signals"}),
-            "got it\nraise: succeeded\nstill there\n");
+  EXPECT_EQ(output_of({"own_signals"}), "got it\nraise: succeeded\nstill there\n");
 }
 
 TEST_F(ConfinementTest, HowItEndedIsSaid) {
