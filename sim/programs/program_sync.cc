@@ -125,7 +125,7 @@ std::string ProgramSync::make_folder(SimHost& host) {
 }
 
 void ProgramSync::fail(Host& host, const std::string& ending) {
-  endings_[ending].push_back(host.id());
+  endings_[ending].insert(host.id());
   host.report_outcome({.slave = host.id(),
                        .synchronised = false,
                        .passes = 0,

@@ -26,6 +26,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -63,7 +64,7 @@ class ProgramSync final : public HostSync {
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
-  std::map<std::string, std::vector<PeerId>> endings_;  // the hosts whose programs ended so
+  std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
 };
 
 }  // namespace simbench::sim
