@@ -9,6 +9,9 @@
 // libc by and would reach the real clocks, a network or another process ends it, by name. It
 // inherits no descriptors and no signals, is one process, and sees itself as root of its host.
 //
+// It runs on the CPU of the thread that serves it: one of the two waits always, and to wake another
+// CPU costs more than most requests.
+//
 // Limits: kMostOutput bytes a file, kMostMemory of address space, kMostDescriptors, no core dump.
 // Addresses are not randomised, so that its bytes repeat.
 //
@@ -83,6 +86,7 @@ class Child {
 
  private:
   void start(const Settings& settings);
+  void follow_thread();
   // Returns how it ended.
   std::string end();
   std::string how_it_ended(bool itself, int status) const;
@@ -94,6 +98,7 @@ class Child {
   int link_;
   pid_t process_ = -1;
   bool has_asked_ = false;
+  int cpu_ = -1;  // the one that it is bound to
   bool was_too_slow_ = false;
   Bytes buffer_;
 };
