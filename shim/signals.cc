@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "shim/link.h"
+#include "shim/refused_calls.h"
 
 namespace simbench::shim {
 namespace {
@@ -270,7 +271,7 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
   }
   for (;;) {
     const timespec none{};
-    const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8);
+    const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
     const std::uint64_t before = handled;
     if (ask(wait) >= 0) {

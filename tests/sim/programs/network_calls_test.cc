@@ -1,4 +1,5 @@
 // Programs that look at the calls of the network, in a world of three hosts.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,13 +33,10 @@ class NetworkCallsTest : public testing::Test {
     const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
     master.insert(master.begin(), path);
     slave.insert(slave.begin(), path);
-    ProgramSync sync({.master = {std::move(master)},
-                      .slave = {std::move(slave)},
-                      .files = {},
-                      .environment = {},
-                      .run_before_capture = {},
+    ProgramSync sync({.pipeline = "test",
+                      .programs = {.master = {std::move(master)}, .slave = {std::move(slave)}},
                       .shim = SIMBENCH_SHIM,
-                      .folder = folder_,
+                      .log_folder = folder_,
                       .hosts = kCallingHosts});
     std::vector<scenarios::Override> all{{"/hosts/count", "3"}, {"/cameras/count", "3"}};
     all.insert(all.end(), changes.begin(), changes.end());
@@ -47,14 +45,15 @@ class NetworkCallsTest : public testing::Test {
     world.run_until(60);
     EXPECT_THAT(world.record.outcomes, IsEmpty()) << world.record.outcomes.front().message;
     std::vector<std::string> outputs;
-    for (std::size_t host = 0; host < kCallingHosts; ++host) outputs.push_back(output(host));
+    for (std::size_t host = 0; host < kCallingHosts; ++host) {
+      outputs.push_back(output(host, program));
+    }
     return outputs;
   }
 
  private:
-  std::string output(std::size_t host) const {
-    const auto path =
-        std::filesystem::path(folder_) / ("host" + std::to_string(host)) / "program0.log";
+  std::string output(std::size_t host, const std::string& program) const {
+    const auto path = fmt::format("{}/test/seed1/host{}/0_simbench_{}.log", folder_, host, program);
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
