@@ -48,8 +48,12 @@ std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Receive
 
 // Makes the signals of the timers that have expired, which the world tells with a reply.
 void make_signals();
-// How many of these signals have run a handler, so far.
-std::uint64_t handled_signals();
+// How many of these signals have run a handler, so far, and of these how many without SA_RESTART.
+struct HandledSignals {
+  std::uint64_t all = 0;
+  std::uint64_t interrupting = 0;
+};
+HandledSignals handled_signals();
 
 // Says what cannot be simulated, and ends the program.
 [[noreturn]] void give_up(const char* what, const char* why = "");
@@ -90,6 +94,9 @@ std::int64_t nanoseconds(const timespec& time);
 TimerSetting to_setting(const itimerspec& setting);
 itimerspec from_setting(const TimerSetting& setting);
 
+// What a blocking read of a descriptor of the world waits for; a timeout below 0: for ever. False
+// with errno: EAGAIN at the timeout, EINTR after a handler, unless that says SA_RESTART.
+bool wait_for_input(int fd, std::int64_t timeout_ns);
 // read() of a timer.
 std::int64_t read_timer(int fd, void* data, std::size_t size);
 

@@ -70,13 +70,8 @@ Datagram datagram;  // the one at hand; a program has one thread
 
 // Waits until there is one, if the call may wait.
 bool wait_for_datagram(int fd, int flags) {
-  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return false;
-  pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-  const std::int64_t ns = state_of(fd).timeout_ns;
-  const timespec timeout{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
-  if (ppoll(&interest, 1, ns < 0 ? nullptr : &timeout, nullptr) > 0) return true;
-  errno = EAGAIN;
-  return false;
+  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return false;  // EAGAIN
+  return wait_for_input(fd, state_of(fd).timeout_ns);
 }
 
 bool take_datagram(int fd, int flags) {
