@@ -60,8 +60,8 @@ bool is_card(const char* path) {
   return is_simulated() && strncmp(path, "/dev/ptp", strlen("/dev/ptp")) == 0;
 }
 
-int open_card(int flags) {
-  if (identity().has_card_clock == 0) return refuse(ENOENT);
+int open_card(const char* path, int flags) {
+  if (identity().has_card_clock == 0 || strcmp(path, "/dev/ptp0") != 0) return refuse(ENOENT);
   return open_descriptor(Kind::kCard, (flags & O_NONBLOCK) != 0, (flags & O_CLOEXEC) != 0);
 }
 

@@ -37,7 +37,7 @@ ssize_t fill(void* data, std::size_t size) {
 
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
-  if (is_card(path)) return open_card(flags);
+  if (is_card(path)) return open_card(path, flags);
   return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
 }
 

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@ namespace simbench::shim {
 namespace {
 
 int world_link = -1;
-long asking_thread = 0;
+pthread_t asking_thread{};
 Identity own_identity{};
 Kind kinds[kMostDescriptors];
 
@@ -45,7 +46,7 @@ __attribute__((constructor)) void join_world() {
   const char* number = getenv(kLinkVariable);
   if (number == nullptr) return;
   world_link = atoi(number);
-  asking_thread = syscall(SYS_gettid);
+  asking_thread = pthread_self();
   Received reply{.data = &own_identity, .capacity = sizeof own_identity};
   if (ask({.call = Call::kHello}, {}, {}, &reply) < 0) lose();
 }
@@ -57,8 +58,8 @@ bool is_simulated() { return world_link >= 0; }
 const Identity& identity() { return own_identity; }
 
 std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) {
-  if (syscall(SYS_gettid) != asking_thread) {
-    asking_thread = syscall(SYS_gettid);
+  if (pthread_self() != asking_thread) {
+    asking_thread = pthread_self();
     give_up("a second thread or process that waits or asks for the time");
   }
   Request header = request;
