@@ -10,11 +10,6 @@
 namespace simbench::shim {
 namespace {
 
-int refuse(int error) {
-  errno = error;
-  return -1;
-}
-
 ptp_clock_time to_ptp(std::int64_t ns) {
   ptp_clock_time time{};
   time.sec = ns / kSecond;

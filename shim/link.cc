@@ -2,18 +2,13 @@
 
 #include <dlfcn.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <pthread.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
-
-#include "shim/local.h"
 
 namespace simbench::shim {
 namespace {
@@ -21,7 +16,6 @@ namespace {
 int world_link = -1;
 pthread_t asking_thread{};
 Identity own_identity{};
-Kind kinds[kMostDescriptors];
 
 ssize_t transfer(bool is_request, iovec* pieces, std::size_t count) {
   msghdr message{};
@@ -55,6 +49,8 @@ __attribute__((constructor)) void join_world() {
 
 bool is_simulated() { return world_link >= 0; }
 
+bool is_link(int fd) { return fd >= 0 && fd == world_link; }
+
 const Identity& identity() { return own_identity; }
 
 std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) {
@@ -63,6 +59,7 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
     give_up("a second thread or process that waits or asks for the time");
   }
   Request header = request;
+  if (header.fd >= 0) header.fd = number_of(header.fd);
   header.size = static_cast<std::uint32_t>(head.size + tail.size);
   iovec out[] = {{&header, sizeof header},
                  {const_cast<void*>(head.data), head.size},
@@ -80,6 +77,11 @@ std::int64_t ask(const Request& request, Sent head, Sent tail, Received* reply) 
   return -1;
 }
 
+int refuse(int error) {
+  errno = error;
+  return -1;
+}
+
 void give_up(const char* what) {
   // The world ends the program in place of a reply.
   ask({.call = Call::kNote}, {what, strlen(what)});
@@ -90,50 +92,6 @@ void* find_real(const char* name) {
   void* function = dlsym(RTLD_NEXT, name);
   if (function == nullptr) give_up(name);
   return function;
-}
-
-Kind kind_of(int fd) { return fd >= 0 && fd < kMostDescriptors ? kinds[fd] : Kind::kReal; }
-
-void set_kind(int fd, Kind kind) {
-  if (fd >= 0 && fd < kMostDescriptors) kinds[fd] = kind;
-}
-
-int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec) {
-  const int fd = eventfd(0, (nonblocking ? EFD_NONBLOCK : 0) | (close_on_exec ? EFD_CLOEXEC : 0));
-  if (fd < 0) return -1;
-  if (fd >= kMostDescriptors) {
-    syscall(SYS_close, fd);
-    errno = EMFILE;
-    return -1;
-  }
-  kinds[fd] = kind;
-  return fd;
-}
-
-bool is_blocking(int fd) { return (syscall(SYS_fcntl, fd, F_GETFL) & O_NONBLOCK) == 0; }
-
-namespace {
-
-void forget(int fd) {
-  const Kind kind = kind_of(fd);
-  if (is_of_the_world(kind)) ask({.call = Call::kClose, .fd = fd});
-  set_kind(fd, Kind::kReal);
-}
-
-}  // namespace
-
-SIMBENCH_CALL int close(int fd) {
-  if (is_simulated() && fd == world_link) return 0;  // daemons close all that they do not know
-  const bool was_local = is_local(fd);
-  forget(fd);
-  const int result = static_cast<int>(syscall(SYS_close, fd));
-  if (was_local) local_closed();
-  return result;
-}
-
-SIMBENCH_CALL int fclose(FILE* file) {
-  forget(fileno(file));
-  return SIMBENCH_REAL(fclose)(file);
 }
 
 SIMBENCH_CALL pid_t getpid() {

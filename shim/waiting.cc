@@ -65,7 +65,8 @@ int wait(pollfd* interests, nfds_t count, Until until) {
     watches_real |= !is_ours && interests[i].fd >= 0;
     real[i] = {.fd = is_ours ? -1 : interests[i].fd, .events = interests[i].events, .revents = 0};
     if (is_ours) {
-      simulated[asked++] = {.fd = interests[i].fd, .events = interests[i].events, .ready = 0};
+      simulated[asked++] = {
+          .fd = number_of(interests[i].fd), .events = interests[i].events, .ready = 0};
     }
   }
   std::int64_t answer = kLookAgain;
@@ -330,7 +331,7 @@ SIMBENCH_CALL int timerfd_create(int clock, int flags) {
   const int fd =
       open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
   if (fd >= 0 && ask({.call = Call::kOpenTimer, .fd = fd, .a = clock}) < 0) {
-    syscall(SYS_close, fd);
+    discard_descriptor(fd);
     return -1;
   }
   return fd;

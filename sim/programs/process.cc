@@ -73,11 +73,13 @@ Task<void> Process::serve() {
     child_.reply(given->value, given->error, given->data);
   }
   network_.report_local_activity();
+  co_await close_streams();
   const std::string how = child_.ending();
   ending_ = printable_name(ending_.empty() ? how : ending_);
 }
 
 Task<Process::Answer> Process::answer(ChildRequest request) {
+  if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
   switch (request.head.call) {
     case Call::kReadClock:
       co_return co_await read_clock(request.head.a);
@@ -96,6 +98,10 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kPeerName:
     case Call::kReceive:
     case Call::kCountInput:
+    case Call::kSocketError:
+    case Call::kListen:
+    case Call::kAccept:
+    case Call::kShutDown:
     case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
@@ -114,7 +120,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kRandom:
       co_return random_bytes(request.head.a);
     case Call::kOpenSocket:
-      co_return open_socket(request.head.fd);
+      co_return open_socket(request.head.fd, request.head.a);
     case Call::kOpenTimer:
       co_return open_timer(request.head.fd, request.head.a);
     case Call::kClose:
@@ -189,7 +195,7 @@ Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
 // Timers.
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
-  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
+  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
   timers_[fd] = {.is_system = is_system(clock)};
   return {};
 }
@@ -240,6 +246,11 @@ std::int16_t Process::readiness(const shim::Interest& interest) {
     const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
     const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
     return static_cast<std::int16_t>((ready & interest.events) | error);
+  }
+  if (const auto found = streams_.find(interest.fd); found != streams_.end()) {
+    constexpr int kAlways = POLLERR | POLLHUP;
+    return static_cast<std::int16_t>(HostStreams::readiness(*found->second) &
+                                     (interest.events | kAlways));
   }
   if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
     expire(found->second);

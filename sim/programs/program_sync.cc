@@ -42,7 +42,9 @@ class HostPrograms {
   Task<void> run() {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < settings_.hosts; ++peer) {
-      if (peer != host_.id()) tasks.push_back(network_.pump(peer));
+      if (peer == host_.id()) continue;
+      tasks.push_back(network_.pump(peer));
+      tasks.push_back(network_.streams().pump(peer));
     }
     tasks.push_back(network_.stamp_departures());
     for (Process& process : processes_) tasks.push_back(serve(process));

@@ -155,8 +155,8 @@ Stamped receive(int fd, int flags) {
 
 bool waits_for_stamp(int fd) {
   pollfd interest{.fd = fd, .events = POLLPRI, .revents = 0};
-  return poll(&interest, 1, 10) == 1 && (interest.revents & (POLLPRI | POLLERR)) == 
-                                            (POLLPRI | POLLERR);
+  return poll(&interest, 1, 10) == 1 &&
+         (interest.revents & (POLLPRI | POLLERR)) == (POLLPRI | POLLERR);
 }
 
 void check_stamps(const char* master) {
@@ -164,8 +164,8 @@ void check_stamps(const char* master) {
   const clockid_t clock = clock_of(clock_fd);
   const int fd = udp();
   set_number(fd, SOL_SOCKET, SO_SELECT_ERR_QUEUE, 1);
-  const int card = SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE |
-                   SOF_TIMESTAMPING_RAW_HARDWARE;
+  const int card =
+      SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
   const int software =
       SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
   expect(set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, card) == 0, "SO_TIMESTAMPING by the card");

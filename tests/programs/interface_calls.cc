@@ -1,5 +1,5 @@
-// What netdevice(7), getifaddrs(3), rtnetlink(7), getaddrinfo(3) and their kin promise, and what the
-// simulated world says of itself: host N is "hostN", 10.0.0.1 + N, with interfaces lo and eth0.
+// What netdevice(7), getifaddrs(3), rtnetlink(7), getaddrinfo(3) and their kin promise, and what
+// the simulated world says of itself: host N is "hostN", 10.0.0.1 + N, with interfaces lo and eth0.
 //
 //   interface_calls NUMBER ADDRESS
 #include <ifaddrs.h>
@@ -41,8 +41,7 @@ void check_requests() {
   const int fd = udp();
   ifreq card = about("eth0");
   expect(ioctl(fd, SIOCGIFINDEX, &card) == 0 && card.ifr_ifindex == 2, "SIOCGIFINDEX");
-  expect(ioctl(fd, SIOCGIFADDR, &card) == 0 && dotted(card.ifr_addr) == own_address,
-         "SIOCGIFADDR");
+  expect(ioctl(fd, SIOCGIFADDR, &card) == 0 && dotted(card.ifr_addr) == own_address, "SIOCGIFADDR");
   expect(ioctl(fd, SIOCGIFNETMASK, &card) == 0 && dotted(card.ifr_netmask) == "255.255.0.0",
          "SIOCGIFNETMASK");
   expect(ioctl(fd, SIOCGIFBRDADDR, &card) == 0 && dotted(card.ifr_broadaddr) == "10.0.255.255",

@@ -96,5 +96,10 @@ TEST_F(NetworkCallsTest, ProgramsOfAHostSpeakOverUnixSockets) {
   EXPECT_THAT(run("local_calls", both, both), Each(std::string("done\n")));
 }
 
+TEST_F(NetworkCallsTest, ConnectionsAndCopiesOfDescriptorsDoWhatManPagesPromise) {
+  EXPECT_THAT(run("stream_calls", {{"serve"}}, {{"check", "{master}"}}),
+              ElementsAre("", "done\n", "done\n"));
+}
+
 }  // namespace
 }  // namespace simbench::sim
