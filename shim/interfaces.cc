@@ -18,13 +18,26 @@ namespace simbench::shim {
 
 InterfaceFacts interface_at(int place) {
   if (place == 0) {
-    return {1, "lo", INADDR_LOOPBACK, 0xFF000000, 0, IFF_UP | IFF_LOOPBACK | IFF_RUNNING,
-            ARPHRD_LOOPBACK, 65'536, {}};
+    return {1,
+            "lo",
+            INADDR_LOOPBACK,
+            0xFF000000,
+            0,
+            IFF_UP | IFF_LOOPBACK | IFF_RUNNING,
+            ARPHRD_LOOPBACK,
+            65'536,
+            {}};
   }
   const std::uint32_t address = identity().address;
   const std::uint32_t netmask = identity().netmask;
-  InterfaceFacts card{kInterface, "eth0", address, netmask, address | ~netmask,
-                      IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST, ARPHRD_ETHER, 1'500,
+  InterfaceFacts card{kInterface,
+                      "eth0",
+                      address,
+                      netmask,
+                      address | ~netmask,
+                      IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST,
+                      ARPHRD_ETHER,
+                      1'500,
                       {0x02, 0x00}};
   const std::uint32_t number = htonl(address);
   memcpy(card.mac + 2, &number, sizeof number);
@@ -50,11 +63,6 @@ bool find_interface(unsigned index, InterfaceFacts& found) {
 }
 
 namespace {
-
-int refuse(int error) {
-  errno = error;
-  return -1;
-}
 
 sockaddr_in internet(std::uint32_t address) {
   sockaddr_in result{};
@@ -91,8 +99,8 @@ int state_stamping(ethtool_ts_info& info) {
       SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
   info.phc_index = -1;
   if (identity().has_card_clock == 0) return 0;
-  info.so_timestamping |= SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE |
-                          SOF_TIMESTAMPING_RAW_HARDWARE;
+  info.so_timestamping |=
+      SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
   info.phc_index = 0;
   info.tx_types = 1U << HWTSTAMP_TX_OFF | 1U << HWTSTAMP_TX_ON;
   info.rx_filters = 1U << HWTSTAMP_FILTER_NONE | 1U << HWTSTAMP_FILTER_ALL;
@@ -237,7 +245,7 @@ struct Listed {
 };
 Listed listed[kInterfaces];
 
-void fill(Listed& entry, const InterfaceFacts& facts) {
+void fill_listed(Listed& entry, const InterfaceFacts& facts) {
   entry = {};
   snprintf(entry.name, IFNAMSIZ, "%s", facts.name);
   entry.link.sll_family = AF_PACKET;
@@ -264,7 +272,7 @@ void fill(Listed& entry, const InterfaceFacts& facts) {
 // The list is the same at each call, and lives as long as the program.
 SIMBENCH_CALL int getifaddrs(ifaddrs** list) {
   if (!is_simulated()) return SIMBENCH_REAL(getifaddrs)(list);
-  for (int i = 0; i < kInterfaces; ++i) fill(listed[i], interface_at(i));
+  for (int i = 0; i < kInterfaces; ++i) fill_listed(listed[i], interface_at(i));
   for (int i = 0; i < kInterfaces; ++i) {
     listed[i].card.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].card : &listed[0].internet;
     listed[i].internet.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].internet : nullptr;

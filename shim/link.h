@@ -41,6 +41,8 @@ struct Received {
 
 // Whether there is a world.
 bool is_simulated();
+// Whether the descriptor is the way to it.
+bool is_link(int fd);
 const Identity& identity();
 
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
@@ -54,6 +56,8 @@ struct HandledSignals {
   std::uint64_t interrupting = 0;
 };
 HandledSignals handled_signals();
+// Returns -1, with this errno.
+int refuse(int error);
 
 // Says what cannot be simulated, and ends the program.
 [[noreturn]] void give_up(const char* what, const char* why = "");
@@ -66,28 +70,39 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
-enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink, kLocal, kCard };
+enum class Kind : std::uint8_t {
+  kReal,
+  kSocket,
+  kTimer,
+  kEpoll,
+  kChance,
+  kNetlink,
+  kLocal,
+  kCard,
+  kStream
+};
 
 // Whether the world says when it is ready; of others, the kernel does.
-constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
-
+constexpr bool is_of_the_world(Kind kind) {
+  return kind == Kind::kSocket || kind == Kind::kStream || kind == Kind::kTimer;
+}
 
 inline constexpr int kMostDescriptors = 1024;
 
 Kind kind_of(int fd);
 // Nothing for -1.
 void set_kind(int fd, Kind kind);
-// A number that stands for something of the world, or -1 with errno. The kernel keeps it taken,
+// A descriptor that stands for something of the world, or -1 with errno. The kernel keeps it taken,
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
-bool is_blocking(int fd);
-// The world's number of a descriptor, which duplicates share; of others and of signal timers,
-// which are below 0, the number itself. ask() translates a request's `fd`.
+// One that the world would not have; errno stays.
+void discard_descriptor(int fd);
+// The world's number of what a descriptor stands for, which its copies share. Requests have
+// descriptors, of which ask() makes numbers.
 int number_of(int fd);
-// `to` is a duplicate of `from` by the kernel's word, or -1: returns it, or -1 with errno.
-int duplicate_descriptor(int from, int to);
-void copy_socket_state(int from, int to);
-
+// Whether a descriptor still has the number.
+bool is_open(int number);
+bool is_blocking(int fd);
 bool is_time(const timespec& time);
 // Times beyond 292 years are never.
 std::int64_t nanoseconds(const timespec& time);

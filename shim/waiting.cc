@@ -399,7 +399,7 @@ SIMBENCH_CALL int timerfd_create(int clock, int flags) {
   const int fd =
       open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
   if (fd >= 0 && ask({.call = Call::kOpenTimer, .fd = fd, .a = clock}) < 0) {
-    syscall(SYS_close, fd);
+    discard_descriptor(fd);
     return -1;
   }
   return fd;

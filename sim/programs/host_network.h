@@ -42,6 +42,7 @@
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/host_streams.h"
 
 namespace simbench::sim {
 
@@ -64,8 +65,8 @@ struct UdpSocket {
   bool shares_port = false;       // SO_REUSEADDR
   bool may_broadcast = false;
   bool has_urgent_errors = false;  // SO_SELECT_ERR_QUEUE
-  bool takes_all_groups = true;  // IP_MULTICAST_ALL
-  bool hears_itself = true;      // IP_MULTICAST_LOOP
+  bool takes_all_groups = true;    // IP_MULTICAST_ALL
+  bool hears_itself = true;        // IP_MULTICAST_LOOP
   std::set<std::uint32_t> groups{};
   std::uint32_t sent = 0;
   std::deque<QueuedDatagram> arrived{};
@@ -106,6 +107,8 @@ class HostNetwork {
   void report_local_activity();
   std::uint64_t local_activity() const { return local_activity_; }
 
+  HostStreams& streams() { return streams_; }
+
   // Receives from a peer, for ever.
   Task<void> pump(PeerId peer);
   // Stamps what leaves, for ever.
@@ -142,6 +145,7 @@ class HostNetwork {
   CardStamping card_stamping_{};
   std::deque<Leaving> leaving_;
   WaitPoint has_left_;
+  HostStreams streams_;
   std::vector<WaitPoint*> watchers_;
   std::uint64_t local_activity_ = 0;
 };

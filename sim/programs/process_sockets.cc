@@ -1,4 +1,6 @@
 // The requests that concern sockets.
+#include <sys/socket.h>
+
 #include <cerrno>
 #include <utility>
 
@@ -15,8 +17,9 @@ UdpSocket& Process::socket_of(int fd) {
   return found->second;
 }
 
-Process::Answer Process::open_socket(int fd) {
-  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
+Process::Answer Process::open_socket(int fd, std::int64_t type) {
+  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
+  if (type == SOCK_STREAM) return open_stream(fd);
   UdpSocket& socket = sockets_[fd];
   network_.close(socket);  // one that was left open under this number
   socket = {};
@@ -47,6 +50,13 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
       return {.data = bytes_of(*socket.peer)};
     case Call::kReceive:
       return receive(socket, request.head.a);
+    case Call::kListen:
+    case Call::kAccept:
+      return {.error = EOPNOTSUPP};
+    case Call::kShutDown:
+      return {.error = socket.peer ? 0 : ENOTCONN};
+    case Call::kSocketError:
+      return {};
     case Call::kCountInput:
       return {.value = socket.arrived.empty()
                            ? 0
@@ -54,8 +64,7 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
     case Call::kJoin:
       return {.error = join(socket, request.head.a != 0, request.head.b)};
     default:
-      return set_option(socket, static_cast<shim::SocketOption>(request.head.a),
-                        request.head.b);
+      return set_option(socket, static_cast<shim::SocketOption>(request.head.a), request.head.b);
   }
 }
 

@@ -48,7 +48,9 @@ class RunningPrograms {
                  std::function<void(const std::string&)> on_end) {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < hosts_; ++peer) {
-      if (peer != host_.id()) tasks.push_back(network_.pump(peer));
+      if (peer == host_.id()) continue;
+      tasks.push_back(network_.pump(peer));
+      tasks.push_back(network_.streams().pump(peer));
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
