@@ -39,7 +39,8 @@ enum class Call : std::uint32_t {
   kSetOption,    // fd, a: SocketOption, b: value
   kName,         // fd -> data: Address
   kPeerName,     // fd -> data: Address; ENOTCONN
-  kSend,      // fd, data: Address (port 0: the peer), then the payload -> value: of a stream, how
+  kSend,      // fd, a: stamps of its departure (-1: the socket's), data: Address (port 0: the
+              // peer), then the payload -> value: of a stream, how
               // much of it was taken
   kReceive,   // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload;
               // of a stream, b: how many at most -> data: bytes, none at its end

@@ -40,11 +40,15 @@ int set_stamps(int fd, Stamps stamps, int value) {
   return set_arrival_stamps(fd);
 }
 
+std::int64_t departure_kinds(unsigned flags) {
+  const std::int64_t kinds =
+      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
+  return kinds != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0 ? kinds | kBothStamps : kinds;
+}
+
 int set_timestamping(int fd, int value) {
   const auto flags = static_cast<unsigned>(value);
-  std::int64_t departures =
-      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
-  if (departures != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0) departures |= kBothStamps;
+  const std::int64_t departures = departure_kinds(flags);
   const bool counts_anew = (flags & ~state_of(fd).timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
   state_of(fd).timestamping = flags;
   const std::int64_t sent = set_world_option(fd, SocketOption::kTransmitStamps, departures);
@@ -220,6 +224,19 @@ int get_socket_option(int fd, int option) {
 }  // namespace
 
 bool is_socket(int fd) { return kind_of(fd) == Kind::kSocket; }
+
+std::int64_t departure_stamps(int fd, const msghdr& message) {
+  constexpr unsigned kRecorded = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_TX_HARDWARE |
+                                 SOF_TIMESTAMPING_TX_SCHED | SOF_TIMESTAMPING_TX_ACK;
+  msghdr walked = message;
+  for (cmsghdr* head = CMSG_FIRSTHDR(&walked); head != nullptr; head = CMSG_NXTHDR(&walked, head)) {
+    if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SO_TIMESTAMPING_OLD) continue;
+    unsigned flags = 0;
+    memcpy(&flags, CMSG_DATA(head), sizeof flags);
+    return departure_kinds((state_of(fd).timestamping & ~kRecorded) | (flags & kRecorded));
+  }
+  return -1;
+}
 
 SocketState& state_of(int fd) { return states[number_of(fd)]; }
 

@@ -223,7 +223,8 @@ ssize_t send_message(int fd, const msghdr& message) {
     memcpy(payload + size, piece.iov_base, piece.iov_len);
     size += piece.iov_len;
   }
-  if (ask({.call = Call::kSend, .fd = fd}, {&to, sizeof to}, {payload, size}) < 0) {
+  const std::int64_t stamps = departure_stamps(fd, message);
+  if (ask({.call = Call::kSend, .fd = fd, .a = stamps}, {&to, sizeof to}, {payload, size}) < 0) {
     return -1;
   }
   return static_cast<ssize_t>(size);

@@ -34,6 +34,9 @@ struct SocketState {
 
 bool is_socket(int fd);
 SocketState& state_of(int fd);
+// The stamps of the departure that the message asks for by its control data (DepartureStamps); -1:
+// those that the socket has.
+std::int64_t departure_stamps(int fd, const msghdr& message);
 
 // False with errno.
 bool read_address(const sockaddr* name, socklen_t size, Address& address);

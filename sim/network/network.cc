@@ -325,7 +325,8 @@ void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
                            .bytes = message.size(),
                            .left = segment.left,
                            .arrived = arrival.value_or(TrueTime{}),
-                           .lost = !arrival});
+                           .lost = !arrival,
+                           .copy = !segment.is_counted});
   }
 }
 

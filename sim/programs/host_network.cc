@@ -126,6 +126,10 @@ std::optional<std::uint32_t> HostNetwork::group_of(std::uint32_t address) {
 }
 
 Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) {
+  return send(socket, to, std::move(payload), socket.departure_stamps);
+}
+
+Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps) {
   if (to.port == 0) {
     if (!socket.peer) co_return EDESTADDRREQ;
     to = *socket.peer;
@@ -152,38 +156,39 @@ Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) 
     deliver(datagram);
     co_return 0;
   }
-  if (group) co_return co_await send_to_group(socket, *group, std::move(datagram));
+  if (group) co_return co_await send_to_group(socket, *group, std::move(datagram), stamps);
   if (to.host < kFirstAddress || to.host - kFirstAddress >= hosts_) co_return ENETUNREACH;
-  co_return co_await send_to_peer(socket, to.host - kFirstAddress, std::move(datagram));
+  co_return co_await send_to_peer(socket, to.host - kFirstAddress, std::move(datagram), stamps);
 }
 
-Task<int> HostNetwork::send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram) {
+Task<int> HostNetwork::send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram,
+                                    unsigned stamps) {
   SimChannel& channel = host_.datagram_channel(peer);
   const MessageId id = co_await channel.send(with_trailer(datagram));
-  if (socket.departure_stamps == 0) co_return 0;
+  if (stamps == 0) co_return 0;
   const std::optional<HostTime> left =
       co_await channel.transmit_stamp(id, host_.steady_clock().now());
   keep_stamps(
-      socket, left,
+      socket, stamps, left,
       {.socket = socket.number, .peer = peer, .message = id, .datagram = std::move(datagram)});
   co_return 0;
 }
 
 Task<int> HostNetwork::send_to_group(UdpSocket& socket, std::uint32_t group,
-                                     QueuedDatagram datagram) {
+                                     QueuedDatagram datagram, unsigned stamps) {
   SimMulticast& multicast = host_.multicast();
   const MessageId id = co_await multicast.send(group, with_trailer(datagram));
   if (socket.hears_itself) deliver_to_all(datagram);
-  if (socket.departure_stamps == 0) co_return 0;
+  if (stamps == 0) co_return 0;
   const std::optional<HostTime> left =
       co_await multicast.transmit_stamp(id, host_.steady_clock().now());
-  keep_stamps(socket, left,
+  keep_stamps(socket, stamps, left,
               {.socket = socket.number, .message = id, .datagram = std::move(datagram)});
   co_return 0;
 }
 
-void HostNetwork::keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving) {
-  const unsigned wanted = socket.departure_stamps;
+void HostNetwork::keep_stamps(UdpSocket& socket, unsigned wanted, std::optional<HostTime> left,
+                              Leaving leaving) {
   const bool by_card =
       (wanted & shim::kHardwareStamps) != 0 && card_stamping_.departures && host_.nic() != nullptr;
   // As Linux, which takes both only where both are asked for.

@@ -95,6 +95,8 @@ class HostNetwork {
   int join(UdpSocket& socket, std::uint32_t group);
   int leave(UdpSocket& socket, std::uint32_t group);
   Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload);
+  // With stamps of its departure (shim/protocol.h) other than the socket's.
+  Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps);
   void close(UdpSocket& socket);
 
   // What the card stamps (SIOCSHWTSTAMP), for all sockets of the host; nothing at first.
@@ -127,10 +129,12 @@ class HostNetwork {
   int bind_somewhere(UdpSocket& socket);
   // The group that a message to this address is for, if it is for several hosts.
   static std::optional<std::uint32_t> group_of(std::uint32_t address);
-  Task<int> send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram);
-  Task<int> send_to_group(UdpSocket& socket, std::uint32_t group, QueuedDatagram datagram);
+  Task<int> send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram, unsigned stamps);
+  Task<int> send_to_group(UdpSocket& socket, std::uint32_t group, QueuedDatagram datagram,
+                          unsigned stamps);
   // The message has left, with this stamp by software.
-  void keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving);
+  void keep_stamps(UdpSocket& socket, unsigned wanted, std::optional<HostTime> left,
+                   Leaving leaving);
   static void queue_departure(UdpSocket& socket, QueuedDatagram datagram);
   void deliver(const QueuedDatagram& datagram);
   void deliver_to_all(const QueuedDatagram& datagram);
