@@ -39,23 +39,29 @@ std::string unpacked_packages() {
   return std::filesystem::is_directory(packages) ? packages.string() : "";
 }
 
-// With absolute paths and what the programs' libraries need.
-HostPrograms found(HostPrograms programs) {
+// Adds where the programs are and what their libraries need. A bare name stays what a program is
+// called, so that its log is the same wherever it lies.
+void find(sim::ProgramSettings& settings) {
+  HostPrograms& programs = settings.programs;
   if (const auto unknown = sim::unknown_placeholder(programs)) {
     throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
                                         sim::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {
-      const sim::FoundProgram program = sim::find_program(command.front(), unpacked_packages());
-      command.erase(command.begin());
-      command.insert(command.begin(), program.words.begin(), program.words.end());
+      const std::string name = command.front();
+      const sim::FoundProgram program = sim::find_program(name, unpacked_packages());
+      if (program.words.size() == 1) {
+        settings.paths[name] = program.words.front();
+      } else {  // a script and its interpreter
+        command.erase(command.begin());
+        command.insert(command.begin(), program.words.begin(), program.words.end());
+      }
       if (!program.library_path.empty()) {
         programs.environment["LD_LIBRARY_PATH"] = program.library_path;
       }
     }
   }
-  return programs;
 }
 
 evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
@@ -69,7 +75,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
   std::string problem;
   try {
     settings.shim = find_shim();
-    settings.programs = found(std::move(settings.programs));
+    find(settings);
   } catch (const sim::ProgramError& missing) {
     problem = missing.what();
   }

@@ -44,6 +44,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 // Between fork() and exec() only async-signal-safe calls are allowed.
 struct Plan {
+  const char* program;
   char* const* arguments;
   char* const* environment;
   const char* folder;
@@ -96,8 +97,8 @@ void forget_parent() {
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
-  execve(plan.arguments[0], plan.arguments, plan.environment);
-  fail(plan.arguments[0], errno);
+  execve(plan.program, plan.arguments, plan.environment);
+  fail(plan.program, errno);
 }
 
 }  // namespace
@@ -121,12 +122,15 @@ void Child::start(const Settings& settings) {
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
-  Confinement confinement(settings.folder, argument_pointers[0]);
+  const std::string& program =
+      settings.program.empty() ? settings.command.front() : settings.program;
+  Confinement confinement(settings.folder, program.c_str());
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw ChildError(fmt::format("{}: no link: {}", name_, std::strerror(errno)));
   }
-  const Plan plan{.arguments = argument_pointers.data(),
+  const Plan plan{.program = program.c_str(),
+                  .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
                   .folder = settings.folder.c_str(),
                   .log = settings.log_name.c_str(),

@@ -63,7 +63,8 @@ class Child {
   static constexpr std::size_t kMostDescriptors = 1024;
 
   struct Settings {
-    std::vector<std::string> command{};  // the program's absolute path, then its arguments
+    std::vector<std::string> command{};  // as the program sees it
+    std::string program{};               // its absolute path; empty: the command's first word
     std::map<std::string, std::string> environment{};
     std::string folder{};    // absolute; its working folder
     std::string log_name{};  // within the folder

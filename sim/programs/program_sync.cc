@@ -29,7 +29,9 @@ class RunningPrograms {
              const std::string& folder) {
     const std::size_t number = processes_.size();
     const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
+    const auto path = settings.paths.find(command.front());
     Child::Settings child{.command = {},
+                          .program = path == settings.paths.end() ? "" : path->second,
                           .environment = {},
                           .folder = folder,
                           .log_name = fmt::format("{}_{}.log", number,

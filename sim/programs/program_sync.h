@@ -40,7 +40,8 @@ class SimHost;
 
 struct ProgramSettings {
   std::string pipeline;               // its name
-  scenarios::HostPrograms programs;  // the first word of each command is an absolute path
+  scenarios::HostPrograms programs;
+  std::map<std::string, std::string> paths{};  // absolute, by a command's first word without one
   std::string shim;                   // the library's absolute path
   // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
   std::string log_folder{};
