@@ -109,10 +109,15 @@ Child::Child(const Settings& settings)
       patience_(settings.patience),
       link_(settings.link),
       buffer_(shim::kMostData) {
-  if (link_ < 0) start(settings);
+  if (link_ >= 0) return;
+  try {
+    obstacle_ = start(settings);
+  } catch (const ConfinementError& error) {
+    obstacle_ = error.what();
+  }
 }
 
-void Child::start(const Settings& settings) {
+std::string Child::start(const Settings& settings) {
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -127,7 +132,7 @@ void Child::start(const Settings& settings) {
   Confinement confinement(settings.folder, program.c_str());
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw ChildError(fmt::format("{}: no link: {}", name_, std::strerror(errno)));
+    return fmt::format("no link: {}", std::strerror(errno));
   }
   const Plan plan{.program = program.c_str(),
                   .arguments = argument_pointers.data(),
@@ -141,15 +146,12 @@ void Child::start(const Settings& settings) {
   const int error = errno;
   close(ends[1]);
   link_ = ends[0];
-  if (process_ < 0) {
-    close(link_);
-    throw ChildError(fmt::format("{}: fork: {}", name_, std::strerror(error)));
-  }
+  return process_ < 0 ? fmt::format("no process: {}", std::strerror(error)) : "";
 }
 
 Child::~Child() {
   end();
-  close(link_);
+  if (link_ >= 0) close(link_);
 }
 
 void Child::follow_thread() {
@@ -162,6 +164,7 @@ void Child::follow_thread() {
 }
 
 std::optional<ChildRequest> Child::next() {
+  if (!obstacle_.empty()) return std::nullopt;
   pollfd waits{.fd = link_, .events = POLLIN, .revents = 0};
   int ready = 0;
   do {
@@ -198,6 +201,7 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
 }
 
 std::string Child::ending(const std::string& reason) {
+  if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
   const std::string how = end();
   const std::string said = last_line();
   return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,

@@ -19,7 +19,7 @@
 // (sim/programs/program_file.h). It dies with the thread that makes this, not with the last one of
 // the process, so that thread must outlive it; and with that thread, whatever ends it.
 //
-// Errors: ChildError where it cannot be started, one line. How it ended is ending().
+// Errors: none are thrown. One that cannot be started has ended; ending() says why.
 //
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
@@ -35,7 +35,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -43,11 +42,6 @@
 #include "shim/protocol.h"
 
 namespace simbench::sim {
-
-class ChildError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct ChildRequest {
   shim::Request head;
@@ -86,7 +80,8 @@ class Child {
   std::string ending(const std::string& reason = "");
 
  private:
-  void start(const Settings& settings);
+  // Returns why it cannot be started, or nothing.
+  std::string start(const Settings& settings);
   void follow_thread();
   // Returns how it ended.
   std::string end();
@@ -95,6 +90,7 @@ class Child {
 
   std::string name_;
   std::string log_;
+  std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
   int link_;
   pid_t process_ = -1;
