@@ -8,6 +8,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -101,6 +102,8 @@ Child::Child(const Settings& settings)
   const int error = errno;
   close(ends[1]);
   link_ = ends[0];
+  const timeval patience{.tv_sec = kPatience.count(), .tv_usec = 0};
+  setsockopt(link_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   if (process_ < 0) {
     close(link_);
     throw ChildError(fmt::format("{}: fork: {}", settings.command[0], std::strerror(error)));
@@ -113,21 +116,17 @@ Child::~Child() {
 }
 
 std::optional<ChildRequest> Child::next() {
-  pollfd waits{.fd = link_, .events = POLLIN, .revents = 0};
-  constexpr std::chrono::milliseconds kPatienceMs = kPatience;
-  int ready = 0;
-  do {
-    ready = poll(&waits, 1, static_cast<int>(kPatienceMs.count()));
-  } while (ready < 0 && errno == EINTR);
-  if (ready == 0) was_too_slow_ = true;
-  if (ready <= 0) return std::nullopt;
   ChildRequest request;
   std::array<iovec, 2> pieces{
       {{&request.head, sizeof request.head}, {buffer_.data(), buffer_.size()}}};
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
-  const ssize_t size = recvmsg(link_, &message, 0);
+  ssize_t size = 0;
+  do {
+    size = recvmsg(link_, &message, 0);
+  } while (size < 0 && errno == EINTR);
+  was_too_slow_ = size < 0 && errno == EAGAIN;
   if (size < static_cast<ssize_t>(sizeof request.head)) return std::nullopt;
   const std::size_t data_size = static_cast<std::size_t>(size) - sizeof request.head;
   request.data.assign(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(data_size));
