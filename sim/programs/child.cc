@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -109,12 +110,17 @@ Child::Child(const Settings& settings)
       patience_(settings.patience),
       link_(settings.link),
       buffer_(shim::kMostData) {
-  if (link_ >= 0) return;
-  try {
-    obstacle_ = start(settings);
-  } catch (const ConfinementError& error) {
-    obstacle_ = error.what();
+  if (link_ < 0) {
+    try {
+      obstacle_ = start(settings);
+    } catch (const ConfinementError& error) {
+      obstacle_ = error.what();
+    }
   }
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
+  const std::chrono::microseconds rest = patience_ - whole_s;
+  const timeval patience{.tv_sec = whole_s.count(), .tv_usec = rest.count()};
+  setsockopt(link_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
 }
 
 std::string Child::start(const Settings& settings) {
@@ -165,20 +171,17 @@ void Child::follow_thread() {
 
 std::optional<ChildRequest> Child::next() {
   if (!obstacle_.empty()) return std::nullopt;
-  pollfd waits{.fd = link_, .events = POLLIN, .revents = 0};
-  int ready = 0;
-  do {
-    ready = poll(&waits, 1, static_cast<int>(patience_.count()));
-  } while (ready < 0 && errno == EINTR);
-  if (ready == 0) was_too_slow_ = true;
-  if (ready <= 0) return std::nullopt;
   ChildRequest request;
   std::array<iovec, 2> pieces{
       {{&request.head, sizeof request.head}, {buffer_.data(), buffer_.size()}}};
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
-  const ssize_t size = recvmsg(link_, &message, 0);
+  ssize_t size = 0;
+  do {
+    size = recvmsg(link_, &message, 0);
+  } while (size < 0 && errno == EINTR);
+  was_too_slow_ = size < 0 && errno == EAGAIN;
   if (size <= 0) return std::nullopt;
   has_asked_ = true;
   const auto whole = static_cast<std::size_t>(size);
