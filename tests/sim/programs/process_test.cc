@@ -63,8 +63,9 @@ class ProcessTest : public testing::Test {
     shutdown(ends[1], SHUT_WR);
     Heard heard;
     {
-      ServiceWorld world(
-          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}}));
+      static const scenarios::Scenario kStar =
+          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}});
+      ServiceWorld world(kStar);
       world.spawn(run(world.host(1), ends[0], heard));
       world.run_until(seconds);
     }
