@@ -34,7 +34,7 @@ TEST(Builtin, AllAreThereInOrder) {
                   "18cam_6host_45fps_wrong_t_int", "18cam_6host_90fps_full_slave",
                   "3cam_1host_30fps", "6cam_2host_30fps", "6host_lan_day", "6host_star",
                   "6node_relay", "9cam_3host_30fps_azure_kinect", "leaderboard_calibrated",
-                  "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_ideal_calibration",
+                  "leaderboard_gathering", "leaderboard_lan", "leaderboard_lan_ideal_calibration", "leaderboard_programs",
                   "pulse_index_off_by_two", "scale_18000cam_6000host_45fps"));
 }
 
