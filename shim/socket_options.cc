@@ -42,12 +42,10 @@ int set_stamps(int fd, Stamps stamps, int value) {
 
 int set_timestamping(int fd, int value) {
   const auto flags = static_cast<unsigned>(value);
-  std::int64_t departures =
-      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
-  if (departures != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0) departures |= kBothStamps;
   const bool counts_anew = (flags & ~state_of(fd).timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
   state_of(fd).timestamping = flags;
-  const std::int64_t sent = set_world_option(fd, SocketOption::kTransmitStamps, departures);
+  const std::int64_t sent =
+      set_world_option(fd, SocketOption::kTransmitStamps, departure_stamps(flags));
   if (sent < 0) return -1;
   if (counts_anew) state_of(fd).first_number = static_cast<std::uint32_t>(sent);
   return set_arrival_stamps(fd);
@@ -220,6 +218,13 @@ int get_socket_option(int fd, int option) {
 }  // namespace
 
 bool is_socket(int fd) { return kind_of(fd) == Kind::kSocket; }
+
+std::int64_t departure_stamps(unsigned flags) {
+  const std::int64_t kinds =
+      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
+  const bool wants_both = kinds != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0;
+  return wants_both ? kinds | kBothStamps : kinds;
+}
 
 SocketState& state_of(int fd) { return states[number_of(fd)]; }
 
