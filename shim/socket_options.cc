@@ -40,18 +40,12 @@ int set_stamps(int fd, Stamps stamps, int value) {
   return set_arrival_stamps(fd);
 }
 
-std::int64_t departure_kinds(unsigned flags) {
-  const std::int64_t kinds =
-      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
-  return kinds != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0 ? kinds | kBothStamps : kinds;
-}
-
 int set_timestamping(int fd, int value) {
   const auto flags = static_cast<unsigned>(value);
-  const std::int64_t departures = departure_kinds(flags);
   const bool counts_anew = (flags & ~state_of(fd).timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
   state_of(fd).timestamping = flags;
-  const std::int64_t sent = set_world_option(fd, SocketOption::kTransmitStamps, departures);
+  const std::int64_t sent =
+      set_world_option(fd, SocketOption::kTransmitStamps, departure_stamps(flags));
   if (sent < 0) return -1;
   if (counts_anew) state_of(fd).first_number = static_cast<std::uint32_t>(sent);
   return set_arrival_stamps(fd);
@@ -225,17 +219,11 @@ int get_socket_option(int fd, int option) {
 
 bool is_socket(int fd) { return kind_of(fd) == Kind::kSocket; }
 
-std::int64_t departure_stamps(int fd, const msghdr& message) {
-  constexpr unsigned kRecorded = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_TX_HARDWARE |
-                                 SOF_TIMESTAMPING_TX_SCHED | SOF_TIMESTAMPING_TX_ACK;
-  msghdr walked = message;
-  for (cmsghdr* head = CMSG_FIRSTHDR(&walked); head != nullptr; head = CMSG_NXTHDR(&walked, head)) {
-    if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SO_TIMESTAMPING_OLD) continue;
-    unsigned flags = 0;
-    memcpy(&flags, CMSG_DATA(head), sizeof flags);
-    return departure_kinds((state_of(fd).timestamping & ~kRecorded) | (flags & kRecorded));
-  }
-  return -1;
+std::int64_t departure_stamps(unsigned flags) {
+  const std::int64_t kinds =
+      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
+  const bool wants_both = kinds != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0;
+  return wants_both ? kinds | kBothStamps : kinds;
 }
 
 SocketState& state_of(int fd) { return states[number_of(fd)]; }

@@ -206,6 +206,20 @@ ssize_t receive_message(int fd, msghdr& message, int flags) {
   return static_cast<ssize_t>((flags & MSG_TRUNC) != 0 ? datagram.size : copied);
 }
 
+// What this departure alone is stamped by; -1 if the message does not say.
+std::int64_t stamps_asked_for(int fd, const msghdr& message) {
+  constexpr unsigned kTransmit = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_TX_HARDWARE;
+  auto& readable = const_cast<msghdr&>(message);
+  for (cmsghdr* each = CMSG_FIRSTHDR(&message); each != nullptr;
+       each = CMSG_NXTHDR(&readable, each)) {
+    if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SO_TIMESTAMPING) continue;
+    unsigned flags = 0;
+    memcpy(&flags, CMSG_DATA(each), sizeof flags);
+    return departure_stamps((state_of(fd).timestamping & ~kTransmit) | (flags & kTransmit));
+  }
+  return -1;
+}
+
 ssize_t send_message(int fd, const msghdr& message) {
   static unsigned char payload[kMostData - sizeof(Address)];
   Address to{};
@@ -223,7 +237,7 @@ ssize_t send_message(int fd, const msghdr& message) {
     memcpy(payload + size, piece.iov_base, piece.iov_len);
     size += piece.iov_len;
   }
-  const std::int64_t stamps = departure_stamps(fd, message);
+  const std::int64_t stamps = stamps_asked_for(fd, message);
   if (ask({.call = Call::kSend, .fd = fd, .a = stamps}, {&to, sizeof to}, {payload, size}) < 0) {
     return -1;
   }

@@ -33,10 +33,9 @@ struct SocketState {
 };
 
 bool is_socket(int fd);
+// What departures are stamped by, of the flags of SO_TIMESTAMPING: StampKind as bits.
+std::int64_t departure_stamps(unsigned flags);
 SocketState& state_of(int fd);
-// The stamps of the departure that the message asks for by its control data (DepartureStamps); -1:
-// those that the socket has.
-std::int64_t departure_stamps(int fd, const msghdr& message);
 
 // False with errno.
 bool read_address(const sockaddr* name, socklen_t size, Address& address);

@@ -25,7 +25,7 @@
 //   UdpSocket own;
 //   network.bind(own, {.host = 0, .port = 123});
 //   const int error = co_await network.send(own, {.host = network.address_of(0), .port = 123},
-//                                           Bytes(48));
+//                                           Bytes(48), own.departure_stamps);
 #ifndef SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
 #define SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
 
@@ -94,8 +94,7 @@ class HostNetwork {
   int connect(UdpSocket& socket, shim::Address peer);
   int join(UdpSocket& socket, std::uint32_t group);
   int leave(UdpSocket& socket, std::uint32_t group);
-  Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload);
-  // With stamps of its departure (shim/protocol.h) other than the socket's.
+  // `stamps` are those of this departure: shim::StampKind as bits.
   Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps);
   void close(UdpSocket& socket);
 
@@ -121,6 +120,7 @@ class HostNetwork {
   struct Leaving {
     std::uint64_t socket = 0;
     std::optional<PeerId> peer{};  // nothing: a group
+    unsigned stamps = 0;           // shim::StampKind as bits
     MessageId message = 0;
     QueuedDatagram datagram{};
   };
@@ -129,9 +129,8 @@ class HostNetwork {
   int bind_somewhere(UdpSocket& socket);
   // The group that a message to this address is for, if it is for several hosts.
   static std::optional<std::uint32_t> group_of(std::uint32_t address);
-  Task<int> send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram, unsigned stamps);
-  Task<int> send_to_group(UdpSocket& socket, std::uint32_t group, QueuedDatagram datagram,
-                          unsigned stamps);
+  Task<void> send_to_peer(UdpSocket& socket, Leaving leaving);
+  Task<void> send_to_group(UdpSocket& socket, std::uint32_t group, Leaving leaving);
   // The message has left, with this stamp by software.
   void keep_stamps(UdpSocket& socket, unsigned wanted, std::optional<HostTime> left,
                    Leaving leaving);

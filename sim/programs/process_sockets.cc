@@ -116,9 +116,9 @@ Task<Process::Answer> Process::send(ChildRequest request) {
   UdpSocket& socket = socket_of(request.head.fd);
   const auto to = read_head<shim::Address>(request.data);
   Bytes payload(request.data.begin() + sizeof to, request.data.end());
-  const std::int64_t stamps = request.head.a < 0 ? socket.departure_stamps : request.head.a;
-  const int error =
-      co_await network_.send(socket, to, std::move(payload), static_cast<unsigned>(stamps));
+  const std::int64_t asked = request.head.a;
+  const unsigned stamps = asked < 0 ? socket.departure_stamps : static_cast<unsigned>(asked);
+  const int error = co_await network_.send(socket, to, std::move(payload), stamps);
   co_return Answer{.error = error};
 }
 

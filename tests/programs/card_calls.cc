@@ -203,6 +203,36 @@ void check_stamps(const char* master) {
   close(clock_fd);
 }
 
+// Control data may ask for the stamp of one message.
+void check_stamp_of_one(const char* master) {
+  const int fd = udp();
+  set_number(fd, SOL_SOCKET, SO_SELECT_ERR_QUEUE, 1);
+  set_number(fd, SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_RAW_HARDWARE);
+  const sockaddr_in to = address(master, kPort);
+  send_text(fd, "none", to);
+  expect(!waits_for_stamp(fd), "no stamp was asked for");
+  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(unsigned))] = {};
+  char bytes[] = "one";
+  iovec piece{.iov_base = bytes, .iov_len = 3};
+  msghdr message{};
+  message.msg_name = const_cast<sockaddr_in*>(&to);
+  message.msg_namelen = sizeof to;
+  message.msg_iov = &piece;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  cmsghdr* head = CMSG_FIRSTHDR(&message);
+  head->cmsg_level = SOL_SOCKET;
+  head->cmsg_type = SO_TIMESTAMPING;
+  head->cmsg_len = CMSG_LEN(sizeof(unsigned));
+  const unsigned flags = SOF_TIMESTAMPING_TX_HARDWARE;
+  std::memcpy(CMSG_DATA(head), &flags, sizeof flags);
+  expect(sendmsg(fd, &message, 0) == 3, "sendmsg");
+  expect(waits_for_stamp(fd) && receive(fd, MSG_ERRQUEUE).hardware != 0,
+         "the stamp that a message asks for");
+  close(fd);
+}
+
 [[noreturn]] void answer() {
   const int fd = udp();
   expect(bind_to(fd, address("0.0.0.0", kPort)) == 0, "bind");
@@ -225,5 +255,6 @@ int main(int count, char** words) {
   check_requests();
   switch_stamps_on();
   check_stamps(words[2]);
+  check_stamp_of_one(words[2]);
   finish();
 }
