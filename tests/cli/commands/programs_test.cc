@@ -49,7 +49,7 @@ TEST_F(ProgramsCommand, ThePythonExampleSynchronisesCameras) {
   const std::string example = std::string(SIMBENCH_SOURCE_DIR) + "/examples/cristian.json";
   const ProgramResult result =
       run({"run", "--scenario", "9cam_3host_30fps_azure_kinect", "--seeds", "1", "--pipelines",
-           "free_running", "--program", "cristian=" + example, "--program-log", "logs", "--set",
+           "k4a", "--program", "cristian=" + example, "--program-log", "logs", "--set",
            "/timeline/frames=30", "--format", "json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const json rows = json::parse(result.out)["rows"];
