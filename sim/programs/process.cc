@@ -47,7 +47,8 @@ Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardC
       number_(number),
       chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
       woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings) {
+      child_(settings),
+      counted_since_(host.true_now()) {
   network_.watch_local_activity(woken_);
 }
 

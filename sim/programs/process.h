@@ -126,7 +126,7 @@ class Process {
   Child child_;
   std::string ending_;
   bool is_stopped_ = false;
-  TrueTime counted_since_{};
+  TrueTime counted_since_;
   std::uint64_t asked_ = 0;
 };
 
