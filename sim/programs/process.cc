@@ -48,9 +48,7 @@ Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardC
   network_.watch_local_activity(woken_);
 }
 
-Process::~Process() {
-  for (auto& [fd, socket] : sockets_) network_.close(socket);
-}
+Process::~Process() { close_sockets(); }
 
 void Process::count_request(Call call) {
   asked_at_once_ = call == Call::kWait && host_.true_now() > waited_ ? 0 : asked_at_once_ + 1;
@@ -74,6 +72,7 @@ Task<void> Process::serve() {
   }
   network_.report_local_activity();
   co_await close_streams();
+  close_sockets();
   const std::string how = child_.ending();
   ending_ = printable_name(ending_.empty() ? how : ending_);
 }
