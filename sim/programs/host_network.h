@@ -80,6 +80,7 @@ class HostNetwork {
   static constexpr std::uint32_t kFirstAddress = 0x0A000001;
   static constexpr std::uint32_t kNetmask = 0xFFFF0000;
   static constexpr std::size_t kMostQueued = 256;
+  static constexpr std::size_t kMostGroups = 20;     // of a socket
   static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated
 
   // The host must outlive this.

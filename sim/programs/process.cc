@@ -52,9 +52,7 @@ Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardC
   network_.watch_local_activity(woken_);
 }
 
-Process::~Process() {
-  for (auto& [fd, socket] : sockets_) network_.close(socket);
-}
+Process::~Process() { close_sockets(); }
 
 void Process::count_request() {
   constexpr Nanoseconds kASecond = std::chrono::seconds(1);
@@ -86,6 +84,7 @@ Task<void> Process::serve() {
   if (!is_stopped_) {
     network_.report_local_activity();
     co_await close_streams();
+    close_sockets();
   }
   const std::string how = child_.ending(ending_);
   if (!is_stopped_) ending_ = printable_name(how);

@@ -97,6 +97,7 @@ class Process {
   Task<Answer> read(Stream& stream, std::int64_t how, std::int64_t most);
   static Answer describe(Stream& stream, shim::Call call);
   Task<void> close_streams();
+  void close_sockets();
   std::size_t open_descriptors() const {
     return sockets_.size() + streams_.size() + timers_.size();
   }
