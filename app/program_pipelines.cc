@@ -27,15 +27,15 @@ std::string find_shim() {
     const std::filesystem::path path = (own_folder() / place).lexically_normal();
     if (std::filesystem::exists(path)) return path.string();
   }
-  throw sim::ProgramError(fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
-                                      "installed in full?",
-                                      own_folder().string()));
+  throw sim::ProgramError(
+      fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
+                  "installed in full?",
+                  own_folder().string()));
 }
 
 // The packages that tools/setup has unpacked, of a program that lies in a build folder.
 std::string unpacked_packages() {
-  const std::filesystem::path packages =
-      (own_folder() / "../../deps").lexically_normal();
+  const std::filesystem::path packages = (own_folder() / "../../deps").lexically_normal();
   return std::filesystem::is_directory(packages) ? packages.string() : "";
 }
 
@@ -44,8 +44,8 @@ std::string unpacked_packages() {
 void find(sim::ProgramSettings& settings) {
   HostPrograms& programs = settings.programs;
   if (const auto unknown = sim::unknown_placeholder(programs)) {
-    throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
-                                        sim::kPlaceholders));
+    throw sim::ProgramError(
+        fmt::format("found the placeholder {}, allowed: {}", *unknown, sim::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {

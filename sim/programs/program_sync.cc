@@ -30,13 +30,13 @@ class RunningPrograms {
     const std::size_t number = processes_.size();
     const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
     const auto path = settings.paths.find(command.front());
-    Child::Settings child{.command = {},
-                          .program = path == settings.paths.end() ? "" : path->second,
-                          .environment = {},
-                          .folder = folder,
-                          .log_name = fmt::format("{}_{}.log", number,
-                                                  scenarios::program_name(command)),
-                          .shim = settings.shim};
+    Child::Settings child{
+        .command = {},
+        .program = path == settings.paths.end() ? "" : path->second,
+        .environment = {},
+        .folder = folder,
+        .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
+        .shim = settings.shim};
     for (const std::string& word : command) child.command.push_back(fill(word, places));
     for (const auto& [name, value] : settings.programs.environment) {
       child.environment[name] = fill(value, places);

@@ -39,10 +39,10 @@ namespace simbench::sim {
 class SimHost;
 
 struct ProgramSettings {
-  std::string pipeline;               // its name
+  std::string pipeline;  // its name
   scenarios::HostPrograms programs;
   std::map<std::string, std::string> paths{};  // absolute, by a command's first word without one
-  std::string shim;                   // the library's absolute path
+  std::string shim;                            // the library's absolute path
   // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
   std::string log_folder{};
   std::size_t hosts = 0;

@@ -98,11 +98,11 @@ TEST(Set, PointersThatNameNothing) {
 }
 
 TEST(Set, AMinusAppends) {
-  const Scenario scenario = load_scenario(
-      "6host_star", {{"/pipelines/-",
-                      R"({"name": "mine", "host_sync": "ntp", "device_time": "oracle",
+  const Scenario scenario =
+      load_scenario("6host_star", {{"/pipelines/-",
+                                    R"({"name": "mine", "host_sync": "ntp", "device_time": "oracle",
                           "gathering": "oracle"})"},
-                     {"/faults/-", R"({"kind": "link_stops", "host": 1, "at_ms": 0,
+                                   {"/faults/-", R"({"kind": "link_stops", "host": 1, "at_ms": 0,
                                        "duration_ms": 5})"}});
   EXPECT_EQ(scenario.pipelines.back().name, "mine");
   EXPECT_EQ(scenario.faults.size(), 1U);

@@ -22,11 +22,10 @@ class ProgramsCommand : public ProgramTest {
  protected:
   // Ten minutes of three hosts: chrony's model, and the programs of this file.
   ProgramResult clocks(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"clocks",      "--scenario",   "6host_star",
-                                          "--set",       "/hosts/count=3", "--set",
-                                          "/cameras/count=3", "--seeds",  "1",
-                                          "--duration-s", "310",         "--pipelines",
-                                          "free_running"};
+    std::vector<std::string> arguments = {
+        "clocks", "--scenario",       "6host_star",  "--set", "/hosts/count=3",
+        "--set",  "/cameras/count=3", "--seeds",     "1",     "--duration-s",
+        "310",    "--pipelines",      "free_running"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
