@@ -33,6 +33,7 @@ namespace {
 using namespace promises;
 
 constexpr std::uint16_t kEchoPort = 7;
+
 void check_clocks() {
   const std::int64_t before = read_clock(CLOCK_REALTIME);
   expect(read_clock(CLOCK_REALTIME) > before, "a reading takes time");
