@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "evaluation/run/pipeline_choice.h"
+#include "hardware/node/node_programs.h"
 #include "sim/programs/find_program.h"
-#include "sim/programs/placeholders.h"
+#include "processes/placeholders.h"
 #include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
 
@@ -41,9 +42,9 @@ std::string unpacked_packages() {
 
 // With absolute paths and what the programs' libraries need.
 HostPrograms found(HostPrograms programs) {
-  if (const auto unknown = sim::unknown_placeholder(programs)) {
+  if (const auto unknown = processes::unknown_placeholder(programs)) {
     throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
-                                        sim::kPlaceholders));
+                                        processes::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {
@@ -85,6 +86,21 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
 }
 
 }  // namespace
+
+std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
+                                             const std::string& interface,
+                                             const ProgramOptions& options) {
+  const std::string& logs = options.log_folder;
+  try {
+    return std::make_unique<hardware::NodePrograms>(
+        hardware::NodeProgramSettings{.programs = found(pipeline.programs.value()),
+                                      .shim = find_shim(),
+                                      .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
+                                      .interface = interface});
+  } catch (const sim::ProgramError& missing) {
+    throw scenarios::InputError(fmt::format("pipeline '{}': {}", pipeline.name, missing.what()));
+  }
+}
 
 void use_programs(const ProgramOptions& options) {
   evaluation::set_program_maker(

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "shim/local.h"
+#include "shim/own_clock.h"
 
 namespace simbench::shim {
 namespace {
@@ -51,11 +52,14 @@ __attribute__((constructor)) void join_world() {
   asking_thread = syscall(SYS_gettid);
   Received reply{.data = &own_identity, .capacity = sizeof own_identity};
   if (ask({.call = Call::kHello}, {}, {}, &reply) < 0) lose();
+  if (own_identity.only_clock != 0) open_own_clock();
 }
 
 }  // namespace
 
-bool is_simulated() { return world_link >= 0; }
+bool has_world() { return world_link >= 0; }
+
+bool is_simulated() { return has_world() && own_identity.only_clock == 0; }
 
 const Identity& identity() { return own_identity; }
 
@@ -163,7 +167,7 @@ int duplicate_descriptor(int from, int to) {
 bool is_blocking(int fd) { return (syscall(SYS_fcntl, fd, F_GETFL) & O_NONBLOCK) == 0; }
 
 SIMBENCH_CALL int close(int fd) {
-  if (is_simulated() && fd == world_link) return 0;  // daemons close all that they do not know
+  if (has_world() && fd == world_link) return 0;  // daemons close all that they do not know
   const bool was_local = is_local(fd);
   release(fd);
   const int result = static_cast<int>(syscall(SYS_close, fd));

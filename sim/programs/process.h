@@ -34,12 +34,15 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
-#include "sim/programs/child.h"
+#include "processes/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
+
+using processes::Child;
+using processes::ChildRequest;
 
 class Process {
  public:

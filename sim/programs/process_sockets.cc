@@ -3,10 +3,14 @@
 #include <utility>
 
 #include "sim/programs/process.h"
-#include "sim/programs/requests.h"
+#include "processes/requests.h"
 
 namespace simbench::sim {
 
+using processes::BadRequest;
+using processes::bytes_of;
+using processes::kMostOpen;
+using processes::read_head;
 using shim::Call;
 
 UdpSocket& Process::socket_of(int fd) {

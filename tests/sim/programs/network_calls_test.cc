@@ -32,13 +32,10 @@ class NetworkCallsTest : public testing::Test {
     const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
     master.insert(master.begin(), path);
     slave.insert(slave.begin(), path);
-    ProgramSync sync({.master = {std::move(master)},
-                      .slave = {std::move(slave)},
-                      .files = {},
-                      .environment = {},
-                      .run_before_capture = {},
+    ProgramSync sync({.pipeline = "calls",
+                      .programs = {.master = {std::move(master)}, .slave = {std::move(slave)}},
                       .shim = SIMBENCH_SHIM,
-                      .folder = folder_,
+                      .log_folder = folder_,
                       .hosts = kCallingHosts});
     std::vector<scenarios::Override> all{{"/hosts/count", "3"}, {"/cameras/count", "3"}};
     all.insert(all.end(), changes.begin(), changes.end());
@@ -54,7 +51,8 @@ class NetworkCallsTest : public testing::Test {
  private:
   std::string output(std::size_t host) const {
     const auto path =
-        std::filesystem::path(folder_) / ("host" + std::to_string(host)) / "program0.log";
+        std::filesystem::path(folder_) / "calls" / "seed1" / ("host" + std::to_string(host)) /
+        "0_simbench_group_calls.log";
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();

@@ -75,7 +75,8 @@ class ProcessTest : public testing::Test {
   static Task<void> serve(SimHost& host, int link, Heard& heard) {
     HostNetwork network(host, 3);
     KernelClock kernel(host);
-    Process process(host, network, kernel, {.command = {"program"}, .link = link}, 0);
+    CardClock card(host);
+    Process process(host, network, kernel, card, {.command = {"program"}, .link = link}, 0);
     co_await process.serve();
     heard.note = process.ending();
   }

@@ -1,4 +1,4 @@
-#include "sim/programs/child.h"
+#include "processes/child.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -25,9 +25,9 @@
 #include <thread>
 #include <utility>
 
-#include "sim/programs/confinement.h"
+#include "processes/confinement.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 // Its number in the child: programs use the first ones, and some close those that follow.
@@ -49,6 +49,7 @@ struct Plan {
   const char* folder;
   const char* log;
   int link;
+  int clock_page;
   pid_t parent;
 };
 
@@ -93,6 +94,7 @@ void forget_parent() {
     _exit(kCannotRun);
   }
   if (dup2(plan.link, kLink) < 0) fail("link", errno);
+  if (plan.clock_page >= 0 && dup2(plan.clock_page, shim::kClockPage) < 0) fail("clock", errno);
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
@@ -107,6 +109,7 @@ Child::Child(const Settings& settings)
       log_(settings.folder + "/" + settings.log_name),
       patience_(settings.patience),
       link_(settings.link),
+      served_(settings.served),
       buffer_(shim::kMostData) {
   if (link_ < 0) start(settings);
 }
@@ -121,7 +124,7 @@ void Child::start(const Settings& settings) {
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
-  Confinement confinement(settings.folder, argument_pointers[0]);
+  Confinement confinement(settings.folder, argument_pointers[0], settings.served);
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw ChildError(fmt::format("{}: no link: {}", name_, std::strerror(errno)));
@@ -131,6 +134,7 @@ void Child::start(const Settings& settings) {
                   .folder = settings.folder.c_str(),
                   .log = settings.log_name.c_str(),
                   .link = ends[1],
+                  .clock_page = settings.clock_page,
                   .parent = getpid()};
   process_ = fork();
   if (process_ == 0) become(plan, confinement);
@@ -182,7 +186,7 @@ std::optional<ChildRequest> Child::next() {
 }
 
 void Child::reply(std::int64_t value, int error, std::span<const std::byte> data) {
-  follow_thread();
+  if (served_ == Served::kAll) follow_thread();
   shim::Reply head{.value = value, .error = error, .size = static_cast<std::uint32_t>(data.size())};
   std::array<iovec, 2> pieces{
       {{&head, sizeof head}, {const_cast<std::byte*>(data.data()), data.size()}}};
@@ -264,4 +268,4 @@ std::string Child::last_line() const {
   return last;
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
