@@ -189,8 +189,8 @@ ExperimentSource::ExperimentSource(const scenarios::Scenario& scenario, Experime
 
 std::string ExperimentSource::program_log(std::uint64_t seed) const {
   if (options_.program_log.empty()) return "";
-  return fmt::format("{}/measured_seed{}",
-                     std::filesystem::absolute(options_.program_log).string(), seed);
+  return fmt::format("{}/measured_seed{}", std::filesystem::absolute(options_.program_log).string(),
+                     seed);
 }
 
 std::string ExperimentSource::record_cameras(std::uint64_t seed) {

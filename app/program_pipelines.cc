@@ -8,8 +8,8 @@
 
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
-#include "sim/programs/find_program.h"
 #include "processes/placeholders.h"
+#include "sim/programs/find_program.h"
 #include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
 
@@ -28,23 +28,23 @@ std::string find_shim() {
     const std::filesystem::path path = (own_folder() / place).lexically_normal();
     if (std::filesystem::exists(path)) return path.string();
   }
-  throw sim::ProgramError(fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
-                                      "installed in full?",
-                                      own_folder().string()));
+  throw sim::ProgramError(
+      fmt::format("no lib/simbench/libsimbench_shim.so beside {}; is simbench "
+                  "installed in full?",
+                  own_folder().string()));
 }
 
 // The packages that tools/setup has unpacked, of a program that lies in a build folder.
 std::string unpacked_packages() {
-  const std::filesystem::path packages =
-      (own_folder() / "../../deps").lexically_normal();
+  const std::filesystem::path packages = (own_folder() / "../../deps").lexically_normal();
   return std::filesystem::is_directory(packages) ? packages.string() : "";
 }
 
 // With absolute paths and what the programs' libraries need.
 HostPrograms found(HostPrograms programs) {
   if (const auto unknown = processes::unknown_placeholder(programs)) {
-    throw sim::ProgramError(fmt::format("found the placeholder {}, allowed: {}", *unknown,
-                                        processes::kPlaceholders));
+    throw sim::ProgramError(
+        fmt::format("found the placeholder {}, allowed: {}", *unknown, processes::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {

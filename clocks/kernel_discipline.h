@@ -2,8 +2,8 @@
 // a node's clock in software that real programs discipline.
 //
 // It keeps what the kernel keeps and moves on as the kernel does, when a second of the system clock
-// begins. It knows no time of its own: whoever has it calls move_on() when next_second_ns() has come
-// while is_moving(), and before each other call; every call acts at the present instant.
+// begins. It knows no time of its own: whoever has it calls move_on() when next_second_ns() has
+// come while is_moving(), and before each other call; every call acts at the present instant.
 //
 //   ADJ_FREQUENCY, ADJ_TICK      rate = freq / 65536 ppm + (tick - 10000) * 100 ppm, at once
 //   ADJ_OFFSET, ADJ_TIMECONST    the kernel's loop (ntp_kernel_loop.h) while STA_PLL is set; what

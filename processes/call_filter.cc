@@ -99,8 +99,8 @@ Code futex() {
 Code futex_of_machine() {
   Code code{load_low(3), unless(BPF_JEQ, 0, 3), load_high(3), unless(BPF_JEQ, 0, 1),
             verdict(kAllow)};
-  append(code, {load_low(1), unless(BPF_JSET, FUTEX_CLOCK_REALTIME, 1), verdict(kTrap),
-                verdict(kAllow)});
+  append(code,
+         {load_low(1), unless(BPF_JSET, FUTEX_CLOCK_REALTIME, 1), verdict(kTrap), verdict(kAllow)});
   return code;
 }
 

@@ -20,7 +20,8 @@
 namespace simbench::processes {
 
 // What the world has of a program's surroundings: all of it, or the system clock alone. Then the
-// machine's waits, timers and sockets (IP, and routing to look at) may be used; no clock may be set.
+// machine's waits, timers and sockets (IP, and routing to look at) may be used; no clock may be
+// set.
 enum class Served : std::uint8_t { kAll, kClock };
 
 // execve() is allowed for the name at this address, which is where the caller of execve() has it.

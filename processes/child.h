@@ -74,7 +74,7 @@ class Child {
     std::chrono::milliseconds patience = kPatience;
     Served served = Served::kAll;
     int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
-    int link = -1;  // the other end of somebody else's link: nothing is started
+    int link = -1;        // the other end of somebody else's link: nothing is started
   };
 
   explicit Child(const Settings& settings);

@@ -13,7 +13,8 @@
 //              stops the program, and the shim names it.
 //
 // A program of a real host has the machine's network and waits instead of the world's
-// (Served::kClock); what network that is, its caller chooses by a namespace. It still sets no clock.
+// (Served::kClock); what network that is, its caller chooses by a namespace. It still sets no
+// clock.
 //
 // Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
 // For other users the second barrier is then their ordinary rights over files, and no more.

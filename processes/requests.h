@@ -1,5 +1,5 @@
-// Reading what a program asked for and writing what it is told. Programs are not trusted: whatever is
-// no request throws BadRequest, which ends the program.
+// Reading what a program asked for and writing what it is told. Programs are not trusted: whatever
+// is no request throws BadRequest, which ends the program.
 //
 //   const auto wanted = read_head<shim::TimerSetting>(request.data);
 //   answer.data = bytes_of(wanted);

@@ -31,8 +31,8 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// One --set /json/pointer=value. A value that does not parse as JSON is text. The last key "-" of an
-// array appends to it (RFC 6901).
+// One --set /json/pointer=value. A value that does not parse as JSON is text. The last key "-" of
+// an array appends to it (RFC 6901).
 struct Override {
   std::string pointer;
   std::string value;

@@ -3,8 +3,8 @@
 //
 // It has the newest settings of the clock, each a straight line over CLOCK_MONOTONIC; an instant is
 // read under the setting that was valid then, or the oldest that is kept. One process writes, any
-// number read: a reader that meets a change reads again. Times are nanoseconds, clock readings since
-// 1970. A reading takes some 10 ns.
+// number read: a reader that meets a change reads again. Times are nanoseconds, clock readings
+// since 1970. A reading takes some 10 ns.
 //
 //   add_setting(page, {.since = now, .reads = reading, .rate = 12e-6});
 //   const std::int64_t stamp = reading_at(page, now - 1000);

@@ -18,13 +18,26 @@ namespace simbench::shim {
 
 InterfaceFacts interface_at(int place) {
   if (place == 0) {
-    return {1, "lo", INADDR_LOOPBACK, 0xFF000000, 0, IFF_UP | IFF_LOOPBACK | IFF_RUNNING,
-            ARPHRD_LOOPBACK, 65'536, {}};
+    return {1,
+            "lo",
+            INADDR_LOOPBACK,
+            0xFF000000,
+            0,
+            IFF_UP | IFF_LOOPBACK | IFF_RUNNING,
+            ARPHRD_LOOPBACK,
+            65'536,
+            {}};
   }
   const std::uint32_t address = identity().address;
   const std::uint32_t netmask = identity().netmask;
-  InterfaceFacts card{kInterface, "eth0", address, netmask, address | ~netmask,
-                      IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST, ARPHRD_ETHER, 1'500,
+  InterfaceFacts card{kInterface,
+                      "eth0",
+                      address,
+                      netmask,
+                      address | ~netmask,
+                      IFF_UP | IFF_BROADCAST | IFF_RUNNING | IFF_MULTICAST,
+                      ARPHRD_ETHER,
+                      1'500,
                       {0x02, 0x00}};
   const std::uint32_t number = htonl(address);
   memcpy(card.mac + 2, &number, sizeof number);
@@ -91,8 +104,8 @@ int state_stamping(ethtool_ts_info& info) {
       SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
   info.phc_index = -1;
   if (identity().has_card_clock == 0) return 0;
-  info.so_timestamping |= SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE |
-                          SOF_TIMESTAMPING_RAW_HARDWARE;
+  info.so_timestamping |=
+      SOF_TIMESTAMPING_TX_HARDWARE | SOF_TIMESTAMPING_RX_HARDWARE | SOF_TIMESTAMPING_RAW_HARDWARE;
   info.phc_index = 0;
   info.tx_types = 1U << HWTSTAMP_TX_OFF | 1U << HWTSTAMP_TX_ON;
   info.rx_filters = 1U << HWTSTAMP_FILTER_NONE | 1U << HWTSTAMP_FILTER_ALL;

@@ -1,10 +1,9 @@
 // ioctl(): of the network's interfaces, of the card's clock, and of the world's sockets.
-#include <sys/ioctl.h>
-
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/sockios.h>
 #include <stdarg.h>
+#include <sys/ioctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 

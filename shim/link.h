@@ -5,10 +5,10 @@
 // the real call. Without a link in the environment all calls are the real ones.
 //
 // The world may say that it has the clock alone (Identity::only_clock), for a program on a real
-// host: then sockets, waits, timers, files and chance are the machine's, and only the system clock is
-// the world's, with the stamps that the kernel takes of datagrams (shim/own_clock.h). The program is
-// root of its host and one process as ever. Waits until a time of the system clock are converted
-// when they begin; timers that make signals cannot be set to one.
+// host: then sockets, waits, timers, files and chance are the machine's, and only the system clock
+// is the world's, with the stamps that the kernel takes of datagrams (shim/own_clock.h). The
+// program is root of its host and one process as ever. Waits until a time of the system clock are
+// converted when they begin; timers that make signals cannot be set to one.
 //
 // It has no libraries but libc, makes no threads and takes no memory from the heap. One thread asks
 // at a time, and always the same: a second one is reported to the world, which ends the program.
@@ -69,11 +69,20 @@ Function real(Function /*type*/, const char* name) {
 }
 #define SIMBENCH_REAL(function) ::simbench::shim::real(&::function, #function)
 
-enum class Kind : std::uint8_t { kReal, kSocket, kTimer, kEpoll, kChance, kNetlink, kLocal, kCard, kOwnTimer };
+enum class Kind : std::uint8_t {
+  kReal,
+  kSocket,
+  kTimer,
+  kEpoll,
+  kChance,
+  kNetlink,
+  kLocal,
+  kCard,
+  kOwnTimer
+};
 
 // Whether the world says when it is ready; of others, the kernel does.
 constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
-
 
 inline constexpr int kMostDescriptors = 1024;
 

@@ -159,8 +159,8 @@ int open_netlink(int type, int protocol) {
     errno = EPROTONOSUPPORT;
     return -1;
   }
-  const int fd = open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0,
-                                 (type & SOCK_CLOEXEC) != 0);
+  const int fd =
+      open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
   place->fd = fd;
   place->answer.clear();

@@ -3,8 +3,8 @@
 // adjustments ask the world as ever.
 //
 // The kernel stamps datagrams with the machine's CLOCK_REALTIME. A stamp becomes what the own clock
-// read at that instant, right to some 0.1 us; one from before a step of the machine's clock is wrong
-// by the step.
+// read at that instant, right to some 0.1 us; one from before a step of the machine's clock is
+// wrong by the step.
 //
 //   if (is_own_clock(CLOCK_REALTIME)) *time = own_time();
 //   message.received = own_time_at(message.received);

@@ -83,7 +83,6 @@ enum StampKind : unsigned {
   kBothStamps = 4,  // departures have a stamp of each kind, in messages of their own
 };
 
-
 struct Request {
   Call call{};
   std::int32_t fd = -1;

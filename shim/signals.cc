@@ -15,6 +15,7 @@
 
 #include "shim/link.h"
 #include "shim/own_clock.h"
+#include "shim/refused_calls.h"
 
 namespace simbench::shim {
 namespace {
@@ -137,7 +138,8 @@ int signal_of(const sigevent& event) {
   }
 }
 
-// Timers of the host's own clock where that alone is the world's; the machine measures the intervals.
+// Timers of the host's own clock where that alone is the world's; the machine measures the
+// intervals.
 timer_t own_timers[kMostTimers];
 int own_timer_count = 0;
 
@@ -295,7 +297,7 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
   }
   for (;;) {
     const timespec none{};
-    const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8);
+    const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
     const std::uint64_t before = handled;
     if (ask(wait) >= 0) {

@@ -21,23 +21,20 @@ int refuse(int error) {
 }
 
 int set_world_option(int fd, SocketOption option, std::int64_t value) {
-  return static_cast<int>(ask({.call = Call::kSetOption,
-                               .fd = fd,
-                               .a = static_cast<std::int64_t>(option),
-                               .b = value}));
+  return static_cast<int>(ask(
+      {.call = Call::kSetOption, .fd = fd, .a = static_cast<std::int64_t>(option), .b = value}));
 }
 
 std::int64_t kinds_of(unsigned flags, unsigned software, unsigned hardware) {
-  const bool by_software =
-      (flags & SOF_TIMESTAMPING_SOFTWARE) != 0 && (flags & software) != 0;
+  const bool by_software = (flags & SOF_TIMESTAMPING_SOFTWARE) != 0 && (flags & software) != 0;
   const bool by_card = (flags & SOF_TIMESTAMPING_RAW_HARDWARE) != 0 && (flags & hardware) != 0;
   return (by_software ? std::int64_t{kSoftwareStamps} : 0) |
          (by_card ? std::int64_t{kHardwareStamps} : 0);
 }
 
 int set_arrival_stamps(int fd) {
-  std::int64_t kinds = kinds_of(states[fd].timestamping, SOF_TIMESTAMPING_RX_SOFTWARE,
-                                SOF_TIMESTAMPING_RX_HARDWARE);
+  std::int64_t kinds =
+      kinds_of(states[fd].timestamping, SOF_TIMESTAMPING_RX_SOFTWARE, SOF_TIMESTAMPING_RX_HARDWARE);
   if (states[fd].stamps != Stamps::kNone) kinds |= kSoftwareStamps;
   return set_world_option(fd, SocketOption::kReceiveStamps, kinds);
 }

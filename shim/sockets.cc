@@ -1,4 +1,6 @@
 // Datagram sockets of the simulated network; all others are the real ones (Unix-domain) or refused.
+#include "shim/sockets.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
 #include <linux/errqueue.h>
@@ -16,7 +18,6 @@
 #include "shim/local.h"
 #include "shim/netlink.h"
 #include "shim/own_clock.h"
-#include "shim/sockets.h"
 
 namespace simbench::shim {
 

@@ -68,8 +68,8 @@ class Mask {
 };
 
 // Asks until something is ready or the time has come. Fails with EINTR once a handler has run, and
-// with EAGAIN when real descriptors should be looked at; what is left goes to `until` and `left_ns`.
-// Signals without a handler do not end a wait.
+// with EAGAIN when real descriptors should be looked at; what is left goes to `until` and
+// `left_ns`. Signals without a handler do not end a wait.
 std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Received answer,
                          std::int64_t* left_ns) {
   for (;;) {

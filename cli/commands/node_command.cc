@@ -114,10 +114,10 @@ std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
                                    {.log_folder = options.program_log});
   }
   if (choice.pipeline.programs) {
-    throw scenarios::InputError(
-        fmt::format("pipeline '{}': its programs run on simulated hosts and in validate-model only; "
-                    "on real hosts start them yourself, with host_sync \"free_running\"",
-                    pipeline));
+    throw scenarios::InputError(fmt::format(
+        "pipeline '{}': its programs run on simulated hosts and in validate-model only; "
+        "on real hosts start them yourself, with host_sync \"free_running\"",
+        pipeline));
   }
   for (const Need need : choice.host_sync.info.needs) {
     if (const char* what = lacking(need)) {
@@ -166,11 +166,12 @@ void serve(const NodeOptions& options) {
   boost::asio::io_context context(1);
   const std::unique_ptr<hardware::CameraDriver> cameras = hardware::make_camera_driver(rig, me);
   const std::unique_ptr<hardware::NodeClock> clock = make_clock(context, me, options);
-  hardware::Node node(context, settings, *clock, *cameras,
-                      [&options](const scenarios::Scenario& scenario, const std::string& pipeline) {
-                        return make_host_sync(scenario, pipeline, options);
-                      },
-                      log_line);
+  hardware::Node node(
+      context, settings, *clock, *cameras,
+      [&options](const scenarios::Scenario& scenario, const std::string& pipeline) {
+        return make_host_sync(scenario, pipeline, options);
+      },
+      log_line);
   boost::asio::signal_set signals(context, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
     if (error) return;
@@ -240,12 +241,13 @@ void add_clock_options(Command& command, NodeOptions& options) {
 }
 
 void add_node_program_options(Command& command, NodeOptions& options) {
-  const Option on = command.text(
-      "--programs-on", "INTERFACE", options.programs_on,
-      "For tests: run the programs of a conductor's pipeline, confined, around the\n"
-      "node's software clock; their network is on this interface");
-  command.text("--program-log", "DIR", options.program_log,
-               "Keep what programs print, and their files, in DIR/PIPELINE/host0")
+  const Option on =
+      command.text("--programs-on", "INTERFACE", options.programs_on,
+                   "For tests: run the programs of a conductor's pipeline, confined, around the\n"
+                   "node's software clock; their network is on this interface");
+  command
+      .text("--program-log", "DIR", options.program_log,
+            "Keep what programs print, and their files, in DIR/PIPELINE/host0")
       .needs(on);
 }
 

@@ -170,14 +170,20 @@ void ExperimentRig::start_node(unsigned node, const std::string& file) {
   const scenarios::HostClock& interface = settings_.scenario->hosts.clock;
   const std::string name = fmt::format("host{}", node);
   std::vector<std::string> arguments = {
-                    "node", "--rig", file, "--name", name, "--key-file", folder_.file("rig.key"),
-                    "--journal", folder_.file("journal-" + name),
-                    fmt::format("--clock-offset-ms={}", clock.offset_ms),
-                    fmt::format("--clock-skew-ppm={}", clock.skew_ppm),
-                    fmt::format("--clock-set-cost-ms={}",
-                                interface.set_cost_ms * clock.set_cost_factor),
-                    fmt::format("--clock-set-log-sigma={}", interface.set_cost_call_log_sigma),
-                    fmt::format("--clock-set-effective={}", interface.set_effective_fraction)};
+      "node",
+      "--rig",
+      file,
+      "--name",
+      name,
+      "--key-file",
+      folder_.file("rig.key"),
+      "--journal",
+      folder_.file("journal-" + name),
+      fmt::format("--clock-offset-ms={}", clock.offset_ms),
+      fmt::format("--clock-skew-ppm={}", clock.skew_ppm),
+      fmt::format("--clock-set-cost-ms={}", interface.set_cost_ms * clock.set_cost_factor),
+      fmt::format("--clock-set-log-sigma={}", interface.set_cost_call_log_sigma),
+      fmt::format("--clock-set-effective={}", interface.set_effective_fraction)};
   if (settings_.programs) {
     arguments.insert(arguments.end(), {"--programs-on", NetworkSandbox::kWireInterface});
   }

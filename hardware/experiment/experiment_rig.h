@@ -34,9 +34,9 @@
 
 #include "hardware/clock/monotonic_time.h"
 #include "hardware/experiment/child_process.h"
-#include "recording/temporary_folder.h"
 #include "hardware/net/secret_key.h"
 #include "hardware/rig/rig.h"
+#include "recording/temporary_folder.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::hardware {

@@ -6,10 +6,10 @@
 //
 //   hub: veth "wire<i>", without an address ... "eth1", 10.0.0.(1 + i) in 10.0.0.0/16
 //
-// The wire is for members that run programs (docs/your_program.md): a network of their own, with the
-// addresses of the simulated one, over which they all are neighbours as far as somebody in the hub
-// carries frames from wire to wire (hardware/relay/wires.h). Its members may take ports below 1024
-// without rights.
+// The wire is for members that run programs (docs/your_program.md): a network of their own, with
+// the addresses of the simulated one, over which they all are neighbours as far as somebody in the
+// hub carries frames from wire to wire (hardware/relay/wires.h). Its members may take ports below
+// 1024 without rights.
 //
 // Members reach the hub only, not each other. All is set up by netlink and ioctl, without other
 // programs; the kernel removes a pair when its namespace ends.

@@ -11,7 +11,8 @@
 // Errors: std::runtime_error on a host whose clock is not in software, and for a folder that cannot
 // be made; processes::ChildError.
 //
-//   NodePrograms chronyd({.programs = {.master = {{"/usr/sbin/chronyd", "-d", "-f", "server.conf"}},
+//   NodePrograms chronyd({.programs = {.master = {{"/usr/sbin/chronyd", "-d", "-f",
+//   "server.conf"}},
 //                                      .slave = {{"/usr/sbin/chronyd", "-d", "-f", "client.conf"}},
 //                                      .files = {{"client.conf", "server {master} iburst"}}},
 //                         .shim = "/usr/lib/simbench/libsimbench_shim.so"});

@@ -220,7 +220,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
   DelayQueue queue_;
   std::vector<tcp::endpoint> nodes_;
   std::vector<std::unique_ptr<Gate>> gates_;  // [from * nodes + to]; none listens from == to
-  std::unique_ptr<Wires> wires_;  // of programs; null without them
+  std::unique_ptr<Wires> wires_;              // of programs; null without them
   RelayStatistics statistics_;
 };
 

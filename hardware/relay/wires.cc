@@ -156,7 +156,8 @@ class Wires::State : public std::enable_shared_from_this<Wires::State> {
     while (wire.is_open()) {
       const ReceivedPiece piece = receive_stamped(wire.native_handle(), buffer, nullptr);
       if (piece.error == 0) {
-        if (!piece.truncated) self->carry(from, std::span(buffer).first(piece.bytes), piece.received);
+        if (!piece.truncated)
+          self->carry(from, std::span(buffer).first(piece.bytes), piece.received);
         continue;
       }
       boost::system::error_code error;
@@ -180,10 +181,8 @@ class Wires::State : public std::enable_shared_from_this<Wires::State> {
       }
       for (const MonotonicTime at : laws_[from * wires_.size() + to].datagram(received)) {
         Bytes copy(frame.begin(), frame.end());
-        const bool taken =
-            queue_.add(at, copy, [self = shared_from_this(), to](const Bytes& due) {
-              self->send(to, due);
-            });
+        const bool taken = queue_.add(
+            at, copy, [self = shared_from_this(), to](const Bytes& due) { self->send(to, due); });
         if (!taken) ++dropped_;
       }
     }

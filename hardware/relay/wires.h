@@ -3,13 +3,13 @@
 //
 // Member i of a NetworkSandbox has the address 10.0.0.1 + i at the far end of "wire<i>" (hardware/
 // experiment/network_sandbox.h). Each UDP datagram that it sends over IPv4 arrives at the member of
-// its destination by a law of its own for the direction (network_law.h); one to a group or to all at
-// every other member, by each one's law. So any program's ports and multicasts pass unchanged. ARP
-// passes at once. Nothing else passes: no TCP, no IPv6, no fragments, no frames to other addresses.
-// UDP checksums, which the sender leaves to its card, are left out.
+// its destination by a law of its own for the direction (network_law.h); one to a group or to all
+// at every other member, by each one's law. So any program's ports and multicasts pass unchanged.
+// ARP passes at once. Nothing else passes: no TCP, no IPv6, no fragments, no frames to other
+// addresses. UDP checksums, which the sender leaves to its card, are left out.
 //
-// Delays count from the kernel's receive stamp. Bounded as the relay is. The queue must outlive this
-// and not run after it. One thread.
+// Delays count from the kernel's receive stamp. Bounded as the relay is. The queue must outlive
+// this and not run after it. One thread.
 //
 // Errors: RelayError from the constructor: no such wire, or no right to open it.
 //
@@ -44,7 +44,7 @@ std::optional<CarriedFrame> look_at_frame(std::span<std::byte> frame, std::size_
 class Wires {
  public:
   struct Settings {
-    std::vector<std::string> wires;  // interfaces, by member
+    std::vector<std::string> wires;                 // interfaces, by member
     const scenarios::Scenario* scenario = nullptr;  // only the constructor reads it
     std::uint64_t seed = 1;
   };

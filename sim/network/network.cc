@@ -103,9 +103,8 @@ void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> re
                             Bytes message, Endpoint& sender) {
   Segment segment{.bytes = static_cast<double>(message.size())};
   const TrueTime at_card = engine_.now() + sender.to_card(id);
-  const TrueTime passed = rate_.is_infinite()
-                              ? at_card
-                              : host_ports_[from].pass(at_card, on_the_line(segment));
+  const TrueTime passed =
+      rate_.is_infinite() ? at_card : host_ports_[from].pass(at_card, on_the_line(segment));
   segment.left = engine_.now();
   segment.at_switch = passed;
   segment.switch_number = switch_of(from);

@@ -24,9 +24,9 @@
 // retransmit. A switch with PTP (sim/network/switch_clock.h) corrects datagrams that are event
 // messages for their time in the switch.
 //
-// A datagram to a group of hosts (sim/network/groups.h) leaves its host once, passes the host's port
-// and each trunk once, and is replicated in the switches towards the members' ports. From there on
-// each copy is a datagram like others, with a number of its own on its path.
+// A datagram to a group of hosts (sim/network/groups.h) leaves its host once, passes the host's
+// port and each trunk once, and is replicated in the switches towards the members' ports. From
+// there on each copy is a datagram like others, with a number of its own on its path.
 //
 // Capture traffic: the frames that a host sends on pass its port like messages, in the order of
 // their delivery and each in one piece, towards a storage whose own port is not modelled. Messages
@@ -136,7 +136,8 @@ class Network : private EventHandler {
     PathId path = 0;
     MessageId id = 0;
   };
-  // Message `id` to a group leaves host `from` now, towards these; `sender` is notified of it alone.
+  // Message `id` to a group leaves host `from` now, towards these; `sender` is notified of it
+  // alone.
   void send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients, Bytes message,
                      Endpoint& sender);
   Groups& groups() { return groups_; }

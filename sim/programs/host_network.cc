@@ -138,16 +138,15 @@ Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) 
   if (payload.size() > kMostPayload) co_return EMSGSIZE;
   const bool is_inward = is_loopback(to.host);
   const auto length = static_cast<std::uint32_t>(payload.size());
-  QueuedDatagram datagram{
-      .arrival = {.from = {.host = is_inward ? to.host : address(),
-                           .port = socket.local.port,
-                           .reserved = 0},
-                  .to = to,
-                  .system = shim::kNoStamp,
-                  .hardware = shim::kNoStamp,
-                  .length = length,
-                  .number = socket.sent++},
-      .payload = std::move(payload)};
+  QueuedDatagram datagram{.arrival = {.from = {.host = is_inward ? to.host : address(),
+                                               .port = socket.local.port,
+                                               .reserved = 0},
+                                      .to = to,
+                                      .system = shim::kNoStamp,
+                                      .hardware = shim::kNoStamp,
+                                      .length = length,
+                                      .number = socket.sent++},
+                          .payload = std::move(payload)};
   if (is_inward || to.host == address()) {
     deliver(datagram);
     co_return 0;
@@ -163,8 +162,9 @@ Task<int> HostNetwork::send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagr
   if (socket.departure_stamps == 0) co_return 0;
   const std::optional<HostTime> left =
       co_await channel.transmit_stamp(id, host_.steady_clock().now());
-  keep_stamps(socket, left,
-              {.socket = socket.number, .peer = peer, .message = id, .datagram = std::move(datagram)});
+  keep_stamps(
+      socket, left,
+      {.socket = socket.number, .peer = peer, .message = id, .datagram = std::move(datagram)});
   co_return 0;
 }
 
@@ -242,9 +242,8 @@ Task<void> HostNetwork::pump(PeerId peer) {
     const shim::Address to{.host = boost::endian::load_big_u32(trailer),
                            .port = boost::endian::load_big_u16(trailer + 6),
                            .reserved = 0};
-    const shim::Address from{.host = address_of(peer),
-                             .port = boost::endian::load_big_u16(trailer + 4),
-                             .reserved = 0};
+    const shim::Address from{
+        .host = address_of(peer), .port = boost::endian::load_big_u16(trailer + 4), .reserved = 0};
     bytes.resize(length);
     std::optional<HardwareTime> by_card;
     if (card_stamping_.arrivals) by_card = message->received_hardware;
@@ -268,8 +267,8 @@ namespace {
 bool is_for(const UdpSocket& socket, const shim::Arrival& arrival) {
   return socket.local.port == arrival.to.port &&
          (socket.local.host == 0 || socket.local.host == arrival.to.host) &&
-         (!socket.peer || (socket.peer->host == arrival.from.host &&
-                           socket.peer->port == arrival.from.port));
+         (!socket.peer ||
+          (socket.peer->host == arrival.from.host && socket.peer->port == arrival.from.port));
 }
 
 }  // namespace

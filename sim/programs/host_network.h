@@ -65,8 +65,8 @@ struct UdpSocket {
   bool shares_port = false;       // SO_REUSEADDR
   bool may_broadcast = false;
   bool has_urgent_errors = false;  // SO_SELECT_ERR_QUEUE
-  bool takes_all_groups = true;  // IP_MULTICAST_ALL
-  bool hears_itself = true;      // IP_MULTICAST_LOOP
+  bool takes_all_groups = true;    // IP_MULTICAST_ALL
+  bool hears_itself = true;        // IP_MULTICAST_LOOP
   std::set<std::uint32_t> groups{};
   std::uint32_t sent = 0;
   std::deque<QueuedDatagram> arrived{};

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "recording/text_fields.h"
 #include "processes/requests.h"
+#include "recording/text_fields.h"
 
 namespace simbench::sim {
 namespace {

@@ -29,12 +29,12 @@
 #include <span>
 #include <string>
 
+#include "processes/child.h"
 #include "shim/protocol.h"
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
-#include "processes/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/process_timers.h"

@@ -2,8 +2,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "sim/programs/process.h"
 #include "processes/requests.h"
+#include "sim/programs/process.h"
 
 namespace simbench::sim {
 
@@ -58,8 +58,7 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
     case Call::kJoin:
       return {.error = join(socket, request.head.a != 0, request.head.b)};
     default:
-      return set_option(socket, static_cast<shim::SocketOption>(request.head.a),
-                        request.head.b);
+      return set_option(socket, static_cast<shim::SocketOption>(request.head.a), request.head.b);
   }
 }
 

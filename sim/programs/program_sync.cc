@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
-#include "sim/host/sim_host.h"
 #include "processes/placeholders.h"
+#include "sim/host/sim_host.h"
 #include "sim/programs/process.h"
 
 namespace simbench::sim {
@@ -32,12 +32,12 @@ class RunningPrograms {
              const std::string& folder) {
     const std::size_t number = processes_.size();
     const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
-    Child::Settings child{.command = {},
-                          .environment = {},
-                          .folder = folder,
-                          .log_name = fmt::format("{}_{}.log", number,
-                                                  scenarios::program_name(command)),
-                          .shim = settings.shim};
+    Child::Settings child{
+        .command = {},
+        .environment = {},
+        .folder = folder,
+        .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
+        .shim = settings.shim};
     for (const std::string& word : command) child.command.push_back(fill(word, places));
     for (const auto& [name, value] : settings.programs.environment) {
       child.environment[name] = fill(value, places);

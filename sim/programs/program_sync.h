@@ -38,9 +38,9 @@ namespace simbench::sim {
 class SimHost;
 
 struct ProgramSettings {
-  std::string pipeline;               // its name
+  std::string pipeline;              // its name
   scenarios::HostPrograms programs;  // the first word of each command is an absolute path
-  std::string shim;                   // the library's absolute path
+  std::string shim;                  // the library's absolute path
   // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
   std::string log_folder{};
   std::size_t hosts = 0;

@@ -1,6 +1,6 @@
 // Looks at what a program sees where only the clock is the world's: its host's clock runs wrong by
-// 1 s and 100 ppm, and everything else is the machine's. Prints a line for each promise that does not
-// hold, and "done".
+// 1 s and 100 ppm, and everything else is the machine's. Prints a line for each promise that does
+// not hold, and "done".
 #include <linux/net_tstamp.h>
 #include <sys/select.h>
 #include <sys/time.h>

@@ -79,8 +79,8 @@ void check_broadcast() {
   expect(send_text(fd, "x", address("255.255.255.255", kPort)) == 1 &&
              gets(fd, "for 255.255.255.255") && gets(fd, "for 255.255.255.255"),
          "both others answer a broadcast");
-  expect(send_text(fd, "x", address("10.0.255.255", kPort)) == 1 &&
-             gets(fd, "for 10.0.255.255") && gets(fd, "for 10.0.255.255"),
+  expect(send_text(fd, "x", address("10.0.255.255", kPort)) == 1 && gets(fd, "for 10.0.255.255") &&
+             gets(fd, "for 10.0.255.255"),
          "and one to the network");
   close(fd);
 }

@@ -89,9 +89,8 @@ NtpClient::NtpClient(Host& host, PeerId server, const NtpSettings& settings)
       settings_(settings),
       association_(host, server, settings.stamps),
       filter_(settings.discipline.precision_s),
-      discipline_(started(settings.discipline, settings.reads_drift_file
-                                                   ? host.stored_frequency()
-                                                   : std::nullopt)),
+      discipline_(started(settings.discipline,
+                          settings.reads_drift_file ? host.stored_frequency() : std::nullopt)),
       start_(host.steady_clock().now()),
       broadcast_delay_s_(settings.broadcast_delay_s / 2),
       outcome_(host) {}

@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <algorithm>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,10 +30,9 @@ class NodeProgramsTest : public testing::Test {
                            .log_folder = folder_.path().string()});
     boost::asio::cancellation_signal cancel;
     bool done = false;
-    boost::asio::co_spawn(
-        pair_.context(), programs.run_slave(pair_.host(1), 0),
-        boost::asio::bind_cancellation_slot(cancel.slot(),
-                                            [&](const std::exception_ptr&) { done = true; }));
+    boost::asio::co_spawn(pair_.context(), programs.run_slave(pair_.host(1), 0),
+                          boost::asio::bind_cancellation_slot(
+                              cancel.slot(), [&](const std::exception_ptr&) { done = true; }));
     run_until(pair_.context(), [&] { return done || outcome() != nullptr; });
     const std::string message = outcome() != nullptr ? outcome()->message : "";
     cancel.emit(boost::asio::cancellation_type::terminal);

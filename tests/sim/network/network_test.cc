@@ -141,8 +141,8 @@ TEST(NetworkTest, SwitchesInALinePassMessagesOn) {
   EXPECT_NEAR(to_far.arrived[0].at_ms, 20 + 4 * 0.1 + 3 * 0.01 + 1, 1e-6);
 }
 
-// 1250 bytes at 100 Mbit/s: 0.1 ms on each wire. Sent one by one they would queue on the sender's port
-// and on the trunks.
+// 1250 bytes at 100 Mbit/s: 0.1 ms on each wire. Sent one by one they would queue on the sender's
+// port and on the trunks.
 TEST(NetworkTest, AMessageToAGroupPassesEachPortOnce) {
   scenarios::Network parameters = plain_network();
   parameters.bandwidth_mbit_per_s = 100;

@@ -50,9 +50,8 @@ class NetworkCallsTest : public testing::Test {
 
  private:
   std::string output(std::size_t host) const {
-    const auto path =
-        std::filesystem::path(folder_) / "calls" / "seed1" / ("host" + std::to_string(host)) /
-        "0_simbench_group_calls.log";
+    const auto path = std::filesystem::path(folder_) / "calls" / "seed1" /
+                      ("host" + std::to_string(host)) / "0_simbench_group_calls.log";
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
