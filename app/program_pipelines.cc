@@ -40,23 +40,28 @@ std::string unpacked_packages() {
   return std::filesystem::is_directory(packages) ? packages.string() : "";
 }
 
-// With absolute paths and what the programs' libraries need.
-HostPrograms found(HostPrograms programs) {
+// Adds where the programs are and what their libraries need. A bare name stays what a program is
+// called, so that its log is the same wherever it lies.
+void find(HostPrograms& programs, std::map<std::string, std::string>& paths) {
   if (const auto unknown = processes::unknown_placeholder(programs)) {
     throw sim::ProgramError(
         fmt::format("found the placeholder {}, allowed: {}", *unknown, processes::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {
-      const sim::FoundProgram program = sim::find_program(command.front(), unpacked_packages());
-      command.erase(command.begin());
-      command.insert(command.begin(), program.words.begin(), program.words.end());
+      const std::string name = command.front();
+      const sim::FoundProgram program = sim::find_program(name, unpacked_packages());
+      if (program.words.size() == 1) {
+        paths[name] = program.words.front();
+      } else {  // a script and its interpreter
+        command.erase(command.begin());
+        command.insert(command.begin(), program.words.begin(), program.words.end());
+      }
       if (!program.library_path.empty()) {
         programs.environment["LD_LIBRARY_PATH"] = program.library_path;
       }
     }
   }
-  return programs;
 }
 
 evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
@@ -70,7 +75,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
   std::string problem;
   try {
     settings.shim = find_shim();
-    settings.programs = found(std::move(settings.programs));
+    find(settings.programs, settings.paths);
   } catch (const sim::ProgramError& missing) {
     problem = missing.what();
   }
@@ -91,12 +96,15 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
                                              const std::string& interface,
                                              const ProgramOptions& options) {
   const std::string& logs = options.log_folder;
+  hardware::NodeProgramSettings settings{
+      .programs = pipeline.programs.value(),
+      .shim = "",
+      .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
+      .interface = interface};
   try {
-    return std::make_unique<hardware::NodePrograms>(
-        hardware::NodeProgramSettings{.programs = found(pipeline.programs.value()),
-                                      .shim = find_shim(),
-                                      .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
-                                      .interface = interface});
+    settings.shim = find_shim();
+    find(settings.programs, settings.paths);
+    return std::make_unique<hardware::NodePrograms>(std::move(settings));
   } catch (const sim::ProgramError& missing) {
     throw scenarios::InputError(fmt::format("pipeline '{}': {}", pipeline.name, missing.what()));
   }

@@ -3,8 +3,8 @@
 // Calls of another architecture than the machine's own kill the program. A call that ends the
 // program is SECCOMP_RET_TRAP: the kernel raises SIGSYS on the thread that made it.
 //
-//   std::vector<sock_filter> filter = call_filter(program);
-//   set_own_process(filter, getpid());
+//   std::vector<sock_filter> filter = call_filter("/usr/sbin/chronyd");
+//   set_own_process(filter, 4711);
 //   const sock_fprog ready{static_cast<unsigned short>(filter.size()), filter.data()};
 //
 // Source: seccomp(2), bpf(4).

@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -44,6 +45,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 // Between fork() and exec() only async-signal-safe calls are allowed.
 struct Plan {
+  const char* program;
   char* const* arguments;
   char* const* environment;
   const char* folder;
@@ -98,8 +100,8 @@ void forget_parent() {
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
-  execve(plan.arguments[0], plan.arguments, plan.environment);
-  fail(plan.arguments[0], errno);
+  execve(plan.program, plan.arguments, plan.environment);
+  fail(plan.program, errno);
 }
 
 }  // namespace
@@ -111,10 +113,20 @@ Child::Child(const Settings& settings)
       link_(settings.link),
       served_(settings.served),
       buffer_(shim::kMostData) {
-  if (link_ < 0) start(settings);
+  if (link_ < 0) {
+    try {
+      obstacle_ = start(settings);
+    } catch (const ConfinementError& error) {
+      obstacle_ = error.what();
+    }
+  }
+  const auto whole_s = std::chrono::duration_cast<std::chrono::seconds>(patience_);
+  const std::chrono::microseconds rest = patience_ - whole_s;
+  const timeval patience{.tv_sec = whole_s.count(), .tv_usec = rest.count()};
+  setsockopt(link_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
 }
 
-void Child::start(const Settings& settings) {
+std::string Child::start(const Settings& settings) {
   std::vector<std::string> arguments = settings.command;
   std::vector<std::string> environment = {
       fmt::format("LD_PRELOAD={}", settings.shim), fmt::format("{}={}", shim::kLinkVariable, kLink),
@@ -124,12 +136,15 @@ void Child::start(const Settings& settings) {
   }
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
-  Confinement confinement(settings.folder, argument_pointers[0], settings.served);
+  const std::string& program =
+      settings.program.empty() ? settings.command.front() : settings.program;
+  Confinement confinement(settings.folder, program.c_str(), settings.served);
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw ChildError(fmt::format("{}: no link: {}", name_, std::strerror(errno)));
+    return fmt::format("no link: {}", std::strerror(errno));
   }
-  const Plan plan{.arguments = argument_pointers.data(),
+  const Plan plan{.program = program.c_str(),
+                  .arguments = argument_pointers.data(),
                   .environment = environment_pointers.data(),
                   .folder = settings.folder.c_str(),
                   .log = settings.log_name.c_str(),
@@ -141,15 +156,12 @@ void Child::start(const Settings& settings) {
   const int error = errno;
   close(ends[1]);
   link_ = ends[0];
-  if (process_ < 0) {
-    close(link_);
-    throw ChildError(fmt::format("{}: fork: {}", name_, std::strerror(error)));
-  }
+  return process_ < 0 ? fmt::format("no process: {}", std::strerror(error)) : "";
 }
 
 Child::~Child() {
   end();
-  close(link_);
+  if (link_ >= 0) close(link_);
 }
 
 void Child::follow_thread() {
@@ -162,20 +174,18 @@ void Child::follow_thread() {
 }
 
 std::optional<ChildRequest> Child::next() {
-  pollfd waits{.fd = link_, .events = POLLIN, .revents = 0};
-  int ready = 0;
-  do {
-    ready = poll(&waits, 1, static_cast<int>(patience_.count()));
-  } while (ready < 0 && errno == EINTR);
-  if (ready == 0) was_too_slow_ = true;
-  if (ready <= 0) return std::nullopt;
+  if (!obstacle_.empty()) return std::nullopt;
   ChildRequest request;
   std::array<iovec, 2> pieces{
       {{&request.head, sizeof request.head}, {buffer_.data(), buffer_.size()}}};
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
-  const ssize_t size = recvmsg(link_, &message, 0);
+  ssize_t size = 0;
+  do {
+    size = recvmsg(link_, &message, 0);
+  } while (size < 0 && errno == EINTR);
+  was_too_slow_ = size < 0 && errno == EAGAIN;
   if (size <= 0) return std::nullopt;
   has_asked_ = true;
   const auto whole = static_cast<std::size_t>(size);
@@ -198,6 +208,7 @@ void Child::reply(std::int64_t value, int error, std::span<const std::byte> data
 }
 
 std::string Child::ending(const std::string& reason) {
+  if (!obstacle_.empty()) return fmt::format("{}: {}", name_, obstacle_);
   const std::string how = end();
   const std::string said = last_line();
   return fmt::format("{}: {}{}", name_, reason.empty() ? how : reason,

@@ -21,7 +21,7 @@
 // (sim/programs/program_file.h). It dies with the thread that makes this, not with the last one of
 // the process, so that thread must outlive it; and with that thread, whatever ends it.
 //
-// Errors: ChildError where it cannot be started, one line. How it ended is ending().
+// Errors: none are thrown. One that cannot be started has ended; ending() says why.
 //
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
@@ -37,7 +37,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -46,11 +45,6 @@
 #include "shim/protocol.h"
 
 namespace simbench::processes {
-
-class ChildError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct ChildRequest {
   shim::Request head;
@@ -66,7 +60,8 @@ class Child {
   static constexpr std::size_t kMostDescriptors = 1024;
 
   struct Settings {
-    std::vector<std::string> command{};  // the program's absolute path, then its arguments
+    std::vector<std::string> command{};  // as the program sees it
+    std::string program{};               // its absolute path; empty: the command's first word
     std::map<std::string, std::string> environment{};
     std::string folder{};    // absolute; its working folder
     std::string log_name{};  // within the folder
@@ -84,7 +79,7 @@ class Child {
 
   // Nothing: it has ended, or has computed for longer than kPatience.
   std::optional<ChildRequest> next();
-  // The descriptor of its link.
+  // The descriptor of its link; -1 if it could not be started.
   int link() const { return link_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
   // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
@@ -92,7 +87,8 @@ class Child {
   std::string ending(const std::string& reason = "");
 
  private:
-  void start(const Settings& settings);
+  // Returns why it cannot be started, or nothing.
+  std::string start(const Settings& settings);
   void follow_thread();
   // Returns how it ended.
   std::string end();
@@ -101,6 +97,7 @@ class Child {
 
   std::string name_;
   std::string log_;
+  std::string obstacle_;  // to its start
   std::chrono::milliseconds patience_;
   int link_;
   pid_t process_ = -1;

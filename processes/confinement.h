@@ -23,10 +23,12 @@
 // into the file system can be connected to. A program that reads the time without a system call
 // (the vDSO, the processor's counter) sees the machine's own.
 //
+//   const char* program = "/usr/sbin/chronyd";
+//   char* const none[] = {nullptr};
 //   Confinement confinement("/tmp/host1", program);
 //   if (fork() == 0) {
 //     const Confinement::Failure failure = confinement.apply();
-//     if (failure.what == nullptr) execve(program, arguments, environment);
+//     if (failure.what == nullptr) execve(program, none, none);
 //   }
 //
 // Source: capabilities(7), landlock(7), seccomp(2), Documentation/userspace-api/landlock.rst.

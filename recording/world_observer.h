@@ -62,6 +62,7 @@ struct ObservedMessage {
   TrueTime left{};
   TrueTime arrived{};  // of no meaning if lost
   bool lost = false;   // or the stream is broken
+  bool copy = false;   // of a message to several hosts: another of its copies was sent before
 };
 
 class WorldObserver {

@@ -10,11 +10,6 @@
 namespace simbench::shim {
 namespace {
 
-int refuse(int error) {
-  errno = error;
-  return -1;
-}
-
 ptp_clock_time to_ptp(std::int64_t ns) {
   ptp_clock_time time{};
   time.sec = ns / kSecond;
@@ -60,8 +55,8 @@ bool is_card(const char* path) {
   return has_world() && strncmp(path, "/dev/ptp", strlen("/dev/ptp")) == 0;
 }
 
-int open_card(int flags) {
-  if (identity().has_card_clock == 0) return refuse(ENOENT);
+int open_card(const char* path, int flags) {
+  if (identity().has_card_clock == 0 || strcmp(path, "/dev/ptp0") != 0) return refuse(ENOENT);
   return open_descriptor(Kind::kCard, (flags & O_NONBLOCK) != 0, (flags & O_CLOEXEC) != 0);
 }
 

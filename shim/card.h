@@ -15,9 +15,10 @@
 
 namespace simbench::shim {
 
+// Whether the path is that of a card's clock, there or not.
 bool is_card(const char* path);
-// As open(), with its flags.
-int open_card(int flags);
+// As open().
+int open_card(const char* path, int flags);
 int card_ioctl(unsigned long what, void* argument);
 // What the world knows a clock by: its number, or kCardClock for one that a descriptor makes. False
 // with EINVAL for a descriptor of something else.

@@ -13,6 +13,8 @@
 #include "shim/card.h"
 #include "shim/link.h"
 #include "shim/local.h"
+#include "shim/sockets.h"
+#include "shim/streams.h"
 
 namespace simbench::shim {
 namespace {
@@ -38,7 +40,7 @@ ssize_t fill(void* data, std::size_t size) {
 
 int open_path(int folder, const char* path, int flags, mode_t mode) {
   if (is_chance(path)) return open_descriptor(Kind::kChance, false, (flags & O_CLOEXEC) != 0);
-  if (is_card(path)) return open_card(flags);
+  if (is_card(path)) return open_card(path, flags);
   return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
 }
 
@@ -107,6 +109,7 @@ SIMBENCH_CALL FILE* fopen64(const char* path, const char* mode) { return fopen(p
 SIMBENCH_CALL ssize_t read(int fd, void* data, std::size_t size) {
   switch (kind_of(fd)) {
     case Kind::kSocket:
+    case Kind::kStream:
       return recv(fd, data, size, 0);
     case Kind::kChance:
       return fill(data, size);
@@ -128,7 +131,7 @@ ssize_t read_checked(int fd, void* data, std::size_t size, std::size_t room) {
 }
 
 SIMBENCH_CALL ssize_t write(int fd, const void* data, std::size_t size) {
-  if (kind_of(fd) == Kind::kSocket) return send(fd, data, size, 0);
+  if (is_socket(fd) || is_stream(fd)) return send(fd, data, size, 0);
   if (is_local(fd)) return local_write(fd, data, size);
   return syscall(SYS_write, fd, data, size);
 }

@@ -64,11 +64,6 @@ bool find_interface(unsigned index, InterfaceFacts& found) {
 
 namespace {
 
-int refuse(int error) {
-  errno = error;
-  return -1;
-}
-
 sockaddr_in internet(std::uint32_t address) {
   sockaddr_in result{};
   result.sin_family = AF_INET;
@@ -250,7 +245,7 @@ struct Listed {
 };
 Listed listed[kInterfaces];
 
-void fill(Listed& entry, const InterfaceFacts& facts) {
+void fill_listed(Listed& entry, const InterfaceFacts& facts) {
   entry = {};
   snprintf(entry.name, IFNAMSIZ, "%s", facts.name);
   entry.link.sll_family = AF_PACKET;
@@ -277,7 +272,7 @@ void fill(Listed& entry, const InterfaceFacts& facts) {
 // The list is the same at each call, and lives as long as the program.
 SIMBENCH_CALL int getifaddrs(ifaddrs** list) {
   if (!is_simulated()) return SIMBENCH_REAL(getifaddrs)(list);
-  for (int i = 0; i < kInterfaces; ++i) fill(listed[i], interface_at(i));
+  for (int i = 0; i < kInterfaces; ++i) fill_listed(listed[i], interface_at(i));
   for (int i = 0; i < kInterfaces; ++i) {
     listed[i].card.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].card : &listed[0].internet;
     listed[i].internet.ifa_next = i + 1 < kInterfaces ? &listed[i + 1].internet : nullptr;

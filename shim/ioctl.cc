@@ -41,7 +41,7 @@ SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
   if (is_about_interfaces(what)) return interface_ioctl(what, argument);
   const Kind kind = kind_of(fd);
   if (kind == Kind::kCard) return card_ioctl(what, argument);
-  if (kind == Kind::kSocket && what == FIONREAD) {
+  if ((kind == Kind::kSocket || kind == Kind::kStream) && what == FIONREAD) {
     return count_input(fd, *static_cast<int*>(argument));
   }
   // The rest, FIONBIO among it, is the descriptor's own.

@@ -48,6 +48,8 @@ struct Received {
 // Whether there is a world, and whether all is the world's rather than the clock alone.
 bool has_world();
 bool is_simulated();
+// Whether the descriptor is the way to it.
+bool is_link(int fd);
 const Identity& identity();
 
 // Returns the reply's value, or -1 with errno. Two pieces of data are sent one after the other.
@@ -55,8 +57,14 @@ std::int64_t ask(const Request& request, Sent head = {}, Sent tail = {}, Receive
 
 // Makes the signals of the timers that have expired, which the world tells with a reply.
 void make_signals();
-// How many of these signals have run a handler, so far.
-std::uint64_t handled_signals();
+// How many of these signals have run a handler, so far, and of these how many without SA_RESTART.
+struct HandledSignals {
+  std::uint64_t all = 0;
+  std::uint64_t interrupting = 0;
+};
+HandledSignals handled_signals();
+// Returns -1, with this errno.
+int refuse(int error);
 
 // Says what cannot be simulated, and ends the program.
 [[noreturn]] void give_up(const char* what, const char* why = "");
@@ -78,34 +86,40 @@ enum class Kind : std::uint8_t {
   kNetlink,
   kLocal,
   kCard,
+  kStream,
   kOwnTimer
 };
 
 // Whether the world says when it is ready; of others, the kernel does.
-constexpr bool is_of_the_world(Kind kind) { return kind == Kind::kSocket || kind == Kind::kTimer; }
+constexpr bool is_of_the_world(Kind kind) {
+  return kind == Kind::kSocket || kind == Kind::kStream || kind == Kind::kTimer;
+}
 
 inline constexpr int kMostDescriptors = 1024;
 
 Kind kind_of(int fd);
 // Nothing for -1.
 void set_kind(int fd, Kind kind);
-// A number that stands for something of the world, or -1 with errno. The kernel keeps it taken,
+// A descriptor that stands for something of the world, or -1 with errno. The kernel keeps it taken,
 // with the flags of fcntl().
 int open_descriptor(Kind kind, bool nonblocking, bool close_on_exec);
-bool is_blocking(int fd);
-// The world's number of a descriptor, which duplicates share; of others and of signal timers,
-// which are below 0, the number itself. ask() translates a request's `fd`.
+// One that the world would not have; errno stays.
+void discard_descriptor(int fd);
+// The world's number of what a descriptor stands for, which its copies share. Requests have
+// descriptors, of which ask() makes numbers.
 int number_of(int fd);
-// `to` is a duplicate of `from` by the kernel's word, or -1: returns it, or -1 with errno.
-int duplicate_descriptor(int from, int to);
-void copy_socket_state(int from, int to);
-
+// Whether a descriptor still has the number.
+bool is_open(int number);
+bool is_blocking(int fd);
 bool is_time(const timespec& time);
 // Times beyond 292 years are never.
 std::int64_t nanoseconds(const timespec& time);
 TimerSetting to_setting(const itimerspec& setting);
 itimerspec from_setting(const TimerSetting& setting);
 
+// What a blocking read of a descriptor of the world waits for; a timeout below 0: for ever. False
+// with errno: EAGAIN at the timeout, EINTR after a handler, unless that says SA_RESTART.
+bool wait_for_input(int fd, std::int64_t timeout_ns);
 // read() of a timer.
 std::int64_t read_timer(int fd, void* data, std::size_t size);
 

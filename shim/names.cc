@@ -84,14 +84,15 @@ struct Found {
 };
 Found found_hosts[64];
 
-Found* take_place() {
+Found* take_found() {
   for (Found& each : found_hosts) {
     if (!each.is_taken) return &each;
   }
   return nullptr;
 }
 
-addrinfo* fill(Found& place, const addrinfo& hints, std::uint32_t address, std::uint16_t port) {
+addrinfo* fill_found(Found& place, const addrinfo& hints, std::uint32_t address,
+                     std::uint16_t port) {
   constexpr int kTypes[kKinds] = {SOCK_STREAM, SOCK_DGRAM};
   constexpr int kProtocols[kKinds] = {IPPROTO_TCP, IPPROTO_UDP};
   place = {};
@@ -137,9 +138,9 @@ SIMBENCH_CALL int getaddrinfo(const char* node, const char* service, const addri
   if (service != nullptr && !find_service(service, is_number, port)) {
     return is_number ? EAI_NONAME : EAI_SERVICE;
   }
-  Found* place = take_place();
+  Found* place = take_found();
   if (place == nullptr) return EAI_MEMORY;
-  *result = fill(*place, wanted, address, port);
+  *result = fill_found(*place, wanted, address, port);
   if (*result != nullptr) return 0;
   place->is_taken = false;
   return EAI_SOCKTYPE;

@@ -56,7 +56,8 @@ class Answer {
 
 // Programs have one or two of these sockets.
 struct Place {
-  int fd;
+  bool is_taken;
+  int number;
   Answer answer;
 };
 constexpr int kMostSockets = 8;
@@ -64,15 +65,15 @@ Place places[kMostSockets];
 
 Answer* answer_of(int fd) {
   for (Place& each : places) {
-    if (each.fd == fd) return &each.answer;
+    if (each.is_taken && each.number == number_of(fd)) return &each.answer;
   }
   return nullptr;
 }
 
-// A place whose descriptor is another's by now is free.
+// A place whose socket was closed is free.
 Place* take_place() {
   for (Place& each : places) {
-    if (!is_netlink(each.fd)) return &each;
+    if (!each.is_taken || !is_open(each.number)) return &each;
   }
   return nullptr;
 }
@@ -162,7 +163,9 @@ int open_netlink(int type, int protocol) {
   const int fd =
       open_descriptor(Kind::kNetlink, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
-  place->fd = fd;
+  for (Place& each : places) each.is_taken &= each.number != number_of(fd);
+  place->is_taken = true;
+  place->number = number_of(fd);
   place->answer.clear();
   return fd;
 }

@@ -40,19 +40,25 @@ enum class Call : std::uint32_t {
   kSetTimer,     // fd, a: 1 if absolute, data: TimerSetting -> data: the setting before
   kReadTimer,    // fd -> value: expirations since the last; EAGAIN if none
   kQueryTimer,   // fd -> data: TimerSetting
-  kOpenSocket,   // fd, a: SOCK_DGRAM
+  kOpenSocket,   // fd, a: SOCK_DGRAM or SOCK_STREAM
   kBind,         // fd, data: Address
-  kConnect,      // fd, data: Address
+  kConnect,      // fd, data: Address; a stream: EINPROGRESS
   kSetOption,    // fd, a: SocketOption, b: value
   kName,         // fd -> data: Address
   kPeerName,     // fd -> data: Address; ENOTCONN
-  kSend,         // fd, data: Address (port 0: the peer), then the payload
-  kReceive,      // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload
-  kClose,        // fd
-  kRandom,       // a: how many -> data: bytes
-  kJoin,         // fd, a: 1: join, 0: leave, b: the group's address
-  kReadCard,     // a: how many -> data: CardSample[]
-  kCountInput,   // fd -> value: bytes that the next read would give
+  kSend,     // fd, a: StampKind as bits of this departure, -1: the socket's, data: Address (port 0:
+             // the peer), then the payload -> value: of a stream, how much of it was taken
+  kReceive,  // fd, a: bit 0: of the error queue, bit 1: leave it -> data: Arrival, then payload;
+             // of a stream, b: how many at most -> data: bytes, none at its end
+  kClose,    // fd
+  kRandom,   // a: how many -> data: bytes
+  kJoin,     // fd, a: 1: join, 0: leave, b: the group's address
+  kReadCard,       // a: how many -> data: CardSample[]
+  kListen,         // fd, a: how many may wait
+  kAccept,         // fd, a: the new descriptor -> data: Address of the peer; EAGAIN
+  kShutDown,       // fd, a: SHUT_RD, SHUT_WR or SHUT_RDWR
+  kSocketError,    // fd -> value: SO_ERROR, which is cleared
+  kCountInput,     // fd -> value: bytes that the next read would give
   kLocalActivity,  // another program of the host may have something to read, or a peer less
   kCardStamping,  // a: what the card stamps from now on, bit 0: arrivals, bit 1: departures; -1: as
                   // before -> value: what it stamps; EOPNOTSUPP without a clock on the card

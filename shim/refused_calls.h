@@ -6,7 +6,7 @@
 // younger ones are ENOSYS.
 //
 //   for (const RefusedCall& call : kRefusedCalls) {
-//     if (call.number == number) print(call.name);
+//     if (call.number == SYS_ptrace) print(call.name);
 //   }
 //
 // Source: syscalls(2), and the man page of each.

@@ -20,7 +20,7 @@
 namespace simbench::shim {
 namespace {
 
-constexpr std::size_t kMostName = 64;
+constexpr std::size_t kMostUserName = 64;
 
 char no_password[] = "x";
 char folder[] = ".";
@@ -28,9 +28,9 @@ char shell[] = "/bin/false";
 char no_text[] = "";
 char* no_members[] = {nullptr};
 
-char user_name[kMostName];
+char user_name[kMostUserName];
 passwd user;
-char group_name[kMostName];
+char group_name[kMostUserName];
 group own_group;
 
 void fill_user(passwd& result, char* name) {

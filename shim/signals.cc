@@ -31,16 +31,18 @@ struct SignalTimer {
   int overrun = 0;
 };
 SignalTimer timers[kMostTimers];
-std::uint64_t handled = 0;
+HandledSignals handled;
 
-bool runs_a_handler(int signal) {
+void count_handler(int signal) {
   sigset_t blocked{};
   sigprocmask(SIG_SETMASK, nullptr, &blocked);
   struct sigaction action {};
   sigaction(signal, nullptr, &action);
   const bool has_handler = (action.sa_flags & SA_SIGINFO) != 0 ||
                            (action.sa_handler != SIG_IGN && action.sa_handler != SIG_DFL);
-  return has_handler && sigismember(&blocked, signal) == 0;
+  if (!has_handler || sigismember(&blocked, signal) == 1) return;
+  ++handled.all;
+  if ((action.sa_flags & SA_RESTART) == 0) ++handled.interrupting;
 }
 
 bool is_pending(int signal) {
@@ -57,7 +59,7 @@ void make_signal(int number, int times) {
     return;
   }
   timer.overrun = times - 1;
-  if (runs_a_handler(timer.signal)) ++handled;
+  count_handler(timer.signal);
   siginfo_t info{};
   info.si_signo = timer.signal;
   info.si_code = number == kIntervalTimer ? SI_KERNEL : SI_TIMER;
@@ -93,7 +95,7 @@ itimerspec query_timer(int number) {
   return from_setting(now);
 }
 
-timespec to_timespec(const timeval& time) { return {time.tv_sec, time.tv_usec * 1000}; }
+timespec timespec_of(const timeval& time) { return {time.tv_sec, time.tv_usec * 1000}; }
 
 // Rounded up, as what is left must not seem to be over.
 timeval to_timeval(const timespec& time) {
@@ -156,7 +158,7 @@ bool is_own_timer(timer_t id) {
 
 }  // namespace
 
-std::uint64_t handled_signals() { return handled; }
+HandledSignals handled_signals() { return handled; }
 
 void make_signals() {
   const int before = errno;
@@ -173,8 +175,8 @@ SIMBENCH_CALL int setitimer(__itimer_which_t which, const itimerval* setting, it
   if (!is_simulated()) return SIMBENCH_REAL(setitimer)(which, setting, before);
   if (which != ITIMER_REAL) give_up("setitimer() of CPU time");
   itimerspec old{};
-  const itimerspec wanted{.it_interval = to_timespec(setting->it_interval),
-                          .it_value = to_timespec(setting->it_value)};
+  const itimerspec wanted{.it_interval = timespec_of(setting->it_interval),
+                          .it_value = timespec_of(setting->it_value)};
   if (set_timer(kIntervalTimer, false, wanted, &old) < 0) return -1;
   if (before != nullptr) *before = to_itimerval(old);
   return 0;
@@ -299,12 +301,12 @@ SIMBENCH_CALL int sigtimedwait(const sigset_t* set, siginfo_t* info, const times
     const timespec none{};
     const long taken = syscall(SYS_rt_sigtimedwait, set, info, &none, 8, kOfTheShim);
     if (taken > 0 || errno != EAGAIN) return static_cast<int>(taken);
-    const std::uint64_t before = handled;
+    const std::uint64_t before = handled.all;
     if (ask(wait) >= 0) {
       errno = EAGAIN;
       return -1;
     }
-    if (handled != before) return -1;
+    if (handled.all != before) return -1;
   }
 }
 

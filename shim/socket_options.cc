@@ -9,16 +9,12 @@
 
 #include "shim/netlink.h"
 #include "shim/sockets.h"
+#include "shim/streams.h"
 
 namespace simbench::shim {
 namespace {
 
-SocketState states[kMostDescriptors];
-
-int refuse(int error) {
-  errno = error;
-  return -1;
-}
+SocketState states[kMostDescriptors];  // by number
 
 int set_world_option(int fd, SocketOption option, std::int64_t value) {
   return static_cast<int>(ask(
@@ -33,27 +29,25 @@ std::int64_t kinds_of(unsigned flags, unsigned software, unsigned hardware) {
 }
 
 int set_arrival_stamps(int fd) {
-  std::int64_t kinds =
-      kinds_of(states[fd].timestamping, SOF_TIMESTAMPING_RX_SOFTWARE, SOF_TIMESTAMPING_RX_HARDWARE);
-  if (states[fd].stamps != Stamps::kNone) kinds |= kSoftwareStamps;
+  std::int64_t kinds = kinds_of(state_of(fd).timestamping, SOF_TIMESTAMPING_RX_SOFTWARE,
+                                SOF_TIMESTAMPING_RX_HARDWARE);
+  if (state_of(fd).stamps != Stamps::kNone) kinds |= kSoftwareStamps;
   return set_world_option(fd, SocketOption::kReceiveStamps, kinds);
 }
 
 int set_stamps(int fd, Stamps stamps, int value) {
-  states[fd].stamps = value != 0 ? stamps : Stamps::kNone;
+  state_of(fd).stamps = value != 0 ? stamps : Stamps::kNone;
   return set_arrival_stamps(fd);
 }
 
 int set_timestamping(int fd, int value) {
   const auto flags = static_cast<unsigned>(value);
-  std::int64_t departures =
-      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
-  if (departures != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0) departures |= kBothStamps;
-  const bool counts_anew = (flags & ~states[fd].timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
-  states[fd].timestamping = flags;
-  const std::int64_t sent = set_world_option(fd, SocketOption::kTransmitStamps, departures);
+  const bool counts_anew = (flags & ~state_of(fd).timestamping & SOF_TIMESTAMPING_OPT_ID) != 0;
+  state_of(fd).timestamping = flags;
+  const std::int64_t sent =
+      set_world_option(fd, SocketOption::kTransmitStamps, departure_stamps(flags));
   if (sent < 0) return -1;
-  if (counts_anew) states[fd].first_number = static_cast<std::uint32_t>(sent);
+  if (counts_anew) state_of(fd).first_number = static_cast<std::uint32_t>(sent);
   return set_arrival_stamps(fd);
 }
 
@@ -62,7 +56,7 @@ int set_receive_timeout(int fd, const void* value, socklen_t size) {
   if (size < sizeof timeout) return refuse(EINVAL);
   memcpy(&timeout, value, sizeof timeout);
   const std::int64_t ns = timeout.tv_sec * kSecond + timeout.tv_usec * 1000;
-  states[fd].timeout_ns = ns == 0 ? -1 : ns;
+  state_of(fd).timeout_ns = ns == 0 ? -1 : ns;
   return 0;
 }
 
@@ -81,10 +75,10 @@ int set_socket_option(int fd, int option, const void* value, socklen_t size) {
       return set_timestamping(fd, number);
     case SO_REUSEADDR:
     case SO_REUSEPORT:
-      states[fd].shares_port = number != 0;
+      state_of(fd).shares_port = number != 0;
       return set_world_option(fd, SocketOption::kReuseAddress, number);
     case SO_BROADCAST:
-      states[fd].may_broadcast = number != 0;
+      state_of(fd).may_broadcast = number != 0;
       return set_world_option(fd, SocketOption::kBroadcast, number);
     case SO_SELECT_ERR_QUEUE:
       return set_world_option(fd, SocketOption::kUrgentErrors, number);
@@ -161,7 +155,7 @@ int set_ip_option(int fd, int option, const void* value, socklen_t size) {
   }
   switch (option) {
     case IP_PKTINFO:
-      states[fd].wants_destination = number != 0;
+      state_of(fd).wants_destination = number != 0;
       return 0;
     case IP_MULTICAST_LOOP:
       return set_world_option(fd, SocketOption::kLoopGroups, number);
@@ -180,8 +174,24 @@ int set_ip_option(int fd, int option, const void* value, socklen_t size) {
   }
 }
 
+// A connection's Nagle is the scenario's; its port is free as soon as it is closed.
+int set_stream_option(int fd, int level, int option, const void* value, socklen_t size) {
+  if (level == SOL_SOCKET && option == SO_RCVTIMEO_OLD) {
+    return set_receive_timeout(fd, value, size);
+  }
+  if (level != SOL_SOCKET && level != IPPROTO_TCP && level != IPPROTO_IP) {
+    return refuse(ENOPROTOOPT);
+  }
+  if (level == SOL_SOCKET && option == SO_REUSEADDR && size >= sizeof(int)) {
+    int number = 0;
+    memcpy(&number, value, sizeof number);
+    state_of(fd).shares_port = number != 0;
+  }
+  return 0;
+}
+
 int get_socket_option(int fd, int option) {
-  const SocketState& state = states[fd];
+  const SocketState& state = state_of(fd);
   switch (option) {
     case SO_TYPE:
       return state.type;
@@ -195,6 +205,8 @@ int get_socket_option(int fd, int option) {
       return state.may_broadcast ? 1 : 0;
     case SO_TIMESTAMPING_OLD:
       return static_cast<int>(state.timestamping);
+    case SO_ERROR:
+      return static_cast<int>(ask({.call = Call::kSocketError, .fd = fd}));
     case SO_RCVBUF:
     case SO_SNDBUF:
       return 212'992;
@@ -207,10 +219,18 @@ int get_socket_option(int fd, int option) {
 
 bool is_socket(int fd) { return kind_of(fd) == Kind::kSocket; }
 
-SocketState& state_of(int fd) { return states[fd]; }
+std::int64_t departure_stamps(unsigned flags) {
+  const std::int64_t kinds =
+      kinds_of(flags, SOF_TIMESTAMPING_TX_SOFTWARE, SOF_TIMESTAMPING_TX_HARDWARE);
+  const bool wants_both = kinds != 0 && (flags & SOF_TIMESTAMPING_OPT_TX_SWHW) != 0;
+  return wants_both ? kinds | kBothStamps : kinds;
+}
+
+SocketState& state_of(int fd) { return states[number_of(fd)]; }
 
 SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, socklen_t size) {
   if (is_netlink(fd)) return 0;
+  if (is_stream(fd)) return set_stream_option(fd, level, option, value, size);
   if (!is_socket(fd)) return SIMBENCH_REAL(setsockopt)(fd, level, option, value, size);
   if (level == SOL_SOCKET) return set_socket_option(fd, option, value, size);
   if (level == IPPROTO_IP) return set_ip_option(fd, option, value, size);
@@ -218,7 +238,9 @@ SIMBENCH_CALL int setsockopt(int fd, int level, int option, const void* value, s
 }
 
 SIMBENCH_CALL int getsockopt(int fd, int level, int option, void* value, socklen_t* size) {
-  if (!is_socket(fd)) return SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
+  if (!is_socket(fd) && !is_stream(fd)) {
+    return SIMBENCH_REAL(getsockopt)(fd, level, option, value, size);
+  }
   const int number = level == SOL_SOCKET ? get_socket_option(fd, option) : 0;
   memcpy(value, &number, *size < sizeof number ? *size : sizeof number);
   *size = sizeof number;

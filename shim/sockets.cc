@@ -1,4 +1,5 @@
-// Datagram sockets of the simulated network; all others are the real ones (Unix-domain) or refused.
+// Sockets of the simulated network, datagrams above all; others are refused but for those of
+// shim/local.h and shim/netlink.h.
 #include "shim/sockets.h"
 
 #include <arpa/inet.h>
@@ -18,6 +19,7 @@
 #include "shim/local.h"
 #include "shim/netlink.h"
 #include "shim/own_clock.h"
+#include "shim/streams.h"
 
 namespace simbench::shim {
 
@@ -72,13 +74,8 @@ Datagram datagram;  // the one at hand; a program has one thread
 
 // Waits until there is one, if the call may wait.
 bool wait_for_datagram(int fd, int flags) {
-  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return false;
-  pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-  const std::int64_t ns = state_of(fd).timeout_ns;
-  const timespec timeout{.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
-  if (ppoll(&interest, 1, ns < 0 ? nullptr : &timeout, nullptr) > 0) return true;
-  errno = EAGAIN;
-  return false;
+  if ((flags & (MSG_DONTWAIT | MSG_ERRQUEUE)) != 0 || !is_blocking(fd)) return false;  // EAGAIN
+  return wait_for_input(fd, state_of(fd).timeout_ns);
 }
 
 bool take_datagram(int fd, int flags) {
@@ -133,7 +130,7 @@ class Control {
   std::size_t room_;
 };
 
-timespec to_timespec(std::int64_t ns) {
+timespec stamp_of(std::int64_t ns) {
   if (ns == kNoStamp) return {};
   return {.tv_sec = ns / kSecond, .tv_nsec = ns % kSecond};
 }
@@ -143,9 +140,9 @@ void add_stamps(const SocketState& state, bool is_error, Control& control) {
   const Arrival& arrival = datagram.arrival;
   const bool by_software = (state.timestamping & SOF_TIMESTAMPING_SOFTWARE) != 0;
   const bool by_card = (state.timestamping & SOF_TIMESTAMPING_RAW_HARDWARE) != 0;
-  const timespec stamps[3] = {to_timespec(by_software ? arrival.system : kNoStamp),
+  const timespec stamps[3] = {stamp_of(by_software ? arrival.system : kNoStamp),
                               {},
-                              to_timespec(by_card ? arrival.hardware : kNoStamp)};
+                              stamp_of(by_card ? arrival.hardware : kNoStamp)};
   if (stamps[0].tv_sec == 0 && stamps[2].tv_sec == 0) return;
   control.add(SOL_SOCKET, SCM_TIMESTAMPING, stamps, sizeof stamps);
   const bool wants_packet = (state.timestamping & SOF_TIMESTAMPING_OPT_PKTINFO) != 0;
@@ -158,7 +155,7 @@ void add_stamps(const SocketState& state, bool is_error, Control& control) {
 
 void add_older_stamp(const SocketState& state, Control& control) {
   if (datagram.arrival.system == kNoStamp) return;
-  const timespec stamp = to_timespec(datagram.arrival.system);
+  const timespec stamp = stamp_of(datagram.arrival.system);
   if (state.stamps == Stamps::kTimeval) {
     const timeval rounded{.tv_sec = stamp.tv_sec, .tv_usec = stamp.tv_nsec / 1000};
     control.add(SOL_SOCKET, SCM_TIMESTAMP, &rounded, sizeof rounded);
@@ -210,6 +207,20 @@ ssize_t receive_message(int fd, msghdr& message, int flags) {
   return static_cast<ssize_t>((flags & MSG_TRUNC) != 0 ? datagram.size : copied);
 }
 
+// What this departure alone is stamped by; -1 if the message does not say.
+std::int64_t stamps_asked_for(int fd, const msghdr& message) {
+  constexpr unsigned kTransmit = SOF_TIMESTAMPING_TX_SOFTWARE | SOF_TIMESTAMPING_TX_HARDWARE;
+  auto& readable = const_cast<msghdr&>(message);
+  for (cmsghdr* each = CMSG_FIRSTHDR(&message); each != nullptr;
+       each = CMSG_NXTHDR(&readable, each)) {
+    if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SO_TIMESTAMPING) continue;
+    unsigned flags = 0;
+    memcpy(&flags, CMSG_DATA(each), sizeof flags);
+    return departure_stamps((state_of(fd).timestamping & ~kTransmit) | (flags & kTransmit));
+  }
+  return -1;
+}
+
 ssize_t send_message(int fd, const msghdr& message) {
   static unsigned char payload[kMostData - sizeof(Address)];
   Address to{};
@@ -227,7 +238,8 @@ ssize_t send_message(int fd, const msghdr& message) {
     memcpy(payload + size, piece.iov_base, piece.iov_len);
     size += piece.iov_len;
   }
-  if (ask({.call = Call::kSend, .fd = fd}, {&to, sizeof to}, {payload, size}) < 0) {
+  const std::int64_t stamps = stamps_asked_for(fd, message);
+  if (ask({.call = Call::kSend, .fd = fd, .a = stamps}, {&to, sizeof to}, {payload, size}) < 0) {
     return -1;
   }
   return static_cast<ssize_t>(size);
@@ -241,14 +253,10 @@ int name_of(int fd, Call call, sockaddr* name, socklen_t* size) {
   return 0;
 }
 
-int address_call(int fd, Call call, const sockaddr* name, socklen_t size) {
-  Address address{};
-  if (!read_address(name, size, address)) return -1;
-  return static_cast<int>(ask({.call = call, .fd = fd}, {&address, sizeof address}));
-}
-
 // What goes through sendmsg() and recvmsg() is not: the world's, routing and local sockets.
-bool is_real(int fd) { return !is_socket(fd) && !is_netlink(fd) && !is_local(fd); }
+bool is_real(int fd) {
+  return !is_socket(fd) && !is_stream(fd) && !is_netlink(fd) && !is_local(fd);
+}
 
 }  // namespace
 
@@ -259,16 +267,16 @@ SIMBENCH_CALL int socket(int domain, int type, int protocol) {
   if (domain == AF_UNIX) return local_socket(domain, type, protocol);
   if (domain == AF_NETLINK) return open_netlink(type, protocol);
   const int kind = type & ~(SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (domain != AF_INET || kind != SOCK_DGRAM) {
+  if (domain != AF_INET || (kind != SOCK_DGRAM && kind != SOCK_STREAM)) {
     errno = domain == AF_INET ? EPROTONOSUPPORT : EAFNOSUPPORT;
     return -1;
   }
-  const int fd =
-      open_descriptor(Kind::kSocket, (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
+  const int fd = open_descriptor(kind == SOCK_STREAM ? Kind::kStream : Kind::kSocket,
+                                 (type & SOCK_NONBLOCK) != 0, (type & SOCK_CLOEXEC) != 0);
   if (fd < 0) return -1;
   state_of(fd) = {.type = kind};
   if (ask({.call = Call::kOpenSocket, .fd = fd, .a = kind}) < 0) {
-    syscall(SYS_close, fd);
+    discard_descriptor(fd);
     return -1;
   }
   return fd;
@@ -277,29 +285,35 @@ SIMBENCH_CALL int socket(int domain, int type, int protocol) {
 SIMBENCH_CALL int bind(int fd, const sockaddr* name, socklen_t size) {
   if (is_local(fd)) return local_bind(fd, name, size);
   if (is_netlink(fd)) return 0;
-  if (!is_socket(fd)) return SIMBENCH_REAL(bind)(fd, name, size);
-  return address_call(fd, Call::kBind, name, size);
+  if (!is_socket(fd) && !is_stream(fd)) return SIMBENCH_REAL(bind)(fd, name, size);
+  Address address{};
+  if (!read_address(name, size, address)) return -1;
+  return static_cast<int>(ask({.call = Call::kBind, .fd = fd}, {&address, sizeof address}));
 }
 
 SIMBENCH_CALL int connect(int fd, const sockaddr* name, socklen_t size) {
   if (is_local(fd)) return local_connect(fd, name, size);
-  if (!is_socket(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
-  return address_call(fd, Call::kConnect, name, size);
+  if (!is_socket(fd) && !is_stream(fd)) return SIMBENCH_REAL(connect)(fd, name, size);
+  Address address{};
+  if (!read_address(name, size, address)) return -1;
+  if (is_stream(fd)) return stream_connect(fd, address);
+  return static_cast<int>(ask({.call = Call::kConnect, .fd = fd}, {&address, sizeof address}));
 }
 
 SIMBENCH_CALL int getsockname(int fd, sockaddr* name, socklen_t* size) {
   if (is_netlink(fd)) return netlink_name(name, size);
-  if (!is_socket(fd)) return SIMBENCH_REAL(getsockname)(fd, name, size);
+  if (!is_socket(fd) && !is_stream(fd)) return SIMBENCH_REAL(getsockname)(fd, name, size);
   return name_of(fd, Call::kName, name, size);
 }
 
 SIMBENCH_CALL int getpeername(int fd, sockaddr* name, socklen_t* size) {
-  if (!is_socket(fd)) return SIMBENCH_REAL(getpeername)(fd, name, size);
+  if (!is_socket(fd) && !is_stream(fd)) return SIMBENCH_REAL(getpeername)(fd, name, size);
   return name_of(fd, Call::kPeerName, name, size);
 }
 
 SIMBENCH_CALL ssize_t sendmsg(int fd, const msghdr* message, int flags) {
   if (is_local(fd)) return local_sendmsg(fd, message, flags);
+  if (is_stream(fd)) return stream_send(fd, *message, flags);
   if (is_netlink(fd)) return netlink_send(fd, *message);
   if (!is_socket(fd)) return SIMBENCH_REAL(sendmsg)(fd, message, flags);
   return send_message(fd, *message);
@@ -336,6 +350,7 @@ SIMBENCH_CALL ssize_t send(int fd, const void* data, std::size_t size, int flags
 
 SIMBENCH_CALL ssize_t recvmsg(int fd, msghdr* message, int flags) {
   if (is_local(fd)) return local_recvmsg(fd, message, flags);
+  if (is_stream(fd)) return stream_receive(fd, *message, flags);
   if (is_netlink(fd)) return netlink_receive(fd, *message, flags);
   if (!is_socket(fd)) {
     const ssize_t size = SIMBENCH_REAL(recvmsg)(fd, message, flags);

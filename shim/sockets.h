@@ -33,6 +33,8 @@ struct SocketState {
 };
 
 bool is_socket(int fd);
+// What departures are stamped by, of the flags of SO_TIMESTAMPING: StampKind as bits.
+std::int64_t departure_stamps(unsigned flags);
 SocketState& state_of(int fd);
 
 // False with errno.

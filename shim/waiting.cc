@@ -73,7 +73,7 @@ class Mask {
 std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Received answer,
                          std::int64_t* left_ns) {
   for (;;) {
-    const std::uint64_t before = handled_signals();
+    const std::uint64_t before = handled_signals().all;
     Received reply = answer;
     const std::int64_t ready = ask({.call = Call::kWait,
                                     .a = static_cast<std::int64_t>(until.kind),
@@ -81,12 +81,12 @@ std::int64_t ask_to_wait(Until& until, bool watches_real, Sent interests, Receiv
                                     .flags = watches_real ? kWatchesReal : 0U},
                                    interests, {}, &reply);
     if (ready >= 0 || (errno != EINTR && errno != EAGAIN)) return ready;
-    const int reason = handled_signals() != before ? EINTR : errno;
+    const int reason = handled_signals().all != before ? EINTR : errno;
     std::int64_t left = 0;
     memcpy(&left, answer.data, sizeof left);
     if (left_ns != nullptr) *left_ns = left;
     if (until.kind == Deadline::kAfter) until.ns = left;
-    if (reason == EINTR && handled_signals() == before) continue;
+    if (reason == EINTR && handled_signals().all == before) continue;
     errno = reason;
     return -1;
   }
@@ -369,6 +369,21 @@ itimerspec from_setting(const TimerSetting& setting) {
   return result;
 }
 
+bool wait_for_input(int fd, std::int64_t timeout_ns) {
+  const std::uint64_t before = handled_signals().interrupting;
+  pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
+  const Until until = timeout_ns < 0 ? Until{} : Until{Deadline::kAfter, timeout_ns};
+  for (;;) {
+    const int ready = wait(&interest, 1, until);
+    if (ready > 0) return true;
+    if (ready == 0) errno = EAGAIN;
+    // One that has a timeout is never begun anew (signal(7)).
+    const bool is_restarted =
+        ready < 0 && errno == EINTR && timeout_ns < 0 && handled_signals().interrupting == before;
+    if (!is_restarted) return false;
+  }
+}
+
 std::int64_t read_timer(int fd, void* data, std::size_t size) {
   if (size < sizeof(std::uint64_t)) {
     errno = EINVAL;
@@ -380,8 +395,7 @@ std::int64_t read_timer(int fd, void* data, std::size_t size) {
       memcpy(data, &expirations, sizeof expirations);
       return sizeof expirations;
     }
-    pollfd interest{.fd = fd, .events = POLLIN, .revents = 0};
-    if (errno != EAGAIN || !is_blocking(fd) || wait(&interest, 1, {}) < 0) return -1;
+    if (errno != EAGAIN || !is_blocking(fd) || !wait_for_input(fd, -1)) return -1;
   }
 }
 
@@ -395,7 +409,7 @@ SIMBENCH_CALL int timerfd_create(int clock, int flags) {
   const int fd =
       open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
   if (fd >= 0 && ask({.call = Call::kOpenTimer, .fd = fd, .a = clock}) < 0) {
-    syscall(SYS_close, fd);
+    discard_descriptor(fd);
     return -1;
   }
   return fd;

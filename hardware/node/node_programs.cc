@@ -29,6 +29,7 @@ using scenarios::HostPrograms;
 
 // Answers one program until it ends; returns how it did.
 Task<std::string> serve(Child& child, ProgramClock& clock) {
+  if (child.link() < 0) co_return printable_name(child.ending());
   // The descriptor closes the number that it has.
   asio::posix::stream_descriptor link(co_await asio::this_coro::executor, dup(child.link()));
   std::string reason;
@@ -125,7 +126,9 @@ Task<void> NodePrograms::run(Host& host, std::vector<HostPrograms::Command> comm
   const std::string folder = make_folder(host.id());
   const processes::HostPlaces places{.host = host.id(), .interface = settings_.interface.c_str()};
   for (const HostPrograms::Command& command : commands) {
+    const auto path = settings_.paths.find(command.front());
     Child::Settings child{.command = {},
+                          .program = path == settings_.paths.end() ? "" : path->second,
                           .environment = {},
                           .folder = folder,
                           .log_name = scenarios::program_name(command),

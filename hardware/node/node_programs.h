@@ -9,7 +9,7 @@
 // Cancelling ends the programs.
 //
 // Errors: std::runtime_error on a host whose clock is not in software, and for a folder that cannot
-// be made; processes::ChildError.
+// be made. A program that cannot be started has ended.
 //
 //   NodePrograms chronyd({.programs = {.master = {{"/usr/sbin/chronyd", "-d", "-f",
 //   "server.conf"}},
@@ -19,6 +19,7 @@
 #ifndef SIMBENCH_HARDWARE_NODE_NODE_PROGRAMS_H_
 #define SIMBENCH_HARDWARE_NODE_NODE_PROGRAMS_H_
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,9 @@
 namespace simbench::hardware {
 
 struct NodeProgramSettings {
-  scenarios::HostPrograms programs;  // the first word of each command is an absolute path
-  std::string shim;                  // the library's absolute path
+  scenarios::HostPrograms programs;
+  std::map<std::string, std::string> paths{};  // absolute, by a command's first word without one
+  std::string shim;                            // the library's absolute path
   // Where the host's files and what its programs print stay, in host3; empty: nowhere.
   std::string log_folder{};
   std::string interface = "eth0";  // {interface}

@@ -40,6 +40,7 @@ struct Segment {
   TrueTime at_switch{};
   std::int64_t switch_number = 0;  // where it is
   double bytes = 0;                // of the messages, without headers
+  bool is_counted = true;          // as sent; of the copies of a group's message, one is
   boost::container::small_vector<Bytes, 1> messages{};
 };
 

@@ -121,6 +121,7 @@ void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> re
 void Network::replicate(const GroupMessage& message, TrueTime at) {
   const std::int64_t here = message.segment.switch_number;
   const Nanoseconds duration = on_the_line(message.segment);
+  bool is_counted = message.segment.is_counted;
   GroupMessage down{message.segment, {}};
   GroupMessage up{message.segment, {}};
   for (const Recipient& recipient : message.recipients) {
@@ -132,13 +133,20 @@ void Network::replicate(const GroupMessage& message, TrueTime at) {
     Segment copy = message.segment;
     copy.path = recipient.path;
     copy.first = recipient.id;
+    copy.is_counted = std::exchange(is_counted, false);
     travel(keep(std::move(copy)), rate_.is_infinite() ? at : switch_ports_[to].pass(at, duration));
   }
   down.segment.switch_number = here - 1;
   up.segment.switch_number = here + 1;
   const auto ports = 2 * static_cast<std::size_t>(here);
-  if (!down.recipients.empty()) forward(std::move(down), trunk_ports_[ports].pass(at, duration));
-  if (!up.recipients.empty()) forward(std::move(up), trunk_ports_[ports + 1].pass(at, duration));
+  if (!down.recipients.empty()) {
+    down.segment.is_counted = std::exchange(is_counted, false);
+    forward(std::move(down), trunk_ports_[ports].pass(at, duration));
+  }
+  if (!up.recipients.empty()) {
+    up.segment.is_counted = is_counted;
+    forward(std::move(up), trunk_ports_[ports + 1].pass(at, duration));
+  }
 }
 
 void Network::forward(GroupMessage message, TrueTime at) {
@@ -305,7 +313,7 @@ void Network::acknowledge(PathId path_id) {
 }
 
 void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
-  messages_ += segment.messages.size();
+  if (segment.is_counted) messages_ += segment.messages.size();
   if (observer_ == nullptr) return;
   const Path& path = paths_[segment.path];
   MessageId id = segment.first;
@@ -317,7 +325,8 @@ void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
                            .bytes = message.size(),
                            .left = segment.left,
                            .arrived = arrival.value_or(TrueTime{}),
-                           .lost = !arrival});
+                           .lost = !arrival,
+                           .copy = !segment.is_counted});
   }
 }
 

@@ -26,11 +26,11 @@ constexpr char kMultiarch[] = "aarch64-linux-gnu";
 #endif
 
 const std::map<std::string, const char*>& packages_of_programs() {
-  static const std::map<std::string, const char*> kPackages = {
+  static const std::map<std::string, const char*> packages = {
       {"chronyd", "chrony"}, {"ntpd", "ntpsec"},     {"phc2sys", "linuxptp"},
       {"ptp4l", "linuxptp"}, {"python3", "python3"}, {"timemaster", "linuxptp"},
       {"ts2phc", "linuxptp"}};
-  return kPackages;
+  return packages;
 }
 
 std::vector<fs::path> own_folders() {

@@ -45,7 +45,8 @@ std::int64_t stamp_ns(const std::optional<HardwareTime>& stamp) {
 HostNetwork::HostNetwork(SimHost& host, std::size_t hosts)
     : host_(host),
       hosts_(hosts),
-      has_left_(host.world().context, host.name("programs' messages pass the card")) {
+      has_left_(host.world().context, host.name("programs' messages pass the card")),
+      streams_(host, hosts) {
   host_.world().network.groups().join(Groups::kEveryone, host_.id());
 }
 
@@ -124,7 +125,7 @@ std::optional<std::uint32_t> HostNetwork::group_of(std::uint32_t address) {
   return std::nullopt;
 }
 
-Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) {
+Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps) {
   if (to.port == 0) {
     if (!socket.peer) co_return EDESTADDRREQ;
     to = *socket.peer;
@@ -138,51 +139,52 @@ Task<int> HostNetwork::send(UdpSocket& socket, shim::Address to, Bytes payload) 
   if (payload.size() > kMostPayload) co_return EMSGSIZE;
   const bool is_inward = is_loopback(to.host);
   const auto length = static_cast<std::uint32_t>(payload.size());
-  QueuedDatagram datagram{.arrival = {.from = {.host = is_inward ? to.host : address(),
-                                               .port = socket.local.port,
-                                               .reserved = 0},
-                                      .to = to,
-                                      .system = shim::kNoStamp,
-                                      .hardware = shim::kNoStamp,
-                                      .length = length,
-                                      .number = socket.sent++},
-                          .payload = std::move(payload)};
+  Leaving leaving{.socket = socket.number,
+                  .stamps = stamps,
+                  .datagram = {.arrival = {.from = {.host = is_inward ? to.host : address(),
+                                                    .port = socket.local.port,
+                                                    .reserved = 0},
+                                           .to = to,
+                                           .system = shim::kNoStamp,
+                                           .hardware = shim::kNoStamp,
+                                           .length = length,
+                                           .number = socket.sent++},
+                               .payload = std::move(payload)}};
   if (is_inward || to.host == address()) {
-    deliver(datagram);
+    deliver(leaving.datagram);
     co_return 0;
   }
-  if (group) co_return co_await send_to_group(socket, *group, std::move(datagram));
+  if (group) {
+    co_await send_to_group(socket, *group, std::move(leaving));
+    co_return 0;
+  }
   if (to.host < kFirstAddress || to.host - kFirstAddress >= hosts_) co_return ENETUNREACH;
-  co_return co_await send_to_peer(socket, to.host - kFirstAddress, std::move(datagram));
-}
-
-Task<int> HostNetwork::send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram) {
-  SimChannel& channel = host_.datagram_channel(peer);
-  const MessageId id = co_await channel.send(with_trailer(datagram));
-  if (socket.departure_stamps == 0) co_return 0;
-  const std::optional<HostTime> left =
-      co_await channel.transmit_stamp(id, host_.steady_clock().now());
-  keep_stamps(
-      socket, left,
-      {.socket = socket.number, .peer = peer, .message = id, .datagram = std::move(datagram)});
+  leaving.peer = to.host - kFirstAddress;
+  co_await send_to_peer(socket, std::move(leaving));
   co_return 0;
 }
 
-Task<int> HostNetwork::send_to_group(UdpSocket& socket, std::uint32_t group,
-                                     QueuedDatagram datagram) {
+Task<void> HostNetwork::send_to_peer(UdpSocket& socket, Leaving leaving) {
+  SimChannel& channel = host_.datagram_channel(*leaving.peer);
+  leaving.message = co_await channel.send(with_trailer(leaving.datagram));
+  if (leaving.stamps == 0) co_return;
+  const std::optional<HostTime> left =
+      co_await channel.transmit_stamp(leaving.message, host_.steady_clock().now());
+  keep_stamps(socket, left, std::move(leaving));
+}
+
+Task<void> HostNetwork::send_to_group(UdpSocket& socket, std::uint32_t group, Leaving leaving) {
   SimMulticast& multicast = host_.multicast();
-  const MessageId id = co_await multicast.send(group, with_trailer(datagram));
-  if (socket.hears_itself) deliver_to_all(datagram);
-  if (socket.departure_stamps == 0) co_return 0;
+  leaving.message = co_await multicast.send(group, with_trailer(leaving.datagram));
+  if (socket.hears_itself) deliver_to_all(leaving.datagram);
+  if (leaving.stamps == 0) co_return;
   const std::optional<HostTime> left =
-      co_await multicast.transmit_stamp(id, host_.steady_clock().now());
-  keep_stamps(socket, left,
-              {.socket = socket.number, .message = id, .datagram = std::move(datagram)});
-  co_return 0;
+      co_await multicast.transmit_stamp(leaving.message, host_.steady_clock().now());
+  keep_stamps(socket, left, std::move(leaving));
 }
 
 void HostNetwork::keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving) {
-  const unsigned wanted = socket.departure_stamps;
+  const unsigned wanted = leaving.stamps;
   const bool by_card =
       (wanted & shim::kHardwareStamps) != 0 && card_stamping_.departures && host_.nic() != nullptr;
   // As Linux, which takes both only where both are asked for.

@@ -25,7 +25,7 @@
 //   UdpSocket own;
 //   network.bind(own, {.host = 0, .port = 123});
 //   const int error = co_await network.send(own, {.host = network.address_of(0), .port = 123},
-//                                           Bytes(48));
+//                                           Bytes(48), own.departure_stamps);
 #ifndef SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
 #define SIMBENCH_SIM_PROGRAMS_HOST_NETWORK_H_
 
@@ -43,6 +43,7 @@
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
+#include "sim/programs/host_streams.h"
 
 namespace simbench::sim {
 
@@ -94,7 +95,8 @@ class HostNetwork {
   int connect(UdpSocket& socket, shim::Address peer);
   int join(UdpSocket& socket, std::uint32_t group);
   int leave(UdpSocket& socket, std::uint32_t group);
-  Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload);
+  // `stamps` are those of this departure: shim::StampKind as bits.
+  Task<int> send(UdpSocket& socket, shim::Address to, Bytes payload, unsigned stamps);
   void close(UdpSocket& socket);
 
   // What the card stamps (SIOCSHWTSTAMP), for all sockets of the host; nothing at first.
@@ -107,6 +109,8 @@ class HostNetwork {
   void report_local_activity();
   std::uint64_t local_activity() const { return local_activity_; }
 
+  HostStreams& streams() { return streams_; }
+
   // Receives from a peer, for ever.
   Task<void> pump(PeerId peer);
   // Stamps what leaves, for ever.
@@ -117,6 +121,7 @@ class HostNetwork {
   struct Leaving {
     std::uint64_t socket = 0;
     std::optional<PeerId> peer{};  // nothing: a group
+    unsigned stamps = 0;           // shim::StampKind as bits
     MessageId message = 0;
     QueuedDatagram datagram{};
   };
@@ -125,10 +130,11 @@ class HostNetwork {
   int bind_somewhere(UdpSocket& socket);
   // The group that a message to this address is for, if it is for several hosts.
   static std::optional<std::uint32_t> group_of(std::uint32_t address);
-  Task<int> send_to_peer(UdpSocket& socket, PeerId peer, QueuedDatagram datagram);
-  Task<int> send_to_group(UdpSocket& socket, std::uint32_t group, QueuedDatagram datagram);
+  Task<void> send_to_peer(UdpSocket& socket, Leaving leaving);
+  Task<void> send_to_group(UdpSocket& socket, std::uint32_t group, Leaving leaving);
   // The message has left, with this stamp by software.
-  void keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving);
+  void keep_stamps(UdpSocket& socket, unsigned wanted, std::optional<HostTime> left,
+                   Leaving leaving);
   static void queue_departure(UdpSocket& socket, QueuedDatagram datagram);
   void deliver(const QueuedDatagram& datagram);
   void deliver_to_all(const QueuedDatagram& datagram);
@@ -143,6 +149,7 @@ class HostNetwork {
   CardStamping card_stamping_{};
   std::deque<Leaving> leaving_;
   WaitPoint has_left_;
+  HostStreams streams_;
   std::vector<WaitPoint*> watchers_;
   std::uint64_t local_activity_ = 0;
 };

@@ -14,17 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "processes/requests.h"
 #include "recording/text_fields.h"
 
 namespace simbench::sim {
 namespace {
 
 using clocks::kLatestSetting;
-using processes::BadRequest;
-using processes::bytes_of;
-using processes::kMostOpen;
-using processes::read_head;
 using shim::Call;
 
 // What a reading of a clock takes where the scenario says less: a program may wait for a tick.
@@ -84,7 +79,10 @@ Task<void> Process::serve() {
     const std::int32_t told = has_expirations() ? shim::kHasExpirations : 0;
     child_.reply(given->value, given->error | told, given->data);
   }
-  if (!is_stopped_) network_.report_local_activity();
+  if (!is_stopped_) {
+    network_.report_local_activity();
+    co_await close_streams();
+  }
   const std::string how = child_.ending(ending_);
   if (!is_stopped_) ending_ = printable_name(how);
 }
@@ -95,6 +93,7 @@ void Process::stop() {
 }
 
 Task<Process::Answer> Process::answer(ChildRequest request) {
+  if (is_of_stream(request)) co_return co_await of_stream(std::move(request));
   switch (request.head.call) {
     case Call::kReadClock:
       co_return co_await read_clock(request.head.a);
@@ -113,6 +112,10 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kPeerName:
     case Call::kReceive:
     case Call::kCountInput:
+    case Call::kSocketError:
+    case Call::kListen:
+    case Call::kAccept:
+    case Call::kShutDown:
     case Call::kJoin:
       co_return of_socket(request);
     case Call::kSetTimer:
@@ -137,7 +140,7 @@ Task<Process::Answer> Process::answer(ChildRequest request) {
     case Call::kRandom:
       co_return random_bytes(request.head.a);
     case Call::kOpenSocket:
-      co_return open_socket(request.head.fd);
+      co_return open_socket(request.head.fd, request.head.a);
     case Call::kOpenTimer:
       co_return open_timer(request.head.fd, request.head.a);
     case Call::kClose:
@@ -211,7 +214,7 @@ Task<Process::Answer> Process::adjust_clock(ChildRequest request) {
 // Timers.
 
 Process::Answer Process::open_timer(int fd, std::int64_t clock) {
-  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
+  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
   timers_.insert_or_assign(fd, ProcessTimer(host_, is_system(clock)));
   return {};
 }
@@ -287,6 +290,11 @@ std::int16_t Process::readiness(const shim::Interest& interest) {
     const int urgent = error != 0 && socket.has_urgent_errors ? POLLPRI : 0;
     const int ready = (socket.arrived.empty() ? 0 : POLLIN) | POLLOUT | urgent;
     return static_cast<std::int16_t>((ready & interest.events) | error);
+  }
+  if (const auto found = streams_.find(interest.fd); found != streams_.end()) {
+    constexpr int kAlways = POLLERR | POLLHUP;
+    return static_cast<std::int16_t>(HostStreams::readiness(*found->second) &
+                                     (interest.events | kAlways));
   }
   if (const auto found = timers_.find(interest.fd); found != timers_.end()) {
     return found->second.expirations() > 0 ? interest.events & POLLIN : 0;

@@ -23,26 +23,35 @@
 #ifndef SIMBENCH_SIM_PROGRAMS_PROCESS_H_
 #define SIMBENCH_SIM_PROGRAMS_PROCESS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "processes/child.h"
+#include "processes/requests.h"
 #include "shim/protocol.h"
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
 #include "sim/programs/host_network.h"
+#include "sim/programs/host_streams.h"
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
 
+// A process's requests are of the room that the real world shares.
+using processes::BadRequest;
+using processes::bytes_of;
 using processes::Child;
 using processes::ChildRequest;
+using processes::kMostOpen;
+using processes::read_head;
 
 class Process {
  public:
@@ -79,7 +88,7 @@ class Process {
   Task<Answer> adjust_clock(ChildRequest request);
 
   UdpSocket& socket_of(int fd);
-  Answer open_socket(int fd);
+  Answer open_socket(int fd, std::int64_t type);
   Answer close(int fd);
   Answer of_socket(const ChildRequest& request);
   Task<Answer> read_card(std::int64_t count);
@@ -88,6 +97,18 @@ class Process {
   static Answer set_option(UdpSocket& socket, shim::SocketOption option, std::int64_t value);
   static Answer receive(UdpSocket& socket, std::int64_t how);
   Task<Answer> send(ChildRequest request);
+
+  bool is_of_stream(const ChildRequest& request) const;
+  Answer open_stream(int fd);
+  Task<Answer> of_stream(ChildRequest request);
+  Answer accept(Stream& listener, std::int64_t fd);
+  Task<Answer> write(Stream& stream, const Bytes& data);
+  Task<Answer> read(Stream& stream, std::int64_t how, std::int64_t most);
+  static Answer describe(Stream& stream, shim::Call call);
+  Task<void> close_streams();
+  std::size_t open_descriptors() const {
+    return sockets_.size() + streams_.size() + timers_.size();
+  }
 
   Answer open_timer(int fd, std::int64_t clock);
   Answer of_timer(const ChildRequest& request);
@@ -108,6 +129,7 @@ class Process {
   RandomStream chance_;
   WaitPoint woken_;
   std::map<int, UdpSocket> sockets_;
+  std::map<int, std::shared_ptr<Stream>> streams_;
   std::map<int, ProcessTimer> timers_;         // by descriptor
   std::map<int, ProcessTimer> signal_timers_;  // by the shim's number
   Child child_;

@@ -3,13 +3,9 @@
 
 #include <cerrno>
 
-#include "processes/requests.h"
 #include "sim/programs/process.h"
 
 namespace simbench::sim {
-
-using processes::BadRequest;
-using processes::bytes_of;
 
 Task<Process::Answer> Process::read_card(std::int64_t count) {
   if (count < 0 || count > PTP_MAX_SAMPLES) throw BadRequest("asked for too many readings");

@@ -1,16 +1,13 @@
 // The requests that concern sockets.
+#include <sys/socket.h>
+
 #include <cerrno>
 #include <utility>
 
-#include "processes/requests.h"
 #include "sim/programs/process.h"
 
 namespace simbench::sim {
 
-using processes::BadRequest;
-using processes::bytes_of;
-using processes::kMostOpen;
-using processes::read_head;
 using shim::Call;
 
 UdpSocket& Process::socket_of(int fd) {
@@ -19,8 +16,9 @@ UdpSocket& Process::socket_of(int fd) {
   return found->second;
 }
 
-Process::Answer Process::open_socket(int fd) {
-  if (sockets_.size() + timers_.size() >= kMostOpen) return {.error = EMFILE};
+Process::Answer Process::open_socket(int fd, std::int64_t type) {
+  if (open_descriptors() >= kMostOpen) return {.error = EMFILE};
+  if (type == SOCK_STREAM) return open_stream(fd);
   UdpSocket& socket = sockets_[fd];
   network_.close(socket);  // one that was left open under this number
   socket = {};
@@ -51,6 +49,13 @@ Process::Answer Process::of_socket(const ChildRequest& request) {
       return {.data = bytes_of(*socket.peer)};
     case Call::kReceive:
       return receive(socket, request.head.a);
+    case Call::kListen:
+    case Call::kAccept:
+      return {.error = EOPNOTSUPP};
+    case Call::kShutDown:
+      return {.error = socket.peer ? 0 : ENOTCONN};
+    case Call::kSocketError:
+      return {};
     case Call::kCountInput:
       return {.value = socket.arrived.empty()
                            ? 0
@@ -110,7 +115,9 @@ Task<Process::Answer> Process::send(ChildRequest request) {
   UdpSocket& socket = socket_of(request.head.fd);
   const auto to = read_head<shim::Address>(request.data);
   Bytes payload(request.data.begin() + sizeof to, request.data.end());
-  const int error = co_await network_.send(socket, to, std::move(payload));
+  const std::int64_t asked = request.head.a;
+  const unsigned stamps = asked < 0 ? socket.departure_stamps : static_cast<unsigned>(asked);
+  const int error = co_await network_.send(socket, to, std::move(payload), stamps);
   co_return Answer{.error = error};
 }
 

@@ -89,8 +89,9 @@ std::string loader_of(ProgramFile& file, const Elf64_Ehdr& head) {
   for (std::size_t i = 0; i < head.e_phnum; ++i) {
     const auto part = file.structure<Elf64_Phdr>(head.e_phoff + i * sizeof(Elf64_Phdr));
     if (!part || part->p_type != PT_INTERP) continue;
-    return file.text(part->p_offset, std::min<std::uint64_t>(part->p_filesz, kMostInterpreter))
-        .c_str();
+    const std::string text =
+        file.text(part->p_offset, std::min<std::uint64_t>(part->p_filesz, kMostInterpreter));
+    return text.substr(0, text.find('\0'));
   }
   return "";
 }

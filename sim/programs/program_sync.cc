@@ -32,8 +32,10 @@ class RunningPrograms {
              const std::string& folder) {
     const std::size_t number = processes_.size();
     const HostPlaces places{.host = host_.id(), .drift = host_.stored_frequency()};
+    const auto path = settings.paths.find(command.front());
     Child::Settings child{
         .command = {},
+        .program = path == settings.paths.end() ? "" : path->second,
         .environment = {},
         .folder = folder,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
@@ -51,7 +53,9 @@ class RunningPrograms {
                  std::function<void(const std::string&)> on_end) {
     std::vector<Task<void>> tasks;
     for (PeerId peer = 0; peer < hosts_; ++peer) {
-      if (peer != host_.id()) tasks.push_back(network_.pump(peer));
+      if (peer == host_.id()) continue;
+      tasks.push_back(network_.pump(peer));
+      tasks.push_back(network_.streams().pump(peer));
     }
     tasks.push_back(network_.stamp_departures());
     tasks.push_back(kernel_.run());
@@ -128,7 +132,7 @@ std::string ProgramSync::make_folder(SimHost& host) {
 }
 
 void ProgramSync::fail(Host& host, const std::string& ending) {
-  endings_[ending].push_back(host.id());
+  endings_[ending].insert(host.id());
   host.report_outcome({.slave = host.id(),
                        .synchronised = false,
                        .passes = 0,

@@ -26,6 +26,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,9 +39,10 @@ namespace simbench::sim {
 class SimHost;
 
 struct ProgramSettings {
-  std::string pipeline;              // its name
-  scenarios::HostPrograms programs;  // the first word of each command is an absolute path
-  std::string shim;                  // the library's absolute path
+  std::string pipeline;  // its name
+  scenarios::HostPrograms programs;
+  std::map<std::string, std::string> paths{};  // absolute, by a command's first word without one
+  std::string shim;                            // the library's absolute path
   // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
   std::string log_folder{};
   std::size_t hosts = 0;
@@ -63,7 +65,7 @@ class ProgramSync final : public HostSync {
 
   ProgramSettings settings_;
   std::unique_ptr<TemporaryFolder> temporary_;
-  std::map<std::string, std::vector<PeerId>> endings_;  // the hosts whose programs ended so
+  std::map<std::string, std::set<PeerId>> endings_;  // the hosts whose programs ended so
 };
 
 }  // namespace simbench::sim

@@ -38,7 +38,9 @@ class MessageCount final : public WorldObserver {
   void on_capture_start(TrueTime) override {}
   void on_pulse(const ObservedPulse&) override {}
   void on_frame(const ObservedFrame&) override {}
-  void on_message(const ObservedMessage& message) override { count_ += message.left < end_; }
+  void on_message(const ObservedMessage& message) override {
+    count_ += !message.copy && message.left < end_;
+  }
   void on_clocks(TrueTime, std::span<const Nanoseconds>) override {}
 
  private:

@@ -10,7 +10,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "algorithms/host_sync/join.h"
 #include "scenarios/loader.h"
 #include "sim/programs/process.h"
 #include "tests/sim/host/service_world.h"
@@ -18,6 +21,7 @@
 namespace {
 
 using simbench::Task;
+using simbench::sim::CardClock;
 using simbench::sim::HostNetwork;
 using simbench::sim::KernelClock;
 using simbench::sim::Process;
@@ -27,12 +31,21 @@ using simbench::sim::SimHost;
 constexpr std::size_t kHosts = 2;
 constexpr double kWorldSeconds = 2;
 
-Task<void> serve(SimHost& host, int link, std::string& note) {
-  HostNetwork network(host, kHosts);
-  KernelClock kernel(host);
-  Process process(host, network, kernel, {.command = {"program"}, .link = link}, 0);
+Task<void> serve(Process& process, std::string& note) {
   co_await process.serve();
   note = process.ending();
+}
+
+Task<void> run(SimHost& host, int link, std::string& note) {
+  HostNetwork network(host, kHosts);
+  KernelClock kernel(host);
+  CardClock card(host);
+  Process process(host, network, kernel, card, {.command = {"program"}, .link = link}, 0);
+  std::vector<Task<void>> tasks;
+  tasks.push_back(kernel.run());
+  tasks.push_back(network.stamp_departures());
+  tasks.push_back(serve(process, note));
+  co_await simbench::join_all(std::move(tasks));
 }
 
 }  // namespace
@@ -54,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string note;
   {
     ServiceWorld world(kScenario);
-    world.spawn(serve(world.host(1), ends[0], note));
+    world.spawn(run(world.host(1), ends[0], note));
     world.run_until(kWorldSeconds);
   }
   close(ends[1]);

@@ -3,19 +3,23 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
 #include <linux/landlock.h>
+#include <linux/seccomp.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstddef>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
-#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "processes/child.h"
@@ -184,7 +188,41 @@ TEST_F(ConfinementTest, WhatCannotBeStartedSaysWhy) {
   missing.command = {folder_ / "missing"};
   EXPECT_EQ(note_of(missing),
             "missing: cannot be run: " + (folder_ / "missing") + ": No such file or directory");
-  EXPECT_THROW(Confinement(folder_ / "no folder", ""), ConfinementError);
+  missing.folder = folder_ / "no folder";
+  EXPECT_EQ(note_of(missing), "missing: " + missing.folder +
+                                  " cannot be made a program's only folder: No such file or "
+                                  "directory");
+  EXPECT_THROW(Confinement(missing.folder, ""), ConfinementError);
+}
+
+// As on a kernel that has none.
+bool take_landlock_away() {
+  sock_filter code[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_landlock_create_ruleset, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog filter{.len = std::size(code), .filter = code};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
+}
+
+TEST_F(ConfinementTest, WithoutLandlockRootRunsNoPrograms) {
+  const pid_t world = fork();
+  ASSERT_GE(world, 0);
+  if (world == 0) {
+    if (!take_landlock_away()) _exit(1);
+    folder_.write("note.txt", note_of("rights"));
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(world, &status, 0);
+  ASSERT_EQ(status, 0);
+  EXPECT_EQ(folder_.content("note.txt"),
+            geteuid() == 0 ? "simbench_escapes: this kernel has no Landlock, without which root's "
+                             "programs could write to all files: run simbench as another user"
+                           : "simbench_escapes: exited with status 0: still there");
 }
 
 // A child of `parent` that is no zombie; 0: none.

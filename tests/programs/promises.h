@@ -44,6 +44,10 @@ inline std::int64_t read_clock(clockid_t clock) {
 
 inline std::int64_t steady() { return read_clock(CLOCK_MONOTONIC); }
 
+inline bool is_about(std::int64_t ns, std::int64_t expected) {
+  return std::llabs(ns - expected) < 50'000;
+}
+
 inline sockaddr_in address(const char* host, std::uint16_t port) {
   sockaddr_in result{};
   result.sin_family = AF_INET;

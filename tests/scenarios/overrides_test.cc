@@ -88,13 +88,24 @@ TEST(Set, PointersThatNameNothing) {
   EXPECT_EQ(error_of_set("/timeline/frames/0", "1"),
             "--set /timeline/frames/0=1: found no \"0\" in /timeline/frames, which is a single "
             "value");
-  for (const std::string index : {"9", "-", "00", "-1", "99999999999999999999", ""}) {
+  for (const std::string index : {"9", "00", "-1", "99999999999999999999", ""}) {
     EXPECT_EQ(error_of_set(fmt::format("/pipelines/{}", index), "1"),
               fmt::format("--set /pipelines/{0}=1: found no \"{0}\" in /pipelines, allowed 0 to 8",
                           index));
   }
   EXPECT_EQ(error_of_set("/faults/0", "1"),
             "--set /faults/0=1: found no \"0\" in /faults, which is empty");
+}
+
+TEST(Set, AMinusAppends) {
+  const Scenario scenario =
+      load_scenario("6host_star", {{"/pipelines/-",
+                                    R"({"name": "mine", "host_sync": "ntp", "device_time": "oracle",
+                          "gathering": "oracle"})"},
+                                   {"/faults/-", R"({"kind": "link_stops", "host": 1, "at_ms": 0,
+                                       "duration_ms": 5})"}});
+  EXPECT_EQ(scenario.pipelines.back().name, "mine");
+  EXPECT_EQ(scenario.faults.size(), 1U);
 }
 
 TEST(Set, WhatIsNoPointer) {

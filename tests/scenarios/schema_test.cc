@@ -69,6 +69,14 @@ json full_document() {
   json& polls = document["cameras"]["clock_poll"];
   polls["calibrated_asymmetry_ms"] = 0.25;
   polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
+  document["pipelines"][0]["host_sync"] = {{"program",
+                                            {{"master", {{"chronyd", "-d"}}},
+                                             {"slave", {{"chronyd", "-d"}}},
+                                             {"files", {{"a.conf", "local"}}},
+                                             {"environment", {{"A", "b"}}},
+                                             {"run_before_capture_s", 60},
+                                             {"run_during_capture", false},
+                                             {"model", "chrony"}}}};
   return document;
 }
 
@@ -209,7 +217,7 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<BackendStamp>();
   expect_all_members_written<Cameras>();
   expect_all_members_written<Usb>();
-  expect_all_members_written<Pipeline>();
+  expect_all_members_written<HostPrograms>();
   expect_all_members_written<Evaluation>();
   expect_all_members_written<Published>();
   expect_all_members_written<StudioSubject>();

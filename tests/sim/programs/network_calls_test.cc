@@ -1,4 +1,5 @@
 // Programs that look at the calls of the network, in a world of three hosts.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,24 +17,29 @@
 namespace simbench::sim {
 namespace {
 
+using testing::Each;
+using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr std::size_t kCallingHosts = 3;
+
+using Words = std::vector<std::string>;
 
 class NetworkCallsTest : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  // Runs the program on all hosts; returns what each host's said.
-  std::vector<std::string> run(const std::string& program, std::vector<std::string> master,
-                               std::vector<std::string> slave,
+  // Runs the program on all hosts, with these words; returns what each host's first said.
+  std::vector<std::string> run(const std::string& program, std::vector<Words> master,
+                               std::vector<Words> slave,
                                const std::vector<scenarios::Override>& changes = {}) {
     std::filesystem::remove_all(folder_);
     const std::string path = std::string(SIMBENCH_PROGRAMS) + "/simbench_" + program;
-    master.insert(master.begin(), path);
-    slave.insert(slave.begin(), path);
-    ProgramSync sync({.pipeline = "calls",
-                      .programs = {.master = {std::move(master)}, .slave = {std::move(slave)}},
+    for (std::vector<Words>* commands : {&master, &slave}) {
+      for (Words& each : *commands) each.insert(each.begin(), path);
+    }
+    ProgramSync sync({.pipeline = "test",
+                      .programs = {.master = std::move(master), .slave = std::move(slave)},
                       .shim = SIMBENCH_SHIM,
                       .log_folder = folder_,
                       .hosts = kCallingHosts});
@@ -44,14 +50,15 @@ class NetworkCallsTest : public testing::Test {
     world.run_until(60);
     EXPECT_THAT(world.record.outcomes, IsEmpty()) << world.record.outcomes.front().message;
     std::vector<std::string> outputs;
-    for (std::size_t host = 0; host < kCallingHosts; ++host) outputs.push_back(output(host));
+    for (std::size_t host = 0; host < kCallingHosts; ++host) {
+      outputs.push_back(output(host, program));
+    }
     return outputs;
   }
 
  private:
-  std::string output(std::size_t host) const {
-    const auto path = std::filesystem::path(folder_) / "calls" / "seed1" /
-                      ("host" + std::to_string(host)) / "0_simbench_group_calls.log";
+  std::string output(std::size_t host, const std::string& program) const {
+    const auto path = fmt::format("{}/test/seed1/host{}/0_simbench_{}.log", folder_, host, program);
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
@@ -62,9 +69,35 @@ class NetworkCallsTest : public testing::Test {
 };
 
 TEST_F(NetworkCallsTest, GroupsDoWhatManPagesPromise) {
-  const std::vector<std::string> said = run("group_calls", {"check"}, {"answer"});
+  const std::vector<std::string> said = run("group_calls", {{"check"}}, {{"answer"}});
   EXPECT_EQ(said[0], "done\n");
   EXPECT_EQ(said[1], "");
+}
+
+TEST_F(NetworkCallsTest, InterfacesAndNamesAreThoseOfTheWorld) {
+  for (const char* stamps : {"false", "true"}) {
+    const std::vector<std::string> said =
+        run("interface_calls", {{"{host}", "{address}"}}, {{"{host}", "{address}"}},
+            {{"/hosts/nic/hardware_stamps", stamps}});
+    EXPECT_THAT(said, Each(std::string("done\n")));
+  }
+}
+
+TEST_F(NetworkCallsTest, TheCardsClockAndStampsDoWhatLinuxPromises) {
+  const std::vector<std::string> said =
+      run("card_calls", {{"answer"}}, {{"check", "{master}"}},
+          {{"/hosts/nic/hardware_stamps", "true"}, {"/network/bandwidth_mbit_per_s", "1000"}});
+  EXPECT_THAT(said, ElementsAre("", "done\n", "done\n"));
+}
+
+TEST_F(NetworkCallsTest, ProgramsOfAHostSpeakOverUnixSockets) {
+  const std::vector<Words> both = {{"ask"}, {"answer"}};
+  EXPECT_THAT(run("local_calls", both, both), Each(std::string("done\n")));
+}
+
+TEST_F(NetworkCallsTest, ConnectionsAndCopiesOfDescriptorsDoWhatManPagesPromise) {
+  EXPECT_THAT(run("stream_calls", {{"serve"}}, {{"check", "{master}"}}),
+              ElementsAre("", "done\n", "done\n"));
 }
 
 }  // namespace

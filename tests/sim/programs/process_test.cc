@@ -18,8 +18,10 @@
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "algorithms/host_sync/join.h"
 #include "scenarios/loader.h"
 #include "tests/sim/host/service_world.h"
 
@@ -61,9 +63,10 @@ class ProcessTest : public testing::Test {
     shutdown(ends[1], SHUT_WR);
     Heard heard;
     {
-      ServiceWorld world(
-          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}}));
-      world.spawn(serve(world.host(1), ends[0], heard));
+      static const scenarios::Scenario kStar =
+          scenarios::load_scenario("6host_star", {{"/hosts/count", "3"}, {"/cameras/count", "3"}});
+      ServiceWorld world(kStar);
+      world.spawn(run(world.host(1), ends[0], heard));
       world.run_until(seconds);
     }
     read_replies(ends[1], heard);
@@ -72,13 +75,20 @@ class ProcessTest : public testing::Test {
   }
 
  private:
-  static Task<void> serve(SimHost& host, int link, Heard& heard) {
+  static Task<void> serve(Process& process, Heard& heard) {
+    co_await process.serve();
+    heard.note = process.ending();
+  }
+  static Task<void> run(SimHost& host, int link, Heard& heard) {
     HostNetwork network(host, 3);
     KernelClock kernel(host);
     CardClock card(host);
     Process process(host, network, kernel, card, {.command = {"program"}, .link = link}, 0);
-    co_await process.serve();
-    heard.note = process.ending();
+    std::vector<Task<void>> tasks;
+    tasks.push_back(kernel.run());
+    tasks.push_back(network.stamp_departures());
+    tasks.push_back(serve(process, heard));
+    co_await join_all(std::move(tasks));
   }
 
   static void read_replies(int link, Heard& heard) {
@@ -241,6 +251,7 @@ class Hostile {
       case Call::kWait:
         return interests();
       case Call::kSetTimer:
+      case Call::kSetSignalTimer:
         return raw(shim::TimerSetting{.left = number(), .interval = number()});
       case Call::kBind:
       case Call::kConnect:
@@ -255,11 +266,12 @@ class Hostile {
     // The last call, and one that is none. Notes end the program, so there are few.
     Call call{};
     do {
-      call = static_cast<Call>(below(static_cast<std::size_t>(Call::kRandom) + 2));
+      call = static_cast<Call>(below(static_cast<std::size_t>(Call::kTakeExpirations) + 2));
     } while (call == Call::kNote && !one_in(20));
     const bool is_known = !one_in(30);
     const bool is_timer = call >= Call::kOpenTimer && call <= Call::kQueryTimer;
-    const std::int32_t own = is_timer ? 4 : 3;
+    const bool is_signal = call >= Call::kSetSignalTimer && call <= Call::kDropSignalTimer;
+    const std::int32_t own = is_signal ? -1 : is_timer ? 4 : 3;
     const Request head{.call = call,
                        .fd = is_known ? own : small<std::int32_t>(),
                        .a = one_in(2) ? static_cast<std::int64_t>(below(4)) : number(),

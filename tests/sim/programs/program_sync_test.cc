@@ -74,8 +74,9 @@ class ProgramSyncTest : public testing::Test {
   }
 
   // What the first slave's outcome says of a program in this mode.
-  std::string ending_of(const std::string& mode) {
-    run({test_program("calls"), "echo"}, {test_program("calls"), mode}, 1);
+  std::string ending_of(const std::string& mode) { return ending_of("calls", mode); }
+  std::string ending_of(const std::string& program, const std::string& mode) {
+    run({test_program("calls"), "echo"}, {test_program(program), mode}, 2);
     return outcomes_.empty() ? "no outcome" : outcomes_.front().message;
   }
 
@@ -97,6 +98,12 @@ TEST_F(ProgramSyncTest, CallsDoWhatManPagesPromise) {
     EXPECT_THAT(lines, ElementsAre(StartsWith("chance "), "done")) << "host " << slave;
   }
   EXPECT_NE(outputs[1], outputs[2]) << "each has chances of its own";
+}
+
+TEST_F(ProgramSyncTest, SignalsComeInTheWorldsTime) {
+  const std::vector<std::string> outputs =
+      run({test_program("signals"), "check"}, {test_program("signals"), "check"}, 60);
+  EXPECT_THAT(outputs, testing::Each("done\n"));
 }
 
 // It steps its clock once a second by what it measured: the mean of two exponential delays of 50 us
@@ -131,15 +138,13 @@ TEST_F(ProgramSyncTest, AProgramThatEndsIsAFailureWithItsLastWords) {
 TEST_F(ProgramSyncTest, WhatCannotBeSimulatedIsSaid) {
   EXPECT_THAT(ending_of("fork"), HasSubstr("goes to the background"));
   EXPECT_THAT(ending_of("thread"), HasSubstr("a second thread"));
-  EXPECT_THAT(ending_of("thread timer"), HasSubstr("SIGEV_THREAD"));
   EXPECT_THAT(ending_of("spin"), HasSubstr("never waits"));
   EXPECT_THAT(ending_of("garbage"), HasSubstr("asked what the world does not know"));
 }
 
 TEST_F(ProgramSyncTest, AnAlarmWithoutAHandlerEndsTheProgram) {
-  run({test_program("calls"), "echo"}, {test_program("calls"), "alarm"}, 2);
-  ASSERT_FALSE(outcomes_.empty());
-  EXPECT_THAT(outcomes_.front().message, HasSubstr("ended by signal ALRM"));
+  EXPECT_THAT(ending_of("signals", "alarm"), HasSubstr("ended by signal ALRM"));
+  EXPECT_THAT(ending_of("signals", "thread"), HasSubstr("SIGEV_THREAD"));
 }
 
 TEST_F(ProgramSyncTest, AProgramThatIsNotThereIsSaid) {

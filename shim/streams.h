@@ -1,0 +1,24 @@
+// Connections of the simulated network (SOCK_STREAM).
+//
+//   if (is_stream(fd)) return stream_connect(fd, address);
+#ifndef SIMBENCH_SHIM_STREAMS_H_
+#define SIMBENCH_SHIM_STREAMS_H_
+
+#include <sys/socket.h>
+#include <sys/types.h>
+
+#include "shim/link.h"
+
+namespace simbench::shim {
+
+inline bool is_stream(int fd) { return kind_of(fd) == Kind::kStream; }
+
+// As the calls without "stream_".
+int stream_connect(int fd, const Address& address);
+int stream_accept(int fd, sockaddr* name, socklen_t* size, int flags);
+ssize_t stream_send(int fd, const msghdr& message, int flags);
+ssize_t stream_receive(int fd, msghdr& message, int flags);
+
+}  // namespace simbench::shim
+
+#endif  // SIMBENCH_SHIM_STREAMS_H_

@@ -1,0 +1,319 @@
+#include "sim/programs/host_streams.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <boost/endian/conversion.hpp>
+#include <cerrno>
+#include <utility>
+
+#include "sim/programs/host_network.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr std::size_t kHeadBytes = 5;  // the kind, the sender's port, the receiver's
+constexpr std::uint16_t kFirstFreeStreamPort = 32'768;
+constexpr std::uint16_t kLastFreeStreamPort = 60'999;
+
+Bytes credit_of(std::size_t bytes) {
+  Bytes data(4);
+  boost::endian::store_big_u32(reinterpret_cast<unsigned char*>(data.data()),
+                               static_cast<std::uint32_t>(bytes));
+  return data;
+}
+
+}  // namespace
+
+std::uint32_t HostStreams::own_address() const { return HostNetwork::address_of(host_.id()); }
+
+bool HostStreams::is_own(std::uint32_t address) const {
+  return address == own_address() || address >> 24 == 127;
+}
+
+std::shared_ptr<Stream> HostStreams::open(std::function<void()> on_change) {
+  auto stream = std::make_shared<Stream>();
+  stream->on_change = std::move(on_change);
+  streams_.push_back(stream);
+  return stream;
+}
+
+int HostStreams::bind(Stream& stream, shim::Address address) {
+  if (stream.local.port != 0 || stream.state != Stream::State::kFresh) return EINVAL;
+  if (address.host != 0 && !is_own(address.host)) return EADDRNOTAVAIL;
+  if (address.port == 0) {
+    stream.local.host = address.host;
+    return bind_somewhere(stream);
+  }
+  const bool is_taken = std::ranges::any_of(streams_, [&](const std::shared_ptr<Stream>& each) {
+    const bool is_same_host =
+        each->local.host == 0 || address.host == 0 || each->local.host == address.host;
+    // Connections that came through a listener have its port.
+    return each->local.port == address.port && is_same_host && each->peer.port == 0;
+  });
+  if (is_taken) return EADDRINUSE;
+  stream.local = address;
+  return 0;
+}
+
+int HostStreams::bind_somewhere(Stream& stream) {
+  for (int tried = 0; tried <= kLastFreeStreamPort - kFirstFreeStreamPort; ++tried) {
+    const std::uint16_t port = next_port_;
+    next_port_ =
+        port == kLastFreeStreamPort ? kFirstFreeStreamPort : static_cast<std::uint16_t>(port + 1);
+    const bool is_free = std::ranges::none_of(
+        streams_, [port](const std::shared_ptr<Stream>& each) { return each->local.port == port; });
+    if (!is_free) continue;
+    stream.local.port = port;
+    return 0;
+  }
+  return EADDRINUSE;
+}
+
+int HostStreams::listen(Stream& stream, std::size_t backlog) {
+  if (stream.state == Stream::State::kListening) {
+    stream.backlog = std::max<std::size_t>(backlog, 1);
+    return 0;
+  }
+  if (stream.state != Stream::State::kFresh) return EINVAL;
+  if (stream.local.port == 0) {
+    const int error = bind_somewhere(stream);
+    if (error != 0) return error;
+  }
+  stream.state = Stream::State::kListening;
+  stream.backlog = std::max<std::size_t>(backlog, 1);
+  return 0;
+}
+
+std::shared_ptr<Stream> HostStreams::accept(Stream& listener, std::function<void()> on_change) {
+  if (listener.accepted.empty()) return nullptr;
+  std::shared_ptr<Stream> stream = std::move(listener.accepted.front());
+  listener.accepted.pop_front();
+  stream->on_change = std::move(on_change);
+  return stream;
+}
+
+Task<int> HostStreams::connect(Stream& stream, shim::Address peer) {
+  if (stream.state == Stream::State::kConnecting) co_return EALREADY;
+  if (stream.state == Stream::State::kOpen) co_return EISCONN;
+  if (stream.state != Stream::State::kFresh) co_return ECONNABORTED;
+  const std::uint32_t number = peer.host - HostNetwork::kFirstAddress;
+  if (!is_own(peer.host) && number >= hosts_) co_return ENETUNREACH;
+  if (stream.local.port == 0) {
+    const int error = bind_somewhere(stream);
+    if (error != 0) co_return error;
+  }
+  stream.local.host = peer.host >> 24 == 127 ? peer.host : own_address();
+  stream.peer = peer;
+  stream.state = Stream::State::kConnecting;
+  co_await transmit(stream, SegmentKind::kOpen);
+  co_return stream.state == Stream::State::kConnecting ? EINPROGRESS
+                                                       : std::exchange(stream.error, 0);
+}
+
+Task<int> HostStreams::write(Stream& stream, std::span<const std::byte> data,
+                             std::size_t& written) {
+  written = 0;
+  if (stream.error != 0) co_return std::exchange(stream.error, 0);
+  if (stream.has_ended || stream.state == Stream::State::kClosed) co_return EPIPE;
+  if (stream.state == Stream::State::kConnecting) co_return EAGAIN;
+  if (stream.state != Stream::State::kOpen) co_return ENOTCONN;
+  while (written < data.size() && stream.on_the_way < kWindow &&
+         stream.state == Stream::State::kOpen) {
+    const std::size_t size =
+        std::min({data.size() - written, kMostSegment, kWindow - stream.on_the_way});
+    const auto piece = data.subspan(written, size);
+    stream.on_the_way += size;
+    written += size;
+    co_await transmit(stream, SegmentKind::kData, Bytes(piece.begin(), piece.end()));
+  }
+  co_return written == 0 && !data.empty() ? EAGAIN : 0;
+}
+
+Task<int> HostStreams::read(Stream& stream, std::size_t most, bool leaves_it, Bytes& data) {
+  data.clear();
+  if (stream.input.empty()) {
+    if (stream.error != 0) co_return std::exchange(stream.error, 0);
+    if (stream.peer_ended || stream.state == Stream::State::kClosed) co_return 0;
+    const bool may_come =
+        stream.state == Stream::State::kOpen || stream.state == Stream::State::kConnecting;
+    co_return may_come ? EAGAIN : ENOTCONN;
+  }
+  const auto size = static_cast<std::ptrdiff_t>(std::min(most, stream.input.size()));
+  data.assign(stream.input.begin(), stream.input.begin() + size);
+  if (leaves_it) co_return 0;
+  stream.input.erase(stream.input.begin(), stream.input.begin() + size);
+  stream.to_credit += data.size();
+  co_await give_credit(stream, kWindow / 2);
+  co_return 0;
+}
+
+Task<void> HostStreams::give_credit(Stream& stream, std::size_t at_least) {
+  if (stream.to_credit < at_least || stream.state != Stream::State::kOpen) co_return;
+  const std::size_t bytes = std::exchange(stream.to_credit, 0);
+  co_await transmit(stream, SegmentKind::kCredit, credit_of(bytes));
+}
+
+Task<int> HostStreams::shut_down(Stream& stream, int how) {
+  if (stream.state != Stream::State::kOpen) co_return ENOTCONN;
+  if (how != SHUT_WR) stream.peer_ended = true;
+  if (how == SHUT_RD || stream.has_ended) co_return 0;
+  stream.has_ended = true;
+  co_await transmit(stream, SegmentKind::kEnd);
+  co_return 0;
+}
+
+Task<void> HostStreams::close(std::shared_ptr<Stream> stream) {
+  std::erase(streams_, stream);
+  stream->on_change = [] {};
+  for (const std::shared_ptr<Stream>& each : stream->accepted) {
+    std::erase(streams_, each);
+    co_await transmit(*each, SegmentKind::kRefused);
+  }
+  const bool is_connected =
+      stream->state == Stream::State::kOpen || stream->state == Stream::State::kConnecting;
+  stream->state = Stream::State::kClosed;
+  if (!is_connected) co_return;
+  // What was not read is lost, and the peer hears of it.
+  if (!stream->input.empty()) {
+    co_await transmit(*stream, SegmentKind::kRefused);
+  } else if (!stream->has_ended) {
+    co_await transmit(*stream, SegmentKind::kEnd);
+  }
+}
+
+int HostStreams::readiness(const Stream& stream) {
+  switch (stream.state) {
+    case Stream::State::kFresh:
+      return POLLOUT | POLLHUP;
+    case Stream::State::kListening:
+      return stream.accepted.empty() ? 0 : POLLIN;
+    case Stream::State::kConnecting:
+      return 0;
+    case Stream::State::kClosed:
+      return POLLIN | POLLOUT | POLLHUP | (stream.error != 0 ? POLLERR : 0);
+    case Stream::State::kOpen:
+      break;
+  }
+  const int input = !stream.input.empty() || stream.peer_ended ? POLLIN : 0;
+  const int output = stream.on_the_way < kWindow || stream.has_ended ? POLLOUT : 0;
+  const int end =
+      (stream.peer_ended ? POLLRDHUP : 0) | (stream.peer_ended && stream.has_ended ? POLLHUP : 0);
+  return input | output | end;
+}
+
+std::shared_ptr<Stream> HostStreams::find(const shim::Address& local,
+                                          const shim::Address& peer) const {
+  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<Stream>& each) {
+    return each->local.port == local.port && each->peer.port == peer.port &&
+           each->peer.host == peer.host;
+  });
+  return found == streams_.end() ? nullptr : *found;
+}
+
+Task<void> HostStreams::transmit(const Stream& stream, SegmentKind kind, Bytes data) {
+  return transmit(
+      Segment{.kind = kind, .from = stream.local, .to = stream.peer, .data = std::move(data)});
+}
+
+Task<void> HostStreams::transmit(Segment segment) {
+  if (is_own(segment.to.host)) {
+    co_await take(std::move(segment));
+    co_return;
+  }
+  Bytes message(kHeadBytes);
+  auto* head = reinterpret_cast<unsigned char*>(message.data());
+  head[0] = static_cast<unsigned char>(segment.kind);
+  boost::endian::store_big_u16(head + 1, segment.from.port);
+  boost::endian::store_big_u16(head + 3, segment.to.port);
+  message.insert(message.end(), segment.data.begin(), segment.data.end());
+  const PeerId peer = segment.to.host - HostNetwork::kFirstAddress;
+  MessageChannel& channel = host_.open_channel(peer, Transport::kStream);
+  co_await channel.send(std::move(message));
+}
+
+Task<void> HostStreams::pump(PeerId peer) {
+  MessageChannel& channel = host_.open_channel(peer, Transport::kStream);
+  for (;;) {
+    std::optional<ReceivedMessage> message =
+        co_await channel.receive(host_.steady_clock().now() + kIdle);
+    if (!message || message->bytes.size() < kHeadBytes) continue;
+    const Bytes& bytes = message->bytes;
+    const auto* head = reinterpret_cast<const unsigned char*>(bytes.data());
+    Segment segment{
+        .kind = static_cast<SegmentKind>(head[0]),
+        .from = {.host = HostNetwork::address_of(peer),
+                 .port = boost::endian::load_big_u16(head + 1),
+                 .reserved = 0},
+        .to = {.host = own_address(), .port = boost::endian::load_big_u16(head + 3), .reserved = 0},
+        .data = Bytes(bytes.begin() + kHeadBytes, bytes.end())};
+    co_await take(std::move(segment));
+  }
+}
+
+Task<void> HostStreams::take(Segment segment) {
+  if (segment.kind == SegmentKind::kOpen) {
+    co_await take_opening(std::move(segment));
+    co_return;
+  }
+  const std::shared_ptr<Stream> stream = find(segment.to, segment.from);
+  if (stream == nullptr) {
+    // Nobody is there to read it.
+    if (segment.kind != SegmentKind::kData && segment.kind != SegmentKind::kOpened) co_return;
+    co_await transmit(
+        Segment{.kind = SegmentKind::kRefused, .from = segment.to, .to = segment.from});
+    co_return;
+  }
+  if (!apply(*stream, segment)) stream->state = Stream::State::kClosed;
+  stream->on_change();
+}
+
+bool HostStreams::apply(Stream& stream, Segment& segment) {
+  switch (segment.kind) {
+    case SegmentKind::kOpened:
+      stream.state = Stream::State::kOpen;
+      return true;
+    case SegmentKind::kData:
+      stream.input.insert(stream.input.end(), segment.data.begin(), segment.data.end());
+      return true;
+    case SegmentKind::kEnd:
+      stream.peer_ended = true;
+      return true;
+    case SegmentKind::kCredit:
+      if (segment.data.size() == 4) {
+        const std::size_t read = boost::endian::load_big_u32(
+            reinterpret_cast<const unsigned char*>(segment.data.data()));
+        stream.on_the_way -= std::min(read, stream.on_the_way);
+      }
+      return true;
+    case SegmentKind::kRefused:
+    case SegmentKind::kOpen:
+      break;
+  }
+  stream.error = stream.state == Stream::State::kConnecting ? ECONNREFUSED : ECONNRESET;
+  return false;
+}
+
+Task<void> HostStreams::take_opening(Segment segment) {
+  const auto found = std::ranges::find_if(streams_, [&](const std::shared_ptr<Stream>& each) {
+    return each->state == Stream::State::kListening && each->local.port == segment.to.port &&
+           (each->local.host == 0 || each->local.host == segment.to.host) &&
+           each->accepted.size() < each->backlog;
+  });
+  const bool is_refused = found == streams_.end();
+  if (!is_refused) {
+    const std::shared_ptr<Stream> listener = *found;
+    const std::shared_ptr<Stream> stream = open([] {});
+    stream->state = Stream::State::kOpen;
+    stream->local = segment.to;
+    stream->peer = segment.from;
+    listener->accepted.push_back(stream);
+    listener->on_change();
+  }
+  co_await transmit(Segment{.kind = is_refused ? SegmentKind::kRefused : SegmentKind::kOpened,
+                            .from = segment.to,
+                            .to = segment.from});
+}
+
+}  // namespace simbench::sim

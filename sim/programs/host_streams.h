@@ -1,0 +1,114 @@
+// TCP on the simulated network, as the programs of one host have it.
+//
+// All connections between two hosts share the port's stream to that host (algorithms/ports/host.h),
+// in segments of at most 1448 bytes with five bytes of head beside those that the network counts
+// anyway. What is complete, in order and delayed there is so here; the segments that
+// acknowledge are not sent, but for credit: a receiver holds at most 256 KiB that its program has
+// not read, and says what room there is as the program reads.
+//
+// A connection within the host takes no time. Not modelled: time-outs of connecting and of idle
+// connections, urgent data, a state after closing (a closed port is free at once). A listener whose
+// queue is full refuses.
+//
+// The calls return an errno, or 0. pump(peer) is the receiving half, a coroutine for each peer.
+//
+// Source: tcp(7), listen(2), accept(2), shutdown(2); RFC 9293.
+//
+//   HostStreams streams(host, 6);
+//   auto stream = streams.open([] {});
+//   const int error = co_await streams.connect(*stream, {.host = kMaster, .port = 80});
+//   // EINPROGRESS; ready for writing when it is connected, or has failed with stream->error
+#ifndef SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
+#define SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "algorithms/ports/host.h"
+#include "shim/protocol.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+
+struct Stream {
+  enum class State { kFresh, kListening, kConnecting, kOpen, kClosed };
+
+  State state = State::kFresh;
+  shim::Address local{};
+  shim::Address peer{};
+  int error = 0;            // SO_ERROR
+  bool has_ended = false;   // nothing more is written
+  bool peer_ended = false;  // nothing more comes
+  std::deque<std::byte> input{};
+  std::size_t to_credit = 0;   // read, and not told to the peer yet
+  std::size_t on_the_way = 0;  // written, and not read by the peer as far as is known
+  std::size_t backlog = 0;
+  std::deque<std::shared_ptr<Stream>> accepted{};  // connected, and waiting for accept()
+  std::function<void()> on_change{};
+};
+
+class HostStreams {
+ public:
+  static constexpr std::size_t kMostSegment = 1448;
+  static constexpr std::size_t kWindow = std::size_t{256} << 10;
+
+  // The host must outlive this.
+  HostStreams(SimHost& host, std::size_t hosts) : host_(host), hosts_(hosts) {}
+
+  // Streams are known here until they are closed. `on_change` is called whenever a wait for the
+  // stream should look again.
+  std::shared_ptr<Stream> open(std::function<void()> on_change);
+  int bind(Stream& stream, shim::Address address);
+  int listen(Stream& stream, std::size_t backlog);
+  // Null if there is none.
+  std::shared_ptr<Stream> accept(Stream& listener, std::function<void()> on_change);
+  Task<int> connect(Stream& stream, shim::Address peer);
+  // Takes from the front of `data` what there is room for: EAGAIN if there is none.
+  Task<int> write(Stream& stream, std::span<const std::byte> data, std::size_t& written);
+  // At most `most` bytes; none at the end of the stream. EAGAIN if there is nothing yet.
+  Task<int> read(Stream& stream, std::size_t most, bool leaves_it, Bytes& data);
+  // Ends the direction towards the peer, the other, or both (SHUT_WR, SHUT_RD, SHUT_RDWR).
+  Task<int> shut_down(Stream& stream, int how);
+  Task<void> close(std::shared_ptr<Stream> stream);
+
+  // As of poll().
+  static int readiness(const Stream& stream);
+
+  // Receives from a peer, for ever.
+  Task<void> pump(PeerId peer);
+
+ private:
+  enum class SegmentKind : std::uint8_t { kOpen, kOpened, kRefused, kData, kEnd, kCredit };
+  struct Segment {
+    SegmentKind kind{};
+    shim::Address from{};
+    shim::Address to{};
+    Bytes data{};
+  };
+
+  std::uint32_t own_address() const;
+  bool is_own(std::uint32_t address) const;
+  int bind_somewhere(Stream& stream);
+  std::shared_ptr<Stream> find(const shim::Address& local, const shim::Address& peer) const;
+  Task<void> transmit(Segment segment);
+  Task<void> transmit(const Stream& stream, SegmentKind kind, Bytes data = {});
+  Task<void> take(Segment segment);
+  Task<void> take_opening(Segment segment);
+  // Whether the stream is still connected after it.
+  static bool apply(Stream& stream, Segment& segment);
+  Task<void> give_credit(Stream& stream, std::size_t at_least);
+
+  SimHost& host_;
+  std::size_t hosts_;
+  std::vector<std::shared_ptr<Stream>> streams_;
+  std::uint16_t next_port_ = 32'768;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
