@@ -109,9 +109,8 @@ itimerval to_itimerval(const itimerspec& setting) {
 
 // timer_create()'s, or null with errno.
 SignalTimer* find_timer(timer_t id) {
-  const auto number = reinterpret_cast<std::intptr_t>(id);
-  if (number > kIntervalTimer && number < kMostTimers && timers[number].exists) {
-    return &timers[number];
+  for (SignalTimer& timer : timers) {
+    if (&timer == id && timer.exists) return &timer;
   }
   errno = EINVAL;
   return nullptr;
@@ -232,7 +231,7 @@ SIMBENCH_CALL int timer_create(clockid_t clock, sigevent* event, timer_t* id) {
     if (event != nullptr) value = event->sigev_value;
     timers[number] = {
         .exists = true, .signal = signal, .clock = clock, .value = value, .overrun = 0};
-    *id = reinterpret_cast<timer_t>(static_cast<std::intptr_t>(number));
+    *id = &timers[number];
     return 0;
   }
   errno = EAGAIN;

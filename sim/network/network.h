@@ -175,7 +175,7 @@ class Network : private EventHandler {
   };
   // As Linux' tcp_retries2.
   static constexpr int kMaxRetransmissions = 15;
-  enum EventKind : std::uint16_t { kAtSwitch, kGroupAtSwitch, kArrival, kAckDue, kAckArrival };
+  enum EventKind : std::uint16_t { kAtSwitch, kArrival, kAckDue, kAckArrival, kGroupAtSwitch };
   // A message to a group on its way to the last switch; its segment has no path yet.
   struct GroupMessage {
     Segment segment;

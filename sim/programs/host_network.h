@@ -133,8 +133,7 @@ class HostNetwork {
   Task<void> send_to_peer(UdpSocket& socket, Leaving leaving);
   Task<void> send_to_group(UdpSocket& socket, std::uint32_t group, Leaving leaving);
   // The message has left, with this stamp by software.
-  void keep_stamps(UdpSocket& socket, unsigned wanted, std::optional<HostTime> left,
-                   Leaving leaving);
+  void keep_stamps(UdpSocket& socket, std::optional<HostTime> left, Leaving leaving);
   static void queue_departure(UdpSocket& socket, QueuedDatagram datagram);
   void deliver(const QueuedDatagram& datagram);
   void deliver_to_all(const QueuedDatagram& datagram);

@@ -70,8 +70,8 @@ json full_document() {
   polls["calibrated_asymmetry_ms"] = 0.25;
   polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
   document["pipelines"][0]["host_sync"] = {{"program",
-                                            {{"master", {{"chronyd", "-d"}}},
-                                             {"slave", {{"chronyd", "-d"}}},
+                                            {{"master", json::array({json::array({"chronyd", "-d"})})},
+                                             {"slave", json::array({json::array({"chronyd", "-d"})})},
                                              {"files", {{"a.conf", "local"}}},
                                              {"environment", {{"A", "b"}}},
                                              {"run_before_capture_s", 60},

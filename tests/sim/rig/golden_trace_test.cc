@@ -116,6 +116,7 @@ const std::vector<Golden>& goldens() {
       {"leaderboard_gathering", "yoon2021_both", 6378, 0xa9b2627da3731dfe},
       {"leaderboard_lan", "host.ptp_e2e_hardware", 16031, 0x71ac7cd8459ee96d},
       {"leaderboard_lan_ideal_calibration", "host.ptp_e2e_hardware", 16031, 0x16565f708c6cb348},
+      {"leaderboard_programs", "chrony", 9990, 0x59b990f54fb0fcb5},
       {"18cam_6host_45fps", "ntp_w32time", 2979, 0x6854e19e118c9bd3},
   };
   return all;

@@ -1,0 +1,115 @@
+// Pipelines of real programs through the real command line: --program and --program-log.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.h"
+
+namespace simbench {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class ProgramsCommand : public ProgramTest {
+ protected:
+  // Ten minutes of three hosts: chrony's model, and the programs of this file.
+  ProgramResult clocks(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"clocks",      "--scenario",   "6host_star",
+                                          "--set",       "/hosts/count=3", "--set",
+                                          "/cameras/count=3", "--seeds",  "1",
+                                          "--duration-s", "310",         "--pipelines",
+                                          "free_running"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  void write(const std::string& name, const json& program) const {
+    file(name, json{{"host_sync", {{"program", program}}}}.dump());
+  }
+  // What the row of a command says of it.
+  std::string said_of(const std::string& word) const {
+    write("one.json", {{"master", json::array({json::array({"/bin/true"})})},
+                       {"slave", json::array({json::array({word})})}});
+    const ProgramResult result = clocks({"--program", "one=one.json"});
+    EXPECT_EQ(result.status, 0) << "the other row goes on";
+    EXPECT_THAT(result.out, HasSubstr("\nfree_running "));
+    return result.err + result.out;
+  }
+};
+
+// A daemon of plain Python, as a user would write it, found beside its own file.
+TEST_F(ProgramsCommand, ThePythonExampleSynchronisesCameras) {
+  const std::string example = std::string(SIMBENCH_SOURCE_DIR) + "/examples/cristian.json";
+  const ProgramResult result =
+      run({"run", "--scenario", "9cam_3host_30fps_azure_kinect", "--seeds", "1", "--pipelines",
+           "k4a", "--program", "cristian=" + example, "--program-log", "logs", "--set",
+           "/timeline/frames=30", "--format", "json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json rows = json::parse(result.out)["rows"];
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1]["pipeline"], "cristian");
+  EXPECT_EQ(rows[1]["host_sync"], "program python3");
+  EXPECT_EQ(rows[1]["notes"], json::array());
+  EXPECT_LT(rows[1]["host_error_ms"]["median"].get<double>(), 1);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "logs/cristian/seed1/host1/0_python3.log"));
+}
+
+TEST_F(ProgramsCommand, ABuiltInNameIsARowOfTheLeaderboard) {
+  const ProgramResult result = clocks({"--program", "chronyd"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("\nchronyd "), HasSubstr("chronyd = program chronyd"),
+                                Not(HasSubstr("What went wrong"))));
+}
+
+TEST_F(ProgramsCommand, AModelBesideItsProgramHasTheGap) {
+  const ProgramResult result = run({"clocks", "--scenario", "leaderboard_programs", "--pipelines",
+                                    "chrony,chronyd", "--seeds", "1", "--duration-s", "310"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("\nPrograms beside their models\n"));
+}
+
+TEST_F(ProgramsCommand, WhatCannotRunIsOneLineAndTheOtherRowsGoOn) {
+  EXPECT_THAT(said_of("no_such_daemon"), HasSubstr("pipeline one: no_such_daemon is not there"));
+  EXPECT_THAT(said_of("./daemon"), HasSubstr("a relative path"));
+  EXPECT_THAT(said_of("{mastr}"), HasSubstr("found the placeholder {mastr}, allowed: {master}"));
+}
+
+TEST_F(ProgramsCommand, AProgramThatEndsIsANoteOfItsRow) {
+  EXPECT_THAT(said_of("/bin/false"),
+              AllOf(HasSubstr("What went wrong"), HasSubstr("false: exited with status 1")));
+}
+
+TEST_F(ProgramsCommand, FilesThatAreNoPipelines) {
+  const auto refusal = [this](const std::string& text) {
+    file("bad.json", text);
+    const ProgramResult result = clocks({"--program", "bad=bad.json"});
+    EXPECT_EQ(result.status, 2) << text;
+    return result.err;
+  };
+  EXPECT_THAT(refusal("{"), StartsWith("error: --program bad=bad.json: "));
+  EXPECT_THAT(refusal("{}"), HasSubstr("found no \"host_sync\""));
+  EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [], "slave": [["a"]]}}})"),
+              HasSubstr("/host_sync/program/master"));
+  EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
+                          "files": {"../a": "b"}}}})"),
+              HasSubstr("allowed: a file name without \"/\""));
+  EXPECT_THAT(refusal(R"({"host_sync": {"program": {"master": [["a"]], "slave": [["a"]],
+                          "environment": {"LD_PRELOAD": "b"}}}})"),
+              HasSubstr("LD_"));
+  const ProgramResult missing = clocks({"--program", "bad=there_is_none.json"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, HasSubstr("there_is_none.json"));
+  const ProgramResult unknown = clocks({"--program", "chrond"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("chronyd, chronyd_lan"));
+}
+
+}  // namespace
+}  // namespace simbench

@@ -1,0 +1,214 @@
+// Debian's chronyd, ntpd and ptp4l, unmodified, in the simulated world: the limits that their own
+// test suites state.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenarios/loader.h"
+#include "sim/programs/find_program.h"
+#include "sim/programs/program_file.h"
+#include "sim/programs/program_sync.h"
+#include "tests/sim/host/service_world.h"
+
+namespace simbench::sim {
+namespace {
+
+using Command = scenarios::HostPrograms::Command;
+using testing::IsEmpty;
+
+constexpr const char* kChronydEnd = "\ncmdport 0\npidfile {files}/chronyd.pid\nbindcmdaddress /\n";
+
+// How a slave's clock did, once it was within a bound for good.
+struct Course {
+  double settled_s = 0;  // when the last error beyond the bound was
+  double max_s = 0;      // from then on
+  double rms_s = 0;
+};
+
+class Daemons : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  // The settings of a pipeline whose programs lie among the unpacked packages.
+  ProgramSettings settings(std::vector<Command> master, std::vector<Command> slave,
+                           std::map<std::string, std::string> files) {
+    ProgramSettings all{.pipeline = "daemons",
+                        .programs = {.master = std::move(master),
+                                     .slave = std::move(slave),
+                                     .files = std::move(files)},
+                        .shim = SIMBENCH_SHIM,
+                        .log_folder = folder_};
+    for (const auto* role : {&all.programs.master, &all.programs.slave}) {
+      for (const Command& command : *role) {
+        const FoundProgram program = find_program(command.front(), SIMBENCH_PACKAGES);
+        all.paths[command.front()] = program.words.front();
+        if (!program.library_path.empty()) {
+          all.programs.environment["LD_LIBRARY_PATH"] = program.library_path;
+        }
+      }
+    }
+    return all;
+  }
+
+  ProgramSettings chronyd(const std::string& client) {
+    const auto command = [](const char* file) {
+      return Command{"chronyd", "-d", "-f", std::string("{files}/") + file};
+    };
+    return settings({command("server.conf")}, {command("client.conf")},
+                    {{"server.conf", std::string("local stratum 1\nallow") + kChronydEnd},
+                     {"client.conf", client + kChronydEnd}});
+  }
+
+  // Reads the clocks once a second for so long; `bound_s` is what "settled" means.
+  std::vector<Course> run(ProgramSettings programs, const scenarios::Scenario& scenario,
+                          double duration_s, double bound_s) {
+    programs.hosts = static_cast<std::size_t>(scenario.hosts.count);
+    ProgramSync sync(std::move(programs));
+    ServiceWorld world(scenario, 1);
+    world.start(sync);
+    std::vector<std::vector<double>> errors_s(static_cast<std::size_t>(scenario.hosts.count));
+    world.watch(duration_s, 1, [&](double) {
+      for (std::size_t host = 1; host < errors_s.size(); ++host) {
+        errors_s[host].push_back(world.error_s(host));
+      }
+    });
+    EXPECT_THAT(sync.notes(), IsEmpty());
+    std::vector<Course> courses;
+    for (std::size_t host = 1; host < errors_s.size(); ++host) {
+      courses.push_back(course_of(errors_s[host], bound_s));
+    }
+    return courses;
+  }
+
+  // What all programs of all hosts have printed.
+  std::string logs() const {
+    std::vector<std::string> paths;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      if (entry.path().extension() == ".log") paths.push_back(entry.path().string());
+    }
+    std::ranges::sort(paths);
+    std::ostringstream all;
+    for (const std::string& path : paths) all << std::ifstream(path).rdbuf();
+    return all.str();
+  }
+
+  std::string folder_ = testing::TempDir() + "/daemons" +
+                        testing::UnitTest::GetInstance()->current_test_info()->name();
+
+ private:
+  static Course course_of(const std::vector<double>& errors_s, double bound_s) {
+    Course course;
+    std::size_t begin = 0;
+    for (std::size_t at = 0; at < errors_s.size(); ++at) {
+      if (std::abs(errors_s[at]) > bound_s) begin = at + 1;
+    }
+    course.settled_s = static_cast<double>(begin);
+    double sum = 0;
+    for (std::size_t at = begin; at < errors_s.size(); ++at) {
+      course.max_s = std::max(course.max_s, std::abs(errors_s[at]));
+      sum += errors_s[at] * errors_s[at];
+    }
+    course.rms_s = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(
+                                       1, errors_s.size() - begin)));
+    return course;
+  }
+};
+
+// chrony's simulation tests: in sync within 120 to 210 s, then at most 1 ms, RMS 0.3 ms.
+TEST_F(Daemons, ChronydMeetsTheLimitsOfItsSimulationTests) {
+  const std::vector<Course> slaves =
+      run(chronyd("server {master}"), scenarios::load_scenario("6host_star"), 10'000, 1e-3);
+  ASSERT_EQ(slaves.size(), 5U);
+  for (const Course& slave : slaves) {
+    EXPECT_GE(slave.settled_s, 120);
+    EXPECT_LE(slave.settled_s, 210);
+    EXPECT_LE(slave.max_s, 1e-3);
+    EXPECT_LE(slave.rms_s, 3e-4);
+    EXPECT_GT(slave.rms_s, 0);
+  }
+}
+
+// linuxptp's: in sync within 10 to 40 s, then RMS 1 us and at most 2 us, by hardware stamps over
+// quiet links.
+TEST_F(Daemons, Ptp4lMeetsTheLimitsOfItsTestSuite) {
+  const Command ptp4l{"ptp4l", "-i", "{interface}", "-m", "-q", "-f", "{files}/ptp4l.conf"};
+  Command slave = ptp4l;
+  slave.emplace_back("-s");
+  const Command to_card{"phc2sys", "-s", "CLOCK_REALTIME", "-c", "{interface}", "-O", "0", "-m"};
+  const Command from_card{"phc2sys", "-s", "{interface}", "-c", "CLOCK_REALTIME",
+                          "-w",      "-z", "{files}/ptp4l", "-O", "0", "-m"};
+  const scenarios::Scenario quiet = scenarios::load_scenario(
+      "6host_star", {{"/hosts/nic/hardware_stamps", "true"},
+                     {"/network/latency_exponential_ms", "0.00001"}});
+  const std::vector<Course> slaves =
+      run(settings({ptp4l, to_card}, {slave, from_card},
+                   {{"ptp4l.conf", "[global]\nuds_address {files}/ptp4l\n"}}),
+          quiet, 600, 2e-6);
+  for (const Course& each : slaves) {
+    EXPECT_GE(each.settled_s, 10);
+    EXPECT_LE(each.settled_s, 40);
+    EXPECT_LE(each.max_s, 2e-6);
+    EXPECT_LE(each.rms_s, 1e-6);
+    EXPECT_GT(each.rms_s, 0);
+  }
+}
+
+// It steps, measures its frequency for 300 s, and is within ntpd's own 128 ms then.
+TEST_F(Daemons, NtpdSynchronises) {
+  const auto command = [](const char* file) {
+    return Command{"ntpd", "-n", "-c", std::string("{files}/") + file};
+  };
+  const std::vector<Course> slaves =
+      run(settings({command("server.conf")}, {command("client.conf")},
+                   {{"server.conf", "tos orphan 1 orphanwait 1\n"},
+                    {"client.conf", "server {master} iburst\n"}}),
+          scenarios::load_scenario("6host_star"), 3600, 5e-3);
+  for (const Course& slave : slaves) {
+    EXPECT_LE(slave.settled_s, 600);
+    EXPECT_LE(slave.rms_s, 2e-3);
+    EXPECT_GT(slave.rms_s, 0);
+  }
+}
+
+TEST_F(Daemons, TheSameSeedGivesTheSameBytesInAnyFolder) {
+  const scenarios::Scenario star = scenarios::load_scenario("6host_star");
+  const std::vector<Course> first = run(chronyd("server {master} iburst"), star, 600, 1e-3);
+  const std::string said = logs();
+  std::filesystem::remove_all(folder_);
+  folder_ += "_of_another_name";
+  const std::vector<Course> second = run(chronyd("server {master} iburst"), star, 600, 1e-3);
+  EXPECT_EQ(logs(), said);
+  EXPECT_THAT(said, testing::HasSubstr("Selected source 10.0.0.1"));
+  for (std::size_t slave = 0; slave < first.size(); ++slave) {
+    EXPECT_EQ(first[slave].rms_s, second[slave].rms_s);
+  }
+}
+
+// Its own message is the note's.
+TEST_F(Daemons, AConfigurationThatADaemonRefusesIsSaidInItsWords) {
+  ProgramSettings programs = chronyd("servr {master}");
+  programs.hosts = 6;
+  ProgramSync sync(std::move(programs));
+  ServiceWorld world(scenarios::load_scenario("6host_star"), 1);
+  world.start(sync);
+  world.run_until(10);
+  // Clocks differ, so the beginnings of their words may.
+  ASSERT_THAT(sync.notes(), testing::Not(IsEmpty()));
+  EXPECT_THAT(sync.notes(),
+              testing::Each(testing::AllOf(
+                  testing::StartsWith("host"), testing::HasSubstr(": chronyd: exited"),
+                  testing::HasSubstr("Invalid directive at line 1 in file ./client.conf"))));
+}
+
+}  // namespace
+}  // namespace simbench::sim
