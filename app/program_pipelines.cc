@@ -2,13 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "evaluation/run/pipeline_choice.h"
 #include "hardware/node/node_programs.h"
 #include "processes/placeholders.h"
+#include "scenarios/document.h"
+#include "scenarios/loader.h"
 #include "sim/programs/find_program.h"
 #include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
@@ -64,6 +72,23 @@ void find(HostPrograms& programs, std::map<std::string, std::string>& paths) {
   }
 }
 
+// How long a program may compute, for those who stop it in a debugger; nothing: as usual.
+std::optional<std::chrono::milliseconds> patience() {
+  constexpr int kLongest = 86'400;
+  const char* const text = std::getenv(kPatienceVariable);
+  if (text == nullptr) return std::nullopt;
+  const std::string_view digits = text;
+  int seconds = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+  if (error != std::errc() || end != digits.data() + digits.size() || seconds < 1 ||
+      seconds > kLongest) {
+    throw scenarios::InputError(
+        fmt::format("{}: found '{}', allowed: a whole number of seconds from 1 to {}",
+                    kPatienceVariable, scenarios::shown_text(text), kLongest));
+  }
+  return std::chrono::seconds(seconds);
+}
+
 evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
                                   const scenarios::Pipeline& pipeline,
                                   const ProgramOptions& options) {
@@ -71,6 +96,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
                                 .programs = *pipeline.programs,
                                 .shim = "",
                                 .log_folder = options.log_folder,
+                                .patience = patience(),
                                 .hosts = static_cast<std::size_t>(scenario.hosts.count)};
   std::string problem;
   try {

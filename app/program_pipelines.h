@@ -17,6 +17,10 @@
 
 namespace simbench::app {
 
+// In the environment: how many seconds a program may compute between two requests, for those who
+// stop it in a debugger.
+inline constexpr char kPatienceVariable[] = "SIMBENCH_PATIENCE_S";
+
 struct ProgramOptions {
   // Where the hosts' folders stay, in PIPELINE/seed1/host0, with what the programs printed; empty:
   // nowhere.

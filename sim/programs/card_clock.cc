@@ -30,32 +30,34 @@ Task<int> CardClock::set(std::int64_t ns) {
   co_return 0;
 }
 
+int CardClock::refusal(const timex& request) const {
+  if (host_.nic() == nullptr) return EOPNOTSUPP;
+  if ((request.modes & ADJ_SETOFFSET) != 0) {
+    const long parts = (request.modes & ADJ_NANO) != 0 ? 1'000'000'000 : 1'000'000;
+    const bool is_time = request.time.tv_usec >= 0 && request.time.tv_usec < parts;
+    return is_time && std::abs(request.time.tv_sec / 2) <= kMostCardSeconds / 2 ? 0 : EINVAL;
+  }
+  if ((request.modes & ADJ_FREQUENCY) != 0) {
+    return std::abs(static_cast<double>(request.freq) * kPpbPerUnit) <= shim::kMostCardRate
+               ? 0
+               : ERANGE;
+  }
+  return request.modes == 0 ? 0 : EOPNOTSUPP;
+}
+
 Task<KernelClock::Answer> CardClock::adjust(timex request) {
-  KernelClock::Answer answer{.state = 0, .error = 0, .now = request};
-  NicClock* clock = host_.nic();
-  if (clock == nullptr) {
-    answer.error = EOPNOTSUPP;
-  } else if ((request.modes & ADJ_SETOFFSET) != 0) {
+  KernelClock::Answer answer{.state = 0, .error = refusal(request), .now = request};
+  if (answer.error != 0) co_return answer;
+  NicClock& clock = *host_.nic();
+  if ((request.modes & ADJ_SETOFFSET) != 0) {
     const std::int64_t unit_ns = (request.modes & ADJ_NANO) != 0 ? 1 : 1'000;
-    const bool is_time = request.time.tv_usec >= 0 && request.time.tv_usec < kSecondNs / unit_ns;
-    if (!is_time || std::abs(request.time.tv_sec / 2) > kMostCardSeconds / 2) {
-      answer.error = EINVAL;
-      co_return answer;
-    }
-    co_await clock->step(
+    co_await clock.step(
         Nanoseconds(request.time.tv_sec * kSecondNs + request.time.tv_usec * unit_ns));
   } else if ((request.modes & ADJ_FREQUENCY) != 0) {
-    const double ppb = static_cast<double>(request.freq) * kPpbPerUnit;
-    if (std::abs(ppb) > shim::kMostCardRate) {
-      answer.error = ERANGE;
-      co_return answer;
-    }
     frequency_ = request.freq;
-    co_await clock->adjust_frequency(ppb);
-  } else if (request.modes == 0) {
-    answer.now.freq = frequency_;
+    co_await clock.adjust_frequency(static_cast<double>(request.freq) * kPpbPerUnit);
   } else {
-    answer.error = EOPNOTSUPP;
+    answer.now.freq = frequency_;
   }
   co_return answer;
 }

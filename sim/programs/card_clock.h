@@ -43,6 +43,9 @@ class CardClock {
   Task<KernelClock::Answer> adjust(timex request);
 
  private:
+  // An errno, or 0.
+  int refusal(const timex& request) const;
+
   SimHost& host_;
   long frequency_ = 0;  // 2^-16 ppm
 };

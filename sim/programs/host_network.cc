@@ -103,7 +103,9 @@ int HostNetwork::connect(UdpSocket& socket, shim::Address peer) {
 
 int HostNetwork::join(UdpSocket& socket, std::uint32_t group) {
   if (!is_multicast(group)) return EINVAL;
-  if (!socket.groups.insert(group).second) return EADDRINUSE;
+  if (socket.groups.contains(group)) return EADDRINUSE;
+  if (socket.groups.size() == kMostGroups) return ENOBUFS;
+  socket.groups.insert(group);
   if (++joined_[group] == 1) host_.world().network.groups().join(group, host_.id());
   return 0;
 }

@@ -81,6 +81,7 @@ class HostNetwork {
   static constexpr std::uint32_t kFirstAddress = processes::kFirstAddress;
   static constexpr std::uint32_t kNetmask = processes::kNetmask;
   static constexpr std::size_t kMostQueued = 256;
+  static constexpr std::size_t kMostGroups = 20;     // of a socket
   static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated
 
   // The host must outlive this.

@@ -72,17 +72,14 @@ int HostStreams::bind_somewhere(Stream& stream) {
 }
 
 int HostStreams::listen(Stream& stream, std::size_t backlog) {
-  if (stream.state == Stream::State::kListening) {
-    stream.backlog = std::max<std::size_t>(backlog, 1);
-    return 0;
-  }
-  if (stream.state != Stream::State::kFresh) return EINVAL;
+  const bool listens = stream.state == Stream::State::kListening;
+  if (!listens && stream.state != Stream::State::kFresh) return EINVAL;
   if (stream.local.port == 0) {
     const int error = bind_somewhere(stream);
     if (error != 0) return error;
   }
   stream.state = Stream::State::kListening;
-  stream.backlog = std::max<std::size_t>(backlog, 1);
+  stream.backlog = std::clamp(backlog, std::size_t{1}, kMostBacklog);
   return 0;
 }
 
@@ -222,12 +219,12 @@ Task<void> HostStreams::transmit(Segment segment) {
     co_await take(std::move(segment));
     co_return;
   }
-  Bytes message(kHeadBytes);
+  Bytes message(kHeadBytes + segment.data.size());
   auto* head = reinterpret_cast<unsigned char*>(message.data());
   head[0] = static_cast<unsigned char>(segment.kind);
   boost::endian::store_big_u16(head + 1, segment.from.port);
   boost::endian::store_big_u16(head + 3, segment.to.port);
-  message.insert(message.end(), segment.data.begin(), segment.data.end());
+  std::ranges::copy(segment.data, message.begin() + kHeadBytes);
   const PeerId peer = segment.to.host - HostNetwork::kFirstAddress;
   MessageChannel& channel = host_.open_channel(peer, Transport::kStream);
   co_await channel.send(std::move(message));

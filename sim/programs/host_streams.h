@@ -56,6 +56,7 @@ class HostStreams {
  public:
   static constexpr std::size_t kMostSegment = 1448;
   static constexpr std::size_t kWindow = std::size_t{256} << 10;
+  static constexpr std::size_t kMostBacklog = 4096;
 
   // The host must outlive this.
   HostStreams(SimHost& host, std::size_t hosts) : host_(host), hosts_(hosts) {}

@@ -44,13 +44,12 @@ Process::Process(SimHost& host, HostNetwork& network, KernelClock& kernel, CardC
       number_(number),
       chance_(host.world().run_seed, host.name(fmt::format("program {}", number))),
       woken_(host.world().context, host.name(fmt::format("program {} waits", number))),
-      child_(settings) {
+      child_(settings),
+      counted_since_(host.true_now()) {
   network_.watch_local_activity(woken_);
 }
 
-Process::~Process() {
-  for (auto& [fd, socket] : sockets_) network_.close(socket);
-}
+Process::~Process() { close_sockets(); }
 
 void Process::count_request() {
   constexpr Nanoseconds kASecond = std::chrono::seconds(1);
@@ -82,6 +81,7 @@ Task<void> Process::serve() {
   if (!is_stopped_) {
     network_.report_local_activity();
     co_await close_streams();
+    close_sockets();
   }
   const std::string how = child_.ending(ending_);
   if (!is_stopped_) ending_ = printable_name(how);

@@ -106,6 +106,7 @@ class Process {
   Task<Answer> read(Stream& stream, std::int64_t how, std::int64_t most);
   static Answer describe(Stream& stream, shim::Call call);
   Task<void> close_streams();
+  void close_sockets();
   std::size_t open_descriptors() const {
     return sockets_.size() + streams_.size() + timers_.size();
   }
@@ -135,7 +136,7 @@ class Process {
   Child child_;
   std::string ending_;
   bool is_stopped_ = false;
-  TrueTime counted_since_{};
+  TrueTime counted_since_;
   std::uint64_t asked_ = 0;
 };
 

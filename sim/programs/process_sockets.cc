@@ -35,6 +35,11 @@ Process::Answer Process::close(int fd) {
   return {};
 }
 
+void Process::close_sockets() {
+  for (auto& [fd, socket] : sockets_) network_.close(socket);
+  sockets_.clear();
+}
+
 Process::Answer Process::of_socket(const ChildRequest& request) {
   UdpSocket& socket = socket_of(request.head.fd);
   switch (request.head.call) {

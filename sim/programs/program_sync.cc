@@ -40,6 +40,7 @@ class RunningPrograms {
         .folder = folder,
         .log_name = fmt::format("{}_{}.log", number, scenarios::program_name(command)),
         .shim = settings.shim};
+    if (settings.patience) child.patience = *settings.patience;
     for (const std::string& word : command) child.command.push_back(fill(word, places));
     for (const auto& [name, value] : settings.programs.environment) {
       child.environment[name] = fill(value, places);

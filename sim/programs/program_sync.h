@@ -21,6 +21,7 @@
 #ifndef SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
 #define SIMBENCH_SIM_PROGRAMS_PROGRAM_SYNC_H_
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -45,6 +46,7 @@ struct ProgramSettings {
   std::string shim;                            // the library's absolute path
   // Where the hosts' folders stay, in PIPELINE/seed1/host0; empty: nowhere.
   std::string log_folder{};
+  std::optional<std::chrono::milliseconds> patience{};  // else Child::kPatience
   std::size_t hosts = 0;
 };
 

@@ -16,7 +16,20 @@
 
 namespace {
 
-using namespace promises;
+using promises::address;
+using promises::bind_to;
+using promises::expect;
+using promises::expect_error;
+using promises::finish;
+using promises::has_input;
+using promises::kMillisecond;
+using promises::kSecond;
+using promises::read_clock;
+using promises::send_text;
+using promises::set_number;
+using promises::steady;
+using promises::to_ns;
+using promises::udp;
 
 constexpr std::uint16_t kPort = 319;
 

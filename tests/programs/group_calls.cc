@@ -8,7 +8,16 @@
 
 namespace {
 
-using namespace promises;
+using promises::address;
+using promises::bind_to;
+using promises::expect;
+using promises::expect_error;
+using promises::finish;
+using promises::gets;
+using promises::has_input;
+using promises::send_text;
+using promises::set_number;
+using promises::udp;
 
 constexpr const char* kGroup = "224.0.1.200";
 constexpr const char* kOther = "224.0.1.201";
@@ -45,6 +54,13 @@ void check_membership() {
   inet_pton(AF_INET, kGroup, &by_address.imr_multiaddr);
   expect(setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &by_address, sizeof by_address) == 0,
          "by address of the interface");
+  int error = 0;
+  for (int i = 0; i < 25 && error == 0; ++i) {
+    ip_mreqn another = membership("224.0.2.0");
+    another.imr_multiaddr.s_addr += htonl(static_cast<std::uint32_t>(i));
+    error = change(fd, IP_ADD_MEMBERSHIP, another) < 0 ? errno : 0;
+  }
+  expect(error == ENOBUFS, "a socket has at most 20 groups");
   close(fd);
 }
 

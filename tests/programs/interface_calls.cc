@@ -19,7 +19,11 @@
 
 namespace {
 
-using namespace promises;
+using promises::expect;
+using promises::expect_error;
+using promises::finish;
+using promises::has_input;
+using promises::udp;
 
 std::string own_address;
 

@@ -9,7 +9,13 @@
 
 namespace {
 
-using namespace promises;
+using promises::expect;
+using promises::finish;
+using promises::gets;
+using promises::has_input;
+using promises::kMillisecond;
+using promises::kSecond;
+using promises::steady;
 
 sockaddr_un path(const char* text) {
   sockaddr_un name{};

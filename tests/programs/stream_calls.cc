@@ -13,7 +13,19 @@
 
 namespace {
 
-using namespace promises;
+using promises::address;
+using promises::bind_to;
+using promises::connect_to;
+using promises::expect;
+using promises::expect_error;
+using promises::finish;
+using promises::gets;
+using promises::has_input;
+using promises::kMillisecond;
+using promises::send_text;
+using promises::set_number;
+using promises::steady;
+using promises::udp;
 
 constexpr std::uint16_t kPort = 80;
 
@@ -147,7 +159,7 @@ void check_copies() {
          "a copy is the same socket");
   const int next = udp();
   expect(next == fd && bind_to(next, address("0.0.0.0", 6001)) == 0, "its number is free again");
-  expect(dup2(copy, next) == next && gets(next, "x", 1) == false, "dup2 closes what was there");
+  expect(dup2(copy, next) == next && !gets(next, "x", 1), "dup2 closes what was there");
   expect(send_text(next, "two", address("127.0.0.1", 6000)) == 3 && gets(copy, "two"), "dup2");
   const int third = fcntl(copy, F_DUPFD_CLOEXEC, 50);
   expect(third >= 50 && (fcntl(third, F_GETFD) & FD_CLOEXEC) != 0, "F_DUPFD_CLOEXEC");

@@ -69,14 +69,15 @@ json full_document() {
   json& polls = document["cameras"]["clock_poll"];
   polls["calibrated_asymmetry_ms"] = 0.25;
   polls["calibrated_at"] = {{"request_ms", 0.4}, {"reply_ms", 0.2}};
-  document["pipelines"][0]["host_sync"] = {{"program",
-                                            {{"master", json::array({json::array({"chronyd", "-d"})})},
-                                             {"slave", json::array({json::array({"chronyd", "-d"})})},
-                                             {"files", {{"a.conf", "local"}}},
-                                             {"environment", {{"A", "b"}}},
-                                             {"run_before_capture_s", 60},
-                                             {"run_during_capture", false},
-                                             {"model", "chrony"}}}};
+  document["pipelines"][0]["host_sync"] = {
+      {"program",
+       {{"master", json::array({json::array({"chronyd", "-d"})})},
+        {"slave", json::array({json::array({"chronyd", "-d"})})},
+        {"files", {{"a.conf", "local"}}},
+        {"environment", {{"A", "b"}}},
+        {"run_before_capture_s", 60},
+        {"run_during_capture", false},
+        {"model", "chrony"}}}};
   return document;
 }
 

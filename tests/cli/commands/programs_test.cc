@@ -1,10 +1,15 @@
 // Pipelines of real programs through the real command line: --program and --program-log.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "tests/cli/program.h"
@@ -22,11 +27,10 @@ class ProgramsCommand : public ProgramTest {
  protected:
   // Ten minutes of three hosts: chrony's model, and the programs of this file.
   ProgramResult clocks(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"clocks",      "--scenario",   "6host_star",
-                                          "--set",       "/hosts/count=3", "--set",
-                                          "/cameras/count=3", "--seeds",  "1",
-                                          "--duration-s", "310",         "--pipelines",
-                                          "free_running"};
+    std::vector<std::string> arguments = {
+        "clocks", "--scenario",       "6host_star",  "--set", "/hosts/count=3",
+        "--set",  "/cameras/count=3", "--seeds",     "1",     "--duration-s",
+        "310",    "--pipelines",      "free_running"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
@@ -84,6 +88,49 @@ TEST_F(ProgramsCommand, WhatCannotRunIsOneLineAndTheOtherRowsGoOn) {
 TEST_F(ProgramsCommand, AProgramThatEndsIsANoteOfItsRow) {
   EXPECT_THAT(said_of("/bin/false"),
               AllOf(HasSubstr("What went wrong"), HasSubstr("false: exited with status 1")));
+}
+
+TEST_F(ProgramsCommand, APatienceThatIsNoNumberIsRefused) {
+  ProgramOptions options;
+  options.environment = {"SIMBENCH_PATIENCE_S=long"};
+  const ProgramResult result =
+      run({"clocks", "--scenario", "6host_star", "--program", "chronyd"}, options);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("SIMBENCH_PATIENCE_S: found 'long', allowed: a whole number"));
+}
+
+// How many processes work in the test's folder or below it.
+std::size_t processes_in(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+    std::error_code gone;
+    const std::filesystem::path at = std::filesystem::read_symlink(process.path() / "cwd", gone);
+    count += !gone && at.string().starts_with(folder.string() + "/logs");
+  }
+  return count;
+}
+
+TEST_F(ProgramsCommand, NoProgramOutlivesCtrlC) {
+  ProgramOptions options;
+  options.interrupt_after = std::chrono::milliseconds(700);
+  const ProgramResult result =
+      run({"clocks", "--scenario", "6host_star", "--pipelines", "chronyd", "--program", "chronyd",
+           "--program-log", "logs", "--seeds", "100000"},
+          options);
+  EXPECT_EQ(result.status, 130);
+  EXPECT_EQ(processes_in(folder()), 0U);
+}
+
+TEST_F(ProgramsCommand, NoProgramOutlivesAKill) {
+  const std::string command = fmt::format(
+      "cd {} && timeout -s KILL 1 {} clocks --scenario 6host_star --pipelines chronyd --program "
+      "chronyd --program-log logs --seeds 100000 > /dev/null 2>&1",
+      folder().string(), SIMBENCH_PROGRAM);
+  EXPECT_NE(std::system(command.c_str()), 0);
+  for (int tried = 0; tried < 100 && processes_in(folder()) > 0; ++tried) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_EQ(processes_in(folder()), 0U);
 }
 
 TEST_F(ProgramsCommand, FilesThatAreNoPipelines) {

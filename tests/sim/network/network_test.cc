@@ -46,6 +46,7 @@ class Probe : public Endpoint {
   // From this probe's host, one copy to the other end of each of these.
   void send_to_group(const std::vector<Probe*>& to, std::uint8_t number, std::size_t bytes) {
     std::vector<Network::Recipient> recipients;
+    recipients.reserve(to.size());
     for (Probe* each : to) recipients.push_back({each->path_, each->next_++});
     Bytes message(bytes);
     message[0] = std::byte{number};

@@ -118,8 +118,8 @@ class Daemons : public testing::Test {
       course.max_s = std::max(course.max_s, std::abs(errors_s[at]));
       sum += errors_s[at] * errors_s[at];
     }
-    course.rms_s = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(
-                                       1, errors_s.size() - begin)));
+    course.rms_s =
+        std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, errors_s.size() - begin)));
     return course;
   }
 };
@@ -145,11 +145,11 @@ TEST_F(Daemons, Ptp4lMeetsTheLimitsOfItsTestSuite) {
   Command slave = ptp4l;
   slave.emplace_back("-s");
   const Command to_card{"phc2sys", "-s", "CLOCK_REALTIME", "-c", "{interface}", "-O", "0", "-m"};
-  const Command from_card{"phc2sys", "-s", "{interface}", "-c", "CLOCK_REALTIME",
-                          "-w",      "-z", "{files}/ptp4l", "-O", "0", "-m"};
+  const Command from_card{"phc2sys",       "-s", "{interface}", "-c", "CLOCK_REALTIME", "-w", "-z",
+                          "{files}/ptp4l", "-O", "0",           "-m"};
   const scenarios::Scenario quiet = scenarios::load_scenario(
-      "6host_star", {{"/hosts/nic/hardware_stamps", "true"},
-                     {"/network/latency_exponential_ms", "0.00001"}});
+      "6host_star",
+      {{"/hosts/nic/hardware_stamps", "true"}, {"/network/latency_exponential_ms", "0.00001"}});
   const std::vector<Course> slaves =
       run(settings({ptp4l, to_card}, {slave, from_card},
                    {{"ptp4l.conf", "[global]\nuds_address {files}/ptp4l\n"}}),
