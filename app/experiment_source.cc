@@ -173,11 +173,24 @@ class TruthAdder {
   std::size_t added_ = 0;
 };
 
+bool runs_programs(const scenarios::Scenario& scenario, const std::string& pipeline) {
+  return std::any_of(scenario.pipelines.begin(), scenario.pipelines.end(),
+                     [&](const scenarios::Pipeline& each) {
+                       return each.name == pipeline && each.programs.has_value();
+                     });
+}
+
 }  // namespace
 
 ExperimentSource::ExperimentSource(const scenarios::Scenario& scenario, ExperimentOptions options)
     : scenario_(scenario), options_(std::move(options)) {
   hardware::check_relay_can(scenario);
+}
+
+std::string ExperimentSource::program_log(std::uint64_t seed) const {
+  if (options_.program_log.empty()) return "";
+  return fmt::format("{}/measured_seed{}", std::filesystem::absolute(options_.program_log).string(),
+                     seed);
 }
 
 std::string ExperimentSource::record_cameras(std::uint64_t seed) {
@@ -193,6 +206,10 @@ std::string ExperimentSource::record_cameras(std::uint64_t seed) {
 }
 
 RecordingCost ExperimentSource::record(const RecordingRequest& request, RecordingSink& sink) {
+  const bool has_programs = runs_programs(scenario_, request.pipeline);
+  if (has_programs && !options_.namespaces) {
+    throw RecordingFailed("its programs need network namespaces, which are not permitted here");
+  }
   try {
     const std::string recording = record_cameras(request.seed);
     hardware::ExperimentRig rig({.scenario = &scenario_,
@@ -200,6 +217,8 @@ RecordingCost ExperimentSource::record(const RecordingRequest& request, Recordin
                                  .clocks = hardware::draw_clock_starts(scenario_, request.seed),
                                  .seed = request.seed,
                                  .namespaces = options_.namespaces,
+                                 .programs = has_programs,
+                                 .program_log = program_log(request.seed),
                                  .program = options_.program});
     hardware::RigSource source(rig.conductor(), rig.key(), scenario_,
                                {.progress = options_.progress,

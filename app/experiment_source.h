@@ -16,6 +16,9 @@
 //
 // Frames are identified by camera, stream and counter, which are played unchanged.
 //
+// A pipeline of programs (docs/your_program.md) runs the same programs on the nodes, with the same
+// preloaded library around the nodes' clocks, for which namespaces are needed.
+//
 // Errors: RecordingFailed for a repetition that went wrong (also a host without a clock log, or a
 // frame that was not played); others may succeed.
 //
@@ -42,7 +45,8 @@ struct ExperimentOptions {
   std::function<bool()> cancelled{};                   // may be empty
   // Gets the relay's statistics after each repetition, a line of JSON (hardware/relay/relay.h).
   std::function<void(const std::string&)> relay_statistics{};  // may be empty
-  std::string program = "/proc/self/exe";                      // simbench
+  std::string program_log{};  // where the files of pipelines' programs stay; empty: nowhere
+  std::string program = "/proc/self/exe";  // simbench
 };
 
 class ExperimentSource final : public RecordingSource {
@@ -55,6 +59,9 @@ class ExperimentSource final : public RecordingSource {
  private:
   // Simulates the cameras' capture into played_ and a folder; returns its name for a rig file.
   std::string record_cameras(std::uint64_t seed);
+
+  // The folder of a repetition; empty: none.
+  std::string program_log(std::uint64_t seed) const;
 
   const scenarios::Scenario& scenario_;
   ExperimentOptions options_;

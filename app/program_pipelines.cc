@@ -13,10 +13,11 @@
 #include <utility>
 
 #include "evaluation/run/pipeline_choice.h"
+#include "hardware/node/node_programs.h"
+#include "processes/placeholders.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "sim/programs/find_program.h"
-#include "sim/programs/placeholders.h"
 #include "sim/programs/program_file.h"
 #include "sim/programs/program_sync.h"
 
@@ -49,18 +50,17 @@ std::string unpacked_packages() {
 
 // Adds where the programs are and what their libraries need. A bare name stays what a program is
 // called, so that its log is the same wherever it lies.
-void find(sim::ProgramSettings& settings) {
-  HostPrograms& programs = settings.programs;
-  if (const auto unknown = sim::unknown_placeholder(programs)) {
+void find(HostPrograms& programs, std::map<std::string, std::string>& paths) {
+  if (const auto unknown = processes::unknown_placeholder(programs)) {
     throw sim::ProgramError(
-        fmt::format("found the placeholder {}, allowed: {}", *unknown, sim::kPlaceholders));
+        fmt::format("found the placeholder {}, allowed: {}", *unknown, processes::kPlaceholders));
   }
   for (auto* role : {&programs.master, &programs.slave}) {
     for (HostPrograms::Command& command : *role) {
       const std::string name = command.front();
       const sim::FoundProgram program = sim::find_program(name, unpacked_packages());
       if (program.words.size() == 1) {
-        settings.paths[name] = program.words.front();
+        paths[name] = program.words.front();
       } else {  // a script and its interpreter
         command.erase(command.begin());
         command.insert(command.begin(), program.words.begin(), program.words.end());
@@ -101,7 +101,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
   std::string problem;
   try {
     settings.shim = find_shim();
-    find(settings);
+    find(settings.programs, settings.paths);
   } catch (const sim::ProgramError& missing) {
     problem = missing.what();
   }
@@ -117,6 +117,24 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
 }
 
 }  // namespace
+
+std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
+                                             const std::string& interface,
+                                             const ProgramOptions& options) {
+  const std::string& logs = options.log_folder;
+  hardware::NodeProgramSettings settings{
+      .programs = pipeline.programs.value(),
+      .shim = "",
+      .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
+      .interface = interface};
+  try {
+    settings.shim = find_shim();
+    find(settings.programs, settings.paths);
+    return std::make_unique<hardware::NodePrograms>(std::move(settings));
+  } catch (const sim::ProgramError& missing) {
+    throw scenarios::InputError(fmt::format("pipeline '{}': {}", pipeline.name, missing.what()));
+  }
+}
 
 void use_programs(const ProgramOptions& options) {
   evaluation::set_program_maker(

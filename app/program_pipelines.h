@@ -9,7 +9,11 @@
 #ifndef SIMBENCH_APP_PROGRAM_PIPELINES_H_
 #define SIMBENCH_APP_PROGRAM_PIPELINES_H_
 
+#include <memory>
 #include <string>
+
+#include "algorithms/ports/host_sync.h"
+#include "scenarios/scenario.h"
 
 namespace simbench::app {
 
@@ -22,6 +26,13 @@ struct ProgramOptions {
   // nowhere.
   std::string log_folder{};
 };
+
+// The programs of a pipeline on the host of a node (hardware/node/node_programs.h), whose programs'
+// network is on this interface; files stay in LOG_FOLDER/PIPELINE/host0. Throws
+// scenarios::InputError for what cannot run here.
+std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline,
+                                             const std::string& interface,
+                                             const ProgramOptions& options);
 
 // Says how pipelines with programs run (evaluation/run/pipeline_choice.h).
 void use_programs(const ProgramOptions& options = {});

@@ -52,7 +52,7 @@ int read_offset(ptp_sys_offset_extended& offset) {
 }  // namespace
 
 bool is_card(const char* path) {
-  return is_simulated() && strncmp(path, "/dev/ptp", strlen("/dev/ptp")) == 0;
+  return has_world() && strncmp(path, "/dev/ptp", strlen("/dev/ptp")) == 0;
 }
 
 int open_card(const char* path, int flags) {

@@ -24,6 +24,7 @@ bool is_chance(const char* path) {
 }
 
 ssize_t fill(void* data, std::size_t size) {
+  if (!is_simulated()) return SIMBENCH_REAL(getrandom)(data, size, 0);
   std::size_t filled = 0;
   while (filled < size) {
     const std::size_t left = size - filled;

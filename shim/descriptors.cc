@@ -92,7 +92,7 @@ SIMBENCH_CALL int close(int fd) {
 }
 
 SIMBENCH_CALL int close_range(unsigned int first, unsigned int last, int flags) noexcept {
-  if (!is_simulated()) return static_cast<int>(syscall(SYS_close_range, first, last, flags));
+  if (!has_world()) return static_cast<int>(syscall(SYS_close_range, first, last, flags));
   if (flags != 0) return refuse(EINVAL);
   for (unsigned int fd = first; fd <= last && fd < kMostDescriptors; ++fd) {
     close(static_cast<int>(fd));
@@ -114,7 +114,7 @@ SIMBENCH_CALL int dup(int fd) noexcept {
 }
 
 SIMBENCH_CALL int dup3(int fd, int copy, int flags) noexcept {
-  if (is_simulated() && is_link(copy)) return refuse(EBUSY);
+  if (is_link(copy)) return refuse(EBUSY);
   if (fd == copy) return refuse(EINVAL);
   const bool is_there = syscall(SYS_fcntl, fd, F_GETFD) >= 0;
   if (is_there) forget(copy);

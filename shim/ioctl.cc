@@ -1,6 +1,7 @@
 // ioctl(): of the network's interfaces, of the card's clock, and of the world's sockets.
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/sockios.h>
 #include <stdarg.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
@@ -32,7 +33,11 @@ SIMBENCH_CALL int ioctl(int fd, unsigned long what, ...) {
   va_start(arguments, what);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
-  if (!is_simulated()) return real_ioctl(fd, what, argument);
+  if (!is_simulated()) {
+    const bool asks_for_stamp = what == SIOCGSTAMP_OLD || what == SIOCGSTAMPNS_OLD;
+    if (has_world() && asks_for_stamp) give_up("ioctl() SIOCGSTAMP");
+    return real_ioctl(fd, what, argument);
+  }
   if (is_about_interfaces(what)) return interface_ioctl(what, argument);
   const Kind kind = kind_of(fd);
   if (kind == Kind::kCard) return card_ioctl(what, argument);

@@ -10,6 +10,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "shim/own_clock.h"
+
 namespace simbench::shim {
 namespace {
 
@@ -43,11 +45,14 @@ __attribute__((constructor)) void join_world() {
   asking_thread = pthread_self();
   Received reply{.data = &own_identity, .capacity = sizeof own_identity};
   if (ask({.call = Call::kHello}, {}, {}, &reply) < 0) lose();
+  if (own_identity.only_clock != 0) open_own_clock();
 }
 
 }  // namespace
 
-bool is_simulated() { return world_link >= 0; }
+bool has_world() { return world_link >= 0; }
+
+bool is_simulated() { return has_world() && own_identity.only_clock == 0; }
 
 bool is_link(int fd) { return fd >= 0 && fd == world_link; }
 

@@ -4,6 +4,12 @@
 // libc call that concerns time, waiting, network or chance, and asks the world; everything else is
 // the real call. Without a link in the environment all calls are the real ones.
 //
+// The world may say that it has the clock alone (Identity::only_clock), for a program on a real
+// host: then sockets, waits, timers, files and chance are the machine's, and only the system clock
+// is the world's, with the stamps that the kernel takes of datagrams (shim/own_clock.h). The
+// program is root of its host and one process as ever. Waits until a time of the system clock are
+// converted when they begin; timers that make signals cannot be set to one.
+//
 // It has no libraries but libc, makes no threads and takes no memory from the heap. One thread asks
 // at a time, and always the same: a second one is reported to the world, which ends the program.
 //
@@ -39,7 +45,8 @@ struct Received {
   std::size_t size = 0;  // out: how much came, which may be more than the capacity
 };
 
-// Whether there is a world.
+// Whether there is a world, and whether all is the world's rather than the clock alone.
+bool has_world();
 bool is_simulated();
 // Whether the descriptor is the way to it.
 bool is_link(int fd);
@@ -79,7 +86,8 @@ enum class Kind : std::uint8_t {
   kNetlink,
   kLocal,
   kCard,
-  kStream
+  kStream,
+  kOwnTimer
 };
 
 // Whether the world says when it is ready; of others, the kernel does.

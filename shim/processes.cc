@@ -25,22 +25,22 @@ SIMBENCH_CALL pid_t getpid() {
 }
 
 SIMBENCH_CALL pid_t fork() {
-  if (is_simulated()) give_up("fork", kBackground);
+  if (has_world()) give_up("fork", kBackground);
   return SIMBENCH_REAL(fork)();
 }
 
 SIMBENCH_CALL int daemon(int keep_folder, int keep_output) {
-  if (is_simulated()) give_up("daemon", kBackground);
+  if (has_world()) give_up("daemon", kBackground);
   return SIMBENCH_REAL(daemon)(keep_folder, keep_output);
 }
 
 SIMBENCH_CALL int system(const char* command) {
-  if (is_simulated()) give_up("system", kAnother);
+  if (has_world()) give_up("system", kAnother);
   return SIMBENCH_REAL(system)(command);
 }
 
 SIMBENCH_CALL FILE* popen(const char* command, const char* mode) {
-  if (is_simulated()) give_up("popen", kAnother);
+  if (has_world()) give_up("popen", kAnother);
   return SIMBENCH_REAL(popen)(command, mode);
 }
 
@@ -48,7 +48,7 @@ SIMBENCH_CALL int posix_spawn(pid_t* process, const char* path,
                               const posix_spawn_file_actions_t* actions,
                               const posix_spawnattr_t* attributes, char* const* arguments,
                               char* const* environment) {
-  if (is_simulated()) give_up("posix_spawn", kAnother);
+  if (has_world()) give_up("posix_spawn", kAnother);
   return SIMBENCH_REAL(posix_spawn)(process, path, actions, attributes, arguments, environment);
 }
 
@@ -56,7 +56,7 @@ SIMBENCH_CALL int posix_spawnp(pid_t* process, const char* file,
                                const posix_spawn_file_actions_t* actions,
                                const posix_spawnattr_t* attributes, char* const* arguments,
                                char* const* environment) {
-  if (is_simulated()) give_up("posix_spawnp", kAnother);
+  if (has_world()) give_up("posix_spawnp", kAnother);
   return SIMBENCH_REAL(posix_spawnp)(process, file, actions, attributes, arguments, environment);
 }
 

@@ -9,7 +9,12 @@
 // shim gives them, the program's own if it has no duplicates. Times are nanoseconds. `error` is an
 // errno, or 0.
 //
-// Untrusted: the world checks every number of a request (sim/programs/requests.h).
+// A program may have a world of which nothing but the clock is the world's: a real host's node
+// serves it (hardware/node/program_clock.h). Identity::only_clock says so; the program then has a
+// page of memory in which it reads the clock (shim/clock_page.h), and asks for kHello, kSetClock,
+// kAdjustClock and kNote only.
+//
+// Untrusted: the world checks every number of a request (processes/requests.h).
 #ifndef SIMBENCH_SHIM_PROTOCOL_H_
 #define SIMBENCH_SHIM_PROTOCOL_H_
 
@@ -20,6 +25,8 @@ namespace simbench::shim {
 
 inline constexpr char kLinkVariable[] = "SIMBENCH_LINK";
 inline constexpr std::size_t kMostData = 65536;
+// The descriptor of the clock's page, where only the clock is the world's.
+inline constexpr int kClockPage = 201;
 
 enum class Call : std::uint32_t {
   kHello,        // -> Identity
@@ -111,6 +118,7 @@ struct Identity {
   std::uint32_t first_address = 0;  // of "host0"
   std::uint32_t hosts = 0;
   std::uint32_t has_card_clock = 0;  // 0 or 1
+  std::uint32_t only_clock = 0;      // 0 or 1: sockets, waits and chance are the machine's
 };
 
 struct Address {

@@ -1,7 +1,7 @@
 // The system calls that a program of the simulated world cannot make, and what it gets instead.
 //
 // Programs ask the world through libc (shim/link.h). One that passes libc by meets a filter of the
-// kernel (sim/programs/confinement.h), which is made of this table; the shim names the call from it
+// kernel (processes/confinement.h), which is made of this table; the shim names the call from it
 // and the world ends the program. Calls that are not here, up to kYoungest, are the real ones;
 // younger ones are ENOSYS.
 //

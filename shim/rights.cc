@@ -59,20 +59,20 @@ bool copy(const char* name, char* room, std::size_t size) {
 }  // namespace
 
 SIMBENCH_CALL passwd* getpwnam(const char* name) {
-  if (!is_simulated()) return SIMBENCH_REAL(getpwnam)(name);
+  if (!has_world()) return SIMBENCH_REAL(getpwnam)(name);
   if (!copy(name, user_name, sizeof user_name)) return nullptr;
   fill_user(user, user_name);
   return &user;
 }
 
 SIMBENCH_CALL passwd* getpwuid(uid_t id) {
-  if (!is_simulated()) return SIMBENCH_REAL(getpwuid)(id);
+  if (!has_world()) return SIMBENCH_REAL(getpwuid)(id);
   return id == 0 ? getpwnam("root") : nullptr;
 }
 
 SIMBENCH_CALL int getpwnam_r(const char* name, passwd* result, char* room, std::size_t size,
                              passwd** found) {
-  if (!is_simulated()) return SIMBENCH_REAL(getpwnam_r)(name, result, room, size, found);
+  if (!has_world()) return SIMBENCH_REAL(getpwnam_r)(name, result, room, size, found);
   *found = nullptr;
   if (!copy(name, room, size)) return ERANGE;
   fill_user(*result, room);
@@ -82,26 +82,26 @@ SIMBENCH_CALL int getpwnam_r(const char* name, passwd* result, char* room, std::
 
 SIMBENCH_CALL int getpwuid_r(uid_t id, passwd* result, char* room, std::size_t size,
                              passwd** found) {
-  if (!is_simulated()) return SIMBENCH_REAL(getpwuid_r)(id, result, room, size, found);
+  if (!has_world()) return SIMBENCH_REAL(getpwuid_r)(id, result, room, size, found);
   *found = nullptr;
   return id == 0 ? getpwnam_r("root", result, room, size, found) : 0;
 }
 
 SIMBENCH_CALL group* getgrnam(const char* name) {
-  if (!is_simulated()) return SIMBENCH_REAL(getgrnam)(name);
+  if (!has_world()) return SIMBENCH_REAL(getgrnam)(name);
   if (!copy(name, group_name, sizeof group_name)) return nullptr;
   fill_group(own_group, group_name);
   return &own_group;
 }
 
 SIMBENCH_CALL group* getgrgid(gid_t id) {
-  if (!is_simulated()) return SIMBENCH_REAL(getgrgid)(id);
+  if (!has_world()) return SIMBENCH_REAL(getgrgid)(id);
   return id == 0 ? getgrnam("root") : nullptr;
 }
 
 SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::size_t size,
                              group** found) {
-  if (!is_simulated()) return SIMBENCH_REAL(getgrnam_r)(name, result, room, size, found);
+  if (!has_world()) return SIMBENCH_REAL(getgrnam_r)(name, result, room, size, found);
   *found = nullptr;
   if (!copy(name, room, size)) return ERANGE;
   fill_group(*result, room);
@@ -110,19 +110,19 @@ SIMBENCH_CALL int getgrnam_r(const char* name, group* result, char* room, std::s
 }
 
 SIMBENCH_CALL int getgrgid_r(gid_t id, group* result, char* room, std::size_t size, group** found) {
-  if (!is_simulated()) return SIMBENCH_REAL(getgrgid_r)(id, result, room, size, found);
+  if (!has_world()) return SIMBENCH_REAL(getgrgid_r)(id, result, room, size, found);
   *found = nullptr;
   return id == 0 ? getgrnam_r("root", result, room, size, found) : 0;
 }
 
 SIMBENCH_CALL int initgroups(const char* name, gid_t id) {
-  if (!is_simulated()) return SIMBENCH_REAL(initgroups)(name, id);
+  if (!has_world()) return SIMBENCH_REAL(initgroups)(name, id);
   return 0;
 }
 
 // Daemons look whether they could set clocks. The wrapper of capget() has no header of libc's.
 SIMBENCH_CALL int capget(__user_cap_header_struct* head, __user_cap_data_struct* sets) {
-  if (!is_simulated() || sets == nullptr) {
+  if (!has_world() || sets == nullptr) {
     return static_cast<int>(syscall(SYS_capget, head, sets));
   }
   const int count = head->version == _LINUX_CAPABILITY_VERSION_1 ? 1 : _LINUX_CAPABILITY_U32S_3;
@@ -136,7 +136,7 @@ SIMBENCH_CALL int prctl(int option, ...) {
   unsigned long words[4];
   for (unsigned long& word : words) word = va_arg(arguments, unsigned long);
   va_end(arguments);
-  if (is_simulated() && option == PR_CAPBSET_READ && words[0] <= CAP_LAST_CAP) return 1;
+  if (has_world() && option == PR_CAPBSET_READ && words[0] <= CAP_LAST_CAP) return 1;
   return static_cast<int>(syscall(SYS_prctl, option, words[0], words[1], words[2], words[3]));
 }
 
@@ -144,19 +144,19 @@ SIMBENCH_CALL int prctl(int option, ...) {
 SIMBENCH_CALL int set_limit(int resource, const rlimit* limits) __asm__("setrlimit");
 int set_limit(int resource, const rlimit* limits) {
   const long done = syscall(SYS_prlimit64, 0, resource, limits, nullptr);
-  return is_simulated() && done < 0 && errno == EPERM ? 0 : static_cast<int>(done);
+  return has_world() && done < 0 && errno == EPERM ? 0 : static_cast<int>(done);
 }
 SIMBENCH_CALL int set_limit64(int resource, const rlimit* limits) __asm__("setrlimit64");
 int set_limit64(int resource, const rlimit* limits) { return set_limit(resource, limits); }
 
 SIMBENCH_CALL int getresuid(uid_t* own, uid_t* effective, uid_t* saved) {
-  if (!is_simulated()) return SIMBENCH_REAL(getresuid)(own, effective, saved);
+  if (!has_world()) return SIMBENCH_REAL(getresuid)(own, effective, saved);
   *own = *effective = *saved = 0;
   return 0;
 }
 
 SIMBENCH_CALL int getresgid(gid_t* own, gid_t* effective, gid_t* saved) {
-  if (!is_simulated()) return SIMBENCH_REAL(getresgid)(own, effective, saved);
+  if (!has_world()) return SIMBENCH_REAL(getresgid)(own, effective, saved);
   *own = *effective = *saved = 0;
   return 0;
 }

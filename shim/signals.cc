@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "shim/link.h"
+#include "shim/own_clock.h"
 #include "shim/refused_calls.h"
 
 namespace simbench::shim {
@@ -138,6 +139,22 @@ int signal_of(const sigevent& event) {
   }
 }
 
+// Timers of the host's own clock where that alone is the world's; the machine measures the
+// intervals.
+timer_t own_timers[kMostTimers];
+int own_timer_count = 0;
+
+void note_own_timer(timer_t id) {
+  if (own_timer_count < kMostTimers) own_timers[own_timer_count++] = id;
+}
+
+bool is_own_timer(timer_t id) {
+  for (int i = 0; i < own_timer_count; ++i) {
+    if (own_timers[i] == id) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 HandledSignals handled_signals() { return handled; }
@@ -193,7 +210,12 @@ SIMBENCH_CALL useconds_t ualarm(useconds_t us, useconds_t interval_us) {
 }
 
 SIMBENCH_CALL int timer_create(clockid_t clock, sigevent* event, timer_t* id) {
-  if (!is_simulated()) return SIMBENCH_REAL(timer_create)(clock, event, id);
+  if (!is_simulated()) {
+    const clockid_t machine = is_own_clock(clock) ? CLOCK_MONOTONIC : clock;
+    const int result = SIMBENCH_REAL(timer_create)(machine, event, id);
+    if (result == 0 && machine != clock) note_own_timer(*id);
+    return result;
+  }
   if (!is_clock_of_timers(clock)) {
     errno = ENOTSUP;
     return -1;
@@ -218,7 +240,11 @@ SIMBENCH_CALL int timer_create(clockid_t clock, sigevent* event, timer_t* id) {
 
 SIMBENCH_CALL int timer_settime(timer_t id, int flags, const itimerspec* setting,
                                 itimerspec* before) {
-  if (!is_simulated()) return SIMBENCH_REAL(timer_settime)(id, flags, setting, before);
+  if (!is_simulated()) {
+    const bool is_absolute = (flags & TIMER_ABSTIME) != 0;
+    if (is_absolute && is_own_timer(id)) give_up("timer_settime() to a time of the system clock");
+    return SIMBENCH_REAL(timer_settime)(id, flags, setting, before);
+  }
   const SignalTimer* timer = find_timer(id);
   if (timer == nullptr) return -1;
   return set_timer(index_of(timer), (flags & TIMER_ABSTIME) != 0, *setting, before);

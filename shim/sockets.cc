@@ -18,6 +18,7 @@
 
 #include "shim/local.h"
 #include "shim/netlink.h"
+#include "shim/own_clock.h"
 #include "shim/streams.h"
 
 namespace simbench::shim {
@@ -351,13 +352,21 @@ SIMBENCH_CALL ssize_t recvmsg(int fd, msghdr* message, int flags) {
   if (is_local(fd)) return local_recvmsg(fd, message, flags);
   if (is_stream(fd)) return stream_receive(fd, *message, flags);
   if (is_netlink(fd)) return netlink_receive(fd, *message, flags);
-  if (!is_socket(fd)) return SIMBENCH_REAL(recvmsg)(fd, message, flags);
+  if (!is_socket(fd)) {
+    const ssize_t size = SIMBENCH_REAL(recvmsg)(fd, message, flags);
+    if (size >= 0) convert_stamps(*message);
+    return size;
+  }
   return receive_message(fd, *message, flags);
 }
 
 SIMBENCH_CALL int recvmmsg(int fd, mmsghdr* messages, unsigned int count, int flags,
                            timespec* timeout) {
-  if (!is_socket(fd)) return SIMBENCH_REAL(recvmmsg)(fd, messages, count, flags, timeout);
+  if (!is_socket(fd)) {
+    const int received = SIMBENCH_REAL(recvmmsg)(fd, messages, count, flags, timeout);
+    for (int i = 0; i < received; ++i) convert_stamps(messages[i].msg_hdr);
+    return received;
+  }
   for (unsigned int i = 0; i < count; ++i) {
     const bool may_wait = i == 0 || (flags & MSG_WAITFORONE) == 0;
     const int each = (flags & ~MSG_WAITFORONE) | (may_wait ? 0 : MSG_DONTWAIT);

@@ -32,24 +32,24 @@ void log_message(int priority, const char* format, va_list arguments) {
 }  // namespace
 
 SIMBENCH_CALL void openlog(const char* name, int options, int facility) {
-  if (!is_simulated()) return SIMBENCH_REAL(openlog)(name, options, facility);
+  if (!has_world()) return SIMBENCH_REAL(openlog)(name, options, facility);
   log_name = name;
 }
 
 SIMBENCH_CALL void closelog() {
-  if (!is_simulated()) return SIMBENCH_REAL(closelog)();
+  if (!has_world()) return SIMBENCH_REAL(closelog)();
   log_name = nullptr;
 }
 
 SIMBENCH_CALL int setlogmask(int mask) {
-  if (!is_simulated()) return SIMBENCH_REAL(setlogmask)(mask);
+  if (!has_world()) return SIMBENCH_REAL(setlogmask)(mask);
   const int before = log_mask;
   if (mask != 0) log_mask = mask;
   return before;
 }
 
 SIMBENCH_CALL void vsyslog(int priority, const char* format, va_list arguments) {
-  if (!is_simulated()) return SIMBENCH_REAL(vsyslog)(priority, format, arguments);
+  if (!has_world()) return SIMBENCH_REAL(vsyslog)(priority, format, arguments);
   log_message(priority, format, arguments);
 }
 

@@ -17,6 +17,7 @@
 #include <initializer_list>
 
 #include "shim/link.h"
+#include "shim/own_clock.h"
 #include "shim/refused_calls.h"
 
 namespace simbench::shim {
@@ -163,7 +164,11 @@ SIMBENCH_CALL int nanosleep(const timespec* interval, timespec* left) {
 
 SIMBENCH_CALL int clock_nanosleep(clockid_t clock, int flags, const timespec* time,
                                   timespec* left) {
-  if (!is_simulated()) return SIMBENCH_REAL(clock_nanosleep)(clock, flags, time, left);
+  if (!is_simulated()) {
+    const bool waits_for_own = is_own_clock(clock) && (flags & TIMER_ABSTIME) != 0;
+    if (!waits_for_own) return SIMBENCH_REAL(clock_nanosleep)(clock, flags, time, left);
+    return is_time(*time) ? sleep_until_own_time(nanoseconds(*time)) : EINVAL;
+  }
   if (!is_time(*time)) return EINVAL;
   if ((flags & TIMER_ABSTIME) == 0) return nanosleep(time, left) < 0 ? errno : 0;
   const bool is_system = clock == CLOCK_REALTIME || clock == CLOCK_TAI;
@@ -395,6 +400,11 @@ std::int64_t read_timer(int fd, void* data, std::size_t size) {
 }
 
 SIMBENCH_CALL int timerfd_create(int clock, int flags) {
+  if (is_own_clock(clock)) {
+    const int timer = SIMBENCH_REAL(timerfd_create)(CLOCK_MONOTONIC, flags);
+    set_kind(timer, Kind::kOwnTimer);
+    return timer;
+  }
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_create)(clock, flags);
   const int fd =
       open_descriptor(Kind::kTimer, (flags & TFD_NONBLOCK) != 0, (flags & TFD_CLOEXEC) != 0);
@@ -407,6 +417,13 @@ SIMBENCH_CALL int timerfd_create(int clock, int flags) {
 
 SIMBENCH_CALL int timerfd_settime(int fd, int flags, const itimerspec* setting,
                                   itimerspec* before) {
+  if (kind_of(fd) == Kind::kOwnTimer && is_setting(*setting)) {
+    itimerspec machine = *setting;
+    const bool is_armed = setting->it_value.tv_sec != 0 || setting->it_value.tv_nsec != 0;
+    const bool converts = is_armed && (flags & TFD_TIMER_ABSTIME) != 0;
+    if (converts) machine.it_value = machine_time_of(setting->it_value);
+    return SIMBENCH_REAL(timerfd_settime)(fd, flags & TFD_TIMER_ABSTIME, &machine, before);
+  }
   if (!is_simulated()) return SIMBENCH_REAL(timerfd_settime)(fd, flags, setting, before);
   if (!is_setting(*setting)) {
     errno = EINVAL;

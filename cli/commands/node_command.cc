@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/program_pipelines.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/rig_backend.h"
@@ -50,6 +51,8 @@ struct NodeOptions {
   bool set_system_clock = false;
   double max_step_ms = 1000;
   bool dry_run = false;
+  std::string programs_on;
+  std::string program_log;
   double clock_offset_ms = 0;
   double clock_skew_ppm = 0;
   hardware::SoftwareClock::SetCost clock_set;
@@ -103,14 +106,18 @@ const char* lacking(Need need) {
 }
 
 std::unique_ptr<HostSync> make_host_sync(const scenarios::Scenario& scenario,
-                                         const std::string& pipeline) {
+                                         const std::string& pipeline, const NodeOptions& options) {
   const evaluation::PipelineChoice choice =
       evaluation::choose_pipelines(scenario, {pipeline}).front();
+  if (choice.pipeline.programs && !options.programs_on.empty()) {
+    return app::make_node_programs(choice.pipeline, options.programs_on,
+                                   {.log_folder = options.program_log});
+  }
   if (choice.pipeline.programs) {
-    throw scenarios::InputError(
-        fmt::format("pipeline '{}': its programs run on simulated hosts only; on real ones start "
-                    "them yourself, with host_sync \"free_running\"",
-                    pipeline));
+    throw scenarios::InputError(fmt::format(
+        "pipeline '{}': its programs run on simulated hosts and in validate-model only; "
+        "on real hosts start them yourself, with host_sync \"free_running\"",
+        pipeline));
   }
   for (const Need need : choice.host_sync.info.needs) {
     if (const char* what = lacking(need)) {
@@ -159,7 +166,12 @@ void serve(const NodeOptions& options) {
   boost::asio::io_context context(1);
   const std::unique_ptr<hardware::CameraDriver> cameras = hardware::make_camera_driver(rig, me);
   const std::unique_ptr<hardware::NodeClock> clock = make_clock(context, me, options);
-  hardware::Node node(context, settings, *clock, *cameras, make_host_sync, log_line);
+  hardware::Node node(
+      context, settings, *clock, *cameras,
+      [&options](const scenarios::Scenario& scenario, const std::string& pipeline) {
+        return make_host_sync(scenario, pipeline, options);
+      },
+      log_line);
   boost::asio::signal_set signals(context, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
     if (error) return;
@@ -228,6 +240,17 @@ void add_clock_options(Command& command, NodeOptions& options) {
       .excludes(set);
 }
 
+void add_node_program_options(Command& command, NodeOptions& options) {
+  const Option on =
+      command.text("--programs-on", "INTERFACE", options.programs_on,
+                   "For tests: run the programs of a conductor's pipeline, confined, around the\n"
+                   "node's software clock; their network is on this interface");
+  command
+      .text("--program-log", "DIR", options.program_log,
+            "Keep what programs print, and their files, in DIR/PIPELINE/host0")
+      .needs(on);
+}
+
 }  // namespace
 
 void add_node_command(CommandLine& line) {
@@ -242,6 +265,7 @@ void add_node_command(CommandLine& line) {
                "Folder for the recordings of the newest 100 sessions.\n"
                "Default: ~/.local/state/simbench/HOST");
   add_clock_options(command, *options);
+  add_node_program_options(command, *options);
   command.footer(kNodeExamples);
   command.runs([options] { return run_node(*options); });
 }

@@ -39,6 +39,7 @@ struct RelayOptions {
   std::string scenario;
   std::vector<std::string> sets;
   std::vector<std::string> nodes;
+  std::vector<std::string> wires;
   std::uint64_t seed = 1;
   double for_s = 0;
 };
@@ -51,7 +52,8 @@ int run_relay(const RelayOptions& options) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   hardware::check_relay_can(scenario);
-  hardware::RelaySettings settings{.nodes = {}, .scenario = &scenario, .seed = options.seed};
+  hardware::RelaySettings settings{
+      .nodes = {}, .scenario = &scenario, .seed = options.seed, .wires = options.wires};
   for (const std::string& file : options.nodes) settings.nodes.push_back(hardware::load_rig(file));
 
   boost::asio::io_context context(1);
@@ -93,6 +95,9 @@ void add_relay_command(CommandLine& line) {
       .list("--nodes", "FILE,FILE...", options->nodes,
             "The rig file of each node, in the order of the hosts")
       .required();
+  command.list("--wires", "NAME,NAME...", options->wires,
+               "Network interfaces of the programs' network, in the order of the hosts:\n"
+               "datagrams from one to another pass by the same law");
   command.seed("--seed", options->seed, "The seed of latencies and losses. Default: 1");
   command.number("--for", "SECONDS", options->for_s, 0, 86400,
                  "End after this time. Default: no limit");

@@ -17,6 +17,7 @@
 #include "app/interrupt.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/statistics/statistics.h"
@@ -56,6 +57,7 @@ struct ValidateModelOptions {
   std::string scenario;
   std::vector<std::string> sets;
   std::vector<std::string> pipelines;
+  ProgramOptions programs;
   std::uint64_t first_seed = 1;
   std::uint64_t repeats = 5;
   std::uint64_t seeds = 200;
@@ -128,6 +130,7 @@ std::optional<reports::MeasuredStudy> measure_network(const ValidateModelOptions
                                                       const scenarios::Scenario& scenario) {
   app::ExperimentOptions experiment;
   const std::string network = choose_network(experiment);
+  experiment.program_log = options.programs.log_folder;
   experiment.cancelled = [] { return app::InterruptHandler::raised(); };
   RelayLateness lateness;
   experiment.relay_statistics = [&lateness](const std::string& each) { lateness.add(each); };
@@ -211,10 +214,10 @@ int measure_stacks(const std::string& file) {
   return kOk;
 }
 
-int validate_model(const ValidateModelOptions& options) {
+int validate_model(ValidateModelOptions options) {
   if (!options.stack.empty()) return measure_stacks(options.stack);
   const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, overrides_of(options.sets));
+      load_with_programs(options.scenario, options.sets, options.programs, options.pipelines);
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   const std::optional<reports::MeasuredStudy> study =
@@ -259,6 +262,7 @@ void add_validate_model_command(CommandLine& line) {
   command.sets(options->sets);
   command.list("--pipelines", "NAME,NAME", options->pipelines,
                "Only these pipelines of the scenario");
+  add_program_options(command, options->programs);
   add_measurement_options(command, *options);
   command.count("--seeds", options->seeds, "Simulated seeds of each pipeline. Default: 200");
   command.format(options->format, {"table", "markdown", "json"});

@@ -69,6 +69,33 @@ Task<void> SoftwareClock::slew(Nanoseconds offset, double max_rate_ppb) {
   co_return;
 }
 
+std::int64_t SoftwareClock::Steered::epoch_ns() const {
+  return nanoseconds_of(clock_.clock_.read(at_));
+}
+
+void SoftwareClock::Steered::leap(Nanoseconds offset) { clock_.clock_.leap(at_, offset); }
+
+void SoftwareClock::Steered::adjust_frequency(double ppb) {
+  clock_.clock_.adjust_frequency(at_, ppb);
+}
+
+void SoftwareClock::Steered::set(std::int64_t epoch_ns) {
+  clock_.clock_.set(at_, HostTime(Nanoseconds(epoch_ns)));
+}
+
+void SoftwareClock::call(const Steer& steer) {
+  change([&](MonotonicTime at) {
+    Steered steered(*this, at);
+    steer(steered);
+  });
+}
+
+void SoftwareClock::steer(const Steer& steer) {
+  Steered steered(*this, monotonic_now());
+  steer(steered);
+  settle_in_time();
+}
+
 void SoftwareClock::observe(Observer observer) {
   observed_ = observer != nullptr;
   clock_.observe(std::move(observer));

@@ -24,6 +24,7 @@
 #include <functional>
 
 #include "clocks/disciplined_clock.h"
+#include "clocks/kernel_discipline.h"
 #include "hardware/clock/node_clock.h"
 
 namespace simbench::hardware {
@@ -45,6 +46,23 @@ class SoftwareClock : public NodeClock {
     std::function<HostTime()> system_clock = read_system_clock;
   };
 
+  // The clock at the instant of a change, as a kernel steers it.
+  class Steered final : public clocks::SteeredClock {
+   public:
+    std::int64_t epoch_ns() const override;
+    void leap(Nanoseconds offset) override;
+    void adjust_frequency(double ppb) override;
+    void set(std::int64_t epoch_ns);
+    MonotonicTime at() const { return at_; }
+
+   private:
+    friend class SoftwareClock;
+    Steered(SoftwareClock& clock, MonotonicTime at) : clock_(clock), at_(at) {}
+    SoftwareClock& clock_;
+    MonotonicTime at_;
+  };
+  using Steer = std::function<void(Steered&)>;
+
   // The context must not run after the clock has gone.
   SoftwareClock(boost::asio::io_context& context, Settings settings);
   ~SoftwareClock() override = default;
@@ -55,6 +73,11 @@ class SoftwareClock : public NodeClock {
   Task<void> set(HostTime value) override;
   Task<void> adjust_frequency(double ppb) override;
   Task<void> slew(Nanoseconds offset, double max_rate_ppb) override;
+
+  // What a system call does to the clock (clocks/kernel_discipline.h): it costs what changes cost.
+  void call(const Steer& steer);
+  // What the kernel does by itself.
+  void steer(const Steer& steer);
 
   const NodeOscillator& oscillator() const override { return clock_.oscillator(); }
   HostTime system_at(MonotonicTime at) const override { return clock_.read(at); }

@@ -44,6 +44,7 @@ struct Plan {
   int output = -1;
   pid_t parent = 0;
   std::optional<unsigned> member{};
+  bool has_wire = false;
   int left_hub = -1;   // the child writes a byte here when it has its namespace
   int connected = -1;  // and waits here until it is connected
 };
@@ -59,7 +60,8 @@ struct Plan {
     char byte = 0;
     const bool connected = NetworkSandbox::leave_hub() && write(plan.left_hub, &byte, 1) == 1 &&
                            read(plan.connected, &byte, 1) == 1 &&
-                           NetworkSandbox::set_up_member(*plan.member);
+                           NetworkSandbox::set_up_member(*plan.member) &&
+                           (!plan.has_wire || NetworkSandbox::set_up_wire(*plan.member));
     if (!connected) _exit(kCannotRun);
   }
   const int input = open("/dev/null", O_RDONLY);
@@ -106,6 +108,7 @@ ChildProcess::ChildProcess(const Settings& settings)
                   .output = output.write.number(),
                   .parent = getpid(),
                   .member = settings.sandbox_member,
+                  .has_wire = settings.has_wire,
                   .left_hub = left_hub.write.number(),
                   .connected = connected.read.number()};
   std::fflush(nullptr);  // else the child may write its copy of the buffers again
@@ -119,6 +122,7 @@ ChildProcess::ChildProcess(const Settings& settings)
   try {
     if (read(left_hub.read.number(), &byte, 1) != 1) fail("has no network namespace of its own");
     NetworkSandbox::connect(*settings.sandbox_member, process_);
+    if (settings.has_wire) NetworkSandbox::connect_wire(*settings.sandbox_member, process_);
     if (write(connected.write.number(), &byte, 1) != 1) fail("ended at once");
   } catch (...) {
     end(Nanoseconds(0));

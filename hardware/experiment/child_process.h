@@ -36,6 +36,7 @@ class ChildProcess {
     std::string log;                     // a file; for standard error
     // The member of a NetworkSandbox in whose namespace it runs; none: in the caller's.
     std::optional<unsigned> sandbox_member;
+    bool has_wire = false;  // and the programs' network there
   };
 
   explicit ChildProcess(const Settings& settings);

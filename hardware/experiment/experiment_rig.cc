@@ -169,18 +169,33 @@ void ExperimentRig::start_node(unsigned node, const std::string& file) {
   const ClockStart& clock = settings_.clocks.at(node);
   const scenarios::HostClock& interface = settings_.scenario->hosts.clock;
   const std::string name = fmt::format("host{}", node);
+  std::vector<std::string> arguments = {
+      "node",
+      "--rig",
+      file,
+      "--name",
+      name,
+      "--key-file",
+      folder_.file("rig.key"),
+      "--journal",
+      folder_.file("journal-" + name),
+      fmt::format("--clock-offset-ms={}", clock.offset_ms),
+      fmt::format("--clock-skew-ppm={}", clock.skew_ppm),
+      fmt::format("--clock-set-cost-ms={}", interface.set_cost_ms * clock.set_cost_factor),
+      fmt::format("--clock-set-log-sigma={}", interface.set_cost_call_log_sigma),
+      fmt::format("--clock-set-effective={}", interface.set_effective_fraction)};
+  if (settings_.programs) {
+    arguments.insert(arguments.end(), {"--programs-on", NetworkSandbox::kWireInterface});
+  }
+  if (settings_.programs && !settings_.program_log.empty()) {
+    arguments.insert(arguments.end(), {"--program-log", settings_.program_log});
+  }
   nodes_.push_back(std::make_unique<ChildProcess>(ChildProcess::Settings{
       .program = settings_.program,
-      .arguments = {"node", "--rig", file, "--name", name, "--key-file", folder_.file("rig.key"),
-                    "--journal", folder_.file("journal-" + name),
-                    fmt::format("--clock-offset-ms={}", clock.offset_ms),
-                    fmt::format("--clock-skew-ppm={}", clock.skew_ppm),
-                    fmt::format("--clock-set-cost-ms={}",
-                                interface.set_cost_ms * clock.set_cost_factor),
-                    fmt::format("--clock-set-log-sigma={}", interface.set_cost_call_log_sigma),
-                    fmt::format("--clock-set-effective={}", interface.set_effective_fraction)},
+      .arguments = std::move(arguments),
       .log = folder_.file(name + ".log"),
-      .sandbox_member = settings_.namespaces ? std::optional(node) : std::nullopt}));
+      .sandbox_member = settings_.namespaces ? std::optional(node) : std::nullopt,
+      .has_wire = settings_.programs}));
 }
 
 void ExperimentRig::start_relay(const std::vector<std::string>& node_files) {
@@ -191,6 +206,13 @@ void ExperimentRig::start_relay(const std::vector<std::string>& node_files) {
                                         std::to_string(settings_.seed & 0xffffffff),
                                         "--nodes",
                                         fmt::format("{}", fmt::join(node_files, ","))};
+  if (settings_.programs) {
+    std::vector<std::string> wires;
+    for (unsigned node = 0; node < places_.size(); ++node) {
+      wires.push_back(NetworkSandbox::wire(node));
+    }
+    arguments.insert(arguments.end(), {"--wires", fmt::format("{}", fmt::join(wires, ","))});
+  }
   relay_ = std::make_unique<ChildProcess>(ChildProcess::Settings{.program = settings_.program,
                                                                  .arguments = std::move(arguments),
                                                                  .log = folder_.file("relay.log"),

@@ -10,6 +10,9 @@
 // (which NetworkSandbox::enter() made) by a veth pair; else every node has ports of its own on
 // loopback. Node i reaches the others through the relay only; the conductor reaches nodes directly.
 //
+// With `programs` nodes run the pipeline's programs, over a network of their own that the relay
+// carries by the same law (hardware/relay/wires.h).
+//
 // Trigger: the conductor's on_command writes the instant at which the recording's zero is played,
 // kTriggerLead ahead, and keeps it for trigger_zero().
 //
@@ -59,6 +62,8 @@ struct ExperimentSettings {
   std::vector<ClockStart> clocks;                 // by host
   std::uint64_t seed = 1;                         // of the relay
   bool namespaces = false;
+  bool programs = false;      // a wire for each node, on which its programs speak; needs namespaces
+  std::string program_log{};  // where their files stay; empty: nowhere
   std::string program = "/proc/self/exe";  // simbench
 };
 

@@ -18,8 +18,10 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <string_view>
 
 #include "hardware/descriptor.h"
+#include "processes/placeholders.h"
 
 namespace simbench::hardware {
 namespace {
@@ -42,7 +44,7 @@ std::string interface_of(unsigned member) { return fmt::format("hub{}", member);
 }
 
 // Async-signal-safe. An address of 0: none.
-bool set_up(const char* interface, std::uint32_t address) {
+bool set_up(const char* interface, std::uint32_t address, std::uint32_t mask = kMask) {
   const Descriptor opened(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!opened.good()) return false;
   const int socket = opened.number();
@@ -55,7 +57,7 @@ bool set_up(const char* interface, std::uint32_t address) {
     internet->sin_addr.s_addr = htonl(address);
     good = ioctl(socket, SIOCSIFADDR, &request) == 0;
     internet->sin_family = AF_INET;
-    internet->sin_addr.s_addr = htonl(kMask);
+    internet->sin_addr.s_addr = htonl(mask);
     good = good && ioctl(socket, SIOCSIFNETMASK, &request) == 0;
   }
   good = good && ioctl(socket, SIOCGIFFLAGS, &request) == 0;
@@ -64,7 +66,8 @@ bool set_up(const char* interface, std::uint32_t address) {
   return good;
 }
 
-bool write_file(const char* path, const std::string& text) {
+// Async-signal-safe.
+bool write_file(const char* path, std::string_view text) {
   const Descriptor file(open(path, O_WRONLY | O_CLOEXEC));
   return file.good() &&
          write(file.number(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
@@ -142,7 +145,7 @@ class LinkRequest {
   std::size_t size_ = 0;
 };
 
-int add_pair(const std::string& interface, pid_t process) {
+int add_pair(const std::string& interface, const char* member_interface, pid_t process) {
   LinkRequest request(RTM_NEWLINK, NLM_F_CREATE | NLM_F_EXCL);
   request.add(IFLA_IFNAME, interface);
   const std::size_t info = request.open(IFLA_LINKINFO);
@@ -150,7 +153,7 @@ int add_pair(const std::string& interface, pid_t process) {
   const std::size_t data = request.open(IFLA_INFO_DATA);
   const std::size_t peer = request.open(VETH_INFO_PEER);
   request.put(ifinfomsg{});
-  request.add(IFLA_IFNAME, std::string(kMemberInterface));
+  request.add(IFLA_IFNAME, std::string(member_interface));
   request.add(IFLA_NET_NS_PID, static_cast<std::uint32_t>(process));
   request.close_at(peer);
   request.close_at(data);
@@ -162,6 +165,18 @@ void remove_pair(const std::string& interface) {
   LinkRequest request(RTM_DELLINK, 0);
   request.add(IFLA_IFNAME, interface);
   request.send();  // mostly there is none
+}
+
+void connect_pair(unsigned member, const std::string& interface, const char* member_interface,
+                  std::uint32_t address, pid_t process) {
+  if (member >= NetworkSandbox::kMaxMembers) {
+    throw SandboxError(
+        fmt::format("member {}: allowed: below {}", member, NetworkSandbox::kMaxMembers));
+  }
+  remove_pair(interface);
+  errno = add_pair(interface, member_interface, process);
+  if (errno != 0) fail_call("making a veth pair");
+  if (!set_up(interface.c_str(), address)) fail_call("setting up " + interface);
 }
 
 }  // namespace
@@ -192,19 +207,23 @@ std::string NetworkSandbox::member_address(unsigned member) {
 
 bool NetworkSandbox::leave_hub() { return unshare(CLONE_NEWNET) == 0; }
 
+std::string NetworkSandbox::wire(unsigned member) { return fmt::format("wire{}", member); }
+
 void NetworkSandbox::connect(unsigned member, pid_t process) {
-  if (member >= kMaxMembers) {
-    throw SandboxError(fmt::format("member {}: allowed: below {}", member, kMaxMembers));
-  }
-  const std::string interface = interface_of(member);
-  remove_pair(interface);
-  errno = add_pair(interface, process);
-  if (errno != 0) fail_call("making a veth pair");
-  if (!set_up(interface.c_str(), side_address(member, 1))) fail_call("setting up " + interface);
+  connect_pair(member, interface_of(member), kMemberInterface, side_address(member, 1), process);
+}
+
+void NetworkSandbox::connect_wire(unsigned member, pid_t process) {
+  connect_pair(member, wire(member), kWireInterface, 0, process);
 }
 
 bool NetworkSandbox::set_up_member(unsigned member) {
   return set_up("lo", 0) && set_up(kMemberInterface, side_address(member, 2));
+}
+
+bool NetworkSandbox::set_up_wire(unsigned member) {
+  return set_up(kWireInterface, processes::address_of(member), processes::kNetmask) &&
+         write_file("/proc/sys/net/ipv4/ip_unprivileged_port_start", "0");
 }
 
 }  // namespace simbench::hardware

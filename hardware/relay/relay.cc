@@ -19,6 +19,7 @@
 #include "hardware/net/token_bucket.h"
 #include "hardware/relay/delay_queue.h"
 #include "hardware/relay/relayed_stream.h"
+#include "hardware/relay/wires.h"
 
 namespace simbench::hardware {
 namespace {
@@ -96,6 +97,11 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
       }
       nodes_.emplace_back(host_address(rig, rig.hosts[node]), rig.hosts[node].port);
     }
+    if (!settings.wires.empty()) {
+      const Wires::Settings wires{
+          .wires = settings.wires, .scenario = settings.scenario, .seed = settings.seed};
+      wires_ = std::make_unique<Wires>(context, queue_, wires);
+    }
     for (PeerId from = 0; from < count; ++from) {
       for (PeerId to = 0; to < count; ++to) {
         auto gate = std::make_unique<Gate>(
@@ -119,6 +125,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
 
   void stop() {
     queue_.stop();
+    if (wires_) wires_->stop();
     Error ignored;
     for (const auto& gate : gates_) {
       gate->acceptor.close(ignored);
@@ -129,6 +136,10 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
 
   RelayStatistics statistics() const {
     RelayStatistics all = statistics_;
+    if (wires_) {
+      all.law = wires_->counts();
+      all.dropped_full += wires_->dropped();
+    }
     for (const auto& gate : gates_) {
       const LawCounts& law = gate->law.counts();
       all.law.datagrams += law.datagrams;
@@ -209,6 +220,7 @@ class Relay::State : public std::enable_shared_from_this<Relay::State> {
   DelayQueue queue_;
   std::vector<tcp::endpoint> nodes_;
   std::vector<std::unique_ptr<Gate>> gates_;  // [from * nodes + to]; none listens from == to
+  std::unique_ptr<Wires> wires_;              // of programs; null without them
   RelayStatistics statistics_;
 };
 

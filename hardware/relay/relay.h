@@ -47,6 +47,8 @@ struct RelaySettings {
   std::vector<Rig> nodes;
   const scenarios::Scenario* scenario = nullptr;  // only the constructor reads it
   std::uint64_t seed = 1;
+  // The interfaces of the programs' network (wires.h), in the order of the hosts; none without one.
+  std::vector<std::string> wires{};
 };
 
 struct RelayStatistics {

@@ -39,6 +39,7 @@
 #include <vector>
 
 #include "algorithms/ports/host.h"
+#include "processes/placeholders.h"
 #include "shim/protocol.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
@@ -77,8 +78,8 @@ struct UdpSocket {
 
 class HostNetwork {
  public:
-  static constexpr std::uint32_t kFirstAddress = 0x0A000001;
-  static constexpr std::uint32_t kNetmask = 0xFFFF0000;
+  static constexpr std::uint32_t kFirstAddress = processes::kFirstAddress;
+  static constexpr std::uint32_t kNetmask = processes::kNetmask;
   static constexpr std::size_t kMostQueued = 256;
   static constexpr std::size_t kMostGroups = 20;     // of a socket
   static constexpr std::size_t kMostPayload = 1472;  // one frame; fragments are not simulated

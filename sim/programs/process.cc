@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "recording/text_fields.h"
-#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 namespace {
 
+using clocks::kLatestSetting;
 using shim::Call;
 
 // What a reading of a clock takes where the scenario says less: a program may wait for a tick.
@@ -27,9 +27,6 @@ constexpr Nanoseconds kLeastReading(20);
 
 constexpr std::size_t kMostSignalTimers = 64;
 constexpr std::size_t kMostNote = 400;  // bytes of it in the row's note
-
-// Linux sets no clock later than that, so that 30 years can follow.
-constexpr std::int64_t kLatestSetting = INT64_MAX - 30 * 365 * 86'400 * kSecondNs;
 
 bool is_system(std::int64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI ||

@@ -31,18 +31,27 @@
 #include <span>
 #include <string>
 
+#include "processes/child.h"
+#include "processes/requests.h"
 #include "shim/protocol.h"
 #include "sim/engine/random.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/sim_host.h"
 #include "sim/programs/card_clock.h"
-#include "sim/programs/child.h"
 #include "sim/programs/host_network.h"
 #include "sim/programs/host_streams.h"
 #include "sim/programs/kernel_clock.h"
 #include "sim/programs/process_timers.h"
 
 namespace simbench::sim {
+
+// A process's requests are of the room that the real world shares.
+using processes::BadRequest;
+using processes::bytes_of;
+using processes::Child;
+using processes::ChildRequest;
+using processes::kMostOpen;
+using processes::read_head;
 
 class Process {
  public:

@@ -4,7 +4,6 @@
 #include <cerrno>
 
 #include "sim/programs/process.h"
-#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 

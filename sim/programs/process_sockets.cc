@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "sim/programs/process.h"
-#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sim/programs/process.h"
-#include "sim/programs/requests.h"
 
 namespace simbench::sim {
 

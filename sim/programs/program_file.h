@@ -13,7 +13,7 @@
 // find_program() does (sim/programs/find_program.h), since env would have to start another program.
 //
 // Go is recognised by the sections that its linker writes; a program from which these were taken
-// is found out as it runs (sim/programs/confinement.h).
+// is found out as it runs (processes/confinement.h).
 //
 // Errors: ProgramError, one line that begins with the file's name.
 //

@@ -10,13 +10,16 @@
 #include <utility>
 
 #include "algorithms/host_sync/join.h"
+#include "processes/placeholders.h"
 #include "sim/host/sim_host.h"
-#include "sim/programs/placeholders.h"
 #include "sim/programs/process.h"
 
 namespace simbench::sim {
 namespace {
 
+using processes::fill;
+using processes::HostPlaces;
+using processes::lacks_drift;
 using scenarios::HostPrograms;
 
 // The programs of one host.

@@ -3,7 +3,7 @@
 // Every host runs the programs of its role, the master's or a slave's, from the beginning of the
 // run; they end with the world, or when the capture begins where they do not run during it. Each
 // host has a folder of its own, in which its programs run; the files are written there first, with
-// their placeholders filled in (sim/programs/placeholders.h), and what the programs print goes to
+// their placeholders filled in (processes/placeholders.h), and what the programs print goes to
 // "0_chronyd.log", by number and name.
 //
 // The first program of a host that ends is the host's failure, and a note with its last words;

@@ -1,4 +1,4 @@
-#include "sim/programs/confinement.h"
+#include "processes/confinement.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -22,10 +22,10 @@
 #include <utility>
 #include <vector>
 
-#include "sim/programs/child.h"
+#include "processes/child.h"
 #include "tests/scratch_folder.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 using testing::EndsWith;
@@ -270,4 +270,4 @@ TEST_F(ConfinementTest, ItLivesAsLongAsTheThreadThatStartedItAndNoLonger) {
 }
 
 }  // namespace
-}  // namespace simbench::sim
+}  // namespace simbench::processes

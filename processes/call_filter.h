@@ -8,8 +8,8 @@
 //   const sock_fprog ready{static_cast<unsigned short>(filter.size()), filter.data()};
 //
 // Source: seccomp(2), bpf(4).
-#ifndef SIMBENCH_SIM_PROGRAMS_CALL_FILTER_H_
-#define SIMBENCH_SIM_PROGRAMS_CALL_FILTER_H_
+#ifndef SIMBENCH_PROCESSES_CALL_FILTER_H_
+#define SIMBENCH_PROCESSES_CALL_FILTER_H_
 
 #include <linux/filter.h>
 
@@ -17,16 +17,21 @@
 #include <span>
 #include <vector>
 
-namespace simbench::sim {
+namespace simbench::processes {
+
+// What the world has of a program's surroundings: all of it, or the system clock alone. Then the
+// machine's waits, timers and sockets (IP, and routing to look at) may be used; no clock may be
+// set.
+enum class Served : std::uint8_t { kAll, kClock };
 
 // execve() is allowed for the name at this address, which is where the caller of execve() has it.
 // Signals are allowed to one process, which is kOwnProcess until set_own_process() replaces it.
-std::vector<sock_filter> call_filter(const char* program);
+std::vector<sock_filter> call_filter(const char* program, Served served = Served::kAll);
 
 // What is written where the number of the process goes.
 inline constexpr std::uint32_t kOwnProcess = 0x7FFFFFFE;
 void set_own_process(std::span<sock_filter> filter, std::uint32_t process);
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
 
-#endif  // SIMBENCH_SIM_PROGRAMS_CALL_FILTER_H_
+#endif  // SIMBENCH_PROCESSES_CALL_FILTER_H_

@@ -1,4 +1,4 @@
-#include "sim/programs/child.h"
+#include "processes/child.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -26,9 +26,9 @@
 #include <thread>
 #include <utility>
 
-#include "sim/programs/confinement.h"
+#include "processes/confinement.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 // Its number in the child: programs use the first ones, and some close those that follow.
@@ -51,6 +51,7 @@ struct Plan {
   const char* folder;
   const char* log;
   int link;
+  int clock_page;
   pid_t parent;
 };
 
@@ -95,6 +96,7 @@ void forget_parent() {
     _exit(kCannotRun);
   }
   if (dup2(plan.link, kLink) < 0) fail("link", errno);
+  if (plan.clock_page >= 0 && dup2(plan.clock_page, shim::kClockPage) < 0) fail("clock", errno);
   if (const Confinement::Failure failure = confinement.apply(); failure.what != nullptr) {
     fail(failure.what, failure.error);
   }
@@ -109,6 +111,7 @@ Child::Child(const Settings& settings)
       log_(settings.folder + "/" + settings.log_name),
       patience_(settings.patience),
       link_(settings.link),
+      served_(settings.served),
       buffer_(shim::kMostData) {
   if (link_ < 0) {
     try {
@@ -135,7 +138,7 @@ std::string Child::start(const Settings& settings) {
   const std::vector<char*> environment_pointers = pointers(environment);
   const std::string& program =
       settings.program.empty() ? settings.command.front() : settings.program;
-  Confinement confinement(settings.folder, program.c_str());
+  Confinement confinement(settings.folder, program.c_str(), settings.served);
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return fmt::format("no link: {}", std::strerror(errno));
@@ -146,6 +149,7 @@ std::string Child::start(const Settings& settings) {
                   .folder = settings.folder.c_str(),
                   .log = settings.log_name.c_str(),
                   .link = ends[1],
+                  .clock_page = settings.clock_page,
                   .parent = getpid()};
   process_ = fork();
   if (process_ == 0) become(plan, confinement);
@@ -192,7 +196,7 @@ std::optional<ChildRequest> Child::next() {
 }
 
 void Child::reply(std::int64_t value, int error, std::span<const std::byte> data) {
-  follow_thread();
+  if (served_ == Served::kAll) follow_thread();
   shim::Reply head{.value = value, .error = error, .size = static_cast<std::uint32_t>(data.size())};
   std::array<iovec, 2> pieces{
       {{&head, sizeof head}, {const_cast<std::byte*>(data.data()), data.size()}}};
@@ -275,4 +279,4 @@ std::string Child::last_line() const {
   return last;
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes

@@ -3,8 +3,8 @@
 //
 //   const auto wanted = read_head<shim::TimerSetting>(request.data);
 //   answer.data = bytes_of(wanted);
-#ifndef SIMBENCH_SIM_PROGRAMS_REQUESTS_H_
-#define SIMBENCH_SIM_PROGRAMS_REQUESTS_H_
+#ifndef SIMBENCH_PROCESSES_REQUESTS_H_
+#define SIMBENCH_PROCESSES_REQUESTS_H_
 
 #include <cstddef>
 #include <cstring>
@@ -13,7 +13,7 @@
 
 #include "algorithms/ports/host.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 
 // How many sockets, timers and the like a program may have open.
 inline constexpr std::size_t kMostOpen = 1024;
@@ -37,6 +37,6 @@ T read_head(const Bytes& data) {
   return value;
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
 
-#endif  // SIMBENCH_SIM_PROGRAMS_REQUESTS_H_
+#endif  // SIMBENCH_PROCESSES_REQUESTS_H_

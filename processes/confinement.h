@@ -12,6 +12,10 @@
 //              and the machine's state are out of reach. A call that the shim should have served
 //              stops the program, and the shim names it.
 //
+// A program of a real host has the machine's network and waits instead of the world's
+// (Served::kClock); what network that is, its caller chooses by a namespace. It still sets no
+// clock.
+//
 // Without Landlock (before Linux 5.13, or switched off) root runs no programs: ConfinementError.
 // For other users the second barrier is then their ordinary rights over files, and no more.
 //
@@ -28,8 +32,8 @@
 //   }
 //
 // Source: capabilities(7), landlock(7), seccomp(2), Documentation/userspace-api/landlock.rst.
-#ifndef SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
-#define SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
+#ifndef SIMBENCH_PROCESSES_CONFINEMENT_H_
+#define SIMBENCH_PROCESSES_CONFINEMENT_H_
 
 #include <linux/filter.h>
 
@@ -37,7 +41,9 @@
 #include <string>
 #include <vector>
 
-namespace simbench::sim {
+#include "processes/call_filter.h"
+
+namespace simbench::processes {
 
 class ConfinementError : public std::runtime_error {
  public:
@@ -53,7 +59,7 @@ class Confinement {
 
   // The folder must be there. `program` is the very pointer that will be given to execve(): no
   // other is executed. Throws ConfinementError.
-  Confinement(const std::string& folder, const char* program);
+  Confinement(const std::string& folder, const char* program, Served served = Served::kAll);
   ~Confinement();
   Confinement(const Confinement&) = delete;
   Confinement& operator=(const Confinement&) = delete;
@@ -66,6 +72,6 @@ class Confinement {
   std::vector<sock_filter> filter_;
 };
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
 
-#endif  // SIMBENCH_SIM_PROGRAMS_CONFINEMENT_H_
+#endif  // SIMBENCH_PROCESSES_CONFINEMENT_H_

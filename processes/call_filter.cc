@@ -1,4 +1,4 @@
-#include "sim/programs/call_filter.h"
+#include "processes/call_filter.h"
 
 #include <linux/audit.h>
 #include <linux/futex.h>
@@ -18,7 +18,7 @@
 
 #include "shim/refused_calls.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 using shim::Refusal;
@@ -95,6 +95,15 @@ Code futex() {
   return code;
 }
 
+// Where the clock alone is the world's: those that end at a time of it.
+Code futex_of_machine() {
+  Code code{load_low(3), unless(BPF_JEQ, 0, 3), load_high(3), unless(BPF_JEQ, 0, 1),
+            verdict(kAllow)};
+  append(code,
+         {load_low(1), unless(BPF_JSET, FUTEX_CLOCK_REALTIME, 1), verdict(kTrap), verdict(kAllow)});
+  return code;
+}
+
 // Threads only: a second one that asks the world names itself.
 Code clone() {
   return {load_low(0), unless(BPF_JSET, CLONE_THREAD, 1), verdict(kAllow), verdict(kTrap)};
@@ -120,6 +129,36 @@ Code process_control() {
                 {PR_SET_PDEATHSIG, PR_SET_SECCOMP, PR_SET_SECUREBITS, PR_CAPBSET_DROP,
                  PR_CAP_AMBIENT, PR_SET_KEEPCAPS},
                 failing(0), kAllow);
+}
+
+// What is the machine's where the clock alone is the world's.
+bool is_of_machine(int number) {
+  switch (number) {
+    case SYS_clock_gettime:
+    case SYS_nanosleep:
+    case SYS_clock_nanosleep:
+    case SYS_pselect6:
+    case SYS_ppoll:
+    case SYS_epoll_create1:
+    case SYS_epoll_pwait:
+    case SYS_epoll_pwait2:
+    case SYS_timerfd_create:
+    case SYS_timer_create:
+    case SYS_setitimer:
+    case SYS_rt_sigsuspend:
+    case SYS_rt_sigtimedwait:
+#ifdef __x86_64__
+    case SYS_select:
+    case SYS_poll:
+    case SYS_epoll_create:
+    case SYS_epoll_wait:
+    case SYS_alarm:
+    case SYS_pause:
+#endif
+      return true;
+    default:
+      return false;
+  }
 }
 
 // The calls that the table calls partly refused, and those that it does not have.
@@ -148,6 +187,17 @@ Code by_arguments(int number, const char* program) {
   }
 }
 
+Code by_arguments_beside_clock(int number, const char* program) {
+  switch (number) {
+    case SYS_socket:
+      return one_of(0, {AF_UNIX, AF_INET, AF_INET6, AF_NETLINK}, kAllow, kTrap);
+    case SYS_futex:
+      return futex_of_machine();
+    default:
+      return by_arguments(number, program);
+  }
+}
+
 std::uint32_t verdict_of(Refusal refusal) {
   switch (refusal) {
     case Refusal::kDenied:
@@ -166,15 +216,18 @@ std::uint32_t verdict_of(Refusal refusal) {
 
 }  // namespace
 
-std::vector<sock_filter> call_filter(const char* program) {
+std::vector<sock_filter> call_filter(const char* program, Served served) {
   Code code{load(offsetof(seccomp_data, arch)), unless(BPF_JEQ, kArchitecture, 1),
             statement(BPF_JMP | BPF_JA, 1), verdict(SECCOMP_RET_KILL_PROCESS),
             load(offsetof(seccomp_data, nr))};
   append(code, {unless(BPF_JGE, kOtherAbi, 1), verdict(SECCOMP_RET_KILL_PROCESS)});
   append(code, {unless(BPF_JGT, shim::kYoungest, 1), verdict(failing(ENOSYS))});
+  const bool has_machine = served == Served::kClock;
+  const auto partly = has_machine ? by_arguments_beside_clock : by_arguments;
   for (const shim::RefusedCall& call : shim::kRefusedCalls) {
+    if (has_machine && is_of_machine(call.number)) continue;
     append(code, on(static_cast<std::uint32_t>(call.number),
-                    call.refusal == Refusal::kPartly ? by_arguments(call.number, program)
+                    call.refusal == Refusal::kPartly ? partly(call.number, program)
                                                      : Code{verdict(verdict_of(call.refusal))}));
   }
   for (const int kill :
@@ -194,4 +247,4 @@ void set_own_process(std::span<sock_filter> filter, std::uint32_t process) {
   }
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes

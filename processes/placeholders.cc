@@ -1,4 +1,4 @@
-#include "sim/programs/placeholders.h"
+#include "processes/placeholders.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/programs/host_network.h"
-
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 constexpr char kNtpDrift[] = "{ntp_drift}";
@@ -27,10 +25,10 @@ std::string fill(std::string text, const HostPlaces& places) {
   const double correction_ppm = places.drift ? places.drift->ppb * 1e-3 : 0;
   const double error_ppm = places.drift ? places.drift->error_ppb * 1e-3 : 0;
   const std::pair<const char*, std::string> values[] = {
-      {"{master}", dotted(HostNetwork::address_of(0))},
-      {"{address}", dotted(HostNetwork::address_of(places.host))},
+      {"{master}", dotted(address_of(0))},
+      {"{address}", dotted(address_of(places.host))},
       {"{host}", std::to_string(places.host)},
-      {"{interface}", "eth0"},
+      {"{interface}", places.interface},
       {"{files}", "."},
       {kNtpDrift, fmt::format("{:.6f}", correction_ppm)},
       {kChronyDrift, fmt::format("{:.6f} {:.6f}", -correction_ppm, error_ppm)}};
@@ -70,4 +68,4 @@ std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& pr
   return found;
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes

@@ -1,4 +1,4 @@
-#include "sim/programs/confinement.h"
+#include "processes/confinement.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,9 +15,7 @@
 #include <cstring>
 #include <utility>
 
-#include "sim/programs/call_filter.h"
-
-namespace simbench::sim {
+namespace simbench::processes {
 namespace {
 
 // As far as the newest kernel goes; the headers may be older.
@@ -107,8 +105,8 @@ bool drop_capabilities() {
 
 }  // namespace
 
-Confinement::Confinement(const std::string& folder, const char* program)
-    : rules_(landlock_rules(folder)), filter_(call_filter(program)) {}
+Confinement::Confinement(const std::string& folder, const char* program, Served served)
+    : rules_(landlock_rules(folder)), filter_(call_filter(program, served)) {}
 
 Confinement::~Confinement() {
   if (rules_ >= 0) close(rules_);
@@ -130,4 +128,4 @@ Confinement::Failure Confinement::apply() {
   return {};
 }
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes

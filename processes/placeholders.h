@@ -15,16 +15,22 @@
 //
 //   fill("server {master} iburst", {.host = 3});  // "server 10.0.0.1 iburst"
 //   unknown_placeholder("server {mastr}");        // "{mastr}"
-#ifndef SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
-#define SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+#ifndef SIMBENCH_PROCESSES_PLACEHOLDERS_H_
+#define SIMBENCH_PROCESSES_PLACEHOLDERS_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "algorithms/ports/host.h"
 #include "scenarios/scenario.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
+
+// Host i has the address 10.0.0.1 + i in 10.0.0.0/16, in host byte order.
+inline constexpr std::uint32_t kFirstAddress = 0x0A000001;
+inline constexpr std::uint32_t kNetmask = 0xFFFF0000;
+constexpr std::uint32_t address_of(PeerId host) { return kFirstAddress + host; }
 
 inline constexpr char kPlaceholders[] =
     "{master}, {address}, {host}, {interface}, {files}, {ntp_drift}, {chrony_drift}";
@@ -32,6 +38,7 @@ inline constexpr char kPlaceholders[] =
 struct HostPlaces {
   PeerId host = 0;
   std::optional<StoredFrequency> drift{};
+  const char* interface = "eth0";
 };
 
 std::string fill(std::string text, const HostPlaces& places);
@@ -43,6 +50,6 @@ std::optional<std::string> unknown_placeholder(const std::string& text);
 // The same in all texts of the programs.
 std::optional<std::string> unknown_placeholder(const scenarios::HostPrograms& programs);
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
 
-#endif  // SIMBENCH_SIM_PROGRAMS_PLACEHOLDERS_H_
+#endif  // SIMBENCH_PROCESSES_PLACEHOLDERS_H_

@@ -1,16 +1,18 @@
-// One process of the simulated world: a real program that lives while the world asks it to.
+// One process of the simulated world, or of a real host whose clock alone is served: a real program
+// that lives while the world asks it to.
 //
 // It is started with the shim preloaded (shim/link.h) in a folder of its own, with an empty
 // environment but for what is stated, no input, and its output in a file of that folder. While it
 // computes, the world stands still: next() blocks until it asks for something, at most kPatience of
 // real time. The destructor kills it.
 //
-// It is confined (sim/programs/confinement.h): it writes in its folder only, and a call that passes
+// It is confined (processes/confinement.h): it writes in its folder only, and a call that passes
 // libc by and would reach the real clocks, a network or another process ends it, by name. It
 // inherits no descriptors and no signals, is one process, and sees itself as root of its host.
 //
 // It runs on the CPU of the thread that serves it: one of the two waits always, and to wake another
-// CPU costs more than most requests.
+// CPU costs more than most requests. A process of a real host (Served::kClock) runs where it likes,
+// and the world waits for it by link(), next() being due when that can be read.
 //
 // Limits: kMostOutput bytes a file, kMostMemory of address space, kMostDescriptors, no core dump.
 // Addresses are not randomised, so that its bytes repeat.
@@ -24,8 +26,8 @@
 //   Child child({.command = {"/usr/sbin/chronyd", "-d"}, .log_name = "chronyd.log"});
 //   while (const std::optional<ChildRequest> request = child.next()) child.reply(0, 0, {});
 //   print(child.ending());  // "chronyd: exited with status 1: Could not open configuration file"
-#ifndef SIMBENCH_SIM_PROGRAMS_CHILD_H_
-#define SIMBENCH_SIM_PROGRAMS_CHILD_H_
+#ifndef SIMBENCH_PROCESSES_CHILD_H_
+#define SIMBENCH_PROCESSES_CHILD_H_
 
 #include <sys/types.h>
 
@@ -39,9 +41,10 @@
 #include <vector>
 
 #include "algorithms/ports/host.h"
+#include "processes/call_filter.h"
 #include "shim/protocol.h"
 
-namespace simbench::sim {
+namespace simbench::processes {
 
 struct ChildRequest {
   shim::Request head;
@@ -64,7 +67,9 @@ class Child {
     std::string log_name{};  // within the folder
     std::string shim{};      // absolute
     std::chrono::milliseconds patience = kPatience;
-    int link = -1;  // the other end of somebody else's link: nothing is started
+    Served served = Served::kAll;
+    int clock_page = -1;  // kClock: the descriptor of its memory (shim/clock_page.h)
+    int link = -1;        // the other end of somebody else's link: nothing is started
   };
 
   explicit Child(const Settings& settings);
@@ -74,6 +79,8 @@ class Child {
 
   // Nothing: it has ended, or has computed for longer than kPatience.
   std::optional<ChildRequest> next();
+  // The descriptor of its link; -1 if it could not be started.
+  int link() const { return link_; }
   void reply(std::int64_t value, int error, std::span<const std::byte> data);
   // Kills it if it still runs; says how it ended or the reason for that, with the last line of its
   // output.
@@ -95,11 +102,12 @@ class Child {
   int link_;
   pid_t process_ = -1;
   bool has_asked_ = false;
+  Served served_;
   int cpu_ = -1;  // the one that it is bound to
   bool was_too_slow_ = false;
   Bytes buffer_;
 };
 
-}  // namespace simbench::sim
+}  // namespace simbench::processes
 
-#endif  // SIMBENCH_SIM_PROGRAMS_CHILD_H_
+#endif  // SIMBENCH_PROCESSES_CHILD_H_
