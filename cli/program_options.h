@@ -2,8 +2,8 @@
 //
 //   ProgramOptions programs;
 //   add_program_options(command, programs);
-//   const scenarios::Scenario scenario =
-//       load_with_programs(options.scenario, options.sets, programs, options.pipelines);
+//   std::vector<std::string> pipelines = {"chrony"};
+//   const scenarios::Scenario star = load_with_programs("6host_star", {}, programs, pipelines);
 #ifndef SIMBENCH_CLI_PROGRAM_OPTIONS_H_
 #define SIMBENCH_CLI_PROGRAM_OPTIONS_H_
 

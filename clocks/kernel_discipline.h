@@ -5,15 +5,15 @@
 // begins. It knows no time of its own: whoever has it calls move_on() when next_second_ns() has
 // come while is_moving(), and before each other call; every call acts at the present instant.
 //
-//   ADJ_FREQUENCY, ADJ_TICK      rate = freq / 65536 ppm + (tick - 10000) * 100 ppm, at once
-//   ADJ_OFFSET, ADJ_TIMECONST    the kernel's loop (ntp_kernel_loop.h) while STA_PLL is set; what
-//                                it adds to the phase goes evenly into each second. STA_FLL,
-//                                STA_FREQHOLD. Constants get 4 more unless STA_NANO is set
-//   ADJ_OFFSET_SINGLESHOT        adjtime(): 500 us in each second, beside the loop;
-//                                ADJ_OFFSET_SS_READ reads what is left
-//   ADJ_SETOFFSET                a step, in microseconds or (ADJ_NANO) nanoseconds
-//   ADJ_STATUS                   STA_INS and STA_DEL make a leap second at the end of the day (UTC)
-//   ADJ_MAXERROR, ADJ_ESTERROR, ADJ_TAI, ADJ_NANO, ADJ_MICRO: kept
+//  ADJ_FREQUENCY, ADJ_TICK      rate = freq / 65536 ppm + (tick - 10000) * 100 ppm, at once
+//  ADJ_OFFSET, ADJ_TIMECONST    the kernel's loop (ntp_kernel_loop.h) while STA_PLL is set; what
+//                               it adds to the phase goes evenly into each second. STA_FLL,
+//                               STA_FREQHOLD. Constants get 4 more unless STA_NANO is set
+//  ADJ_OFFSET_SINGLESHOT        adjtime(): 500 us in each second, beside the loop;
+//                               ADJ_OFFSET_SS_READ reads what is left
+//  ADJ_SETOFFSET                a step, in microseconds or (ADJ_NANO) nanoseconds
+//  ADJ_STATUS                   STA_INS and STA_DEL make a leap second at the end of the day (UTC)
+//  ADJ_MAXERROR, ADJ_ESTERROR, ADJ_TAI, ADJ_NANO, ADJ_MICRO: kept
 //
 // Read back: `offset` is what the loop has left. maxerror grows by 500 us a second; above 16 s it
 // stays there and sets STA_UNSYNC. The state is TIME_ERROR while STA_UNSYNC is set, which it is at
@@ -28,11 +28,13 @@
 //
 // Source: adjtimex(2); Linux, kernel/time/ntp.c and timekeeping.c.
 //
-//   KernelDiscipline kernel(steered.epoch_ns());
-//   timex request{};
-//   request.modes = ADJ_FREQUENCY;
-//   request.freq = 65536 * 12;  // 12 ppm
-//   if (KernelDiscipline::refusal(request) == 0) kernel.apply(request, steered);
+//   void speed_up(SteeredClock& steered) {
+//     KernelDiscipline kernel(steered.epoch_ns());
+//     timex request{};
+//     request.modes = ADJ_FREQUENCY;
+//     request.freq = 65536 * 12;  // 12 ppm
+//     if (KernelDiscipline::refusal(request) == 0) kernel.apply(request, steered);
+//   }
 #ifndef SIMBENCH_CLOCKS_KERNEL_DISCIPLINE_H_
 #define SIMBENCH_CLOCKS_KERNEL_DISCIPLINE_H_
 

@@ -5,6 +5,7 @@
 // There are no alarms, external stamps, periodic outputs, pins, cross stamps by the processor or
 // phase adjustments; rates end at 62 499 999 ppb.
 //
+//   const int fd = open("/dev/ptp0", O_RDWR);
 //   const clockid_t clock = (~static_cast<clockid_t>(fd) << 3) | 3;  // FD_TO_CLOCKID
 #ifndef SIMBENCH_SHIM_CARD_H_
 #define SIMBENCH_SHIM_CARD_H_

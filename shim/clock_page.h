@@ -6,8 +6,9 @@
 // number read: a reader that meets a change reads again. Times are nanoseconds, clock readings
 // since 1970. A reading takes some 10 ns.
 //
-//   add_setting(page, {.since = now, .reads = reading, .rate = 12e-6});
-//   const std::int64_t stamp = reading_at(page, now - 1000);
+//   ClockPage own{};
+//   add_setting(own, {.since = 5000, .reads = 1'800'000'000'000'000'000, .rate = 12e-6});
+//   const std::int64_t reading_ns = reading_at(own, 6000);
 #ifndef SIMBENCH_SHIM_CLOCK_PAGE_H_
 #define SIMBENCH_SHIM_CLOCK_PAGE_H_
 

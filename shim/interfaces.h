@@ -1,11 +1,12 @@
 // The host's network interfaces: the loopback, and one Ethernet card.
 //
-//   lo    index 1, 127.0.0.1/8
-//   eth0  index 2, the host's address in its /16, MTU 1500, a locally administered MAC address with
-//         the host's address in it
+//  - lo: index 1, 127.0.0.1/8
+//  - eth0: index 2, the host's address in its /16, MTU 1500, a locally administered MAC address with
+//    the host's address in it
 //
+//   char name[IFNAMSIZ];
 //   const InterfaceFacts card = interface_at(1);
-//   snprintf(name, IFNAMSIZ, "%s", card.name);
+//   snprintf(name, sizeof name, "%s", card.name);
 #ifndef SIMBENCH_SHIM_INTERFACES_H_
 #define SIMBENCH_SHIM_INTERFACES_H_
 

@@ -4,7 +4,9 @@
 // not meet there. A program that waits for such a socket waits in simulated time: whoever writes to
 // one, connects or closes it tells the world, which lets the others of its host look again.
 //
-//   if (is_local(fd)) return local_bind(fd, name, size);
+//   const int fd = local_socket(AF_UNIX, SOCK_DGRAM, 0);
+//   const sockaddr_un name{.sun_family = AF_UNIX, .sun_path = "./ptp4l"};
+//   local_bind(fd, reinterpret_cast<const sockaddr*>(&name), sizeof name);
 #ifndef SIMBENCH_SHIM_LOCAL_H_
 #define SIMBENCH_SHIM_LOCAL_H_
 

@@ -6,8 +6,9 @@
 //
 // Source: netlink(7), rtnetlink(7).
 //
-//   const int fd = open_netlink(SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
-//   if (is_netlink(fd)) return netlink_send(fd, message);
+//   const int fd = open_netlink(SOCK_RAW | SOCK_CLOEXEC, 0);  // NETLINK_ROUTE
+//   const msghdr nothing{};
+//   if (is_netlink(fd)) netlink_send(fd, nothing);
 #ifndef SIMBENCH_SHIM_NETLINK_H_
 #define SIMBENCH_SHIM_NETLINK_H_
 

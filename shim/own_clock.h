@@ -6,8 +6,9 @@
 // read at that instant, right to some 0.1 us; one from before a step of the machine's clock is
 // wrong by the step.
 //
-//   if (is_own_clock(CLOCK_REALTIME)) *time = own_time();
-//   message.received = own_time_at(message.received);
+//   std::int64_t reading_ns = 0;
+//   if (is_own_clock(CLOCK_REALTIME)) reading_ns = own_time();
+//   const std::int64_t then_ns = own_time_at({.tv_sec = 1'800'000'000, .tv_nsec = 0});
 #ifndef SIMBENCH_SHIM_OWN_CLOCK_H_
 #define SIMBENCH_SHIM_OWN_CLOCK_H_
 

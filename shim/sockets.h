@@ -1,8 +1,8 @@
 // What the shim itself keeps of a socket of the simulated network, and addresses.
 //
 //   Address to{};
-//   if (!read_address(name, size, to)) return -1;
-//   if (state_of(fd).wants_destination) add_destination();
+//   const sockaddr_in name{};
+//   read_address(reinterpret_cast<const sockaddr*>(&name), sizeof name, to);
 #ifndef SIMBENCH_SHIM_SOCKETS_H_
 #define SIMBENCH_SHIM_SOCKETS_H_
 

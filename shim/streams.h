@@ -1,6 +1,8 @@
 // Connections of the simulated network (SOCK_STREAM).
 //
-//   if (is_stream(fd)) return stream_connect(fd, address);
+//   const int fd = 5;
+//   const Address server{.host = 0x0A000001, .port = 80, .reserved = 0};
+//   if (is_stream(fd)) stream_connect(fd, server);
 #ifndef SIMBENCH_SHIM_STREAMS_H_
 #define SIMBENCH_SHIM_STREAMS_H_
 

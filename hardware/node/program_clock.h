@@ -10,9 +10,11 @@
 // Errors: std::runtime_error from the constructor without memory; processes::BadRequest for what is
 // no request of such a program, or its last one, with what it says.
 //
-//   ProgramClock clock(context.get_executor(), software_clock);
-//   boost::asio::co_spawn(context, clock.run(), boost::asio::detached);
-//   const ProgramClock::Answer answer = clock.answer(request);
+//   void serve(boost::asio::io_context& network, SoftwareClock& own) {
+//     ProgramClock clock(network.get_executor(), own);
+//     boost::asio::co_spawn(network, clock.run(), boost::asio::detached);
+//     const ProgramClock::Answer answer = clock.answer(processes::ChildRequest{});
+//   }
 #ifndef SIMBENCH_HARDWARE_NODE_PROGRAM_CLOCK_H_
 #define SIMBENCH_HARDWARE_NODE_PROGRAM_CLOCK_H_
 

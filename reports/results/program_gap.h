@@ -4,7 +4,8 @@
 // both met the same world. Of captures: AMD and the host clock error; of clock runs: the spread of
 // the hosts' clocks over time and the RMS time error.
 //
-//   if (const auto block = program_gap_block(results)) document.blocks.push_back(*block);
+//   Document page{.title = "programs"};
+//   if (const auto block = program_gap_block(results)) page.blocks.push_back(*block);
 #ifndef SIMBENCH_REPORTS_RESULTS_PROGRAM_GAP_H_
 #define SIMBENCH_REPORTS_RESULTS_PROGRAM_GAP_H_
 

@@ -5,8 +5,10 @@
 // kept. One coroutine may wait for each kind of stamp at a time.
 //
 //   Departures departures(host, "host1");
-//   departures.on_left(id, 1, passed);
-//   const std::optional<HostTime> stamp = co_await departures.stamp(id, deadline);
+//   const TrueTime at_card(from_ms(5));
+//   departures.on_left(7, 1, at_card);
+//   const SteadyTime until = host.steady_clock().now() + kStampTimeout;
+//   const std::optional<HostTime> stamp = co_await departures.stamp(7, until);
 #ifndef SIMBENCH_SIM_HOST_DEPARTURES_H_
 #define SIMBENCH_SIM_HOST_DEPARTURES_H_
 

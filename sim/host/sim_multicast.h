@@ -8,7 +8,8 @@
 //
 //   host.world().network.groups().join(0xE0000181, 3);
 //   const MessageId id = co_await host.multicast().send(0xE0000181, Bytes(44));
-//   const std::optional<HostTime> left = co_await host.multicast().transmit_stamp(id, deadline);
+//   const SteadyTime until = host.steady_clock().now() + kStampTimeout;
+//   const std::optional<HostTime> left = co_await host.multicast().transmit_stamp(id, until);
 #ifndef SIMBENCH_SIM_HOST_SIM_MULTICAST_H_
 #define SIMBENCH_SIM_HOST_SIM_MULTICAST_H_
 
