@@ -1,8 +1,8 @@
 // The host's network interfaces: the loopback, and one Ethernet card.
 //
 //  - lo: index 1, 127.0.0.1/8
-//  - eth0: index 2, the host's address in its /16, MTU 1500, a locally administered MAC address with
-//    the host's address in it
+//  - eth0: index 2, the host's address in its /16, MTU 1500, a locally administered MAC address
+//    that has it too
 //
 //   char name[IFNAMSIZ];
 //   const InterfaceFacts card = interface_at(1);

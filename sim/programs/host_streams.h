@@ -16,7 +16,8 @@
 //
 //   HostStreams streams(host, 6);
 //   auto stream = streams.open([] {});
-//   const int error = co_await streams.connect(*stream, {.host = 0x0A000001, .port = 80, .reserved = 0});
+//   const shim::Address server{.host = 0x0A000001, .port = 80, .reserved = 0};
+//   const int error = co_await streams.connect(*stream, server);
 //   // EINPROGRESS; ready for writing when it is connected, or has failed with stream->error
 #ifndef SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
 #define SIMBENCH_SIM_PROGRAMS_HOST_STREAMS_H_
