@@ -70,6 +70,13 @@ TEST_F(ValidateModelCommand, TheTableNamesMachineAndRows) {
   EXPECT_THAT(result.out, HasSubstr("yoon2021_neither"));
 }
 
+TEST_F(ValidateModelCommand, AProgramFileThatIsNotThereIsOneMessage) {
+  const ProgramResult none =
+      run({"validate-model", "--scenario", "6node_relay", "--program", "mine=none.json"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("--program mine=none.json: "));
+}
+
 TEST_F(ValidateModelCommand, BadInputIsOneMessage) {
   ProgramResult result = run(
       {"validate-model", "--scenario", "6node_relay", "--measured", study("18cam_6host_45fps")});

@@ -48,10 +48,11 @@ class ProgramSyncTest : public testing::Test {
     const std::string logs[] = {"0_" + scenarios::program_name(master) + ".log",
                                 "0_" + scenarios::program_name(slave) + ".log"};
     std::filesystem::remove_all(folder_);
+    programs_.master = {std::move(master)};
+    programs_.slave = {std::move(slave)};
+    programs_.files = {{"address.txt", "{host} of {master}: {address}\n"}};
     ProgramSync sync({.pipeline = "test",
-                      .programs = {.master = {std::move(master)},
-                                   .slave = {std::move(slave)},
-                                   .files = {{"address.txt", "{host} of {master}: {address}\n"}}},
+                      .programs = programs_,
                       .shim = SIMBENCH_SHIM,
                       .log_folder = folder_,
                       .hosts = kHosts});
@@ -82,6 +83,7 @@ class ProgramSyncTest : public testing::Test {
 
   const std::string folder_ = testing::TempDir() + "/programs" +
                               testing::UnitTest::GetInstance()->current_test_info()->name();
+  scenarios::HostPrograms programs_;
   std::string host_folder_;
   double largest_error_s_ = 0;
   std::vector<SyncOutcome> outcomes_;
@@ -113,6 +115,16 @@ TEST_F(ProgramSyncTest, ADaemonOfPlainSocketsSynchronises) {
   EXPECT_LT(largest_error_s_, 300e-6);
   EXPECT_GT(largest_error_s_, 0);
   EXPECT_THAT(outcomes_, testing::IsEmpty()) << "they still run";
+}
+
+// Then its clock is left to its quartz: some parts per million for ten minutes.
+TEST_F(ProgramSyncTest, ProgramsMayEndWhenTheCaptureBegins) {
+  programs_.run_before_capture_s = 10;
+  programs_.run_during_capture = false;
+  run({test_program("cristian"), "serve"}, {test_program("cristian"), "follow", "{master}"}, 600);
+  EXPECT_GT(largest_error_s_, 1e-3);
+  EXPECT_LT(largest_error_s_, 0.1) << "it was set";
+  EXPECT_THAT(outcomes_, testing::IsEmpty()) << "that is no failure";
 }
 
 TEST_F(ProgramSyncTest, EqualSeedsGiveEqualBytes) {
