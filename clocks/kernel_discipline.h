@@ -54,17 +54,12 @@ inline constexpr std::int64_t kLatestSetting = INT64_MAX - 30 * 365 * 86'400 * k
 // The clock that is steered, at the present instant.
 class SteeredClock {
  public:
+  virtual ~SteeredClock() = default;
   // What it reads, since 1970.
   virtual std::int64_t epoch_ns() const = 0;
   virtual void leap(Nanoseconds offset) = 0;
   // Against its oscillator, in place of the rate before.
   virtual void adjust_frequency(double ppb) = 0;
-
- protected:
-  SteeredClock() = default;
-  SteeredClock(const SteeredClock&) = default;
-  SteeredClock& operator=(const SteeredClock&) = default;
-  ~SteeredClock() = default;
 };
 
 class KernelDiscipline {
