@@ -115,7 +115,7 @@ TEST_F(KernelDisciplineTest, AdjtimeSlewsFiveHundredMicrosecondsASecond) {
   timex request = request_of(ADJ_OFFSET_SINGLESHOT);
   request.offset = -1'200;
   ASSERT_EQ(apply(request), 0);
-  EXPECT_EQ(now_.offset, 0);  // what was left before
+  EXPECT_EQ(now_.offset, 0);              // what was left before
   EXPECT_DOUBLE_EQ(host_.rate_ppm(), 0);  // until the next second begins
   host_.pass(kernel_, 1);
   EXPECT_DOUBLE_EQ(host_.rate_ppm(), -500);
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(KernelDiscipline, LeapSecondTest, testing::Values(STA_I
 // Whatever a program asks: values stay in the ranges that adjtimex(2) gives, and who is not told
 // that a request changes the clock finds it unchanged.
 TEST(KernelDisciplineProperties, ArbitraryRequestsKeepTheRanges) {
-  constexpr std::array<long, 9> kValues{0,       1,          -1,      500,       -500'000,
+  constexpr std::array<long, 9> kValues{0,       1,          -1,       500,        -500'000,
                                         900'000, 65536 * 90, 1L << 40, -(1L << 62)};
   for (unsigned seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
