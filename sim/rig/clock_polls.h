@@ -1,14 +1,12 @@
 // Device-clock polls: each host reads its cameras' clocks at a fixed cadence while they stream.
 //
-// A poll reads the host's clocks at t0 (the system clock through its interface, the steady clock
-// exactly), reaches the camera after the request's delay, where it reads the register in whole
-// microseconds, and reads the host's clocks again at t1 after the reply's delay, when it is
-// reported. The arrival quantum does not apply to polls.
+// A poll begins, reaches the camera after the request's delay, where it reads the register in whole
+// microseconds, and ends after the reply's delay. The capture (sim/rig/capture.h) adds what the
+// host's clocks read at both ends.
 //
 // Polls of a camera begin at its start + phase + n * interval_ms of true time, the phase anywhere
 // in the interval, and before the end of the capture. A poll that takes longer than the interval
-// skips those due meanwhile. A camera that has vanished does not reply, and a host that has stopped
-// does not poll.
+// skips those due meanwhile. A camera that has vanished does not reply.
 //
 // All polls of a seed may be less symmetric than was measured (/cameras/calibration): half of that
 // lengthens the request, half of it shortens the reply, and neither becomes negative.
@@ -18,29 +16,43 @@
 //
 // Source: scenario /cameras/clock_poll; docs/reference/d455.md section 5.
 //
-//   ClockPolls polls(scenario, seed, engine, hosts, capture, sink);
-//   polls.start();  // after the capture has been started
+//   ClockPolls polls(scenario, seed, engine, cameras, camera_faults);
+//   polls.start(capture_end);  // the cameras have been started
+//   engine.run_until(then);
+//   polls.hand_out(ended);     // those that have ended by then
 #ifndef SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 #define SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 
 #include <cstdint>
 #include <vector>
 
-#include "recording/recording.h"
+#include "algorithms/ports/time.h"
+#include "recording/true_time.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
-#include "sim/host/host_group.h"
-#include "sim/rig/capture.h"
+#include "sim/faults/faults.h"
+#include "sim/rig/cameras.h"
 
 namespace simbench::sim {
+
+// A reading of a camera's clock, at some instant between its begin and its end.
+struct CameraPoll {
+  std::uint32_t camera = 0;
+  DeviceStamp device;
+  TrueTime begin{};
+  TrueTime end{};
+};
 
 class ClockPolls final : private EventHandler {
  public:
   // All references outlive the polls.
   ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-             HostGroup& hosts, Capture& capture, RecordingSink& sink);
+             Cameras& cameras, const CameraFaults& faults);
 
-  void start();
+  // No poll begins at `end` or later.
+  void start(TrueTime end);
+  // Replaces `polls` by those that have ended since the last call, in the order of their ends.
+  void hand_out(std::vector<CameraPoll>& polls);
 
  private:
   struct Poll {
@@ -59,12 +71,13 @@ class ClockPolls final : private EventHandler {
   std::uint64_t seed_;
   Engine& engine_;
   HandlerId id_ = 0;
-  HostGroup& hosts_;
-  Capture& capture_;
-  RecordingSink& sink_;
+  Cameras& cameras_;
+  const CameraFaults& faults_;
   Nanoseconds interval_;
+  TrueTime end_{};
   double asymmetry_error_ms_;  // of the seed
   std::vector<Poll> polls_;    // by camera
+  std::vector<CameraPoll> ended_;
 };
 
 }  // namespace simbench::sim
