@@ -1,7 +1,10 @@
 #include "sim/rig/camera_world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "algorithms/ports/assert.h"
@@ -30,31 +33,45 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
     : scenario_(scenario),
       seed_(seed),
       start_(start),
+      max_events_(limits.max_events),
       slots_(evaluated_slots(scenario)),
-      engine_(limits, start),
-      id_(engine_.attach(*this)),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       cameras_(scenario, seed),
       camera_faults_(scenario.faults),
-      polls_(scenario, seed, engine_, cameras_, camera_faults_),
+      polls_(scenario, seed, cameras_, camera_faults_),
       kept_bytes_(kept_bytes) {
   trigger_.start(start);
   camera_faults_.start(start);
   cameras_.start(start);
-  controllers_ = cameras_.make_controllers();
-  const auto hosts = static_cast<std::size_t>(scenario.hosts.count);
-  host_sides_.reserve(hosts);
-  for (std::size_t host = 0; host < hosts; ++host) {
-    host_sides_.push_back({HostJitter(scenario.usb, seed, host, start, trigger_.period_ns()),
-                           HostLoad(scenario.hosts.load_burst, seed, static_cast<PeerId>(host))});
-  }
+  make_hosts();
   end_ = last_exposure_ = trigger_.due(slots_.last + 2);
   next_slot_at_ = time_of_slot(0);
   for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
     const TrueTime timer = cameras_.stream(id).shutter.next_timer();
-    if (timer != TrueTime::max()) engine_.schedule(timer, id_, kShutterTimer, id);
+    if (timer != TrueTime::max()) timers_.push(timer, id);
   }
   polls_.start(last_exposure_);
+}
+
+// Cameras are numbered host by host, and so are controllers.
+void CameraWorld::make_hosts() {
+  for (UsbController& controller : cameras_.make_controllers()) {
+    buses_.push_back({.controller = std::move(controller), .offers = {}});
+  }
+  const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
+  hosts_.reserve(hosts);
+  for (std::size_t host = 0; host < hosts; ++host) {
+    hosts_.push_back(
+        {.jitter = HostJitter(scenario_.usb, seed_, host, start_, trigger_.period_ns()),
+         .load = HostLoad(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host)),
+         .first_bus = 0,
+         .buses = 0});
+  }
+  for (const CameraStream& stream : cameras_.streams()) {
+    HostSide& host = hosts_[stream.host];
+    if (host.buses == 0) host.first_bus = stream.controller;
+    host.buses = stream.controller - host.first_bus + 1;
+  }
 }
 
 const CameraPeriod* CameraWorld::period(std::size_t index) {
@@ -62,6 +79,12 @@ const CameraPeriod* CameraWorld::period(std::size_t index) {
   const std::size_t place = index - dropped_;
   if (place < periods_.size()) return &periods_[place];
   if (is_over_) return nullptr;
+  if (events_ >= max_events_) {
+    const double at_s = to_seconds(next_slot_at_.time_since_epoch());
+    throw EngineLimitReached(
+        fmt::format("limit of {} events reached at {} s in the cameras' half", max_events_, at_s),
+        "");
+  }
   CameraPeriod next;
   if (bytes_ > kept_bytes_) {
     next = std::move(periods_.back());
@@ -76,53 +99,50 @@ const CameraPeriod* CameraWorld::period(std::size_t index) {
 // The first period ends with slot 0, the last one when all is over.
 void CameraWorld::make_period(CameraPeriod& period) {
   period.pulse.reset();
-  if (has_begun_) period.pulse = on_slot();
+  if (has_begun_) period.pulse = expose_by_pulse();
   has_begun_ = true;
-  const bool is_last = next_slot_ > slots_.last;
-  if (is_last) {
-    engine_.run();
-  } else {
-    engine_.run_until(next_slot_at_);
+  is_over_ = next_slot_ > slots_.last;
+  period.end = is_over_ ? TrueTime::max() : next_slot_at_;
+  expose_by_timers(period.end);
+  for (HostSide& host : hosts_) {
+    transferred_.clear();
+    for (std::uint32_t bus = host.first_bus; bus < host.first_bus + host.buses; ++bus) {
+      transfer(buses_[bus], period.end);
+    }
+    sort(transferred_);
+    for (const Step& step : transferred_) deliver(host, step);
   }
-  period.end = is_last ? TrueTime::max() : next_slot_at_;
   hand_out_frames(period.end, period.frames);
-  polls_.hand_out(period.polls);
-  if (!is_last) return;
-  is_over_ = true;
+  polls_.hand_out(period.end, period.polls);
+  events_ += period.polls.size();
+  if (!is_over_) return;
   if (!period.frames.empty()) end_ = std::max(end_, period.frames.back().at);
   std::erase_if(period.polls, [this](const CameraPoll& poll) { return poll.end > end_; });
 }
 
-// Those that ended their way before that.
-void CameraWorld::hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames) {
-  std::sort(ended_.begin(), ended_.end(), [](const Ended& a, const Ended& b) {
-    return a.at != b.at ? a.at < b.at : a.order < b.order;
+void CameraWorld::sort(std::vector<Step>& steps) {
+  std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+    return std::tie(a.at, a.transferred, a.order) < std::tie(b.at, b.transferred, b.order);
   });
-  const auto end = std::find_if(ended_.begin(), ended_.end(),
-                                [before](const Ended& ended) { return ended.at >= before; });
-  frames.clear();
-  frames.reserve(static_cast<std::size_t>(end - ended_.begin()));
-  for (auto ended = ended_.begin(); ended != end; ++ended) {
-    frames.push_back(frames_[ended->frame].frame);
-    frames_.release(ended->frame);
-    const auto at_ns = static_cast<std::uint64_t>(ended->at.time_since_epoch().count());
-    frames_hash_ = SplitMix64::mix(frames_hash_ ^ (at_ns + frames.back().stream));
-  }
-  ended_.erase(ended_.begin(), end);
 }
 
-// The pulse of the next slot; a slot without one still takes its time.
-std::optional<CameraPulse> CameraWorld::on_slot() {
+TrueTime CameraWorld::time_of_slot(std::int64_t slot) const {
+  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), start_);
+}
+
+// By the pulse of the next slot; a slot without one still takes its time.
+std::optional<CameraPulse> CameraWorld::expose_by_pulse() {
   const std::int64_t slot = next_slot_++;
   const TrueTime now = next_slot_at_;
   const bool has_pulse = trigger_.pulse(slot).has_value();
+  ++events_;
   if (has_pulse) {
     for (const std::uint32_t id : cameras_.triggered_streams()) {
       CameraStream& stream = cameras_.stream(id);
       const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
       stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
       const auto exposure = stream.shutter.on_pulse(at_camera, slot);
-      if (exposure) expose(id, *exposure);
+      if (exposure) expose(id, *exposure, now);
     }
   }
   next_slot_at_ = std::max(time_of_slot(next_slot_), now);
@@ -130,29 +150,18 @@ std::optional<CameraPulse> CameraWorld::on_slot() {
   return CameraPulse{.slot = slot, .at = now};
 }
 
-TrueTime CameraWorld::time_of_slot(std::int64_t slot) const {
-  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), start_);
-}
-
-void CameraWorld::handle(const Event& event) {
-  switch (event.kind) {
-    case kShutterTimer:
-      return on_shutter_timer(event.subject);
-    case kReadout:
-      return on_readout(event.subject);
-    default:
-      return on_transfer_done(event.subject);
+void CameraWorld::expose_by_timers(TrueTime before) {
+  QueueEntry timer;
+  while (timers_.pop_through(std::min(before, last_exposure_) - Nanoseconds(1), timer)) {
+    const TrueTime now{Nanoseconds(timer.time_ns)};
+    const auto id = static_cast<std::uint32_t>(timer.payload);
+    CameraStream& stream = cameras_.stream(id);
+    stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
+    const auto exposure = stream.shutter.on_timer(now);
+    if (exposure) expose(id, *exposure, now);
+    timers_.push(stream.shutter.next_timer(), id);
+    ++events_;
   }
-}
-
-void CameraWorld::on_shutter_timer(std::uint32_t stream_id) {
-  const TrueTime now = engine_.now();
-  if (now >= last_exposure_) return;
-  CameraStream& stream = cameras_.stream(stream_id);
-  stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
-  const auto exposure = stream.shutter.on_timer(now);
-  if (exposure) expose(stream_id, *exposure);
-  engine_.schedule(stream.shutter.next_timer(), id_, kShutterTimer, stream_id);
 }
 
 // Soon after its start a camera may expose late.
@@ -164,7 +173,7 @@ Exposure CameraWorld::with_unsteady_start(CameraStream& stream, const Exposure& 
   return {planned.pulse, planned.start + late, planned.end + late};
 }
 
-void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned) {
+void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now) {
   CameraStream& stream = cameras_.stream(stream_id);
   const scenarios::Cameras& cameras = scenario_.cameras;
   const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
@@ -182,7 +191,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned) {
                                     .exposure_end = exposure.end};
   if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
     frame.fate = FrameFate::kLostInCamera;
-    return end_way(id, engine_.now());
+    return ended_.push_back(step(now, now, id));
   }
   const Nanoseconds exposed = exposure.end - stream.readout - exposure.start;
   DeviceClock& clock = cameras_.clock(stream.camera);
@@ -192,40 +201,43 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned) {
   frame.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
   way.kernel_copy_ns = delays.kernel_copy_ns;
   way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
-  engine_.schedule(exposure.end + stream.latency, id_, kReadout, id);
+  frame.offered = exposure.end + stream.latency;
+  buses_[stream.controller].offers.push_back(step(frame.offered, {}, id));
 }
 
-void CameraWorld::on_readout(std::uint32_t frame_id) {
-  CameraFrame& frame = frames_[frame_id].frame;
-  const CameraStream& stream = cameras_.stream(frame.stream);
-  frame.offered = engine_.now();
-  UsbController& bus = controllers_[stream.controller];
-  if (bus.submit(engine_.now(), stream.index_on_controller, stream.bytes, frame_id)) {
-    wake_controller(stream.controller);
-  } else {
-    frame.fate = FrameFate::kLostOnUsb;
-    end_way(frame_id, engine_.now());
+// What happens on this bus before that, in order of time.
+void CameraWorld::transfer(Bus& bus, TrueTime before) {
+  sort(bus.offers);
+  auto next = bus.offers.begin();
+  for (;;) {
+    const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
+    const TrueTime woken = bus.controller.wake_up();
+    if (std::min(offered, woken) >= before) break;
+    if (offered < woken) {
+      offer(bus, *next++);
+      continue;
+    }
+    while (const auto frame = bus.controller.take_completed(woken)) {
+      transferred_.push_back(step(woken, woken, *frame));
+    }
   }
+  bus.offers.erase(bus.offers.begin(), next);
 }
 
-void CameraWorld::on_transfer_done(std::uint32_t controller_id) {
-  UsbController& bus = controllers_[controller_id];
-  if (!bus.is_woken(engine_.now())) return;
-  while (const auto frame_id = bus.take_completed(engine_.now())) deliver(*frame_id);
-  wake_controller(controller_id);
+void CameraWorld::offer(Bus& bus, const Step& offer) {
+  CameraFrame& frame = frames_[offer.frame].frame;
+  const CameraStream& stream = cameras_.stream(frame.stream);
+  if (bus.controller.submit(offer.at, stream.index_on_controller, stream.bytes, offer.frame))
+    return;
+  frame.fate = FrameFate::kLostOnUsb;
+  ended_.push_back(step(offer.at, offer.at, offer.frame));
 }
 
-void CameraWorld::wake_controller(std::uint32_t controller_id) {
-  const auto at = controllers_[controller_id].take_wake_up();
-  if (at) engine_.schedule(*at, id_, kTransferDone, controller_id);
-}
-
-void CameraWorld::deliver(std::uint32_t frame_id) {
-  FrameInFlight& way = frames_[frame_id];
+void CameraWorld::deliver(HostSide& host, const Step& transferred) {
+  FrameInFlight& way = frames_[transferred.frame];
   CameraFrame& frame = way.frame;
   CameraStream& stream = cameras_.stream(frame.stream);
-  HostSide& host = host_sides_[stream.host];
-  const TrueTime now = engine_.now();
+  const TrueTime now = transferred.at;
   const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
   frame.transferred = now;
   frame.copied = now + from_ns(way.kernel_copy_ns);
@@ -233,12 +245,24 @@ void CameraWorld::deliver(std::uint32_t frame_id) {
   TrueTime arrival = frame.copied + from_ns(std::max(0.0, delivery_ns));
   arrival += host.load.delay(arrival, kLateFrame, frame.stream, frame.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
-  end_way(frame_id, stream.last_arrival);
+  ended_.push_back(step(stream.last_arrival, now, transferred.frame));
 }
 
-void CameraWorld::end_way(std::uint32_t frame_id, TrueTime at) {
-  frames_[frame_id].frame.at = at;
-  ended_.push_back({.at = at, .order = frames_made_++, .frame = frame_id});
+// Those that were delivered or lost before that.
+void CameraWorld::hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames) {
+  sort(ended_);
+  const auto end = std::find_if(ended_.begin(), ended_.end(),
+                                [before](const Step& ended) { return ended.at >= before; });
+  frames.clear();
+  frames.reserve(static_cast<std::size_t>(end - ended_.begin()));
+  for (auto ended = ended_.begin(); ended != end; ++ended) {
+    CameraFrame& frame = frames.emplace_back(frames_[ended->frame].frame);
+    frame.at = ended->at;
+    frames_.release(ended->frame);
+    const auto at_ns = static_cast<std::uint64_t>(frame.at.time_since_epoch().count());
+    trace_hash_ = SplitMix64::mix(trace_hash_ ^ (at_ns + frame.stream));
+  }
+  ended_.erase(ended_.begin(), end);
 }
 
 }  // namespace simbench::sim

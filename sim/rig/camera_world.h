@@ -17,9 +17,15 @@
 // All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
 // and stream.
 //
+// In a period each stage goes over all cameras before the next begins: exposures (also of shutters
+// that run free, in order of time), then host by host the transfers of its controllers and the
+// delays of what was transferred, then a sort of what was delivered. What is under way when the
+// period ends goes on in the next. Frames that are delivered in the same nanosecond come in the
+// order in which their transfers ended, then host by host.
+//
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
-// docs/reference/d455.md. Cost: two events for a frame, a sort for a period; no allocation in
-// steady state unless periods are kept.
+// docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
+// are kept.
 //
 //   CameraWorld world(scenario, seed, capture_start);
 //   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) use(*period);
@@ -36,6 +42,7 @@
 #include "recording/world_observer.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
+#include "sim/engine/event_queue.h"
 #include "sim/engine/slots.h"
 #include "sim/faults/faults.h"
 #include "sim/network/load.h"
@@ -86,16 +93,16 @@ struct EvaluatedSlots {
 };
 EvaluatedSlots evaluated_slots(const scenarios::Scenario& scenario);
 
-class CameraWorld final : private EventHandler {
+class CameraWorld {
  public:
   static constexpr std::size_t kKeptBytes = 64 << 20;
 
-  // The cameras start at `start`. The scenario must outlive this; `limits.cancel` is not polled.
+  // The cameras start at `start`. The scenario must outlive this. Of the limits that of events
+  // counts.
   CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
               const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes);
   CameraWorld(const CameraWorld&) = delete;
   CameraWorld& operator=(const CameraWorld&) = delete;
-  ~CameraWorld() override = default;
 
   // Period `index`, until the next one is asked for; null after the last. If not all are kept, they
   // can only be asked for in turn. Throws EngineLimitReached.
@@ -109,74 +116,77 @@ class CameraWorld final : private EventHandler {
   TrueTime last_exposure() const { return last_exposure_; }
   // After the last period: when the last frame is delivered or lost, but not before the former.
   TrueTime end() const { return end_; }
-  // Of the periods until now.
-  std::uint64_t events() const { return engine_.events() + frames_made_; }
-  std::uint64_t trace_hash() const { return engine_.trace_hash() ^ frames_hash_; }
+  // Of the periods until now: pulses, readouts, transfers, deliveries and polls.
+  std::uint64_t events() const { return events_; }
+  std::uint64_t trace_hash() const { return trace_hash_; }
 
   const TriggerTree& trigger() const { return trigger_; }
   EvaluatedSlots slots() const { return slots_; }
   const Cameras& cameras() const { return cameras_; }
 
  private:
-  enum Kind : std::uint16_t {
-    kShutterTimer,  // subject: stream
-    kReadout,       // subject: frame in flight
-    kTransferDone,  // subject: controller
-  };
-
   struct FrameInFlight {
     CameraFrame frame;
     double kernel_copy_ns = 0;
     double delivery_ns = 0;
   };
-  // A frame that has ended its way.
-  struct Ended {
+  // A frame at the end of a stage: offered, transferred or delivered.
+  struct Step {
     TrueTime at;
-    std::uint64_t order;  // among all
+    TrueTime transferred;
+    std::uint64_t order;  // among all steps
     std::uint32_t frame;  // in flight
   };
-  // A host's effects on all of its frames.
+  struct Bus {
+    UsbController controller;
+    std::vector<Step> offers;
+  };
   struct HostSide {
-    HostJitter jitter;
+    HostJitter jitter;  // of all of its frames
     HostLoad load;
+    std::uint32_t first_bus;
+    std::uint32_t buses;
   };
 
-  void handle(const Event& event) override;
+  static void sort(std::vector<Step>& steps);
+  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame) {
+    return {.at = at, .transferred = transferred, .order = events_++, .frame = frame};
+  }
+  void make_hosts();
   void make_period(CameraPeriod& period);
   TrueTime time_of_slot(std::int64_t slot) const;
-  void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
-  std::optional<CameraPulse> on_slot();
-  void on_shutter_timer(std::uint32_t stream_id);
+  std::optional<CameraPulse> expose_by_pulse();
+  void expose_by_timers(TrueTime before);
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
-  void expose(std::uint32_t stream_id, const Exposure& planned);
-  void on_readout(std::uint32_t frame_id);
-  void on_transfer_done(std::uint32_t controller_id);
-  void wake_controller(std::uint32_t controller_id);
-  void deliver(std::uint32_t frame_id);
-  void end_way(std::uint32_t frame_id, TrueTime at);
+  void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
+  void transfer(Bus& bus, TrueTime before);
+  void offer(Bus& bus, const Step& offer);
+  void deliver(HostSide& host, const Step& transferred);
+  void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
 
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
   TrueTime start_;
+  std::uint64_t max_events_;
   EvaluatedSlots slots_;
-  Engine engine_;
-  HandlerId id_;
   TriggerTree trigger_;
   TrueTime last_exposure_;
   Cameras cameras_;
   CameraFaults camera_faults_;
-  std::vector<UsbController> controllers_;
-  std::vector<HostSide> host_sides_;
   ClockPolls polls_;
+  EventQueue timers_;  // of shutters; payload: stream
+  std::vector<Bus> buses_;
+  std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
-  std::vector<Ended> ended_;
+  std::vector<Step> transferred_;  // of one host
+  std::vector<Step> ended_;        // delivered or lost
   TrueTime end_;
   std::int64_t next_slot_ = 0;
   TrueTime next_slot_at_;
   bool has_begun_ = false;
   bool is_over_ = false;
-  std::uint64_t frames_made_ = 0;
-  std::uint64_t frames_hash_ = 0;
+  std::uint64_t events_ = 0;
+  std::uint64_t trace_hash_ = 0;
 
   std::size_t kept_bytes_;
   std::size_t bytes_ = 0;

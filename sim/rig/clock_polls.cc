@@ -13,11 +13,10 @@ constexpr ComponentKey kAsymmetryError("calibration/poll_asymmetry");
 
 }  // namespace
 
-ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-                       Cameras& cameras, const CameraFaults& faults)
+ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Cameras& cameras,
+                       const CameraFaults& faults)
     : scenario_(scenario),
       seed_(seed),
-      engine_(engine),
       cameras_(cameras),
       faults_(faults),
       interval_(from_ms(scenario.cameras.clock_poll.interval_ms)),
@@ -28,7 +27,6 @@ ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, 
 void ClockPolls::start(TrueTime end) {
   end_ = end;
   if (interval_.count() == 0) return;
-  id_ = engine_.attach(*this);
   const auto cameras = static_cast<std::uint32_t>(scenario_.cameras.count);
   polls_.resize(cameras);
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
@@ -51,31 +49,30 @@ void ClockPolls::send(std::uint32_t camera, std::int64_t number) {
   if (draw.chance(parameters.tail_probability))
     request_ms += draw.uniform(0, parameters.tail_max_ms);
   poll.read = poll.begin + from_ms(std::max(0.0, request_ms + asymmetry_error_ms_ / 2));
-  engine_.schedule(poll.read + from_ms(std::max(0.0, reply_ms - asymmetry_error_ms_ / 2)), id_, 0,
-                   camera);
+  ends_.push(poll.read + from_ms(std::max(0.0, reply_ms - asymmetry_error_ms_ / 2)), camera);
 }
 
-void ClockPolls::handle(const Event& event) {
-  const std::uint32_t camera = event.subject;
-  report(camera);
-  const Poll& poll = polls_[camera];
-  // The first that begins now or later.
-  const std::int64_t due = (event.time - poll.first + interval_ - Nanoseconds(1)) / interval_;
-  send(camera, std::max(poll.number + 1, due));
+void ClockPolls::hand_out(TrueTime then, std::vector<CameraPoll>& polls) {
+  polls.clear();
+  QueueEntry entry;
+  while (ends_.pop_through(then - Nanoseconds(1), entry)) {
+    const auto camera = static_cast<std::uint32_t>(entry.payload);
+    const TrueTime end{Nanoseconds(entry.time_ns)};
+    report(camera, end, polls);
+    const Poll& poll = polls_[camera];
+    // The first that begins now or later.
+    const std::int64_t due = (end - poll.first + interval_ - Nanoseconds(1)) / interval_;
+    send(camera, std::max(poll.number + 1, due));
+  }
 }
 
-void ClockPolls::report(std::uint32_t camera) {
+void ClockPolls::report(std::uint32_t camera, TrueTime end, std::vector<CameraPoll>& polls) {
   const Poll& poll = polls_[camera];
   if (faults_.vanished(camera, poll.read)) return;
-  ended_.push_back({.camera = camera,
-                    .device = cameras_.clock(camera).stamp(poll.read, 0),
-                    .begin = poll.begin,
-                    .end = engine_.now()});
-}
-
-void ClockPolls::hand_out(std::vector<CameraPoll>& polls) {
-  polls.swap(ended_);
-  ended_.clear();
+  polls.push_back({.camera = camera,
+                   .device = cameras_.clock(camera).stamp(poll.read, 0),
+                   .begin = poll.begin,
+                   .end = end});
 }
 
 }  // namespace simbench::sim

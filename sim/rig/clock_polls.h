@@ -11,15 +11,13 @@
 // All polls of a seed may be less symmetric than was measured (/cameras/calibration): half of that
 // lengthens the request, half of it shortens the reply, and neither becomes negative.
 //
-// All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns;
-// with an interval of 0 there is nothing at all, not even a handler.
+// All delays are keyed by (camera, number of the poll). Cost: one event per poll, below 200 ns.
 //
 // Source: scenario /cameras/clock_poll; docs/reference/d455.md section 5.
 //
-//   ClockPolls polls(scenario, seed, engine, cameras, camera_faults);
-//   polls.start(capture_end);  // the cameras have been started
-//   engine.run_until(then);
-//   polls.hand_out(ended);     // those that have ended by then
+//   ClockPolls polls(scenario, seed, cameras, camera_faults);
+//   polls.start(capture_end);         // the cameras have been started
+//   polls.hand_out(then, ended);      // those that end before then
 #ifndef SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 #define SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 
@@ -29,7 +27,7 @@
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
-#include "sim/engine/engine.h"
+#include "sim/engine/event_queue.h"
 #include "sim/faults/faults.h"
 #include "sim/rig/cameras.h"
 
@@ -43,16 +41,16 @@ struct CameraPoll {
   TrueTime end{};
 };
 
-class ClockPolls final : private EventHandler {
+class ClockPolls {
  public:
   // All references outlive the polls.
-  ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-             Cameras& cameras, const CameraFaults& faults);
+  ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Cameras& cameras,
+             const CameraFaults& faults);
 
   // No poll begins at `end` or later.
   void start(TrueTime end);
-  // Replaces `polls` by those that have ended since the last call, in the order of their ends.
-  void hand_out(std::vector<CameraPoll>& polls);
+  // Replaces `polls` by those that end before `then` and were not handed out, in order.
+  void hand_out(TrueTime then, std::vector<CameraPoll>& polls);
 
  private:
   struct Poll {
@@ -62,22 +60,19 @@ class ClockPolls final : private EventHandler {
     TrueTime read;
   };
 
-  void handle(const Event& event) override;
   // Sends the camera's poll of this number, unless the capture is over by then.
   void send(std::uint32_t camera, std::int64_t number);
-  void report(std::uint32_t camera);
+  void report(std::uint32_t camera, TrueTime end, std::vector<CameraPoll>& polls);
 
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
-  Engine& engine_;
-  HandlerId id_ = 0;
   Cameras& cameras_;
   const CameraFaults& faults_;
   Nanoseconds interval_;
   TrueTime end_{};
   double asymmetry_error_ms_;  // of the seed
   std::vector<Poll> polls_;    // by camera
-  std::vector<CameraPoll> ended_;
+  EventQueue ends_;            // payload: camera
 };
 
 }  // namespace simbench::sim
