@@ -35,6 +35,8 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
       start_(start),
       max_events_(limits.max_events),
       slots_(evaluated_slots(scenario)),
+      unstable_start_(from_ms(scenario.cameras.unstable_start_ms)),
+      stamp_noise_ns_(scenario.cameras.sensor_stamp_jitter_sigma_us * 1e3),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       cameras_(scenario, seed),
       camera_faults_(scenario.faults),
@@ -166,10 +168,9 @@ void CameraWorld::expose_by_timers(TrueTime before) {
 
 // Soon after its start a camera may expose late.
 Exposure CameraWorld::with_unsteady_start(CameraStream& stream, const Exposure& planned) const {
-  const scenarios::Cameras& cameras = scenario_.cameras;
-  if (planned.start - stream.started >= from_ms(cameras.unstable_start_ms)) return planned;
-  const Nanoseconds late =
-      from_ms(std::abs(stream.unsteadiness.normal(cameras.unstable_start_jitter_sigma_ms)));
+  if (planned.start - stream.started >= unstable_start_) return planned;
+  const double sigma_ms = scenario_.cameras.unstable_start_jitter_sigma_ms;
+  const Nanoseconds late = from_ms(std::abs(stream.unsteadiness.normal(sigma_ms)));
   return {planned.pulse, planned.start + late, planned.end + late};
 }
 
@@ -177,8 +178,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   CameraStream& stream = cameras_.stream(stream_id);
   const scenarios::Cameras& cameras = scenario_.cameras;
   const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
-  const double stamp_noise_ns =
-      stream.stamp_noise.normal(cameras.sensor_stamp_jitter_sigma_us * 1e3);
+  const double stamp_noise_ns = stream.stamp_noise.normal(stamp_noise_ns_);
   const Exposure exposure = with_unsteady_start(stream, planned);
   if (camera_faults_.vanished(stream.camera, exposure.start)) return;
 

@@ -169,6 +169,8 @@ class CameraWorld {
   TrueTime start_;
   std::uint64_t max_events_;
   EvaluatedSlots slots_;
+  Nanoseconds unstable_start_;
+  double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
   TrueTime last_exposure_;
   Cameras cameras_;

@@ -38,6 +38,7 @@ void Capture::start(CameraWorld& world, std::function<void()> on_end,
                     const std::atomic<bool>* cancel) {
   SIMBENCH_ASSERT(world.start() == engine_.now(), "the cameras start with the capture");
   world_ = &world;
+  for (const SystemClock* clock : clocks_) steady_starts_.push_back(clock->steady(world.start()));
   cancel_ = cancel;
   on_end_ = std::move(on_end);
   reports_.start(engine_.now());
@@ -177,7 +178,7 @@ void Capture::stamp(const CameraFrame& frame, const CameraStream& stream) {
        .exposure_us = frame.exposure_us,
        .sensor = frame.sensor,
        .frame = frame.frame,
-       .backend = backend_stamps_.stamp(clock, world_->start(), frame.copied, frame.at),
+       .backend = backend_stamps_.stamp(clock, steady_starts_[stream.host], frame.copied, arrival),
        .arrival = round_down(arrival.system, arrival_quantum_),
        .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
   truths_.push_back({.pulse = frame.pulse,

@@ -95,6 +95,7 @@ class Capture {
   Nanoseconds arrival_quantum_;
   BackendStamps backend_stamps_;
   std::vector<ClockInterface> interfaces_;
+  std::vector<SteadyTime> steady_starts_;  // what the hosts' steady clocks read at the start
   std::vector<Nanoseconds> host_errors_;
   std::function<void()> on_end_;
 
