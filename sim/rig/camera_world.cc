@@ -60,6 +60,9 @@ void CameraWorld::make_hosts() {
   for (UsbController& controller : cameras_.make_controllers()) {
     buses_.push_back({.controller = std::move(controller), .offers = {}});
   }
+  for (const scenarios::Stream& stream : scenario_.cameras.streams) {
+    bytes_of_kind_.push_back(stream.image_bytes());
+  }
   const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
   hosts_.reserve(hosts);
   for (std::size_t host = 0; host < hosts; ++host) {
@@ -202,13 +205,14 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   way.kernel_copy_ns = delays.kernel_copy_ns;
   way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
   frame.offered = exposure.end + stream.latency;
-  buses_[stream.controller].offers.push_back(step(frame.offered, {}, id));
+  buses_[stream.controller].offers.push_back(
+      step(frame.offered, {}, id, stream.index_on_controller));
 }
 
 // What happens on this bus before that, in order of time.
 void CameraWorld::transfer(Bus& bus, TrueTime before) {
   sort(bus.offers);
-  auto next = bus.offers.begin();
+  auto next = pass(bus, before);
   for (;;) {
     const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
     const TrueTime woken = bus.controller.wake_up();
@@ -222,6 +226,25 @@ void CameraWorld::transfer(Bus& bus, TrueTime before) {
     }
   }
   bus.offers.erase(bus.offers.begin(), next);
+}
+
+// The first of the offers, as long as they meet no others under way; returns the next one.
+auto CameraWorld::pass(Bus& bus, TrueTime before) -> std::vector<Step>::iterator {
+  constexpr std::uint32_t kMost = 64;
+  std::uint64_t seen = 0;
+  const auto is_second = [&seen](const Step& offer) {
+    const std::uint64_t stream = std::uint64_t{1} << (offer.place % kMost);
+    return (std::exchange(seen, seen | stream) & stream) != 0;
+  };
+  auto next = bus.offers.begin();
+  if (std::any_of(next, bus.offers.end(), is_second)) return next;
+  for (; next != bus.offers.end() && next->at < before; ++next) {
+    const double bytes = bytes_of_kind_[next->place % bytes_of_kind_.size()];
+    const auto done = bus.controller.pass(next->at, next->place, bytes, before);
+    if (!done) break;
+    transferred_.push_back(step(*done, *done, next->frame));
+  }
+  return next;
 }
 
 void CameraWorld::offer(Bus& bus, const Step& offer) {

@@ -107,8 +107,9 @@ class CameraWorld {
   // Period `index`, until the next one is asked for; null after the last. If not all are kept, they
   // can only be asked for in turn. Throws EngineLimitReached.
   const CameraPeriod* period(std::size_t index);
-  // Whether all periods until now are kept.
+  // Whether all periods until now are kept, and in how many bytes.
   bool is_whole() const { return dropped_ == 0; }
+  std::size_t bytes() const { return bytes_; }
 
   std::uint64_t seed() const { return seed_; }
   TrueTime start() const { return start_; }
@@ -136,6 +137,7 @@ class CameraWorld {
     TrueTime transferred;
     std::uint64_t order;  // among all steps
     std::uint32_t frame;  // in flight
+    std::uint32_t place;  // of its stream on the controller
   };
   struct Bus {
     UsbController controller;
@@ -149,8 +151,8 @@ class CameraWorld {
   };
 
   static void sort(std::vector<Step>& steps);
-  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame) {
-    return {.at = at, .transferred = transferred, .order = events_++, .frame = frame};
+  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame, std::uint32_t place = 0) {
+    return {at, transferred, events_++, frame, place};
   }
   void make_hosts();
   void make_period(CameraPeriod& period);
@@ -160,6 +162,7 @@ class CameraWorld {
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
   void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
   void transfer(Bus& bus, TrueTime before);
+  std::vector<Step>::iterator pass(Bus& bus, TrueTime before);
   void offer(Bus& bus, const Step& offer);
   void deliver(HostSide& host, const Step& transferred);
   void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
@@ -178,6 +181,7 @@ class CameraWorld {
   ClockPolls polls_;
   EventQueue timers_;  // of shutters; payload: stream
   std::vector<Bus> buses_;
+  std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
   std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
   std::vector<Step> transferred_;  // of one host

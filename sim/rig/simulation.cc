@@ -50,24 +50,37 @@ class AfterCapture final : public ForwardingSink {
   Capture* capture_ = nullptr;
 };
 
-// The cameras' half of the world that was used last, for the next run with the same start.
+// The cameras' halves of the worlds of a seed, by their start, for further runs with that start.
 class SharedCameras {
  public:
   SharedCameras(const scenarios::Scenario& scenario, const EngineLimits& limits)
       : scenario_(scenario), limits_(limits) {}
 
+  // Until the next call.
   CameraWorld& of(std::uint64_t seed, TrueTime start) {
-    if (!world_ || world_->seed() != seed || world_->start() != start || !world_->is_whole()) {
-      world_.reset();
-      world_ = std::make_unique<CameraWorld>(scenario_, seed, start, limits_);
+    const auto is_wanted = [&](const auto& world) { return world->start() == start; };
+    std::erase_if(worlds_,
+                  [&](const auto& world) { return world->seed() != seed || !world->is_whole(); });
+    auto found = std::ranges::find_if(worlds_, is_wanted);
+    if (found == worlds_.end()) {
+      // Most pipelines have the first start; those of others seldom share one.
+      if (worlds_.size() > 1 || (worlds_.size() == 1 && is_large(*worlds_.front()))) {
+        worlds_.pop_back();
+      }
+      worlds_.push_back(std::make_unique<CameraWorld>(scenario_, seed, start, limits_));
+      found = worlds_.end() - 1;
     }
-    return *world_;
+    return **found;
   }
 
  private:
+  static bool is_large(const CameraWorld& world) {
+    return world.bytes() > CameraWorld::kKeptBytes / 2;
+  }
+
   const scenarios::Scenario& scenario_;
   EngineLimits limits_;
-  std::unique_ptr<CameraWorld> world_;
+  std::vector<std::unique_ptr<CameraWorld>> worlds_;  // at most two
 };
 
 std::vector<ClockInterface> interfaces_of(HostGroup& hosts) {
