@@ -8,7 +8,6 @@
 #include <array>
 #include <random>
 #include <string>
-#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -40,14 +39,15 @@ scenarios::Scenario lively_scenario() {
   return s;
 }
 
-// A world from anywhere: sync modes, buses with and without enough bandwidth, losses, faults.
+// A world from anywhere: sync modes, buses with and without enough bandwidth, losses, faults. Its
+// jitter keeps events from falling into one nanosecond, where their order is the world's choice.
 scenarios::Scenario world_of(unsigned seed) {
   std::mt19937 random(seed);  // NOLINT(cert-msc32-c,cert-msc51-cpp): a seed repeats
   const auto one_of = [&random](auto... choices) {
     const std::array all{choices...};
     return all[random() % all.size()];
   };
-  scenarios::Scenario s = random() % 4 == 0 ? ideal_scenario() : lively_scenario();
+  scenarios::Scenario s = lively_scenario();
   using scenarios::SyncMode;
   s.timeline.frames = 60;
   s.cameras.sync_mode =
@@ -113,25 +113,14 @@ std::string text_of(const CameraFrame& frame) {
       ms(frame.at));
 }
 
-// Frames that end their ways in the same nanosecond may do so in any order.
-void order_ties(std::vector<CameraFrame>& frames) {
-  const auto by_time = [](const CameraFrame& a, const CameraFrame& b) { return a.at < b.at; };
-  EXPECT_TRUE(std::is_sorted(frames.begin(), frames.end(), by_time));
-  std::sort(frames.begin(), frames.end(), [](const CameraFrame& a, const CameraFrame& b) {
-    return std::tie(a.at, a.stream, a.counter) < std::tie(b.at, b.stream, b.counter);
-  });
-}
-
 TEST(CameraWorld, StagesGiveWhatEventsGive) {
   std::size_t lost = 0;
   for (unsigned seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const scenarios::Scenario scenario = world_of(seed);
-    std::vector<CameraFrame> expected = EventByEvent(scenario, seed).run();
+    const std::vector<CameraFrame> expected = EventByEvent(scenario, seed).run();
     CameraWorld world(scenario, seed, TrueTime{});
-    std::vector<CameraFrame> frames = frames_of(world);
-    order_ties(expected);
-    order_ties(frames);
+    const std::vector<CameraFrame> frames = frames_of(world);
     ASSERT_EQ(frames.size(), expected.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
       ASSERT_TRUE(are_same(frames[i], expected[i]))
