@@ -64,6 +64,7 @@ bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::
   ++pending_of_stream_[stream];
   pending_.push_back({done_at, submissions_++, ticket, static_cast<std::uint32_t>(stream)});
   std::push_heap(pending_.begin(), pending_.end(), later);
+  wake_up_ = std::min(wake_up_, next_completion());
   return true;
 }
 
@@ -79,27 +80,16 @@ TrueTime UsbController::next_completion() const {
          Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
 }
 
-std::optional<TrueTime> UsbController::take_wake_up() {
-  const TrueTime next = next_completion();
-  if (next >= wake_up_) return std::nullopt;
-  wake_up_ = next;
-  return next;
-}
-
-bool UsbController::is_woken(TrueTime now) {
-  if (wake_up_ != now) return false;
-  wake_up_ = TrueTime::max();
-  return true;
-}
-
 std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
-  if (pending_.empty()) return std::nullopt;
   double reached = as_ns(now);
-  if (settings_.sharing == UsbSharing::kFair) {
+  if (settings_.sharing == UsbSharing::kFair && !pending_.empty()) {
     serve_until(now);
     reached = served_bytes_ + kByteTolerance;
   }
-  if (pending_.front().done_at > reached) return std::nullopt;
+  if (pending_.empty() || pending_.front().done_at > reached) {
+    wake_up_ = next_completion();
+    return std::nullopt;
+  }
   std::pop_heap(pending_.begin(), pending_.end(), later);
   const Transfer done = pending_.back();
   pending_.pop_back();

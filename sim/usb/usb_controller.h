@@ -9,17 +9,13 @@
 // A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
 // an incomplete frame is on an overloaded bus.
 //
-// The controller is a passive model on true time. Its owner submits frames, comes back at the time
-// of take_wake_up(), and then collects the completed transfers. For dedicated and fifo the
-// completion is known at submission; fair sharing revises it as frames come and go.
+// The controller is a passive model on true time. Its owner submits frames and comes back at
+// wake_up() to collect the completed transfers, all of it in order of time. For dedicated and fifo
+// the completion is known at submission; fair sharing revises it as frames come and go.
 //
-//   if (bus.submit(now, stream, bytes, frame)) {
-//     if (const auto at = bus.take_wake_up()) schedule(*at);
-//   }
-//   // and at that time:
-//   if (!bus.is_woken(now)) return;
-//   while (const auto frame = bus.take_completed(now)) deliver(*frame);
-//   if (const auto at = bus.take_wake_up()) schedule(*at);
+//   if (!bus.submit(now, stream, bytes, frame)) lose(frame);
+//   // and at each time that wake_up() names:
+//   while (const auto done = bus.take_completed(now)) deliver(*done);
 //
 // Complexity: O(log n) per frame, n frames pending on the controller. Source:
 // docs/reference/d455.md section 3, docs/design.md section 7.
@@ -55,13 +51,12 @@ class UsbController {
   // pending.
   TrueTime next_completion() const;
 
-  // When the owner must come back, unless it has an early enough date already. Under fair sharing a
-  // new frame delays completions: there may be nothing complete then.
-  std::optional<TrueTime> take_wake_up();
-  // Whether `now` is the last date from take_wake_up(); earlier ones are out of date.
-  bool is_woken(TrueTime now);
+  // When the owner must come back. Under fair sharing a new frame delays completions: there may be
+  // nothing complete then.
+  TrueTime wake_up() const { return wake_up_; }
 
-  // The ticket of a transfer that is complete at `now`, in order of completion; nothing if none is.
+  // At wake_up(): the ticket of a transfer that is complete, in order of completion; nothing if
+  // none is left, and then wake_up() is a later date.
   std::optional<std::uint32_t> take_completed(TrueTime now);
 
  private:
@@ -84,7 +79,7 @@ class UsbController {
   std::vector<double> lane_free_at_ns_;  // fifo: one lane; dedicated: one per camera
   double served_bytes_ = 0;              // fair: to each pending transfer
   TrueTime served_until_{};              // fair
-  TrueTime wake_up_ = TrueTime::max();   // given last, and not yet come
+  TrueTime wake_up_ = TrueTime::max();
 };
 
 }  // namespace simbench::sim
