@@ -29,6 +29,7 @@
 
 #include "scenarios/choices.h"
 #include "scenarios/derivation.h"
+#include "scenarios/lazy.h"
 
 namespace simbench::scenarios {
 
@@ -497,7 +498,7 @@ struct Scenario {
   std::map<std::string, Published> published;  // by pipeline name
   std::optional<Studio> studio;                // only of scenarios that have one
   Derivation derivation;                       // from a built-in scenario
-  std::string resolved_json;                   // the fully resolved scenario, pretty-printed
+  Lazy<std::string> resolved_json;             // fully resolved, pretty-printed
   std::shared_ptr<const Origin> origin;
 
   // The host that camera j is plugged into.
