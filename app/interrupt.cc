@@ -1,6 +1,7 @@
 #include "app/interrupt.h"
 
 #include <atomic>
+#include <span>
 #include <utility>
 
 #include "evaluation/sweep/task_farm.h"
@@ -25,6 +26,10 @@ class InterruptibleSink final : public ForwardingSink {
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
     throw_if_interrupted();
     sink().on_frame(frame, truth);
+  }
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    throw_if_interrupted();
+    sink().on_frames(frames, truths);
   }
   void on_exchange(std::uint32_t host, const Exchange& exchange) override {
     throw_if_interrupted();

@@ -1,4 +1,4 @@
-// Ctrl-C, which stops jobs at their next frame or after some thousand events of their world, and
+// Ctrl-C, which stops jobs at their next frames or after some thousand events of their world, and
 // the simulator with it: the worlds that the command line runs.
 //
 //   InterruptHandler handler;                     // while it lives, SIGINT raises a flag

@@ -1,5 +1,8 @@
 // A sink that passes everything on, as a base of sinks that change or watch some of it.
 //
+// A block of frames passes one by one through on_frame(), so that a sink which overrides that alone
+// misses none. One that can take a block overrides on_frames() too.
+//
 //   class Doubled final : public ForwardingSink {
 //    public:
 //     using ForwardingSink::ForwardingSink;

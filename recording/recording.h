@@ -17,6 +17,7 @@
 #define SIMBENCH_RECORDING_RECORDING_H_
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -103,6 +104,13 @@ class RecordingSink {
   virtual void on_start(const RigLayout& layout) = 0;
   // Frames in order of delivery; `truth` is null on a real rig. Includes the warm-up.
   virtual void on_frame(const FrameRecord& frame, const FrameTruth* truth) = 0;
+  // Frames with no other report between them, in order of delivery; `truths` is empty on a real
+  // rig, else as long as `frames`. The same as on_frame() for each, and quicker.
+  virtual void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      on_frame(frames[i], truths.empty() ? nullptr : &truths[i]);
+    }
+  }
   virtual void on_pulse(const PulseTruth& truth) = 0;
   virtual void on_adjustment(const ClockAdjustment& adjustment) = 0;
   virtual void on_poll(const DevicePoll& poll) = 0;

@@ -12,7 +12,9 @@
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_DEVICE_TIME_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "algorithms/ports/clock_adjustment.h"
@@ -36,6 +38,8 @@ struct PollSample {
   SteadyTime t1_steady{};
 };
 
+class EstimatorBank;
+
 class DeviceTimeEstimator {
  public:
   virtual ~DeviceTimeEstimator() = default;
@@ -56,6 +60,8 @@ class DeviceTimeEstimator {
   // True if stamps count from the camera's own first frame instead of a host's zero; to combine
   // cameras, add one common anchor.
   virtual bool relative() const { return false; }
+  // For speed alone (estimator_bank.h): estimators like this fresh one for many cameras, or null.
+  virtual std::unique_ptr<EstimatorBank> bank(std::size_t cameras) const;
 };
 
 }  // namespace simbench

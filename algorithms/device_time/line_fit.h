@@ -8,7 +8,7 @@
 // Exact while |x| and |y| stay below 2^61 / capacity; larger values count as that. With x in
 // microseconds and a capacity of 30 that is 2400 years, with 3.2 million (10 h at 90 Hz) 8 days.
 //
-// Complexity: add, remove, line: O(1). Source: docs/reference/paper.md section 3.
+// Complexity: each O(1). Source: docs/reference/paper.md section 3.
 //
 //   LineSums sums(1000);
 //   sums.add({.x = 0, .y = 5});
@@ -50,13 +50,44 @@ struct Line {
   }
 };
 
+// What the line through n points depends on.
+struct LineMoments {
+  std::int64_t count = 0;
+  std::int64_t sum_x = 0;
+  std::int64_t sum_y = 0;
+  Int128 spread = 0;  // n * sum of x^2 - (sum of x)^2
+  Int128 common = 0;  // n * sum of xy - (sum of x)(sum of y)
+
+  // Exchanges one of the points: n x - sum of x is below 2^62, as n |x| is within 2^61.
+  void replace(LinePoint old, LinePoint by) {
+    const std::int64_t dx = by.x - old.x;
+    const std::int64_t dy = by.y - old.y;
+    const std::int64_t lever_before = count * old.x - sum_x;
+    const std::int64_t height_before = count * old.y - sum_y;
+    sum_x += dx;
+    sum_y += dy;
+    const std::int64_t lever = count * by.x - sum_x;
+    spread += Int128{dx} * (lever_before + lever);
+    common += Int128{dx} * height_before + Int128{dy} * lever;
+  }
+
+  Line line() const {
+    const double slope = spread == 0 ? 0.0 : to_double(common) / to_double(spread);
+    return {.slope = slope, .count = count, .sum_x = sum_x, .sum_y = sum_y};
+  }
+};
+
 class LineSums {
  public:
-  // At most `capacity` points (at least 1) will be in the sums at a time. The reach keeps every sum
-  // of x or y below 2^61, and so each product in line() within 2^123.
+  // At most `capacity` points (at least 1) will be in the sums. The reach keeps every sum of x or y
+  // below 2^61, and so each product in moments() within 2^123.
   explicit LineSums(std::size_t capacity)
       : reach_((std::int64_t{1} << 61) / static_cast<std::int64_t>(capacity)) {
     SIMBENCH_ASSERT(reach_ > 0, "a line needs room for one point, and no more than 2^61");
+  }
+
+  LinePoint within_reach(LinePoint point) const {
+    return {std::clamp(point.x, -reach_, reach_), std::clamp(point.y, -reach_, reach_)};
   }
 
   void add(LinePoint point) {
@@ -67,27 +98,16 @@ class LineSums {
     sum_xx_ += Int128{point.x} * point.x;
     sum_xy_ += Int128{point.x} * point.y;
   }
-  // Takes out a point that was added.
-  void remove(LinePoint point) {
-    point = within_reach(point);
-    --count_;
-    sum_x_ -= point.x;
-    sum_y_ -= point.y;
-    sum_xx_ -= Int128{point.x} * point.x;
-    sum_xy_ -= Int128{point.x} * point.y;
+  LineMoments moments() const {
+    return {.count = count_,
+            .sum_x = sum_x_,
+            .sum_y = sum_y_,
+            .spread = count_ * sum_xx_ - Int128{sum_x_} * sum_x_,
+            .common = count_ * sum_xy_ - Int128{sum_x_} * sum_y_};
   }
-  Line line() const {
-    const Int128 spread = count_ * sum_xx_ - Int128{sum_x_} * sum_x_;
-    const Int128 common = count_ * sum_xy_ - Int128{sum_x_} * sum_y_;
-    const double slope = spread == 0 ? 0.0 : to_double(common) / to_double(spread);
-    return {.slope = slope, .count = count_, .sum_x = sum_x_, .sum_y = sum_y_};
-  }
+  Line line() const { return moments().line(); }
 
  private:
-  LinePoint within_reach(LinePoint point) const {
-    return {std::clamp(point.x, -reach_, reach_), std::clamp(point.y, -reach_, reach_)};
-  }
-
   std::int64_t reach_;
   std::int64_t count_ = 0;
   std::int64_t sum_x_ = 0;
@@ -99,24 +119,30 @@ class LineSums {
 // The line through the last `size` points. Allocates once, when made.
 class LineWindow {
  public:
-  explicit LineWindow(std::size_t size) : sums_(size), points_(size) {}
+  explicit LineWindow(std::size_t size) : points_(size), sums_(size) {}
 
   void push(LinePoint point) {
-    if (full_) sums_.remove(points_[next_]);
-    sums_.add(point);
+    point = sums_.within_reach(point);
+    if (full_) {
+      moments_.replace(points_[next_], point);
+    } else {
+      sums_.add(point);
+      moments_ = sums_.moments();
+    }
     points_[next_] = point;
     if (++next_ == points_.size()) {
       next_ = 0;
       full_ = true;
     }
   }
-  Line line() const { return sums_.line(); }
+  Line line() const { return moments_.line(); }
 
  private:
-  LineSums sums_;
+  LineMoments moments_;
   std::vector<LinePoint> points_;  // a ring; the oldest is at next_ once it is full
   std::size_t next_ = 0;
   bool full_ = false;
+  LineSums sums_;  // until it is full
 };
 
 }  // namespace simbench

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/device_time/estimator_bank.h"
 #include "algorithms/device_time/lower_hull.h"
 #include "algorithms/device_time/offset_stream.h"
 #include "algorithms/median.h"
@@ -18,7 +19,7 @@
 namespace simbench {
 namespace {
 
-class Olson final : public DeviceTimeEstimator {
+class Olson final : public Banked<Olson> {
  public:
   explicit Olson(OlsonSettings settings)
       : leak_({.touches = {}, .slope = settings.alpha_ppm * 1e-3}) {}
@@ -49,7 +50,7 @@ namespace {
 
 constexpr std::size_t kMaxQueued = 4096;
 
-class SlidingMinimum final : public DeviceTimeEstimator {
+class SlidingMinimum final : public Banked<SlidingMinimum> {
  public:
   explicit SlidingMinimum(SlidingMinimumSettings settings)
       : window_us_(saturate_round(settings.window_s * 1e6)) {}
@@ -333,7 +334,7 @@ class Filter {
   double skew_variance_ = 0;
 };
 
-class Kalman final : public DeviceTimeEstimator {
+class Kalman final : public Banked<Kalman> {
  public:
   explicit Kalman(const KalmanSettings& settings)
       : filter_(settings), rejections_to_restart_(settings.rejections_to_restart) {}

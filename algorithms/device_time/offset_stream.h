@@ -26,20 +26,48 @@ class SampleAnchor {
 
   // x: sensor stamp in us; y: offset of arrival to sensor in ns; both from the first sample's.
   LinePoint point(const DeviceSample& sample) const {
+    const std::int64_t arrival_ns = nanoseconds_of(sample.arrival);
+    if (Elapsed elapsed; in_64_bits(sample.sensor, elapsed)) {
+      LinePoint point = {.x = elapsed.us, .y = 0};
+      if (!__builtin_sub_overflow(arrival_ns, arrival_ns_, &point.y) &&
+          !__builtin_sub_overflow(point.y, elapsed.ns, &point.y)) {
+        return point;
+      }
+    }
     const Int128 x = elapsed_us(sample.sensor);
-    const Int128 y = Int128{nanoseconds_of(sample.arrival)} - arrival_ns_ - 1000 * x;
-    return {saturate(x), saturate(y)};
+    return {saturate(x), saturate(Int128{arrival_ns} - arrival_ns_ - 1000 * x)};
   }
 
-  std::int64_t x(DeviceTime sensor) const { return saturate(elapsed_us(sensor)); }
+  std::int64_t x(DeviceTime sensor) const {
+    if (Elapsed elapsed; in_64_bits(sensor, elapsed)) return elapsed.us;
+    return saturate(elapsed_us(sensor));
+  }
 
   // The host's reading at sensor stamp `sensor` when the offset is `offset_ns`.
   GlobalTime stamp(DeviceTime sensor, double offset_ns) const {
-    return GlobalTime(
-        Nanoseconds(saturate(arrival_ns_ + 1000 * elapsed_us(sensor) + saturate_round(offset_ns))));
+    const std::int64_t offset = saturate_round(offset_ns);
+    if (Elapsed elapsed; in_64_bits(sensor, elapsed)) {
+      std::int64_t stamp_ns = 0;
+      if (!__builtin_add_overflow(arrival_ns_, elapsed.ns, &stamp_ns) &&
+          !__builtin_add_overflow(stamp_ns, offset, &stamp_ns)) {
+        return GlobalTime(Nanoseconds(stamp_ns));
+      }
+    }
+    return GlobalTime(Nanoseconds(saturate(arrival_ns_ + 1000 * elapsed_us(sensor) + offset)));
   }
 
  private:
+  struct Elapsed {
+    std::int64_t us = 0;
+    std::int64_t ns = 0;
+  };
+
+  // Nearly always; the way of 128 bits is for stamps from anywhere.
+  bool in_64_bits(DeviceTime sensor, Elapsed& elapsed) const {
+    return !__builtin_sub_overflow(sensor.time_since_epoch().count(), sensor_us_, &elapsed.us) &&
+           !__builtin_mul_overflow(elapsed.us, std::int64_t{1000}, &elapsed.ns);
+  }
+
   Int128 elapsed_us(DeviceTime sensor) const {
     return Int128{sensor.time_since_epoch().count()} - sensor_us_;
   }

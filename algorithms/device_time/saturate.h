@@ -6,6 +6,7 @@
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_SATURATE_H_
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -27,8 +28,13 @@ inline double to_double(Int128 value) {
   return low == value ? static_cast<double>(low) : static_cast<double>(value);
 }
 
-// The nearest integer, within +-2^62. The value is not a NaN.
+// The nearest integer, the even one of two, within +-2^62. The value is not a NaN.
 inline std::int64_t saturate_round(double value) {
+  // Where doubles are one apart, so that a sum is rounded to whole numbers; without a call.
+  constexpr double kWhole = 0x1.8p52;
+  if (std::abs(value) < 0x1p51) {
+    return std::bit_cast<std::int64_t>(value + kWhole) - std::bit_cast<std::int64_t>(kWhole);
+  }
   return std::llrint(std::clamp(value, -0x1p62, 0x1p62));
 }
 

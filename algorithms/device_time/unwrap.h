@@ -31,6 +31,10 @@ class CounterUnwrapper {
   // 0 <= reading < kModulus.
   std::int64_t unwrap(std::int64_t reading) {
     if (!previous_) return *(previous_ = reading);
+    if constexpr (kModulus == std::int64_t{1} << 32) {  // the arithmetic of 32 bits
+      return *previous_ += static_cast<std::int32_t>(static_cast<std::uint32_t>(reading) -
+                                                     static_cast<std::uint32_t>(*previous_));
+    }
     std::int64_t step = (reading - *previous_) % kModulus;
     if (step >= kModulus - kModulus / 2) step -= kModulus;
     if (step < -(kModulus / 2)) step += kModulus;

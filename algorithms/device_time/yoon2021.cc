@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "algorithms/device_time/estimator_bank.h"
 #include "algorithms/device_time/line_fit.h"
 #include "algorithms/device_time/offset_stream.h"
 #include "algorithms/device_time/saturate.h"
@@ -12,7 +13,7 @@
 namespace simbench {
 namespace {
 
-class OnlineRegression final : public DeviceTimeEstimator {
+class OnlineRegression final : public Banked<OnlineRegression> {
  public:
   explicit OnlineRegression(RegressionWindow window) : window_(window.frames) {}
 
@@ -30,7 +31,7 @@ class OnlineRegression final : public DeviceTimeEstimator {
 
 // Least squares over all points so far, from means and sums of squared deviations (Welford), which
 // lose nothing however many points there are.
-class ExpandingRegression final : public DeviceTimeEstimator {
+class ExpandingRegression final : public Banked<ExpandingRegression> {
  public:
   GlobalTime stamp(const DeviceSample& sample) override {
     if (!anchor_) anchor_.emplace(sample);
@@ -56,7 +57,7 @@ class ExpandingRegression final : public DeviceTimeEstimator {
   double common_ = 0;
 };
 
-class OfflineRegression final : public DeviceTimeEstimator {
+class OfflineRegression final : public Banked<OfflineRegression> {
  public:
   bool offline() const override { return true; }
 
@@ -102,7 +103,7 @@ GlobalTime corrected(HostTime arrival, double correction_ns) {
       Nanoseconds(saturate(Int128{nanoseconds_of(arrival)} + saturate_round(limited))));
 }
 
-class Equation1 final : public DeviceTimeEstimator {
+class Equation1 final : public Banked<Equation1> {
  public:
   Equation1(Equation1Reading reading, std::size_t intervals)
       : reading_(reading), window_(intervals) {}
@@ -156,7 +157,7 @@ std::unique_ptr<DeviceTimeEstimator> make_equation1(Equation1Reading reading,
 
 namespace {
 
-class RawArrival final : public DeviceTimeEstimator {
+class RawArrival final : public Banked<RawArrival> {
  public:
   GlobalTime stamp(const DeviceSample& sample) override {
     return GlobalTime(sample.arrival.time_since_epoch());
@@ -169,7 +170,7 @@ std::unique_ptr<DeviceTimeEstimator> make_raw_arrival() { return std::make_uniqu
 
 namespace {
 
-class SensorNormalised final : public DeviceTimeEstimator {
+class SensorNormalised final : public Banked<SensorNormalised> {
  public:
   bool relative() const override { return true; }
 

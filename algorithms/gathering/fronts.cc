@@ -36,30 +36,10 @@ FrontMatcher::FrontMatcher(std::uint32_t sources, std::int64_t tolerance, std::u
   heap_.reserve(sources);
 }
 
-void FrontMatcher::push(std::int64_t key, const GatherFrame& frame, FrameSetSink& sink) {
-  SIMBENCH_ASSERT(frame.source < queues_.size(), "a frame of a source that does not exist");
-  enqueue(frame.source, key, frame);
-  if (waiting_sources_ == queues_.size()) match(sink);
-}
-
-void FrontMatcher::enqueue(std::uint32_t source, std::int64_t key, const GatherFrame& frame) {
-  Queue& queue = queues_[source];
-  if (queue.length == ring_size_ + 1) {
-    pop_front(source);
-    ++discarded_;
-    heap_.clear();  // its order and latest_ may no longer hold
-  }
-  if (queue.length == 0) {
-    ++waiting_sources_;
-    keys_[source] = key;
-    fronts_[source] = frame;
-    if (!heap_.empty()) heap_push(source);
-  } else {
-    std::uint32_t tail = queue.head + queue.length - 1;
-    if (tail >= ring_size_) tail -= ring_size_;
-    rings_[std::size_t{source} * ring_size_ + tail] = {.key = key, .frame = frame};
-  }
-  ++queue.length;
+void FrontMatcher::drop_oldest(std::uint32_t source) {
+  pop_front(source);
+  ++discarded_;
+  heap_.clear();  // its order and latest_ may no longer hold
 }
 
 void FrontMatcher::pop_front(std::uint32_t source) {
@@ -71,6 +51,7 @@ void FrontMatcher::pop_front(std::uint32_t source) {
   const Waiting& next = rings_[std::size_t{source} * ring_size_ + queue.head];
   keys_[source] = next.key;
   fronts_[source] = next.frame;
+  --behind_;
   if (++queue.head == ring_size_) queue.head = 0;
 }
 
@@ -82,9 +63,18 @@ void FrontMatcher::match(FrameSetSink& sink) {
       continue;
     }
     sink.on_set(fronts_);
-    heap_.clear();
-    for (std::uint32_t source = 0; source < sources; ++source) pop_front(source);
+    pop_fronts();
   }
+}
+
+void FrontMatcher::pop_fronts() {
+  heap_.clear();
+  if (behind_ == 0) {
+    std::ranges::fill(queues_, Queue{});
+    waiting_sources_ = 0;
+    return;
+  }
+  for (std::uint32_t source = 0; source < queues_.size(); ++source) pop_front(source);
 }
 
 bool FrontMatcher::fronts_match() {

@@ -109,7 +109,11 @@ class FrontMatcher {
   FrontMatcher(std::uint32_t sources, std::int64_t tolerance, std::uint32_t queue_limit);
 
   // Adds the frame to its source's queue (dropping the oldest of a full one), then matches.
-  void push(std::int64_t key, const GatherFrame& frame, FrameSetSink& sink);
+  void push(std::int64_t key, const GatherFrame& frame, FrameSetSink& sink) {
+    SIMBENCH_ASSERT(frame.source < queues_.size(), "a frame of a source that does not exist");
+    enqueue(frame.source, key, frame);
+    if (waiting_sources_ == queues_.size()) match(sink);
+  }
   std::uint64_t discarded() const { return discarded_; }
 
  private:
@@ -122,10 +126,27 @@ class FrontMatcher {
     std::uint32_t head = 0;    // of the ring behind the front
   };
 
-  void enqueue(std::uint32_t source, std::int64_t key, const GatherFrame& frame);
+  void enqueue(std::uint32_t source, std::int64_t key, const GatherFrame& frame) {
+    Queue& queue = queues_[source];
+    if (queue.length == ring_size_ + 1) drop_oldest(source);
+    if (queue.length == 0) {
+      ++waiting_sources_;
+      keys_[source] = key;
+      fronts_[source] = frame;
+      if (!heap_.empty()) heap_push(source);
+    } else {
+      std::uint32_t tail = queue.head + queue.length - 1;
+      if (tail >= ring_size_) tail -= ring_size_;
+      rings_[std::size_t{source} * ring_size_ + tail] = {.key = key, .frame = frame};
+      ++behind_;
+    }
+    ++queue.length;
+  }
+  void drop_oldest(std::uint32_t source);
   void pop_front(std::uint32_t source);
   void match(FrameSetSink& sink);
   bool fronts_match();
+  void pop_fronts();
   void drop_earliest();
   void heap_push(std::uint32_t source);
   // Order of the heap: by key, then by source.
@@ -134,6 +155,7 @@ class FrontMatcher {
   std::int64_t tolerance_;
   std::uint32_t ring_size_;
   std::uint32_t waiting_sources_ = 0;  // whose queues are not empty
+  std::uint64_t behind_ = 0;           // frames that wait behind the fronts
   std::uint64_t discarded_ = 0;
   std::vector<Queue> queues_;
   std::vector<std::int64_t> keys_;   // of the fronts, by source

@@ -8,7 +8,7 @@
 namespace simbench {
 namespace {
 
-class GenlockGatherer final : public Gatherer {
+class GenlockGatherer final : public BlockGatherer<GenlockGatherer> {
  public:
   GenlockGatherer(const GatheringSetup& setup, GenlockOrder::Variant variant)
       : orders_(setup.sources, GenlockOrder(setup.period, variant)),

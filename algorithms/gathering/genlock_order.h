@@ -35,9 +35,28 @@ class GenlockOrder {
   GenlockOrder(Nanoseconds period, Variant variant);
 
   // The index of the camera's next frame, by its unwrapped sensor stamp.
-  std::int64_t next(DeviceTime sensor);
+  std::int64_t next(DeviceTime sensor) {
+    if (!anchor_) anchor_ = sensor;
+    const std::int64_t elapsed_ns = nanoseconds_of(sensor) - nanoseconds_of(*anchor_);
+    const std::int64_t index = anchor_index_ + periods_in(elapsed_ns);
+    if (variant_ == Variant::kReanchored) {
+      anchor_ = sensor;
+      anchor_index_ = index;
+    }
+    return index;
+  }
 
  private:
+  std::int64_t periods_in(std::int64_t elapsed_ns) const {
+    // One, nearly always: from half a period to one and a half, without a division.
+    const std::int64_t half_up = period_ns_ - period_ns_ / 2;
+    const bool is_one =
+        static_cast<std::uint64_t>(elapsed_ns) - static_cast<std::uint64_t>(half_up) <
+        static_cast<std::uint64_t>(period_ns_);
+    return is_one ? 1 : rounded_quotient(elapsed_ns, period_ns_);
+  }
+  static std::int64_t rounded_quotient(std::int64_t elapsed_ns, std::int64_t period_ns);
+
   std::int64_t period_ns_;
   Variant variant_;
   std::optional<DeviceTime> anchor_;

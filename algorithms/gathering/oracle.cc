@@ -5,7 +5,7 @@
 namespace simbench {
 namespace {
 
-class OracleGatherer final : public Gatherer {
+class OracleGatherer final : public BlockGatherer<OracleGatherer> {
  public:
   explicit OracleGatherer(const GatheringSetup& setup)
       : matcher_(setup.sources, /*tolerance=*/1, setup.queue_limit) {}

@@ -75,7 +75,7 @@ class PhaseGrid {
   std::int64_t slot_ = 0;   // its number
 };
 
-class PhaseBinningGatherer final : public Gatherer {
+class PhaseBinningGatherer final : public BlockGatherer<PhaseBinningGatherer> {
  public:
   PhaseBinningGatherer(const GatheringSetup& setup, double decay)
       : grid_(setup.period.count(), decay),

@@ -5,7 +5,7 @@
 namespace simbench {
 namespace {
 
-class Yoon2021Gatherer final : public Gatherer {
+class Yoon2021Gatherer final : public BlockGatherer<Yoon2021Gatherer> {
  public:
   explicit Yoon2021Gatherer(const GatheringSetup& setup)
       : matcher_(setup.sources, setup.interval.count(), setup.queue_limit) {}

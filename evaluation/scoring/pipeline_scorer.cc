@@ -22,27 +22,6 @@ GlobalTime on_global_scale(HostTime time) { return GlobalTime(time.time_since_ep
 
 }  // namespace
 
-void DeferredStamps::stamp(
-    const EstimatorFactory& make,
-    const std::function<void(const DeferredFrame&, GlobalTime)>& stamped) const {
-  std::vector<std::vector<DeviceSample>> recordings(sources_);
-  for (const DeferredFrame& frame : frames_) recordings[frame.source].push_back(frame.sample);
-
-  std::vector<std::unique_ptr<DeviceTimeEstimator>> estimators;
-  estimators.reserve(sources_);
-  for (std::size_t source = 0; source < sources_; ++source) estimators.push_back(make());
-  for (const auto& [source, adjustment] : adjustments_) {
-    estimators[source]->on_adjustment(adjustment);
-  }
-  for (const auto& [source, poll] : polls_) estimators[source]->on_poll(poll);
-  for (std::size_t source = 0; source < sources_; ++source) {
-    if (!recordings[source].empty()) estimators[source]->learn(recordings[source]);
-  }
-  for (const DeferredFrame& frame : frames_) {
-    stamped(frame, estimators[frame.source]->stamp(frame.sample));
-  }
-}
-
 PipelineScorer::PipelineScorer(ScorerSetup setup) : setup_(std::move(setup)) {}
 
 Nanoseconds PipelineScorer::period() const {
@@ -64,47 +43,98 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   table_.emplace(layout.first_pulse, layout.pulses, cameras);
   sets_.emplace(*table_, observer_);
   host_errors_.emplace(layout.hosts);
-  if (setup_.make_second_estimator) second_deferred_.emplace(cameras);
-  sources_.reserve(cameras);
-  for (std::size_t camera = 0; camera < cameras; ++camera) {
-    sources_.push_back({{},
-                        GenlockOrder(period(), GenlockOrder::Variant::kReanchored),
-                        setup_.make_estimator ? setup_.make_estimator() : nullptr});
+  sources_.assign(cameras, {{}, GenlockOrder(period(), GenlockOrder::Variant::kReanchored)});
+  for (std::uint32_t camera = 0; camera < cameras; ++camera) {
+    const std::uint32_t host = layout.cameras[camera].host;
+    if (host >= cameras_of_host_.size()) cameras_of_host_.resize(host + 1);
+    cameras_of_host_[host].push_back(camera);
   }
-  if (setup_.make_estimator && !sources_.empty()) {
-    relative_ = sources_.front().estimator->relative();
-    stamp_warm_up_ = relative_ || sources_.front().estimator->from_first_frame();
-    if (sources_.front().estimator->offline()) deferred_.emplace(cameras);
+  if (cameras > 0) make_banks();
+}
+
+void PipelineScorer::make_banks() {
+  if (setup_.make_estimator) {
+    bank_ = make_bank(setup_.make_estimator, sources_.size());
+    const DeviceTimeEstimator& any = bank_->at(0);
+    relative_ = any.relative();
+    offline_ = any.offline();
+    stamp_warm_up_ = !offline_ && (relative_ || any.from_first_frame());
   }
+  if (setup_.make_second_estimator) {
+    second_bank_ = make_bank(setup_.make_second_estimator, sources_.size());
+  }
+  if (offline_ || second_bank_) kept_.emplace(sources_.size());
 }
 
 void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
-  if (frame.stream != setup_.stream) return;
+  on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
+}
+
+void PipelineScorer::on_frames(std::span<const FrameRecord> frames,
+                               std::span<const FrameTruth> truths) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].stream == setup_.stream) take(frames[i], truths.empty() ? nullptr : &truths[i]);
+  }
+  finish_block();
+}
+
+void PipelineScorer::take(const FrameRecord& frame, const FrameTruth* truth) {
   SIMBENCH_ASSERT(frame.camera < sources_.size(), "a frame of a camera that the rig does not have");
   if (!ground_truth_) learn_ground_truth(truth);
   Source& source = sources_[frame.camera];
   const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
   const Place place = place_of(source, frame, truth, sensor);
-  const DeferredFrame delivered = {
-      frame.camera,
-      place.pulse,
-      {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
-      on_global_scale(truth != nullptr ? truth->delivered : frame.arrival)};
-  note_anchor(frame);
-  if (place.warm_up) {
-    GlobalTime global = on_global_scale(frame.arrival);
-    if (stamp_warm_up_ && !deferred_) global = estimate(source, delivered.sample, truth);
-    if (gather_warm_up_) gather(delivered, global);
-    return;
+  if (!anchor_) note_anchor(frame);
+  if (place.warm_up && !stamp_warm_up_ && !gather_warm_up_) return;
+  if (place.warm_up != is_warm_up_) finish_block();
+  is_warm_up_ = place.warm_up;
+  if (!place.warm_up) {
+    if (truth != nullptr && table_->holds(place.pulse)) {
+      table_->store_truth(place.pulse, frame.camera, *truth);
+    }
+    if (!bank_) block_.stamps.push_back(oracle_stamp(truth));
   }
-  if (truth != nullptr && table_->holds(delivered.pulse)) {
-    table_->store_truth(delivered.pulse, frame.camera, *truth);
+  block_.add(frame.camera, {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
+             place.pulse, on_global_scale(truth != nullptr ? truth->delivered : frame.arrival));
+}
+
+void PipelineScorer::finish_block() {
+  if (block_.size() == 0) return;
+  if (kept_ && !is_warm_up_) kept_->add(block_);
+  if (is_warm_up_ || !offline_) {
+    stamp(block_);
+    settle(block_);
   }
-  if (second_deferred_) second_deferred_->add(delivered);
-  if (deferred_) {
-    deferred_->add(delivered);
+  block_.clear();
+}
+
+void PipelineScorer::stamp(FrameBlock& block) const {
+  if (is_warm_up_ && !stamp_warm_up_) {
+    for (const DeviceSample& sample : block.samples) {
+      block.stamps.push_back(on_global_scale(sample.arrival));
+    }
+  } else if (bank_) {
+    block.stamps.resize(block.size());
+    bank_->stamp(block.cameras, block.samples, block.stamps);
+  }
+}
+
+void PipelineScorer::settle(FrameBlock& block) {
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    GatherFrame& frame = block.frames[i];
+    const GlobalTime global = block.stamps[i];
+    frame.stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global)));
+    if (is_warm_up_) continue;
+    if (table_->holds(frame.tag)) table_->store(frame.tag, frame.source, global);
+    if (observer_ == nullptr) continue;
+    observer_->on_stamp({frame.source, frame.tag, block.samples[i], frame.arrival}, global);
+  }
+  if (is_warm_up_ && !gather_warm_up_) return;
+  if (unverified_) {
+    gatherer_->push_all(block.frames, *unverified_);
   } else {
-    settle(delivered, estimate(source, delivered.sample, truth));
+    sets_->set_shift(anchor_shift());
+    gatherer_->push_all(block.frames, *sets_);
   }
 }
 
@@ -159,12 +189,10 @@ bool PipelineScorer::in_warm_up(std::int64_t pulse) {
 
 void PipelineScorer::note_anchor(const FrameRecord& frame) {
   if (!first_arrival_) first_arrival_ = frame.arrival;
-  if (!anchor_ && anchor_camera_ == frame.camera) anchor_ = frame.arrival;
+  if (anchor_camera_ == frame.camera) anchor_ = frame.arrival;
 }
 
-GlobalTime PipelineScorer::estimate(Source& source, const DeviceSample& sample,
-                                    const FrameTruth* truth) {
-  if (source.estimator) return source.estimator->stamp(sample);
+GlobalTime PipelineScorer::oracle_stamp(const FrameTruth* truth) {
   if (truth == nullptr) {
     throw RecordingFailed(
         "device_time \"oracle\" needs the true exposure times, which only a simulation has");
@@ -178,48 +206,24 @@ Nanoseconds PipelineScorer::anchor_shift() const {
   return anchor_.value_or(*first_arrival_).time_since_epoch();
 }
 
-void PipelineScorer::gather(const DeferredFrame& frame, GlobalTime global) {
-  const GatherFrame gathered = {.source = frame.source,
-                                .stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global))),
-                                .arrival = frame.delivered,
-                                .sensor = frame.sample.sensor,
-                                .tag = frame.pulse};
-  if (unverified_) {
-    unverified_->before_push(frame.delivered);
-    gatherer_->push(gathered, *unverified_);
-  } else {
-    sets_->before_push(frame.delivered, anchor_shift());
-    gatherer_->push(gathered, *sets_);
-  }
-}
-
-void PipelineScorer::settle(const DeferredFrame& frame, GlobalTime global) {
-  if (table_->holds(frame.pulse)) table_->store(frame.pulse, frame.source, global);
-  if (observer_ != nullptr) observer_->on_stamp(frame, global);
-  gather(frame, global);
-}
-
 void PipelineScorer::on_pulse(const PulseTruth& truth) {
   pulses_with_truth_ = true;
   if (table_->holds(truth.pulse)) host_errors_->add(truth.host_errors);
 }
 
 void PipelineScorer::on_adjustment(const ClockAdjustment& adjustment) {
-  for (std::uint32_t source = 0; source < sources_.size(); ++source) {
-    if (layout_.cameras[source].host != adjustment.host) continue;
-    if (sources_[source].estimator) sources_[source].estimator->on_adjustment(adjustment);
-    if (deferred_) deferred_->add_adjustment(source, adjustment);
-    if (second_deferred_) second_deferred_->add_adjustment(source, adjustment);
+  if (adjustment.host >= cameras_of_host_.size()) return;  // a host without cameras
+  for (const std::uint32_t camera : cameras_of_host_[adjustment.host]) {
+    if (bank_) bank_->at(camera).on_adjustment(adjustment);
+    if (second_bank_) second_bank_->at(camera).on_adjustment(adjustment);
   }
 }
 
 void PipelineScorer::on_poll(const DevicePoll& poll) {
-  Source& source = sources_[poll.camera];
-  const PollSample sample = {source.unwrapper.unwrap(poll.device), poll.t0, poll.t1, poll.t0_steady,
-                             poll.t1_steady};
-  if (source.estimator) source.estimator->on_poll(sample);
-  if (deferred_) deferred_->add_poll(poll.camera, sample);
-  if (second_deferred_) second_deferred_->add_poll(poll.camera, sample);
+  const DeviceTime device = sources_[poll.camera].unwrapper.unwrap(poll.device);
+  const PollSample sample = {device, poll.t0, poll.t1, poll.t0_steady, poll.t1_steady};
+  if (bank_) bank_->at(poll.camera).on_poll(sample);
+  if (second_bank_) second_bank_->at(poll.camera).on_poll(sample);
 }
 
 void PipelineScorer::on_exchange(std::uint32_t, const Exchange&) {}
@@ -230,11 +234,7 @@ void PipelineScorer::on_outcome(const SyncOutcome& outcome) {
 
 SeedScore PipelineScorer::finish() {
   SIMBENCH_ASSERT(table_.has_value(), "a capture starts before it ends");
-  if (deferred_) {
-    deferred_->stamp(setup_.make_estimator, [this](const DeferredFrame& frame, GlobalTime global) {
-      settle(frame, global);
-    });
-  }
+  if (offline_) stamp_offline();
   if (relative_) table_->shift(anchor_shift());
   if (observer_ != nullptr) observer_->on_shift(anchor_shift());
   SeedScore score;
@@ -251,21 +251,37 @@ SeedScore PipelineScorer::finish() {
   score.host_error_ms = host_errors_->mean_absolute_ms();
   host_errors_->time_errors().add_to(score);
   score.host_errors_ms = host_errors_->signed_means_ms();
-  score.offline_amd_ms = second_deferred_ ? second_amd_ms() : kNan;
+  score.offline_amd_ms = second_bank_ ? second_amd_ms() : kNan;
   score.genlock_index_errors = genlock_index_errors_;
   score.failures = std::move(failures_);
   return score;
 }
 
-double PipelineScorer::second_amd_ms() const {
-  PulseTable table(layout_.first_pulse, layout_.pulses, sources_.size());
-  second_deferred_->stamp(setup_.make_second_estimator,
-                          [&table](const DeferredFrame& frame, GlobalTime global) {
-                            if (table.holds(frame.pulse)) {
-                              table.store(frame.pulse, frame.source, global);
-                            }
-                          });
-  return amd_ms(table);
+void PipelineScorer::stamp_offline() {
+  is_warm_up_ = false;
+  for (std::size_t camera = 0; camera < kept_->cameras(); ++camera) {
+    if (!kept_->samples(camera).empty()) bank_->at(camera).learn(kept_->samples(camera));
+  }
+  kept_->replay([this](FrameBlock& block) {
+    stamp(block);
+    settle(block);
+  });
+}
+
+double PipelineScorer::second_amd_ms() {
+  PulseRanges ranges(layout_.first_pulse, layout_.pulses);
+  std::vector<GlobalTime> stamps;
+  for (std::uint32_t camera = 0; camera < kept_->cameras(); ++camera) {
+    const std::span<const DeviceSample> samples = kept_->samples(camera);
+    if (samples.empty()) continue;
+    second_bank_->at(camera).learn(samples);
+    stamps.resize(samples.size());
+    second_bank_->stamp(std::vector(samples.size(), camera), samples, stamps);
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      ranges.add(camera, kept_->deliveries(camera)[i].pulse, stamps[i]);
+    }
+  }
+  return ranges.amd_ms(kept_->cameras());
 }
 
 }  // namespace simbench::evaluation

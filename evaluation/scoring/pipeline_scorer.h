@@ -1,8 +1,9 @@
 // Scores one pipeline over one capture, while it is being recorded.
 //
-// Receives the capture as a RecordingSink, runs device_time and gathering on it frame by frame, and
+// Receives the capture as a RecordingSink, runs device_time and gathering on it block by block, and
 // keeps only what the scores need: the global stamps of the evaluated pulses. After the warm-up a
 // frame allocates nothing. A source is the scored stream of one camera, numbered like the camera.
+// Scores do not depend on how frames come in blocks (RecordingSink::on_frames), or alone.
 //
 // The rules (docs/design.md section 8):
 //  - The truth (the pulse that exposed a frame), or GenLock order on a real genlock rig, tells
@@ -15,7 +16,8 @@
 //    they are part of the stream, but never scored.
 //  - Stamps of a relative estimator get one anchor for all cameras: the arrival of the first frame
 //    of the master's first camera, or of the first frame of all if that camera has none.
-//  - An offline estimator stamps when the capture has ended; gathering follows then.
+//  - An offline estimator stamps when the capture has ended; gathering follows then. Frames wait
+//    for it (kept_frames.h).
 //
 //   PipelineScorer scorer(setup);
 //   const RecordingCost cost = source.record({.seed = 1, .pipeline = "mine"}, scorer);
@@ -27,13 +29,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
-#include "algorithms/device_time/device_time.h"
+#include "algorithms/device_time/estimator_bank.h"
 #include "algorithms/device_time/unwrap.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
+#include "evaluation/scoring/kept_frames.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
@@ -43,35 +46,6 @@
 #include "recording/recording.h"
 
 namespace simbench::evaluation {
-
-using EstimatorFactory = std::function<std::unique_ptr<DeviceTimeEstimator>()>;
-
-// Runs an estimator that must see the whole recording before its first stamp.
-//
-// Holds frames back (56 bytes each) until the capture has ended. Then each source's estimator
-// learns from all of them and stamps them, in order of delivery. An online estimator gives the same
-// stamps here as it would have given at once.
-class DeferredStamps {
- public:
-  explicit DeferredStamps(std::size_t sources) : sources_(sources) {}
-
-  void add(const DeferredFrame& frame) { frames_.push_back(frame); }
-
-  void add_poll(std::uint32_t source, const PollSample& poll) { polls_.emplace_back(source, poll); }
-  void add_adjustment(std::uint32_t source, const ClockAdjustment& adjustment) {
-    adjustments_.emplace_back(source, adjustment);
-  }
-
-  // Calls `stamped` for every frame, in the order they were added.
-  void stamp(const EstimatorFactory& make,
-             const std::function<void(const DeferredFrame&, GlobalTime)>& stamped) const;
-
- private:
-  std::size_t sources_;
-  std::vector<DeferredFrame> frames_;
-  std::vector<std::pair<std::uint32_t, PollSample>> polls_;
-  std::vector<std::pair<std::uint32_t, ClockAdjustment>> adjustments_;
-};
 
 using GathererFactory = std::function<std::unique_ptr<Gatherer>(const GatheringSetup&)>;
 
@@ -96,6 +70,7 @@ class PipelineScorer final : public RecordingSink {
   void on_start(const RigLayout& layout) override;
   // Throws RecordingFailed if an oracle of device_time or gathering gets a frame without the truth.
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override;
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override;
   void on_pulse(const PulseTruth& truth) override;
   void on_adjustment(const ClockAdjustment& adjustment) override;
   void on_poll(const DevicePoll& poll) override;
@@ -109,7 +84,6 @@ class PipelineScorer final : public RecordingSink {
   struct Source {
     DeviceStampUnwrapper unwrapper;
     GenlockOrder order;
-    std::unique_ptr<DeviceTimeEstimator> estimator;
   };
 
   struct Place {
@@ -117,18 +91,23 @@ class PipelineScorer final : public RecordingSink {
     bool warm_up = false;
   };
 
+  void make_banks();
+  void take(const FrameRecord& frame, const FrameTruth* truth);
   void learn_ground_truth(const FrameTruth* truth);
   Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,
                  DeviceTime sensor);
   std::int64_t pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor);
   bool in_warm_up(std::int64_t pulse);
   void note_anchor(const FrameRecord& frame);
-  GlobalTime estimate(Source& source, const DeviceSample& sample, const FrameTruth* truth);
-  void gather(const DeferredFrame& frame, GlobalTime global);
-  void settle(const DeferredFrame& frame, GlobalTime global);
+  // The block's way: device_time, then the table and gathering.
+  void finish_block();
+  void stamp(FrameBlock& block) const;
+  void settle(FrameBlock& block);
+  static GlobalTime oracle_stamp(const FrameTruth* truth);
   // The shift that a relative estimator's stamps lack.
   Nanoseconds anchor_shift() const;
-  double second_amd_ms() const;
+  void stamp_offline();
+  double second_amd_ms();
   Nanoseconds period() const;
   GroundTruth ground_truth() const;
 
@@ -136,8 +115,14 @@ class PipelineScorer final : public RecordingSink {
   ScoreObserver* observer_ = nullptr;
   RigLayout layout_;
   std::vector<Source> sources_;
+  std::vector<std::vector<std::uint32_t>> cameras_of_host_;
+  std::unique_ptr<EstimatorBank> bank_;         // null: the oracle
+  std::unique_ptr<EstimatorBank> second_bank_;  // with make_second_estimator
   std::unique_ptr<Gatherer> gatherer_;
+  FrameBlock block_;        // the frames of one call that are treated alike
+  bool is_warm_up_ = true;  // the block
   bool relative_ = false;
+  bool offline_ = false;
   bool stamp_warm_up_ = false;
   bool gather_warm_up_ = false;
   bool warm_up_over_ = false;
@@ -152,8 +137,7 @@ class PipelineScorer final : public RecordingSink {
   std::optional<SetCounter> sets_;
   std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
-  std::optional<DeferredStamps> deferred_;         // if the estimator is offline
-  std::optional<DeferredStamps> second_deferred_;  // with make_second_estimator
+  std::optional<KeptFrames> kept_;  // for offline estimators
   std::int64_t genlock_index_errors_ = 0;
   std::vector<SyncOutcome> failures_;
 };

@@ -186,11 +186,11 @@ void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScor
   score.trend_ms = trend_ms(score.pulses);
 }
 
-double amd_ms(const PulseTable& table) {
-  if (table.sources() < 2) return kNan;
+double PulseRanges::amd_ms(std::size_t sources) const {
+  if (sources < 2) return kNan;
   Mean amd;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.complete(row)) amd.add(spread_ms(table.global_ns(row)));
+  for (const Row& row : rows_) {
+    if (row.sources == sources) amd.add(static_cast<double>(row.greatest - row.least) * kNsInMs);
   }
   return amd.value();
 }

@@ -148,8 +148,43 @@ struct PulseScoring {
 // trend_ms, share_below_half_period, frames, sets.complete_pulses and pulses. O(pulses x sources).
 void score_pulses(const PulseTable& table, const PulseScoring& scoring, SeedScore& score);
 
-// Returns AMD alone.
-double amd_ms(const PulseTable& table);
+// AMD alone, of stamps that come source by source: no table, but the range of each pulse.
+//
+//   PulseRanges ranges(/*first_pulse=*/225, /*pulses=*/480);
+//   ranges.add(/*source=*/0, 225, global);    // all of source 0, then all of source 1, ...
+//   ranges.amd_ms(/*sources=*/18);
+class PulseRanges {
+ public:
+  PulseRanges(std::int64_t first_pulse, std::int64_t pulses)
+      : first_pulse_(first_pulse), rows_(static_cast<std::size_t>(pulses)) {}
+
+  // Ignores pulses that are not evaluated, and a second frame of a source.
+  void add(std::uint32_t source, std::int64_t pulse, GlobalTime global) {
+    const std::uint64_t row =
+        static_cast<std::uint64_t>(pulse) - static_cast<std::uint64_t>(first_pulse_);
+    if (row >= rows_.size()) return;
+    Row& of = rows_[row];
+    if (of.sources > 0 && of.newest_source == source) return;
+    ++of.sources;
+    of.newest_source = source;
+    const std::int64_t global_ns = PulseTable::clamped_ns(global);
+    of.least = std::min(of.least, global_ns);
+    of.greatest = std::max(of.greatest, global_ns);
+  }
+
+  double amd_ms(std::size_t sources) const;
+
+ private:
+  struct Row {
+    std::uint32_t sources = 0;
+    std::uint32_t newest_source = 0;
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    std::int64_t greatest = std::numeric_limits<std::int64_t>::min();
+  };
+
+  std::int64_t first_pulse_;
+  std::vector<Row> rows_;
+};
 
 }  // namespace simbench::evaluation
 

@@ -13,7 +13,7 @@ bool SetCounter::counts(std::span<const GatherFrame> set) const {
 void SetCounter::on_partial_set(std::span<const GatherFrame> set) {
   if (!counts(set)) return;
   ++partial_;
-  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now_);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now());
 }
 
 void SetCounter::on_set(std::span<const GatherFrame> set) {
@@ -30,12 +30,12 @@ void SetCounter::on_set(std::span<const GatherFrame> set) {
     last = std::max(last, frame.stamp);
   }
   range_sum_ms_ += to_ms(last - first);
-  const double latency_ms = to_ms(now_ - latest_arrival);
+  const double latency_ms = to_ms(now() - latest_arrival);
   latency_sum_ms_ += latency_ms;
   latency_max_ms_ = emitted_ == 0 ? latency_ms : std::max(latency_max_ms_, latency_ms);
   ++emitted_;
   if (table_.has_truth()) add_errors(set);
-  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now());
 }
 
 // Members of another pulse than most members.
@@ -60,10 +60,17 @@ std::int64_t SetCounter::index_errors(std::span<const GatherFrame> set) {
 }
 
 void SetCounter::add_errors(std::span<const GatherFrame> set) {
+  std::int64_t tag = -1;
+  std::span<const std::int64_t> reference_ns;  // of that pulse's row; empty: it is not evaluated
   for (const GatherFrame& frame : set) {
-    if (!table_.holds(frame.tag)) continue;
-    const std::int64_t reference = table_.reference_ns(table_.row_of(frame.tag))[frame.source];
-    error_sum_ms_ += std::abs(to_ms(frame.stamp + shift_ - GlobalTime(Nanoseconds(reference))));
+    if (frame.tag != tag) {
+      tag = frame.tag;
+      reference_ns = {};
+      if (table_.holds(tag)) reference_ns = table_.reference_ns(table_.row_of(tag));
+    }
+    if (reference_ns.empty()) continue;
+    const GlobalTime reference{Nanoseconds(reference_ns[frame.source])};
+    error_sum_ms_ += std::abs(to_ms(frame.stamp + shift_ - reference));
     ++errors_;
   }
 }

@@ -10,8 +10,7 @@
 //    a member. Arrivals are true in a simulation; on a rig they are as good as the hosts' clocks.
 //
 //   SetCounter sets(table);
-//   sets.before_push(frame.arrival, shift);
-//   gatherer.push(frame, sets);
+//   gatherer.push_all(frames, sets);
 //   sets.score(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_
 #define SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_
@@ -27,19 +26,16 @@
 
 namespace simbench::evaluation {
 
-class SetCounter final : public FrameSetSink {
+class SetCounter final : public TimedSetSink {
  public:
   // The table has the evaluated pulses and the references. The observer (or null) is notified of
   // the sets that count. Both must outlive this.
   explicit SetCounter(const PulseTable& table, ScoreObserver* observer = nullptr)
       : table_(table), observer_(observer) {}
 
-  // Sets the arrival of the next frame to be pushed, and what to add to the stamps of sets before
-  // the comparison with the reference (an estimator may not know the epoch).
-  void before_push(GlobalTime arrival, Nanoseconds shift) {
-    now_ = arrival;
-    shift_ = shift;
-  }
+  // What to add to the stamps of sets from now on before the comparison with the reference (an
+  // estimator may not know the epoch).
+  void set_shift(Nanoseconds shift) { shift_ = shift; }
 
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
@@ -54,7 +50,6 @@ class SetCounter final : public FrameSetSink {
 
   const PulseTable& table_;
   ScoreObserver* observer_;
-  GlobalTime now_{};
   Nanoseconds shift_{};
   std::int64_t emitted_ = 0;
   std::int64_t pure_ = 0;

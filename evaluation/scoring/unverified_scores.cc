@@ -54,7 +54,7 @@ void UnverifiedScores::count(const FrameRecord& frame) {
 void UnverifiedScores::on_partial_set(std::span<const GatherFrame> set) {
   if (!all_evaluated(set)) return;
   ++partial_;
-  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now_);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/false, now());
 }
 
 void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
@@ -66,7 +66,7 @@ void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
     stamps_ns_.push_back(nanoseconds_of(frame.stamp));
     latest_arrival = std::max(latest_arrival, frame.arrival);
   }
-  const double latency_ms = to_ms(now_ - latest_arrival);
+  const double latency_ms = to_ms(now() - latest_arrival);
   latency_max_ms_ = sets_.empty() ? latency_ms : std::max(latency_max_ms_, latency_ms);
   latency_sum_ms_ += latency_ms;
   PulseScore& scored =
@@ -75,7 +75,7 @@ void UnverifiedScores::on_set(std::span<const GatherFrame> set) {
     scored.spread_ms = spread_ms(stamps_ns_);
     scored.deviation_ms = deviation_ms(stamps_ns_, median_, sorted_);
   }
-  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now_);
+  if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now());
 }
 
 void UnverifiedScores::score(SeedScore& score) const {

@@ -14,8 +14,7 @@
 //
 //   UnverifiedScores scores(layout, MedianKind::kUpperMiddle, nullptr);
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
-//   scores.before_push(arrival);
-//   gatherer.push({.stamp = stamp, .tag = tag}, scores);
+//   gatherer.push_all(frames, scores);
 //   scores.score(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
 #define SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
@@ -38,7 +37,7 @@ inline constexpr std::int64_t kUnknownPulse = -2;
 // A longer gap of a counter, in frames, is a counter that began anew.
 inline constexpr std::uint32_t kLongestGap = 10'000;
 
-class UnverifiedScores final : public FrameSetSink {
+class UnverifiedScores final : public TimedSetSink {
  public:
   enum class Part : std::uint8_t { kWarmUp, kEvaluated, kAfter };
 
@@ -49,8 +48,6 @@ class UnverifiedScores final : public FrameSetSink {
   // in order of delivery.
   Part part_of(const FrameRecord& frame);
 
-  // Sets the arrival of the next frame to be pushed.
-  void before_push(GlobalTime arrival) { now_ = arrival; }
   // Sets count if all their members are evaluated.
   void on_set(std::span<const GatherFrame> set) override;
   void on_partial_set(std::span<const GatherFrame> set) override;
@@ -69,7 +66,6 @@ class UnverifiedScores final : public FrameSetSink {
   std::vector<std::uint32_t> host_of_camera_;
   std::vector<std::optional<SteadyTime>> first_arrival_;       // by host
   std::vector<std::optional<std::uint32_t>> evaluated_count_;  // last evaluated counter, by camera
-  GlobalTime now_{};
   FrameCounts frames_;
   std::int64_t partial_ = 0;
   std::vector<PulseScore> sets_;

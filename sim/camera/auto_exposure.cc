@@ -16,7 +16,7 @@ AutoExposure::AutoExposure(const scenarios::AutoExposure& settings, Nanoseconds 
   }
 }
 
-Nanoseconds AutoExposure::at(TrueTime t) {
+Nanoseconds AutoExposure::stepped(TrueTime t) {
   while (next_step_ <= t) {
     steps_.push_back({next_step_, from_ms(stream_.uniform(settings_.min_ms, settings_.max_ms))});
     next_step_ += from_ms(stream_.exponential(settings_.step_interval_exponential_ms));

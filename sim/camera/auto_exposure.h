@@ -30,13 +30,15 @@ class AutoExposure {
                std::size_t camera, TrueTime camera_start);
 
   // The exposure time in force at `t`.
-  Nanoseconds at(TrueTime t);
+  Nanoseconds at(TrueTime t) { return settings_.is_on() ? stepped(t) : steps_.front().exposure; }
 
  private:
   struct Step {
     TrueTime at;
     Nanoseconds exposure;  // from then on
   };
+
+  Nanoseconds stepped(TrueTime t);
 
   scenarios::AutoExposure settings_;
   RandomStream stream_;

@@ -72,6 +72,7 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
                         .outages = outages_,
                         .trigger_line = trigger_line_,
                         .drift_files = drift_files_,
+                        .frames = frames_,
                         .sink = sink,
                         .run_seed = run_seed};
   const std::vector<std::size_t> cameras = scenario.cameras_by_host();

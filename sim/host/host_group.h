@@ -37,6 +37,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/faults/faults.h"
 #include "sim/host/drift_files.h"
+#include "sim/host/frame_supply.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_host.h"
 #include "sim/network/load.h"
@@ -65,6 +66,7 @@ class HostGroup {
   void on_capture_start(const TriggerTree& trigger, std::int64_t last);
 
   Network& network() { return network_; }
+  FrameSupply& frames() { return frames_; }
   const Outages& outages() const { return outages_; }
 
   // Reports the present setting of every clock, as the beginning of its log of adjustments.
@@ -84,6 +86,7 @@ class HostGroup {
   TriggerLine trigger_line_;
   std::deque<SystemClock> clocks_;
   DriftFiles drift_files_;
+  FrameSupply frames_;
   std::deque<SimHost> hosts_;
 };
 

@@ -71,7 +71,11 @@ void SimHost::trigger_started() {
 
 FrameFeed* SimHost::frame_feed() {
   if (!has_cameras_) return nullptr;
-  if (frame_feed_ == nullptr) frame_feed_ = std::make_unique<SimFrameFeed>(*this);
+  if (frame_feed_ == nullptr) {
+    world_.frames.catch_up();  // what was delivered before is not for it
+    world_.frames.open();
+    frame_feed_ = std::make_unique<SimFrameFeed>(*this);
+  }
   return frame_feed_.get();
 }
 
@@ -147,8 +151,11 @@ SimFrameFeed::SimFrameFeed(SimHost& host)
 
 Task<std::optional<FrameArrival>> SimFrameFeed::next(SteadyTime deadline) {
   SIMBENCH_ASSERT(!delivered_.waiting(), "one wait at a time on a frame feed");
-  while (frames_.empty()) {
+  for (;;) {
+    host_.world().frames.catch_up();
+    if (!frames_.empty()) break;
     if (host_.is_past(deadline)) co_return std::nullopt;
+    host_.world().frames.expect();
     co_await delivered_.wait(host_.next_look(deadline));
   }
   const FrameArrival frame = frames_.front();

@@ -22,6 +22,7 @@
 //                         .outages = outages,
 //                         .trigger_line = trigger_line,
 //                         .drift_files = drift_files,
+//                         .frames = frame_supply,
 //                         .sink = sink,
 //                         .run_seed = 1};
 //   SimHost host(world, 3, clock, true);
@@ -48,6 +49,7 @@
 #include "sim/engine/virtual_executor.h"
 #include "sim/faults/faults.h"
 #include "sim/host/drift_files.h"
+#include "sim/host/frame_supply.h"
 #include "sim/host/host_clocks.h"
 #include "sim/host/message_stack.h"
 #include "sim/host/pulse_lines.h"
@@ -62,10 +64,10 @@ class SimMulticast;
 
 // The frames of the host's cameras for its programs: a queue that the rig fills.
 //
-// A frame is pushed at its delivery and next() returns at that instant, as the stamps of a frame
-// already contain all delays. The last 1024 frames that no program has taken are kept. A feed
-// exists only from the host's first frame_feed() on; until then frames cost nothing, and afterwards
-// a frame that no coroutine waits for costs no event.
+// next() returns at the instant of a frame's delivery, as the stamps of a frame already contain all
+// delays. The last 1024 frames that no program has taken are kept. A feed exists only from the
+// host's first frame_feed() on; until then frames cost nothing, and afterwards a frame costs no
+// event unless a coroutine waits.
 class SimFrameFeed final : public FrameFeed {
  public:
   // `host` must outlive the feed.
@@ -74,6 +76,8 @@ class SimFrameFeed final : public FrameFeed {
   Task<std::optional<FrameArrival>> next(SteadyTime deadline) override;
 
   void push(const FrameArrival& frame);
+  // Whether a coroutine waits for a frame.
+  bool is_awaited() const { return delivered_.waiting(); }
 
  private:
   SimHost& host_;
@@ -91,6 +95,7 @@ struct HostWorld {
   const Outages& outages;
   const TriggerLine& trigger_line;
   const DriftFiles& drift_files;
+  FrameSupply& frames;
   RecordingSink& sink;
   std::uint64_t run_seed;
 };

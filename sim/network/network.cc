@@ -78,6 +78,7 @@ void Network::send_segment(Segment segment) {
   const PathId path_id = segment.path;
   Path& path = paths_[path_id];
   const MessageId first = segment.first;
+  if (catch_up_) catch_up_();
   const TrueTime at_card = engine_.now() + path.sender->to_card(first);
   const TrueTime passed =
       rate_.is_infinite() ? at_card : host_ports_[path.from].pass(at_card, on_the_line(segment));
@@ -102,6 +103,7 @@ void Network::send_segment(Segment segment) {
 void Network::send_to_group(PeerId from, MessageId id, std::vector<Recipient> recipients,
                             Bytes message, Endpoint& sender) {
   Segment segment{.bytes = static_cast<double>(message.size())};
+  if (catch_up_) catch_up_();
   const TrueTime at_card = engine_.now() + sender.to_card(id);
   const TrueTime passed =
       rate_.is_infinite() ? at_card : host_ports_[from].pass(at_card, on_the_line(segment));
@@ -155,11 +157,11 @@ void Network::forward(GroupMessage message, TrueTime at) {
   engine_.schedule(at, handler_id_, kGroupAtSwitch, id);
 }
 
-void Network::send_capture_traffic(PeerId from, double bytes) {
-  if (rate_.is_infinite() || outages_.unreachable(from, engine_.now())) return;
+void Network::send_capture_traffic(PeerId from, double bytes, TrueTime at) {
+  if (rate_.is_infinite() || outages_.unreachable(from, at)) return;
   Port& port = host_ports_[from];
-  if (port.backlog(engine_.now()) > kMaxCaptureBacklog) return;
-  port.pass(engine_.now(), rate_.duration(bytes));
+  if (port.backlog(at) > kMaxCaptureBacklog) return;
+  port.pass(at, rate_.duration(bytes));
 }
 
 void Network::handle(const Event& event) {
@@ -315,6 +317,7 @@ void Network::acknowledge(PathId path_id) {
 void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
   if (segment.is_counted) messages_ += segment.messages.size();
   if (observer_ == nullptr) return;
+  if (catch_up_) catch_up_();
   const Path& path = paths_[segment.path];
   MessageId id = segment.first;
   for (const Bytes& message : segment.messages) {

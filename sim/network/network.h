@@ -47,6 +47,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -150,8 +151,11 @@ class Network : private EventHandler {
   // The messages of which an observer would have been notified until now.
   std::uint64_t messages() const { return messages_; }
 
-  // `from` sends `bytes` of capture traffic now.
-  void send_capture_traffic(PeerId from, double bytes);
+  // `from` sends `bytes` of capture traffic at `at`, not after now, in order of time.
+  void send_capture_traffic(PeerId from, double bytes, TrueTime at);
+  // Is called before a message comes to a port or is reported: what has to come before it may be
+  // made up for then.
+  void before_messages(std::function<void()> catch_up) { catch_up_ = std::move(catch_up); }
 
   // The messages from the peer that have arrived at the host that opened `path`.
   Inbox& inbox(PathId path) { return paths_[path ^ 1].inbox; }
@@ -224,6 +228,7 @@ class Network : private EventHandler {
   RunLoad load_;
   const Outages& outages_;
   WorldObserver* observer_ = nullptr;
+  std::function<void()> catch_up_;
   std::uint64_t messages_ = 0;
   SwitchClock switch_clock_;
   LineRate rate_;

@@ -74,6 +74,7 @@ class Cameras {
   Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
 
   CameraStream& stream(std::uint32_t id) { return streams_[id]; }
+  const CameraStream& stream(std::uint32_t id) const { return streams_[id]; }
   std::vector<CameraStream>& streams() { return streams_; }
   // The numbers of the streams that pulses start.
   const std::vector<std::uint32_t>& triggered_streams() const { return triggered_streams_; }

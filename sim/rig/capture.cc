@@ -1,56 +1,32 @@
 #include "sim/rig/capture.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
-
-#include "sim/clock/clock_interface.h"
+#include <variant>
 
 namespace simbench::sim {
-namespace {
 
-constexpr ComponentKey kLateFrame("host: late delivery of a frame");
-
-// A late first frame is late from the start.
-double begin_ms(const scenarios::Fault& fault) {
-  return std::visit(
-      [](const auto& each) {
-        if constexpr (requires { each.at_ms; }) {
-          return each.at_ms;
-        } else {
-          return 0.0;
-        }
-      },
-      fault);
-}
-
-}  // namespace
-
-Capture::Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
+Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
                  std::vector<SystemClock*> clocks, const Outages& outages,
-                 const CaptureReports& reports)
+                 const CaptureReports& reports, std::vector<ClockInterface> interfaces)
     : scenario_(scenario),
-      seed_(seed),
       engine_(engine),
-      id_(engine.attach(*this)),
       clocks_(std::move(clocks)),
-      reports_(reports),
-      trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
-      cameras_(scenario, seed),
       outages_(outages),
-      camera_faults_(scenario.faults),
-      host_errors_(clocks_.size()),
+      reports_(reports),
+      slots_(evaluated_slots(scenario)),
       arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)),
-      backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_) {
-  first_slot_ = trigger_.first_slot_from(TrueTime(from_ms(scenario.timeline.warm_up_ms)));
-  last_slot_ = first_slot_ + scenario.timeline.frames - 1;
+      backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_),
+      interfaces_(std::move(interfaces)),
+      host_errors_(clocks_.size()) {
+  interfaces_.resize(clocks_.size(), ClockInterface({}, {}, {}));
 }
 
 RigLayout Capture::layout() const {
   RigLayout layout{.hosts = static_cast<std::uint32_t>(clocks_.size()),
                    .cameras = {},
                    .frame_rate_hz = scenario_.trigger.rate_hz,
-                   .first_pulse = first_slot_,
+                   .first_pulse = slots_.first,
                    .pulses = scenario_.timeline.frames};
   for (std::int64_t camera = 0; camera < scenario_.cameras.count; ++camera) {
     layout.cameras.push_back({static_cast<std::uint32_t>(scenario_.host_of(camera))});
@@ -58,210 +34,160 @@ RigLayout Capture::layout() const {
   return layout;
 }
 
-void Capture::start(TrueTime at, std::function<void()> on_end) {
-  reports_.start(at);
-  start_ = at;
+void Capture::start(CameraWorld& world, std::function<void()> on_end,
+                    const std::atomic<bool>* cancel) {
+  SIMBENCH_ASSERT(world.start() == engine_.now(), "the cameras start with the capture");
+  world_ = &world;
+  for (const SystemClock* clock : clocks_) steady_starts_.push_back(clock->steady(world.start()));
+  cancel_ = cancel;
   on_end_ = std::move(on_end);
-  trigger_.start(at);
-  camera_faults_.start(at);
-  cameras_.start(at);
-  controllers_ = cameras_.make_controllers();
-  for (std::size_t host = 0; host < clocks_.size(); ++host) {
-    host_sides_.push_back({HostJitter(scenario_.usb, seed_, host, at, trigger_.period_ns()),
-                           HostLoad(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host))});
+  reports_.start(engine_.now());
+  for (const scenarios::Fault& fault : scenario_.faults) {
+    const auto* step = std::get_if<scenarios::ClockStep>(&fault);
+    if (step == nullptr) continue;
+    engine_.call_at(engine_.now() + from_ms(step->at_ms), [this, step] { step_clock(*step); });
   }
-  end_ = trigger_.due(last_slot_ + 2);
-
-  schedule_pulse(0);
-  for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
-    const TrueTime timer = cameras_.stream(id).shutter.next_timer();
-    if (timer != TrueTime::max()) engine_.schedule(timer, id_, kShutterTimer, id);
-  }
-  for (std::uint32_t i = 0; i < scenario_.faults.size(); ++i) {
-    engine_.schedule(at + from_ms(begin_ms(scenario_.faults[i])), id_, kFault, i);
-  }
-  engine_.schedule(end_, id_, kEnd, 0);
+  engine_.call_at(world.last_exposure(), [this] { end(); });
+  begin_period(0);
+  next_at_ = next_in_period();
 }
 
-void Capture::handle(const Event& event) {
-  switch (event.kind) {
-    case kPulse:
-      return on_pulse(event.subject);
-    case kShutterTimer:
-      return on_shutter_timer(event.subject);
-    case kReadout:
-      return on_readout(event.subject);
-    case kTransferDone:
-      return on_transfer_done(event.subject);
-    case kDelivery:
-      return on_delivery(event.subject);
-    case kFault:
-      return on_fault(scenario_.faults[event.subject]);
-    default:
-      pulses_over_ = true;
-      return end_if_done();
+void Capture::step_clock(const scenarios::ClockStep& fault) {
+  SystemClock& clock = *clocks_[static_cast<std::size_t>(fault.host)];
+  clock.set(engine_.now(), clock.read(engine_.now()) + from_ms(fault.step_ms));
+}
+
+// No exposure begins any more: the last period has been made, and with it the end is known.
+void Capture::end() {
+  catch_up();
+  if (world_->end() > engine_.now()) {
+    engine_.call_at(world_->end(), [this] { end(); });
+  } else {
+    on_end_();
   }
 }
 
-// Schedules the event of `slot`; a slot without a pulse still has one, which keeps the chain going.
-void Capture::schedule_pulse(std::int64_t slot) {
-  const TrueTime at = trigger_.pulse(slot).value_or(trigger_.due(slot));
-  engine_.schedule(std::max(at, engine_.now()), id_, kPulse, static_cast<std::uint32_t>(slot));
+void Capture::begin_period(std::size_t number) {
+  if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
+  period_ = world_->period(number);
+  period_number_ = number;
+  is_pulse_reported_ = false;
+  frames_reported_ = polls_reported_ = 0;
 }
 
-void Capture::on_pulse(std::int64_t slot) {
-  if (trigger_.pulse(slot)) {
-    if (slot >= first_slot_) record_pulse(slot);
-    const TrueTime now = engine_.now();
-    reports_.pulse(slot, now);
-    for (const std::uint32_t id : cameras_.triggered_streams()) {
-      CameraStream& stream = cameras_.stream(id);
-      const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
-      stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
-      const auto exposure = stream.shutter.on_pulse(at_camera, slot);
-      if (exposure) expose(id, *exposure);
+TrueTime Capture::next_frame_at() const {
+  return frames_reported_ < period_->frames.size() ? period_->frames[frames_reported_].at
+                                                   : TrueTime::max();
+}
+
+TrueTime Capture::next_poll_at() const {
+  return polls_reported_ < period_->polls.size() ? period_->polls[polls_reported_].end
+                                                 : TrueTime::max();
+}
+
+// Goes on to the next period if nothing is left of this one.
+TrueTime Capture::next_in_period() {
+  while (period_ != nullptr) {
+    if (period_->pulse && !is_pulse_reported_) return period_->pulse->at;
+    const TrueTime next = std::min(next_frame_at(), next_poll_at());
+    if (next != TrueTime::max()) return next;
+    begin_period(period_number_ + 1);
+  }
+  return TrueTime::max();
+}
+
+void Capture::report_through(TrueTime now) {
+  next_at_ = TrueTime::max();  // who is reported to may ask again
+  TrueTime next = next_in_period();
+  for (; next <= now; next = next_in_period()) {
+    if (period_->pulse && !is_pulse_reported_) {
+      is_pulse_reported_ = true;
+      report_pulse(*period_->pulse);
+    } else if (next == next_poll_at()) {
+      report_poll(period_->polls[polls_reported_++]);
+    } else {
+      report_frames(std::min(now, next_poll_at() - Nanoseconds(1)));
     }
   }
-  if (slot < last_slot_) schedule_pulse(slot + 1);
+  next_at_ = next;
 }
 
-void Capture::record_pulse(std::int64_t slot) {
-  const TrueTime now = engine_.now();
-  read_errors(clocks_, now, host_errors_);
-  reports_.recorded_pulse({.pulse = slot, .at = now, .host_errors = host_errors_});
-}
-
-void Capture::on_shutter_timer(std::uint32_t stream_id) {
-  const TrueTime now = engine_.now();
-  if (now >= end_) return;
-  CameraStream& stream = cameras_.stream(stream_id);
-  stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
-  const auto exposure = stream.shutter.on_timer(now);
-  if (exposure) expose(stream_id, *exposure);
-  engine_.schedule(stream.shutter.next_timer(), id_, kShutterTimer, stream_id);
-}
-
-// Soon after its start a camera may expose late.
-Exposure Capture::with_unsteady_start(CameraStream& stream, const Exposure& planned) const {
-  const scenarios::Cameras& cameras = scenario_.cameras;
-  if (planned.start - stream.started >= from_ms(cameras.unstable_start_ms)) return planned;
-  const Nanoseconds late =
-      from_ms(std::abs(stream.unsteadiness.normal(cameras.unstable_start_jitter_sigma_ms)));
-  return {planned.pulse, planned.start + late, planned.end + late};
-}
-
-void Capture::expose(std::uint32_t stream_id, const Exposure& planned) {
-  CameraStream& stream = cameras_.stream(stream_id);
-  const scenarios::Cameras& cameras = scenario_.cameras;
-  const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
-  const double stamp_noise_ns =
-      stream.stamp_noise.normal(cameras.sensor_stamp_jitter_sigma_us * 1e3);
-  const Exposure exposure = with_unsteady_start(stream, planned);
-  if (camera_faults_.vanished(stream.camera, exposure.start)) return;
-
-  const std::uint32_t id = frames_.add();
-  FrameInFlight& way = frames_[id];
-  CapturedFrame& frame = way.frame = {.host = stream.host, .bytes = stream.bytes};
-  frame.record.camera = stream.camera;
-  frame.record.stream = stream.kind;
-  frame.record.counter = stream.counter++;
-  frame.truth.pulse = exposure.pulse;
-  frame.truth.exposure_start = exposure.start;
-  frame.truth.exposure_end = exposure.end;
-  if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
-    frame.fate = FrameFate::kLostInCamera;
-    reports_.frame(frame);
-    return frames_.release(id);
+void Capture::report_pulse(const CameraPulse& pulse) {
+  if (pulse.slot >= slots_.first) {
+    read_errors(clocks_, pulse.at, host_errors_);
+    reports_.recorded_pulse({.pulse = pulse.slot, .at = pulse.at, .host_errors = host_errors_});
   }
-  const Nanoseconds exposed = exposure.end - stream.readout - exposure.start;
-  DeviceClock& clock = cameras_.clock(stream.camera);
-  frame.record.exposure_us = static_cast<std::uint32_t>(exposed.count() / 1000);
-  frame.record.sensor = clock.stamp(frame.truth.mid_exposure(), stamp_noise_ns);
-  // Readout begins with the first row.
-  frame.record.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
-  way.stream = stream_id;
-  way.kernel_copy_ns = delays.kernel_copy_ns;
-  way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
-  engine_.schedule(exposure.end + stream.latency, id_, kReadout, id);
+  reports_.pulse(pulse);
 }
 
-void Capture::on_readout(std::uint32_t frame_id) {
-  FrameInFlight& way = frames_[frame_id];
-  const CameraStream& stream = cameras_.stream(way.stream);
-  way.frame.offered = engine_.now();
-  UsbController& bus = controllers_[stream.controller];
-  if (bus.submit(engine_.now(), stream.index_on_controller, stream.bytes, frame_id)) {
-    wake_controller(stream.controller);
-  } else {
-    way.frame.fate = FrameFate::kLostOnUsb;
-    reports_.frame(way.frame);
-    frames_.release(frame_id);
+void Capture::report_poll(const CameraPoll& poll) {
+  const auto host = static_cast<std::size_t>(scenario_.host_of(poll.camera));
+  if (outages_.host_stopped(static_cast<PeerId>(host), poll.end)) return;
+  const SystemClock& clock = *clocks_[host];
+  reports_.poll({.camera = poll.camera,
+                 .device = poll.device,
+                 .t0 = interfaces_[host].read(clock.read(poll.begin)),
+                 .t1 = interfaces_[host].read(clock.read(poll.end)),
+                 .t0_steady = clock.steady(poll.begin),
+                 .t1_steady = clock.steady(poll.end)});
+}
+
+// Those of this period until `last`, at least one.
+void Capture::report_frames(TrueTime last) {
+  const std::vector<CameraFrame>& frames = period_->frames;
+  const std::size_t first = frames_reported_;
+  do {
+    ++frames_reported_;
+  } while (frames_reported_ < frames.size() && frames[frames_reported_].at <= last);
+  const std::span<const CameraFrame> block(frames.data() + first, frames_reported_ - first);
+  if (!reports_.are_single()) return report_block(block);
+  for (const CameraFrame& frame : block) report_single(frame);
+}
+
+void Capture::report_block(std::span<const CameraFrame> frames) {
+  records_.clear();
+  truths_.clear();
+  for (const CameraFrame& frame : frames) {
+    const CameraStream& stream = world_->cameras().stream(frame.stream);
+    if (frame.fate != FrameFate::kDelivered || is_stopped(stream.host, frame.at)) continue;
+    stamp(frame, stream);
   }
+  if (!records_.empty()) reports_.frames(records_, truths_);
 }
 
-void Capture::on_transfer_done(std::uint32_t controller_id) {
-  UsbController& bus = controllers_[controller_id];
-  if (!bus.is_woken(engine_.now())) return;
-  while (const auto frame_id = bus.take_completed(engine_.now())) deliver_later(*frame_id);
-  wake_controller(controller_id);
-}
-
-void Capture::wake_controller(std::uint32_t controller_id) {
-  const auto at = controllers_[controller_id].take_wake_up();
-  if (at) engine_.schedule(*at, id_, kTransferDone, controller_id);
-}
-
-void Capture::deliver_later(std::uint32_t frame_id) {
-  FrameInFlight& way = frames_[frame_id];
-  CameraStream& stream = cameras_.stream(way.stream);
-  HostSide& host = host_sides_[stream.host];
-  const TrueTime now = engine_.now();
-  const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
-  way.frame.transferred = now;
-  way.frame.copied = now + from_ns(way.kernel_copy_ns);
-  const double delivery_ns = way.delivery_ns + host_jitter_ns + stream.late_ns;
-  TrueTime arrival = way.frame.copied + from_ns(std::max(0.0, delivery_ns));
-  arrival += host.load.delay(arrival, kLateFrame, way.stream, way.frame.record.counter);
-  stream.last_arrival = std::max(stream.last_arrival, arrival);
-  engine_.schedule(stream.last_arrival, id_, kDelivery, frame_id);
-}
-
-// What reaches a stopped host ends there unreported.
-void Capture::on_delivery(std::uint32_t frame_id) {
-  CapturedFrame& frame = frames_[frame_id].frame;
-  if (!outages_.host_stopped(frame.host, engine_.now())) {
-    frame.delivered = engine_.now();
-    stamp(frame);
-    reports_.frame(frame);
+void Capture::report_single(const CameraFrame& frame) {
+  const CameraStream& stream = world_->cameras().stream(frame.stream);
+  if (frame.fate == FrameFate::kDelivered) {
+    if (is_stopped(stream.host, frame.at)) return;
+    report_block({&frame, 1});
+    reports_.used(records_.front(), stream, frame.at);
   }
-  frames_.release(frame_id);
-  end_if_done();
+  reports_.observed(frame, stream);
 }
 
-// What its host and the master make of a frame that is delivered now.
-void Capture::stamp(CapturedFrame& frame) {
-  SystemClock& clock = *clocks_[frame.host];
-  const TrueTime middle = frame.truth.mid_exposure();
-  const SystemClock::Reading arrival = clock.read_both(frame.delivered);
+// What its host and the master make of a frame.
+void Capture::stamp(const CameraFrame& frame, const CameraStream& stream) {
+  const SystemClock& clock = *clocks_[stream.host];
+  const TrueTime middle = frame.mid_exposure();
+  const SystemClock::Reading arrival = clock.read_both(frame.at);
   const SystemClock::Reading exposed = clock.read_both(middle);
-  frame.record.backend = backend_stamps_.stamp(clock, start_, frame.copied, frame.delivered);
-  frame.record.arrival = round_down(arrival.system, arrival_quantum_);
-  frame.record.arrival_steady = round_down(arrival.steady, arrival_quantum_);
-  frame.truth.own_host = exposed.system;
-  frame.truth.own_steady = exposed.steady;
-  frame.truth.reference = clocks_[0]->read(middle);
-  frame.truth.delivered = clocks_[0]->read(frame.delivered);
-}
-
-void Capture::on_fault(const scenarios::Fault& fault) {
-  const auto* step = std::get_if<scenarios::ClockStep>(&fault);
-  if (step == nullptr) return;
-  SystemClock& clock = *clocks_[static_cast<std::size_t>(step->host)];
-  clock.set(engine_.now(), clock.read(engine_.now()) + from_ms(step->step_ms));
-}
-
-void Capture::end_if_done() {
-  if (pulses_over_ && frames_.is_empty() && on_end_) std::exchange(on_end_, nullptr)();
+  records_.push_back(
+      {.camera = stream.camera,
+       .stream = stream.kind,
+       .counter = frame.counter,
+       .exposure_us = frame.exposure_us,
+       .sensor = frame.sensor,
+       .frame = frame.frame,
+       .backend = backend_stamps_.stamp(clock, steady_starts_[stream.host], frame.copied, arrival),
+       .arrival = round_down(arrival.system, arrival_quantum_),
+       .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
+  truths_.push_back({.pulse = frame.pulse,
+                     .exposure_start = frame.exposure_start,
+                     .exposure_end = frame.exposure_end,
+                     .reference = clocks_[0]->read(middle),
+                     .own_host = exposed.system,
+                     .own_steady = exposed.steady,
+                     .delivered = clocks_[0]->read(frame.at)});
 }
 
 }  // namespace simbench::sim

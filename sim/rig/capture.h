@@ -1,128 +1,116 @@
-// A capture: trigger pulses, cameras, USB and the hosts' stamps, as typed events on the engine.
+// A capture: the cameras' half of a world, stamped by the clocks of its hosts' half.
 //
-// The events of a frame:
+// What happens to frames, polls and pulses in true time is known beforehand (CameraWorld). The
+// hosts' clocks can be read at any past instant, so nothing here needs an event of the engine: what
+// happened until now is reported when somebody asks for it by catch_up(), in the order in which it
+// happened. Who must not come before it asks first:
 //
-//   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
-//     -> transfer complete -> delivery: stamped by its host and passed to the sink
+//  - what else is recorded or observed: adjustments, exchanges, outcomes, messages;
+//  - capture traffic, in which frames leave through the same ports as messages: each message;
+//  - a program that reads the frames of its host's cameras. While it waits for one, each delivery
+//    is an event (CaptureReports).
 //
-// All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
-// and stream, so pipelines of one seed get the same frames whatever their hosts' clocks do.
+// The capture ends with an event at CameraWorld::end(). What reaches a stopped host ends there
+// unreported.
 //
-// The hosts' clocks are only read, by true time, whatever protocol disciplines them.
+// Cost: a comparison to catch up with nothing; a block of frames is stamped in one loop and
+// reported at once (RecordingSink::on_frames). No allocation in steady state.
 //
-// Source: docs/design.md section 7, docs/reference/calibration.md section 2,
-// docs/reference/d455.md. Cost: three events per frame and one per pulse; no allocation per event
-// once frames in flight have found their slots.
-//
-//   Capture capture(scenario, seed, engine, clocks, outages, CaptureReports(sink));
+//   Capture capture(scenario, engine, clocks, outages, CaptureReports(sink));
 //   sink.on_start(capture.layout());
-//   capture.start(capture_start, [&] { engine.stop(); });
+//   CameraWorld world(scenario, seed, engine.now());
+//   capture.start(world, [&] { engine.stop(); });
 //   engine.run();
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_H_
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
+#include "sim/clock/clock_interface.h"
 #include "sim/clock/system_clock.h"
 #include "sim/engine/engine.h"
-#include "sim/engine/slots.h"
 #include "sim/faults/faults.h"
-#include "sim/network/load.h"
-#include "sim/rig/cameras.h"
+#include "sim/rig/camera_world.h"
 #include "sim/rig/capture_reports.h"
-#include "sim/trigger/trigger_tree.h"
 #include "sim/usb/backend_stamp.h"
-#include "sim/usb/host_stack.h"
-#include "sim/usb/usb_controller.h"
 
 namespace simbench::sim {
 
-class Capture final : public EventHandler {
+class Capture {
  public:
-  // `clocks` holds the system clock of every host; all references outlive the capture.
-  Capture(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-          std::vector<SystemClock*> clocks, const Outages& outages, const CaptureReports& reports);
+  // `clocks` holds the system clock of every host, `interfaces` what polls read them through (none:
+  // exactly); all references outlive the capture.
+  Capture(const scenarios::Scenario& scenario, Engine& engine, std::vector<SystemClock*> clocks,
+          const Outages& outages, const CaptureReports& reports,
+          std::vector<ClockInterface> interfaces = {});
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
 
   // The layout of the recording; known from the beginning.
   RigLayout layout() const;
 
-  // Starts the cameras at `at`, not before the engine's present. Calls `on_end` when the last frame
-  // has been delivered.
-  void start(TrueTime at, std::function<void()> on_end);
+  // Begins now, which is the world's start. Calls `on_end` when all has been reported. Once
+  // `cancel` is true, throws RecordingCancelled from whatever is called next.
+  void start(CameraWorld& world, std::function<void()> on_end,
+             const std::atomic<bool>* cancel = nullptr);
 
-  // For other parts of the rig, after start().
-  const TriggerTree& trigger() const { return trigger_; }
-  std::int64_t last_slot() const { return last_slot_; }
-  TrueTime end() const { return end_; }
-  Cameras& cameras() { return cameras_; }
-  const CameraFaults& camera_faults() const { return camera_faults_; }
-
-  void handle(const Event& event) override;
+  // Reports what has happened until now and has not been reported.
+  void catch_up() {
+    if (next_at_ <= engine_.now()) report_through(engine_.now());
+  }
+  // When the next thing happens; TrueTime::max() before the start and after the end.
+  TrueTime next_at() const { return next_at_; }
 
  private:
-  enum Kind : std::uint16_t {
-    kPulse,         // subject: slot
-    kShutterTimer,  // subject: stream
-    kReadout,       // subject: frame in flight
-    kTransferDone,  // subject: controller
-    kDelivery,      // subject: frame in flight
-    kFault,         // subject: index of the fault
-    kEnd,
-  };
-
-  struct FrameInFlight {
-    CapturedFrame frame;
-    std::uint32_t stream = 0;
-    double kernel_copy_ns = 0;
-    double delivery_ns = 0;
-  };
-  // A host's effects on all of its frames.
-  struct HostSide {
-    HostJitter jitter;
-    HostLoad load;
-  };
-
-  void schedule_pulse(std::int64_t slot);
-  void on_pulse(std::int64_t slot);
-  void record_pulse(std::int64_t slot);
-  void on_shutter_timer(std::uint32_t stream_id);
-  Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
-  void expose(std::uint32_t stream_id, const Exposure& planned);
-  void on_readout(std::uint32_t frame_id);
-  void on_transfer_done(std::uint32_t controller_id);
-  void wake_controller(std::uint32_t controller_id);
-  void deliver_later(std::uint32_t frame_id);
-  void on_delivery(std::uint32_t frame_id);
-  void stamp(CapturedFrame& frame);
-  void on_fault(const scenarios::Fault& fault);
-  void end_if_done();
+  void step_clock(const scenarios::ClockStep& fault);
+  void end();
+  void begin_period(std::size_t number);
+  TrueTime next_frame_at() const;
+  TrueTime next_poll_at() const;
+  TrueTime next_in_period();
+  void report_through(TrueTime now);
+  void report_pulse(const CameraPulse& pulse);
+  void report_poll(const CameraPoll& poll);
+  void report_frames(TrueTime last);
+  void report_block(std::span<const CameraFrame> frames);
+  void report_single(const CameraFrame& frame);
+  bool is_stopped(std::uint32_t host, TrueTime at) const {
+    return outages_.host_stopped(static_cast<PeerId>(host), at);
+  }
+  void stamp(const CameraFrame& frame, const CameraStream& stream);
 
   const scenarios::Scenario& scenario_;
-  std::uint64_t seed_;
   Engine& engine_;
-  HandlerId id_;
   std::vector<SystemClock*> clocks_;
-  CaptureReports reports_;
-  TriggerTree trigger_;
-  Cameras cameras_;
-  std::vector<UsbController> controllers_;
-  std::vector<HostSide> host_sides_;
   const Outages& outages_;
-  CameraFaults camera_faults_;
-  Slots<FrameInFlight> frames_;
-  std::vector<Nanoseconds> host_errors_;
-  std::int64_t first_slot_ = 0;
-  std::int64_t last_slot_ = 0;
-  TrueTime end_{};  // no exposure begins after this
+  CaptureReports reports_;
+  EvaluatedSlots slots_;
   Nanoseconds arrival_quantum_;
   BackendStamps backend_stamps_;
-  TrueTime start_{};
-  bool pulses_over_ = false;
+  std::vector<ClockInterface> interfaces_;
+  std::vector<SteadyTime> steady_starts_;  // what the hosts' steady clocks read at the start
+  std::vector<Nanoseconds> host_errors_;
   std::function<void()> on_end_;
+
+  CameraWorld* world_ = nullptr;
+  const std::atomic<bool>* cancel_ = nullptr;
+  TrueTime next_at_ = TrueTime::max();
+  // What was reported of the present period.
+  const CameraPeriod* period_ = nullptr;
+  std::size_t period_number_ = 0;
+  bool is_pulse_reported_ = false;
+  std::size_t frames_reported_ = 0;
+  std::size_t polls_reported_ = 0;
+  // A block of frames.
+  std::vector<FrameRecord> records_;
+  std::vector<FrameTruth> truths_;
 };
 
 }  // namespace simbench::sim

@@ -6,19 +6,20 @@
 namespace simbench::sim {
 namespace {
 
-ObservedFrame observed(const CapturedFrame& frame) {
-  return {.camera = frame.record.camera,
-          .host = frame.host,
-          .stream = frame.record.stream,
-          .counter = frame.record.counter,
-          .pulse = frame.truth.pulse,
-          .fate = frame.fate,
-          .exposure_start = frame.truth.exposure_start,
-          .exposure_end = frame.truth.exposure_end,
-          .offered = frame.offered,
-          .transferred = frame.transferred,
-          .copied = frame.copied,
-          .delivered = frame.delivered};
+ObservedFrame observed_frame(const CameraFrame& frame, const CameraStream& stream) {
+  ObservedFrame observed{.camera = stream.camera,
+                         .host = stream.host,
+                         .stream = stream.kind,
+                         .counter = frame.counter,
+                         .pulse = frame.pulse,
+                         .fate = frame.fate,
+                         .exposure_start = frame.exposure_start,
+                         .exposure_end = frame.exposure_end,
+                         .offered = frame.offered,
+                         .transferred = frame.transferred,
+                         .copied = frame.copied};
+  if (frame.fate == FrameFate::kDelivered) observed.delivered = frame.at;
+  return observed;
 }
 
 }  // namespace
@@ -28,13 +29,23 @@ FrameFeeds::FrameFeeds(const scenarios::Scenario& scenario, HostGroup& hosts)
       scored_(scenario.evaluation.stream),
       traffic_share_(scenario.network.capture_traffic_share) {}
 
-void FrameFeeds::on_delivery(const CapturedFrame& frame) {
-  if (traffic_share_ > 0) {
-    hosts_.network().send_capture_traffic(frame.host, traffic_share_ * frame.bytes);
+bool FrameFeeds::is_open() const { return hosts_.frames().is_open(); }
+
+bool FrameFeeds::is_awaited() const {
+  if (!is_open()) return false;
+  for (std::size_t host = 0; host < hosts_.size(); ++host) {
+    const SimFrameFeed* feed = hosts_.host(host).opened_frame_feed();
+    if (feed != nullptr && feed->is_awaited()) return true;
   }
-  const FrameRecord& record = frame.record;
+  return false;
+}
+
+void FrameFeeds::on_delivery(const FrameRecord& record, const CameraStream& stream, TrueTime at) {
+  if (has_traffic()) {
+    hosts_.network().send_capture_traffic(stream.host, traffic_share_ * stream.bytes, at);
+  }
   if (record.stream != scored_) return;
-  SimFrameFeed* feed = hosts_.host(frame.host).opened_frame_feed();
+  SimFrameFeed* feed = hosts_.host(stream.host).opened_frame_feed();
   if (feed == nullptr) return;
   feed->push({.camera = record.camera,
               .counter = record.counter,
@@ -48,16 +59,16 @@ void CaptureReports::start(TrueTime at) const {
   if (observer_ != nullptr) observer_->on_capture_start(at);
 }
 
-void CaptureReports::pulse(std::int64_t slot, TrueTime at) const {
-  if (observer_ != nullptr) observer_->on_pulse({.pulse = slot, .at = at});
+void CaptureReports::pulse(const CameraPulse& pulse) const {
+  if (observer_ == nullptr) return;
+  observer_->sample_until(pulse.at);
+  observer_->on_pulse({.pulse = pulse.slot, .at = pulse.at});
 }
 
-void CaptureReports::frame(const CapturedFrame& frame) const {
-  if (frame.fate == FrameFate::kDelivered) {
-    sink_.on_frame(frame.record, &frame.truth);
-    if (feeds_ != nullptr) feeds_->on_delivery(frame);
-  }
-  if (observer_ != nullptr) observer_->on_frame(observed(frame));
+void CaptureReports::observed(const CameraFrame& frame, const CameraStream& stream) const {
+  if (observer_ == nullptr) return;
+  observer_->sample_until(frame.at);
+  observer_->on_frame(observed_frame(frame, stream));
 }
 
 }  // namespace simbench::sim

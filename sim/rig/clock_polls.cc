@@ -13,27 +13,25 @@ constexpr ComponentKey kAsymmetryError("calibration/poll_asymmetry");
 
 }  // namespace
 
-ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Engine& engine,
-                       HostGroup& hosts, Capture& capture, RecordingSink& sink)
+ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Cameras& cameras,
+                       const CameraFaults& faults)
     : scenario_(scenario),
       seed_(seed),
-      engine_(engine),
-      hosts_(hosts),
-      capture_(capture),
-      sink_(sink),
+      cameras_(cameras),
+      faults_(faults),
       interval_(from_ms(scenario.cameras.clock_poll.interval_ms)),
       asymmetry_error_ms_(RandomStream(seed, kAsymmetryError)
                               .normal(scenario.cameras.calibration.poll_asymmetry_error_sigma_ms)) {
 }
 
-void ClockPolls::start() {
+void ClockPolls::start(TrueTime end) {
+  end_ = end;
   if (interval_.count() == 0) return;
-  id_ = engine_.attach(*this);
   const auto cameras = static_cast<std::uint32_t>(scenario_.cameras.count);
   polls_.resize(cameras);
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
     RandomStream draw(seed_, kPhase, camera);
-    polls_[camera].first = capture_.cameras().start_of(camera) +
+    polls_[camera].first = cameras_.start_of(camera) +
                            from_ms(draw.uniform(0, scenario_.cameras.clock_poll.interval_ms));
     send(camera, 0);
   }
@@ -44,39 +42,37 @@ void ClockPolls::send(std::uint32_t camera, std::int64_t number) {
   Poll& poll = polls_[camera];
   poll.number = number;
   poll.begin = poll.first + number * interval_;
-  if (poll.begin >= capture_.end()) return;
+  if (poll.begin >= end_) return;
   RandomStream draw(seed_, kDelays, camera, static_cast<std::uint64_t>(number));
   double request_ms = parameters.request_ms + draw.exponential(parameters.request_exponential_ms);
   const double reply_ms = parameters.reply_ms + draw.exponential(parameters.reply_exponential_ms);
   if (draw.chance(parameters.tail_probability))
     request_ms += draw.uniform(0, parameters.tail_max_ms);
   poll.read = poll.begin + from_ms(std::max(0.0, request_ms + asymmetry_error_ms_ / 2));
-  engine_.schedule(poll.read + from_ms(std::max(0.0, reply_ms - asymmetry_error_ms_ / 2)), id_, 0,
-                   camera);
+  ends_.push(poll.read + from_ms(std::max(0.0, reply_ms - asymmetry_error_ms_ / 2)), camera);
 }
 
-void ClockPolls::handle(const Event& event) {
-  const std::uint32_t camera = event.subject;
-  report(camera);
-  const Poll& poll = polls_[camera];
-  // The first that begins now or later.
-  const std::int64_t due = (event.time - poll.first + interval_ - Nanoseconds(1)) / interval_;
-  send(camera, std::max(poll.number + 1, due));
+void ClockPolls::hand_out(TrueTime then, std::vector<CameraPoll>& polls) {
+  polls.clear();
+  QueueEntry entry;
+  while (ends_.pop_through(then - Nanoseconds(1), entry)) {
+    const auto camera = static_cast<std::uint32_t>(entry.payload);
+    const TrueTime end{Nanoseconds(entry.time_ns)};
+    report(camera, end, polls);
+    const Poll& poll = polls_[camera];
+    // The first that begins now or later.
+    const std::int64_t due = (end - poll.first + interval_ - Nanoseconds(1)) / interval_;
+    send(camera, std::max(poll.number + 1, due));
+  }
 }
 
-void ClockPolls::report(std::uint32_t camera) {
+void ClockPolls::report(std::uint32_t camera, TrueTime end, std::vector<CameraPoll>& polls) {
   const Poll& poll = polls_[camera];
-  const SimHost& host = hosts_.host(static_cast<std::size_t>(scenario_.host_of(camera)));
-  if (capture_.camera_faults().vanished(camera, poll.read)) return;
-  if (hosts_.outages().host_stopped(host.id(), engine_.now())) return;
-  const SystemClock& clock = host.system_clock();
-  const ClockInterface& interface = host.clock_interface();
-  sink_.on_poll({.camera = camera,
-                 .device = capture_.cameras().clock(camera).stamp(poll.read, 0),
-                 .t0 = interface.read(clock.read(poll.begin)),
-                 .t1 = interface.read(clock.read(engine_.now())),
-                 .t0_steady = clock.steady(poll.begin),
-                 .t1_steady = clock.steady(engine_.now())});
+  if (faults_.vanished(camera, poll.read)) return;
+  polls.push_back({.camera = camera,
+                   .device = cameras_.clock(camera).stamp(poll.read, 0),
+                   .begin = poll.begin,
+                   .end = end});
 }
 
 }  // namespace simbench::sim

@@ -34,15 +34,9 @@ void ClockSampling::on_capture_start(TrueTime at) {
   observer_.on_capture_start(at);
 }
 
-void ClockSampling::on_pulse(const ObservedPulse& pulse) {
-  sample_until(engine_.now());
-  observer_.on_pulse(pulse);
-}
+void ClockSampling::on_pulse(const ObservedPulse& pulse) { observer_.on_pulse(pulse); }
 
-void ClockSampling::on_frame(const ObservedFrame& frame) {
-  sample_until(engine_.now());
-  observer_.on_frame(frame);
-}
+void ClockSampling::on_frame(const ObservedFrame& frame) { observer_.on_frame(frame); }
 
 void ClockSampling::on_message(const ObservedMessage& message) {
   sample_until(engine_.now());

@@ -13,8 +13,7 @@
 //
 //   ClockSampling sampling(observer, clocks, engine);
 //   sampling.on_world(start);
-//   Capture capture(scenario, seed, engine, clocks, outages,
-//                   CaptureReports(sink, nullptr, &sampling));
+//   Capture capture(scenario, engine, clocks, outages, CaptureReports(sink, nullptr, &sampling));
 //   engine.run();
 //   sampling.finish();
 #ifndef SIMBENCH_SIM_RIG_CLOCK_SAMPLING_H_
@@ -40,12 +39,12 @@ class ClockSampling final : public WorldObserver {
   void on_message(const ObservedMessage& message) override;
   void on_clocks(TrueTime at, std::span<const Nanoseconds> errors) override;
 
+  // Reports the samples due before `end`, which is when the next pulse or frame is reported.
+  void sample_until(TrueTime end);
   // The world has ended, now.
   void finish();
 
  private:
-  // Reports the samples due before `end`.
-  void sample_until(TrueTime end);
   void sample();
 
   WorldObserver& observer_;

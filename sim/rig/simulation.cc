@@ -9,24 +9,93 @@
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "recording/forwarding_sink.h"
 #include "scenarios/frequency_limit.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
+#include "sim/rig/camera_world.h"
 #include "sim/rig/capture.h"
 #include "sim/rig/capture_reports.h"
-#include "sim/rig/clock_polls.h"
 #include "sim/rig/clock_sampling.h"
 #include "sim/rig/synchronisation_run.h"
 
 namespace simbench::sim {
 namespace {
 
+// Lets what the hosts report wait for what the capture has to report before.
+class AfterCapture final : public ForwardingSink {
+ public:
+  using ForwardingSink::ForwardingSink;
+  void follow(Capture& capture) { capture_ = &capture; }
+
+  void on_adjustment(const ClockAdjustment& adjustment) override {
+    catch_up();
+    ForwardingSink::on_adjustment(adjustment);
+  }
+  void on_exchange(std::uint32_t host, const Exchange& exchange) override {
+    catch_up();
+    ForwardingSink::on_exchange(host, exchange);
+  }
+  void on_outcome(const SyncOutcome& outcome) override {
+    catch_up();
+    ForwardingSink::on_outcome(outcome);
+  }
+
+ private:
+  void catch_up() {
+    if (capture_ != nullptr) capture_->catch_up();
+  }
+
+  Capture* capture_ = nullptr;
+};
+
+// The cameras' halves of the worlds of a seed, by their start, for further runs with that start.
+class SharedCameras {
+ public:
+  SharedCameras(const scenarios::Scenario& scenario, const EngineLimits& limits)
+      : scenario_(scenario), limits_(limits) {}
+
+  // Until the next call.
+  CameraWorld& of(std::uint64_t seed, TrueTime start) {
+    const auto is_wanted = [&](const auto& world) { return world->start() == start; };
+    std::erase_if(worlds_,
+                  [&](const auto& world) { return world->seed() != seed || !world->is_whole(); });
+    auto found = std::ranges::find_if(worlds_, is_wanted);
+    if (found == worlds_.end()) {
+      // Most pipelines have the first start; those of others seldom share one.
+      if (worlds_.size() > 1 || (worlds_.size() == 1 && is_large(*worlds_.front()))) {
+        worlds_.pop_back();
+      }
+      worlds_.push_back(std::make_unique<CameraWorld>(scenario_, seed, start, limits_));
+      found = worlds_.end() - 1;
+    }
+    return **found;
+  }
+
+ private:
+  static bool is_large(const CameraWorld& world) {
+    return world.bytes() > CameraWorld::kKeptBytes / 2;
+  }
+
+  const scenarios::Scenario& scenario_;
+  EngineLimits limits_;
+  std::vector<std::unique_ptr<CameraWorld>> worlds_;  // at most two
+};
+
+std::vector<ClockInterface> interfaces_of(HostGroup& hosts) {
+  std::vector<ClockInterface> interfaces;
+  for (std::size_t host = 0; host < hosts.size(); ++host) {
+    interfaces.push_back(hosts.host(host).clock_interface());
+  }
+  return interfaces;
+}
+
 // One run of the world.
 class Run {
  public:
   Run(const scenarios::Scenario& scenario, const RecordingRequest& request,
-      const EngineLimits& limits, RecordingSink& sink)
+      const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
         start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
@@ -35,18 +104,25 @@ class Run {
                  .max_time = limits.max_time,
                  .cancel = request.cancel},
                 start_),
+        seed_(request.seed),
+        cameras_(cameras),
         context_(std::make_unique<VirtualContext>(engine_)),
+        after_capture_(sink),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
-               *context_, sink),
+               *context_, after_capture_),
         synchronisation_(hosts_, *context_),
         sampling_(request.observer == nullptr ? std::nullopt
                                               : std::make_optional<ClockSampling>(
                                                     *request.observer, hosts_.clocks(), engine_)),
         frame_feeds_(scenario, hosts_),
-        capture_(scenario, request.seed, engine_, hosts_.clocks(), hosts_.outages(),
-                 CaptureReports(sink, &frame_feeds_, sampling_ ? &*sampling_ : nullptr)),
-        clock_polls_(scenario, request.seed, engine_, hosts_, capture_, sink) {
+        capture_(scenario, engine_, hosts_.clocks(), hosts_.outages(),
+                 CaptureReports(sink, &frame_feeds_, sampling_ ? &*sampling_ : nullptr),
+                 interfaces_of(hosts_)) {
+    const auto catch_up = [this] { capture_.catch_up(); };
+    after_capture_.follow(capture_);
+    hosts_.frames().connect(catch_up, [this] { expect_frame(); });
     if (sampling_) hosts_.network().observe(*sampling_);
+    if (sampling_ || frame_feeds_.has_traffic()) hosts_.network().before_messages(catch_up);
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
@@ -64,9 +140,10 @@ class Run {
     synchronisation_.check();
     if (!captured_) throw SimulationError(standstill());
     if (sampling_) sampling_->finish();
-    return {.events = engine_.events(),
+    const std::uint64_t trace_hash = engine_.trace_hash() ^ camera_world_->trace_hash();
+    return {.events = engine_.events() + camera_world_->events(),
             .simulated_seconds = to_seconds(engine_.now() - start_),
-            .trace_hash = engine_.trace_hash(),
+            .trace_hash = trace_hash,
             .messages = hosts_.network().messages(),
             .notes = notes()};
   }
@@ -81,7 +158,7 @@ class Run {
     const auto limited_hosts = std::ranges::count_if(
         hosts, is_limited,
         [](const SystemClock* clock) -> const auto& { return clock->oscillator(); });
-    const std::vector<DeviceClock>& cameras = capture_.cameras().clocks();
+    const std::vector<DeviceClock>& cameras = camera_world_->cameras().clocks();
     const auto limited_cameras =
         std::ranges::count_if(cameras, is_limited, &DeviceClock::oscillator);
     std::vector<std::string> notes;
@@ -116,12 +193,25 @@ class Run {
 
   void start_capture_at(TrueTime at) {
     engine_.call_at(at, [this] {
-      capture_.start(engine_.now(), [this] {
+      camera_world_ = &cameras_.of(seed_, engine_.now());
+      const auto on_end = [this] {
         captured_ = true;
         engine_.stop();
-      });
-      hosts_.on_capture_start(capture_.trigger(), capture_.last_slot());
-      clock_polls_.start();
+      };
+      capture_.start(*camera_world_, on_end, cancel_);
+      hosts_.on_capture_start(camera_world_->trigger(), camera_world_->slots().last);
+      if (frame_feeds_.is_awaited()) expect_frame();
+    });
+  }
+
+  // While a program waits for a frame, each delivery is an event.
+  void expect_frame() {
+    if (is_frame_expected_ || capture_.next_at() == TrueTime::max()) return;
+    is_frame_expected_ = true;
+    engine_.call_at(capture_.next_at(), [this] {
+      is_frame_expected_ = false;
+      capture_.catch_up();
+      if (frame_feeds_.is_awaited()) expect_frame();
     });
   }
 
@@ -136,28 +226,33 @@ class Run {
   TrueTime start_;
   const std::atomic<bool>* cancel_;
   Engine engine_;
+  std::uint64_t seed_;
+  SharedCameras& cameras_;
+  CameraWorld* camera_world_ = nullptr;  // from the capture's start on
   std::unique_ptr<VirtualContext> context_;
+  AfterCapture after_capture_;
   HostGroup hosts_;
   SynchronisationRun synchronisation_;
   std::optional<ClockSampling> sampling_;  // with an observer
   FrameFeeds frame_feeds_;
   Capture capture_;
-  ClockPolls clock_polls_;
+  bool is_frame_expected_ = false;
   bool captured_ = false;
 };
 
 class Simulation final : public RecordingSource {
  public:
   Simulation(const scenarios::Scenario& scenario, const EngineLimits& limits)
-      : scenario_(scenario), limits_(limits) {}
+      : scenario_(scenario), limits_(limits), cameras_(scenario, limits) {}
 
   RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    return Run(scenario_, request, limits_, sink).run(sink);
+    return Run(scenario_, request, limits_, cameras_, sink).run(sink);
   }
 
  private:
   const scenarios::Scenario& scenario_;
   const EngineLimits limits_;
+  SharedCameras cameras_;
 };
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "sim/usb/backend_stamp.h"
 
-#include "sim/clock/clock_interface.h"
-
 namespace simbench::sim {
 
 Nanoseconds through_float_ms(Nanoseconds since_boot) {
@@ -18,15 +16,13 @@ BackendStamps::BackendStamps(const std::optional<scenarios::BackendStamp>& setti
   resolution_ = from_ms(settings->resolution_ms);
 }
 
-HostTime BackendStamps::stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
-                              TrueTime delivered) const {
-  if (!is_converted_) return round_down(clock.read(copied), resolution_);
-  const SystemClock::Reading now = clock.read_both(delivered);
-  const SteadyTime monotonic(now.steady - (clock.steady(capture_start) - uptime_));
+HostTime BackendStamps::converted(SteadyTime capture_start,
+                                  const SystemClock::Reading& delivered) const {
+  const SteadyTime monotonic(delivered.steady - (capture_start - uptime_));
   const Nanoseconds since_boot = monotonic.time_since_epoch();
   const Nanoseconds kernel = uptime_.count() > 0 ? through_float_ms(since_boot) : since_boot;
   const Nanoseconds cut = round_down(monotonic, resolution_).time_since_epoch();
-  return round_down(round_down(now.system, resolution_) + (kernel - cut), resolution_);
+  return round_down(round_down(delivered.system, resolution_) + (kernel - cut), resolution_);
 }
 
 }  // namespace simbench::sim

@@ -20,7 +20,8 @@
 // until pull request #13997; docs/reference/d455.md section 1.
 //
 //   const BackendStamps stamps(scenario.usb.backend_stamp, arrival_quantum);
-//   const HostTime backend = stamps.stamp(system_clock, capture_start, copied, delivered);
+//   const HostTime backend = stamps.stamp(clock, clock.steady(capture_start), copied,
+//                                         clock.read_both(delivered));
 #ifndef SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 #define SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 
@@ -29,6 +30,7 @@
 #include "algorithms/ports/time.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
+#include "sim/clock/clock_interface.h"
 #include "sim/clock/system_clock.h"
 
 namespace simbench::sim {
@@ -39,12 +41,18 @@ class BackendStamps {
   BackendStamps(const std::optional<scenarios::BackendStamp>& settings,
                 Nanoseconds arrival_quantum);
 
-  // Of a host with this clock, switched on host_uptime_h before `capture_start`. `copied`: when the
-  // transfer has ended and the frame is copied, without delays.
-  HostTime stamp(const SystemClock& clock, TrueTime capture_start, TrueTime copied,
-                 TrueTime delivered) const;
+  // Of a host with this clock, switched on host_uptime_h before its steady clock read
+  // `capture_start`. `copied`: when the transfer has ended and the frame is copied, without delays;
+  // `delivered`: both clocks at that instant.
+  HostTime stamp(const SystemClock& clock, SteadyTime capture_start, TrueTime copied,
+                 const SystemClock::Reading& delivered) const {
+    return is_converted_ ? converted(capture_start, delivered)
+                         : round_down(clock.read(copied), resolution_);
+  }
 
  private:
+  HostTime converted(SteadyTime capture_start, const SystemClock::Reading& delivered) const;
+
   bool is_converted_;
   Nanoseconds uptime_{};  // 0: no float
   Nanoseconds resolution_;

@@ -29,13 +29,6 @@ bool UsbController::later(const Transfer& a, const Transfer& b) {
   return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
 }
 
-// When a frame is transferred that waits for the frames before it on its lane.
-double UsbController::queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
-  double& free_at_ns = lane_free_at_ns_[lane];
-  free_at_ns = std::max(free_at_ns, as_ns(now)) + bytes / settings_.bytes_per_ns;
-  return free_at_ns;
-}
-
 void UsbController::serve_until(TrueTime now) {
   if (!pending_.empty()) {
     served_bytes_ += static_cast<double>((now - served_until_).count()) * settings_.bytes_per_ns /
@@ -64,42 +57,30 @@ bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::
   ++pending_of_stream_[stream];
   pending_.push_back({done_at, submissions_++, ticket, static_cast<std::uint32_t>(stream)});
   std::push_heap(pending_.begin(), pending_.end(), later);
+  wake_up_ = std::min(wake_up_, next_completion());
   return true;
 }
 
 TrueTime UsbController::next_completion() const {
   if (pending_.empty()) return TrueTime::max();
   const double done_at = pending_.front().done_at;
-  if (settings_.sharing != UsbSharing::kFair) {
-    return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at))));
-  }
+  if (settings_.sharing != UsbSharing::kFair) return whole(done_at);
   const double remaining_ns =
       (done_at - served_bytes_) * static_cast<double>(pending_.size()) / settings_.bytes_per_ns;
   return served_until_ +
          Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
 }
 
-std::optional<TrueTime> UsbController::take_wake_up() {
-  const TrueTime next = next_completion();
-  if (next >= wake_up_) return std::nullopt;
-  wake_up_ = next;
-  return next;
-}
-
-bool UsbController::is_woken(TrueTime now) {
-  if (wake_up_ != now) return false;
-  wake_up_ = TrueTime::max();
-  return true;
-}
-
 std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {
-  if (pending_.empty()) return std::nullopt;
   double reached = as_ns(now);
-  if (settings_.sharing == UsbSharing::kFair) {
+  if (settings_.sharing == UsbSharing::kFair && !pending_.empty()) {
     serve_until(now);
     reached = served_bytes_ + kByteTolerance;
   }
-  if (pending_.front().done_at > reached) return std::nullopt;
+  if (pending_.empty() || pending_.front().done_at > reached) {
+    wake_up_ = next_completion();
+    return std::nullopt;
+  }
   std::pop_heap(pending_.begin(), pending_.end(), later);
   const Transfer done = pending_.back();
   pending_.pop_back();

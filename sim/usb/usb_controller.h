@@ -9,23 +9,21 @@
 // A stream that has `buffered_frames` transfers pending cannot take another: the frame is lost, as
 // an incomplete frame is on an overloaded bus.
 //
-// The controller is a passive model on true time. Its owner submits frames, comes back at the time
-// of take_wake_up(), and then collects the completed transfers. For dedicated and fifo the
-// completion is known at submission; fair sharing revises it as frames come and go.
+// The controller is a passive model on true time. Its owner submits frames and comes back at
+// wake_up() to collect the completed transfers, all of it in order of time. For dedicated and fifo
+// the completion is known at submission; fair sharing revises it as frames come and go.
 //
-//   if (bus.submit(now, stream, bytes, frame)) {
-//     if (const auto at = bus.take_wake_up()) schedule(*at);
-//   }
-//   // and at that time:
-//   if (!bus.is_woken(now)) return;
-//   while (const auto frame = bus.take_completed(now)) deliver(*frame);
-//   if (const auto at = bus.take_wake_up()) schedule(*at);
+//   if (!bus.submit(now, stream, bytes, frame)) lose(frame);
+//   // and at each time that wake_up() names:
+//   while (const auto done = bus.take_completed(now)) deliver(*done);
 //
 // Complexity: O(log n) per frame, n frames pending on the controller. Source:
 // docs/reference/d455.md section 3, docs/design.md section 7.
 #ifndef SIMBENCH_SIM_USB_USB_CONTROLLER_H_
 #define SIMBENCH_SIM_USB_USB_CONTROLLER_H_
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -51,17 +49,30 @@ class UsbController {
   // Stream `stream` offers a frame of `bytes` with the number `ticket`. False: it was lost.
   bool submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket);
 
+  // The common case at once: if nothing is pending and the frame completes before that, whatever
+  // else is offered, it does so and this returns when. Else nothing happens: submit() it. Until
+  // then the stream must not offer another.
+  std::optional<TrueTime> pass(TrueTime now, std::size_t stream, double bytes, TrueTime before) {
+    if (!pending_.empty() || settings_.sharing == UsbSharing::kFair) return std::nullopt;
+    const bool is_shared = settings_.sharing == UsbSharing::kFifo;
+    double& free_at_ns = lane_free_at_ns_[is_shared ? 0 : stream / settings_.streams_per_camera];
+    const double done_at_ns = queued_on(free_at_ns, now, bytes);
+    const TrueTime done = whole(done_at_ns);
+    if (done >= before) return std::nullopt;
+    free_at_ns = done_at_ns;
+    return done;
+  }
+
   // When the next transfer completes if nothing else is submitted; TrueTime::max() if none is
   // pending.
   TrueTime next_completion() const;
 
-  // When the owner must come back, unless it has an early enough date already. Under fair sharing a
-  // new frame delays completions: there may be nothing complete then.
-  std::optional<TrueTime> take_wake_up();
-  // Whether `now` is the last date from take_wake_up(); earlier ones are out of date.
-  bool is_woken(TrueTime now);
+  // When the owner must come back. Under fair sharing a new frame delays completions: there may be
+  // nothing complete then.
+  TrueTime wake_up() const { return wake_up_; }
 
-  // The ticket of a transfer that is complete at `now`, in order of completion; nothing if none is.
+  // At wake_up(): the ticket of a transfer that is complete, in order of completion; nothing if
+  // none is left, and then wake_up() is a later date.
   std::optional<std::uint32_t> take_completed(TrueTime now);
 
  private:
@@ -74,7 +85,17 @@ class UsbController {
     std::uint32_t stream;
   };
   static bool later(const Transfer& a, const Transfer& b);
-  double queue_on_lane(std::size_t lane, TrueTime now, double bytes);
+  static TrueTime whole(double done_at_ns) {
+    return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at_ns))));
+  }
+  // When a frame is transferred that waits until its lane is free.
+  double queued_on(double free_at_ns, TrueTime now, double bytes) const {
+    const auto now_ns = static_cast<double>(now.time_since_epoch().count());
+    return std::max(free_at_ns, now_ns) + bytes / settings_.bytes_per_ns;
+  }
+  double queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
+    return lane_free_at_ns_[lane] = queued_on(lane_free_at_ns_[lane], now, bytes);
+  }
   void serve_until(TrueTime now);
 
   UsbSettings settings_;
@@ -84,7 +105,7 @@ class UsbController {
   std::vector<double> lane_free_at_ns_;  // fifo: one lane; dedicated: one per camera
   double served_bytes_ = 0;              // fair: to each pending transfer
   TrueTime served_until_{};              // fair
-  TrueTime wake_up_ = TrueTime::max();   // given last, and not yet come
+  TrueTime wake_up_ = TrueTime::max();
 };
 
 }  // namespace simbench::sim

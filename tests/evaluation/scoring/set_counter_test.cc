@@ -83,10 +83,10 @@ TEST_F(SetCounterTest, AmdIsTheMeanRangeOfTheSets) {
 TEST_F(SetCounterTest, LatencyCountsFromTheLastMember) {
   std::vector<GatherFrame> set = members({5, 5, 5, 5});
   for (std::size_t i = 0; i < 4; ++i) set[i].arrival = at(10 + static_cast<double>(i));
-  sets_.before_push(at(13), Nanoseconds::zero());  // the last member itself
+  sets_.advance_to(at(13));  // the last member itself
   sets_.on_set(set);
   EXPECT_DOUBLE_EQ(score().emission_latency_ms, 0);
-  sets_.before_push(at(35), Nanoseconds::zero());
+  sets_.advance_to(at(35));
   sets_.on_set(set);
   EXPECT_DOUBLE_EQ(score().emission_latency_ms, 11);
   EXPECT_DOUBLE_EQ(score().emission_latency_max_ms, 22);
@@ -105,7 +105,7 @@ TEST_F(SetCounterTest, AbsoluteErrorIsAgainstTheReferenceOfEachMembersPulse) {
   set[0].stamp = at(100 + 3);
   set[1].stamp = at(101 - 1);
   set[2].stamp = at(122 + 5);
-  sets_.before_push(at(0), from_ms(1000));
+  sets_.set_shift(from_ms(1000));
   sets_.on_set(set);
   EXPECT_DOUBLE_EQ(score().set_absolute_error_ms, 3);
 }

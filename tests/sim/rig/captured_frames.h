@@ -57,10 +57,11 @@ inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t
   CapturedFrames frames;
   Outages outages(scenario.faults);
   outages.start(TrueTime{});
-  Capture capture(scenario, seed, engine, views, outages, CaptureReports(frames));
+  Capture capture(scenario, engine, views, outages, CaptureReports(frames));
   frames.on_start(capture.layout());
+  CameraWorld world(scenario, seed, TrueTime{});
   bool ended = false;
-  capture.start(TrueTime{}, [&] { ended = true; });
+  capture.start(world, [&] { ended = true; });
   engine.run();
   EXPECT_TRUE(ended);
   return frames;

@@ -15,7 +15,8 @@ constexpr std::int64_t kHourNs = 3'600'000'000'000;
 
 double stamp_ms(const BackendStamps& stamps, const SystemClock& clock, double copied_ms,
                 double delivered_ms) {
-  const HostTime stamp = stamps.stamp(clock, at_ms(1000), at_ms(copied_ms), at_ms(delivered_ms));
+  const HostTime stamp = stamps.stamp(clock, clock.steady(at_ms(1000)), at_ms(copied_ms),
+                                      clock.read_both(at_ms(delivered_ms)));
   return to_ms(stamp.time_since_epoch());
 }
 

@@ -1,0 +1,44 @@
+// Where the frames come from that programs on the hosts read: the capture, which delivers them when
+// it is asked to.
+//
+//   FrameSupply supply;
+//   supply.connect([&] { capture.catch_up(); }, [&] { deliver_the_next_one_in_time(); });
+//   supply.catch_up();
+#ifndef SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
+#define SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
+
+#include <functional>
+#include <utility>
+
+namespace simbench::sim {
+
+class FrameSupply {
+ public:
+  // Until then there are no frames.
+  void connect(std::function<void()> catch_up, std::function<void()> expect) {
+    catch_up_ = std::move(catch_up);
+    expect_ = std::move(expect);
+  }
+
+  // A program has opened the feed of its host's frames.
+  void open() { is_open_ = true; }
+  bool is_open() const { return is_open_; }
+
+  // Fills the feeds with what was delivered until now.
+  void catch_up() const {
+    if (catch_up_) catch_up_();
+  }
+  // A program waits for a frame: the next ones are delivered at their instants.
+  void expect() const {
+    if (expect_) expect_();
+  }
+
+ private:
+  std::function<void()> catch_up_;
+  std::function<void()> expect_;
+  bool is_open_ = false;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_

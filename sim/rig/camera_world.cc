@@ -1,0 +1,291 @@
+#include "sim/rig/camera_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "algorithms/ports/assert.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kLateFrame("host: late delivery of a frame");
+
+std::size_t bytes_of(const CameraPeriod& period) {
+  return sizeof(CameraPeriod) + period.frames.capacity() * sizeof(CameraFrame) +
+         period.polls.capacity() * sizeof(CameraPoll);
+}
+
+}  // namespace
+
+EvaluatedSlots evaluated_slots(const scenarios::Scenario& scenario) {
+  const TriggerTree trigger(scenario.trigger, 0, 0);
+  const std::int64_t first =
+      trigger.first_slot_from(TrueTime(from_ms(scenario.timeline.warm_up_ms)));
+  return {.first = first, .last = first + scenario.timeline.frames - 1};
+}
+
+CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+                         const EngineLimits& limits, std::size_t kept_bytes)
+    : scenario_(scenario),
+      seed_(seed),
+      start_(start),
+      max_events_(limits.max_events),
+      slots_(evaluated_slots(scenario)),
+      unstable_start_(from_ms(scenario.cameras.unstable_start_ms)),
+      stamp_noise_ns_(scenario.cameras.sensor_stamp_jitter_sigma_us * 1e3),
+      trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
+      cameras_(scenario, seed),
+      camera_faults_(scenario.faults),
+      polls_(scenario, seed, cameras_, camera_faults_),
+      kept_bytes_(kept_bytes) {
+  trigger_.start(start);
+  camera_faults_.start(start);
+  cameras_.start(start);
+  make_hosts();
+  end_ = last_exposure_ = trigger_.due(slots_.last + 2);
+  next_slot_at_ = time_of_slot(0);
+  for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
+    const TrueTime timer = cameras_.stream(id).shutter.next_timer();
+    if (timer != TrueTime::max()) timers_.push(timer, id);
+  }
+  polls_.start(last_exposure_);
+}
+
+// Cameras are numbered host by host, and so are controllers.
+void CameraWorld::make_hosts() {
+  for (UsbController& controller : cameras_.make_controllers()) {
+    buses_.push_back({.controller = std::move(controller), .offers = {}});
+  }
+  for (const scenarios::Stream& stream : scenario_.cameras.streams) {
+    bytes_of_kind_.push_back(stream.image_bytes());
+  }
+  const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
+  hosts_.reserve(hosts);
+  for (std::size_t host = 0; host < hosts; ++host) {
+    hosts_.push_back(
+        {.jitter = HostJitter(scenario_.usb, seed_, host, start_, trigger_.period_ns()),
+         .load = HostLoad(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host)),
+         .first_bus = 0,
+         .buses = 0});
+  }
+  for (const CameraStream& stream : cameras_.streams()) {
+    HostSide& host = hosts_[stream.host];
+    if (host.buses == 0) host.first_bus = stream.controller;
+    host.buses = stream.controller - host.first_bus + 1;
+  }
+}
+
+const CameraPeriod* CameraWorld::period(std::size_t index) {
+  SIMBENCH_ASSERT(index >= dropped_, "a period that is no longer kept");
+  const std::size_t place = index - dropped_;
+  if (place < periods_.size()) return &periods_[place];
+  if (is_over_) return nullptr;
+  if (events_ >= max_events_) {
+    const double at_s = to_seconds(next_slot_at_.time_since_epoch());
+    throw EngineLimitReached(
+        fmt::format("limit of {} events reached at {} s in the cameras' half", max_events_, at_s),
+        "");
+  }
+  CameraPeriod next;
+  if (bytes_ > kept_bytes_) {
+    next = std::move(periods_.back());
+    dropped_ += periods_.size();
+    periods_.clear();
+  }
+  make_period(next);
+  bytes_ += bytes_of(next);
+  return &periods_.emplace_back(std::move(next));
+}
+
+// The first period ends with slot 0, the last one when all is over.
+void CameraWorld::make_period(CameraPeriod& period) {
+  period.pulse.reset();
+  if (has_begun_) period.pulse = expose_by_pulse();
+  has_begun_ = true;
+  is_over_ = next_slot_ > slots_.last;
+  period.end = is_over_ ? TrueTime::max() : next_slot_at_;
+  expose_by_timers(period.end);
+  for (HostSide& host : hosts_) {
+    transferred_.clear();
+    for (std::uint32_t bus = host.first_bus; bus < host.first_bus + host.buses; ++bus) {
+      transfer(buses_[bus], period.end);
+    }
+    sort(transferred_);
+    for (const Step& step : transferred_) deliver(host, step);
+  }
+  hand_out_frames(period.end, period.frames);
+  polls_.hand_out(period.end, period.polls);
+  events_ += period.polls.size();
+  if (!is_over_) return;
+  if (!period.frames.empty()) end_ = std::max(end_, period.frames.back().at);
+  std::erase_if(period.polls, [this](const CameraPoll& poll) { return poll.end > end_; });
+}
+
+void CameraWorld::sort(std::vector<Step>& steps) {
+  std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+    return std::tie(a.at, a.transferred, a.order) < std::tie(b.at, b.transferred, b.order);
+  });
+}
+
+TrueTime CameraWorld::time_of_slot(std::int64_t slot) const {
+  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), start_);
+}
+
+// By the pulse of the next slot; a slot without one still takes its time.
+std::optional<CameraPulse> CameraWorld::expose_by_pulse() {
+  const std::int64_t slot = next_slot_++;
+  const TrueTime now = next_slot_at_;
+  const bool has_pulse = trigger_.pulse(slot).has_value();
+  ++events_;
+  if (has_pulse) {
+    for (const std::uint32_t id : cameras_.triggered_streams()) {
+      CameraStream& stream = cameras_.stream(id);
+      const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
+      stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
+      const auto exposure = stream.shutter.on_pulse(at_camera, slot);
+      if (exposure) expose(id, *exposure, now);
+    }
+  }
+  next_slot_at_ = std::max(time_of_slot(next_slot_), now);
+  if (!has_pulse) return std::nullopt;
+  return CameraPulse{.slot = slot, .at = now};
+}
+
+void CameraWorld::expose_by_timers(TrueTime before) {
+  QueueEntry timer;
+  while (timers_.pop_through(std::min(before, last_exposure_) - Nanoseconds(1), timer)) {
+    const TrueTime now{Nanoseconds(timer.time_ns)};
+    const auto id = static_cast<std::uint32_t>(timer.payload);
+    CameraStream& stream = cameras_.stream(id);
+    stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
+    const auto exposure = stream.shutter.on_timer(now);
+    if (exposure) expose(id, *exposure, now);
+    timers_.push(stream.shutter.next_timer(), id);
+    ++events_;
+  }
+}
+
+// Soon after its start a camera may expose late.
+Exposure CameraWorld::with_unsteady_start(CameraStream& stream, const Exposure& planned) const {
+  if (planned.start - stream.started >= unstable_start_) return planned;
+  const double sigma_ms = scenario_.cameras.unstable_start_jitter_sigma_ms;
+  const Nanoseconds late = from_ms(std::abs(stream.unsteadiness.normal(sigma_ms)));
+  return {planned.pulse, planned.start + late, planned.end + late};
+}
+
+void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now) {
+  CameraStream& stream = cameras_.stream(stream_id);
+  const scenarios::Cameras& cameras = scenario_.cameras;
+  const FrameDelays::Draw delays = stream.delays.draw(stream.transfer_ns);
+  const double stamp_noise_ns = stream.stamp_noise.normal(stamp_noise_ns_);
+  const Exposure exposure = with_unsteady_start(stream, planned);
+  if (camera_faults_.vanished(stream.camera, exposure.start)) return;
+
+  const std::uint32_t id = frames_.add();
+  FrameInFlight& way = frames_[id];
+  CameraFrame& frame = way.frame = {.stream = stream_id,
+                                    .counter = stream.counter++,
+                                    .pulse = exposure.pulse,
+                                    .exposure_start = exposure.start,
+                                    .exposure_end = exposure.end};
+  if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
+    frame.fate = FrameFate::kLostInCamera;
+    return ended_.push_back(step(now, now, id));
+  }
+  const Nanoseconds exposed = exposure.end - stream.readout - exposure.start;
+  DeviceClock& clock = cameras_.clock(stream.camera);
+  frame.exposure_us = static_cast<std::uint32_t>(exposed.count() / 1000);
+  frame.sensor = clock.stamp(frame.mid_exposure(), stamp_noise_ns);
+  // Readout begins with the first row.
+  frame.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
+  way.kernel_copy_ns = delays.kernel_copy_ns;
+  way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
+  frame.offered = exposure.end + stream.latency;
+  buses_[stream.controller].offers.push_back(
+      step(frame.offered, {}, id, stream.index_on_controller));
+}
+
+// What happens on this bus before that, in order of time.
+void CameraWorld::transfer(Bus& bus, TrueTime before) {
+  sort(bus.offers);
+  auto next = pass(bus, before);
+  for (;;) {
+    const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
+    const TrueTime woken = bus.controller.wake_up();
+    if (std::min(offered, woken) >= before) break;
+    if (offered < woken) {
+      offer(bus, *next++);
+      continue;
+    }
+    while (const auto frame = bus.controller.take_completed(woken)) {
+      transferred_.push_back(step(woken, woken, *frame));
+    }
+  }
+  bus.offers.erase(bus.offers.begin(), next);
+}
+
+// The first of the offers, as long as they meet no others under way; returns the next one.
+auto CameraWorld::pass(Bus& bus, TrueTime before) -> std::vector<Step>::iterator {
+  constexpr std::uint32_t kMost = 64;
+  std::uint64_t seen = 0;
+  const auto is_second = [&seen](const Step& offer) {
+    const std::uint64_t stream = std::uint64_t{1} << (offer.place % kMost);
+    return (std::exchange(seen, seen | stream) & stream) != 0;
+  };
+  auto next = bus.offers.begin();
+  if (std::any_of(next, bus.offers.end(), is_second)) return next;
+  for (; next != bus.offers.end() && next->at < before; ++next) {
+    const double bytes = bytes_of_kind_[next->place % bytes_of_kind_.size()];
+    const auto done = bus.controller.pass(next->at, next->place, bytes, before);
+    if (!done) break;
+    transferred_.push_back(step(*done, *done, next->frame));
+  }
+  return next;
+}
+
+void CameraWorld::offer(Bus& bus, const Step& offer) {
+  CameraFrame& frame = frames_[offer.frame].frame;
+  const CameraStream& stream = cameras_.stream(frame.stream);
+  if (bus.controller.submit(offer.at, stream.index_on_controller, stream.bytes, offer.frame))
+    return;
+  frame.fate = FrameFate::kLostOnUsb;
+  ended_.push_back(step(offer.at, offer.at, offer.frame));
+}
+
+void CameraWorld::deliver(HostSide& host, const Step& transferred) {
+  FrameInFlight& way = frames_[transferred.frame];
+  CameraFrame& frame = way.frame;
+  CameraStream& stream = cameras_.stream(frame.stream);
+  const TrueTime now = transferred.at;
+  const double host_jitter_ns = host.jitter.at(now) * stream.transfer_ns;
+  frame.transferred = now;
+  frame.copied = now + from_ns(way.kernel_copy_ns);
+  const double delivery_ns = way.delivery_ns + host_jitter_ns + stream.late_ns;
+  TrueTime arrival = frame.copied + from_ns(std::max(0.0, delivery_ns));
+  arrival += host.load.delay(arrival, kLateFrame, frame.stream, frame.counter);
+  stream.last_arrival = std::max(stream.last_arrival, arrival);
+  ended_.push_back(step(stream.last_arrival, now, transferred.frame));
+}
+
+// Those that were delivered or lost before that.
+void CameraWorld::hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames) {
+  sort(ended_);
+  const auto end = std::find_if(ended_.begin(), ended_.end(),
+                                [before](const Step& ended) { return ended.at >= before; });
+  frames.clear();
+  frames.reserve(static_cast<std::size_t>(end - ended_.begin()));
+  for (auto ended = ended_.begin(); ended != end; ++ended) {
+    CameraFrame& frame = frames.emplace_back(frames_[ended->frame].frame);
+    frame.at = ended->at;
+    frames_.release(ended->frame);
+    const auto at_ns = static_cast<std::uint64_t>(frame.at.time_since_epoch().count());
+    trace_hash_ = SplitMix64::mix(trace_hash_ ^ (at_ns + frame.stream));
+  }
+  ended_.erase(ended_.begin(), end);
+}
+
+}  // namespace simbench::sim

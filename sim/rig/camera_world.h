@@ -1,0 +1,206 @@
+// The cameras' half of a world: trigger pulses, exposures, USB, deliveries and polls of device
+// clocks, in true time.
+//
+// The way of a frame:
+//
+//   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
+//     -> transfer complete -> delivery to its host
+//
+// None of it depends on a clock that a host synchronisation disciplines: the same scenario, seed
+// and start give the same half, whatever the pipeline. So it is made once and read by every
+// capture of that start (sim/rig/capture.h), whose hosts stamp the frames with their own clocks.
+//
+// It is made period by period, a period being the time from one pulse of the main trigger to the
+// next. Periods are kept while all of them together take less than `kept_bytes`; then only the last
+// one is, and the half can be read only once.
+//
+// All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
+// and stream.
+//
+// In a period each stage goes over all cameras before the next begins: exposures (also of shutters
+// that run free, in order of time), then host by host the transfers of its controllers and the
+// delays of what was transferred, then a sort of what was delivered. What is under way when the
+// period ends goes on in the next. In one nanosecond, a transfer that ends makes room before a frame
+// is offered, and frames are delivered in the order in which their transfers ended, then host by
+// host.
+//
+// Source: docs/design.md section 7, docs/reference/calibration.md section 2,
+// docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
+// are kept.
+//
+//   CameraWorld world(scenario, seed, capture_start);
+//   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) use(*period);
+#ifndef SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
+#define SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "recording/recording.h"
+#include "recording/world_observer.h"
+#include "scenarios/scenario.h"
+#include "sim/engine/engine.h"
+#include "sim/engine/event_queue.h"
+#include "sim/engine/slots.h"
+#include "sim/faults/faults.h"
+#include "sim/network/load.h"
+#include "sim/rig/cameras.h"
+#include "sim/rig/clock_polls.h"
+#include "sim/trigger/trigger_tree.h"
+#include "sim/usb/host_stack.h"
+#include "sim/usb/usb_controller.h"
+
+namespace simbench::sim {
+
+// A frame that was delivered or lost.
+struct CameraFrame {
+  std::uint32_t stream = 0;  // of Cameras::stream()
+  std::uint32_t counter = 0;
+  std::uint32_t exposure_us = 0;
+  DeviceStamp sensor{};
+  DeviceStamp frame{};
+  FrameFate fate = FrameFate::kDelivered;
+  std::int64_t pulse = kNoPulse;
+  TrueTime exposure_start{};
+  TrueTime exposure_end{};
+  TrueTime offered{};      // to its USB controller
+  TrueTime transferred{};  // the last byte is with the host
+  TrueTime copied{};       // to the kernel
+  TrueTime at{};           // delivered to the program, or lost
+
+  TrueTime mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
+};
+
+struct CameraPulse {
+  std::int64_t slot = 0;
+  TrueTime at{};
+};
+
+// What happens from one pulse to the next, without what happens at `end`.
+struct CameraPeriod {
+  std::optional<CameraPulse> pulse;  // at its beginning; none: missing, or before the first
+  std::vector<CameraFrame> frames;   // in the order of `at`
+  std::vector<CameraPoll> polls;     // in the order of `end`
+  TrueTime end{};
+};
+
+// The slots of the main trigger's pulses whose frames are evaluated.
+struct EvaluatedSlots {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+};
+EvaluatedSlots evaluated_slots(const scenarios::Scenario& scenario);
+
+class CameraWorld {
+ public:
+  static constexpr std::size_t kKeptBytes = 64 << 20;
+
+  // The cameras start at `start`. The scenario must outlive this. Of the limits that of events
+  // counts.
+  CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+              const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes);
+  CameraWorld(const CameraWorld&) = delete;
+  CameraWorld& operator=(const CameraWorld&) = delete;
+
+  // Period `index`, until the next one is asked for; null after the last. If not all are kept, they
+  // can only be asked for in turn. Throws EngineLimitReached.
+  const CameraPeriod* period(std::size_t index);
+  // Whether all periods until now are kept, and in how many bytes.
+  bool is_whole() const { return dropped_ == 0; }
+  std::size_t bytes() const { return bytes_; }
+
+  std::uint64_t seed() const { return seed_; }
+  TrueTime start() const { return start_; }
+  // No exposure begins after this.
+  TrueTime last_exposure() const { return last_exposure_; }
+  // After the last period: when the last frame is delivered or lost, but not before the former.
+  TrueTime end() const { return end_; }
+  // Of the periods until now: pulses, readouts, transfers, deliveries and polls.
+  std::uint64_t events() const { return events_; }
+  std::uint64_t trace_hash() const { return trace_hash_; }
+
+  const TriggerTree& trigger() const { return trigger_; }
+  EvaluatedSlots slots() const { return slots_; }
+  const Cameras& cameras() const { return cameras_; }
+
+ private:
+  struct FrameInFlight {
+    CameraFrame frame;
+    double kernel_copy_ns = 0;
+    double delivery_ns = 0;
+  };
+  // A frame at the end of a stage: offered, transferred or delivered.
+  struct Step {
+    TrueTime at;
+    TrueTime transferred;
+    std::uint64_t order;  // among all steps
+    std::uint32_t frame;  // in flight
+    std::uint32_t place;  // of its stream on the controller
+  };
+  struct Bus {
+    UsbController controller;
+    std::vector<Step> offers;
+  };
+  struct HostSide {
+    HostJitter jitter;  // of all of its frames
+    HostLoad load;
+    std::uint32_t first_bus;
+    std::uint32_t buses;
+  };
+
+  static void sort(std::vector<Step>& steps);
+  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame, std::uint32_t place = 0) {
+    return {at, transferred, events_++, frame, place};
+  }
+  void make_hosts();
+  void make_period(CameraPeriod& period);
+  TrueTime time_of_slot(std::int64_t slot) const;
+  std::optional<CameraPulse> expose_by_pulse();
+  void expose_by_timers(TrueTime before);
+  Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
+  void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
+  void transfer(Bus& bus, TrueTime before);
+  std::vector<Step>::iterator pass(Bus& bus, TrueTime before);
+  void offer(Bus& bus, const Step& offer);
+  void deliver(HostSide& host, const Step& transferred);
+  void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
+
+  const scenarios::Scenario& scenario_;
+  std::uint64_t seed_;
+  TrueTime start_;
+  std::uint64_t max_events_;
+  EvaluatedSlots slots_;
+  Nanoseconds unstable_start_;
+  double stamp_noise_ns_;  // sigma
+  TriggerTree trigger_;
+  TrueTime last_exposure_;
+  Cameras cameras_;
+  CameraFaults camera_faults_;
+  ClockPolls polls_;
+  EventQueue timers_;  // of shutters; payload: stream
+  std::vector<Bus> buses_;
+  std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
+  std::vector<HostSide> hosts_;
+  Slots<FrameInFlight> frames_;
+  std::vector<Step> transferred_;  // of one host
+  std::vector<Step> ended_;        // delivered or lost
+  TrueTime end_;
+  std::int64_t next_slot_ = 0;
+  TrueTime next_slot_at_;
+  bool has_begun_ = false;
+  bool is_over_ = false;
+  std::uint64_t events_ = 0;
+  std::uint64_t trace_hash_ = 0;
+
+  std::size_t kept_bytes_;
+  std::size_t bytes_ = 0;
+  std::size_t dropped_ = 0;           // periods before the first of these
+  std::deque<CameraPeriod> periods_;  // a deque: a period stays where it is
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
