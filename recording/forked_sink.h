@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <span>
 #include <vector>
 
 #include "recording/recording.h"
@@ -33,6 +34,9 @@ class ForkedSink final : public RecordingSink {
   }
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
     each([&](RecordingSink& sink) { sink.on_frame(frame, truth); });
+  }
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    each([&](RecordingSink& sink) { sink.on_frames(frames, truths); });
   }
   void on_pulse(const PulseTruth& truth) override {
     each([&](RecordingSink& sink) { sink.on_pulse(truth); });

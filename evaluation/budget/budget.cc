@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -61,19 +62,25 @@ class IdealDelivery final : public ForwardingSink {
   IdealDelivery(RecordingSink& sink, Nanoseconds quantum)
       : ForwardingSink(sink), quantum_(quantum) {}
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    if (truth == nullptr) {
+    on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
+  }
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    if (truths.size() != frames.size()) {
       throw std::runtime_error("an ideal delivery needs the truth, which only a simulation has");
     }
-    FrameRecord ideal = frame;
-    ideal.backend = floored(truth->own_host, quantum_);
-    ideal.arrival = ideal.backend;
-    ideal.arrival_steady = floored(truth->own_steady, quantum_);
-    ideal.exposure_us = 0;  // no part of it lies between the stamp and the arrival
-    sink().on_frame(ideal, truth);
+    ideal_.assign(frames.begin(), frames.end());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ideal_[i].backend = floored(truths[i].own_host, quantum_);
+      ideal_[i].arrival = ideal_[i].backend;
+      ideal_[i].arrival_steady = floored(truths[i].own_steady, quantum_);
+      ideal_[i].exposure_us = 0;  // no part of it lies between the stamp and the arrival
+    }
+    sink().on_frames(ideal_, truths);
   }
 
  private:
   Nanoseconds quantum_;
+  std::vector<FrameRecord> ideal_;  // scratch
 };
 
 // Whether an ideal delivery leaves the world as it is. Of what it takes away, the delays that a

@@ -20,9 +20,9 @@
 // In a period each stage goes over all cameras before the next begins: exposures (also of shutters
 // that run free, in order of time), then host by host the transfers of its controllers and the
 // delays of what was transferred, then a sort of what was delivered. What is under way when the
-// period ends goes on in the next. In one nanosecond, a transfer that ends makes room before a frame
-// is offered, and frames are delivered in the order in which their transfers ended, then host by
-// host.
+// period ends goes on in the next. In one nanosecond, a transfer that ends makes room before a
+// frame is offered, and frames are delivered in the order in which their transfers ended, then host
+// by host.
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods

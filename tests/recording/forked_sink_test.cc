@@ -4,7 +4,7 @@
 
 #include <random>
 #include <stdexcept>
-#include <string>
+#include <vector>
 
 #include "recording/event.h"
 #include "tests/recording/random_events.h"
@@ -61,6 +61,18 @@ TEST(ForkedSink, EverySinkGetsEverything) {
   expect_all_of(first, recording);
   expect_all_of(second, recording);
   EXPECT_EQ(fork.failure(0), nullptr);
+}
+
+TEST(ForkedSink, BlocksOfFramesToo) {
+  const std::vector<FrameRecord> frames(3);
+  const std::vector<FrameTruth> truths(3);
+  KeptRecording first;
+  KeptRecording second;
+  ForkedSink fork({&first, &second});
+  fork.on_frames(frames, truths);
+  fork.on_frames(frames, {});
+  EXPECT_EQ(first.events().size(), 6U);
+  EXPECT_EQ(second.events().size(), 6U);
 }
 
 TEST(ForkedSink, OneThatFailsGetsNothingMoreAndTheOthersGoOn) {

@@ -18,6 +18,7 @@
 namespace simbench::evaluation {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsNan;
@@ -34,7 +35,7 @@ scenarios::Scenario five() {
   return scenario_of({{"a", "yoon2021_both", "regression_30", "yoon2021"},
                       {"b", "free_running", "raw_arrival", "yoon2021"},
                       {"c", "yoon2021_both", "raw_arrival", "yoon2021"},
-                      {"d", "free_running", "regression_30", "nearest"},
+                      {"d", "free_running", "regression_30", "epsilon"},
                       {"e", "oracle", "regression_30", "yoon2021"}});
 }
 
@@ -80,7 +81,7 @@ TEST(CaptureGroups, OtherParametersAreAnotherCapture) {
   take_load(scenario);
   std::vector<PipelineChoice> choices = choose_pipelines(scenario, {"a", "c"});
   ASSERT_EQ(capture_groups(scenario, choices).size(), 1U);
-  scenario.algorithms["yoon2021"]["rounds"] = 7.0;
+  scenario.algorithms["yoon2021"]["stamps"] = 7.0;
   choices[1] = choose_pipelines(scenario, {"c"}).front();
   EXPECT_EQ(capture_groups(scenario, choices).size(), 2U);
 }
@@ -138,8 +139,7 @@ TEST(SharedCaptures, ACaptureThatFailsIsMissingFromAllItsRows) {
   EXPECT_THAT(shared.progress, ElementsAre(1, 2, 3, 4));
   for (const Row& row : shared.results.rows) {
     EXPECT_THAT(row.amd_ms.values, ElementsAre(IsNan(), IsNan()));
-    ASSERT_EQ(row.notes.size(), 1U);
-    EXPECT_THAT(row.notes[0], HasSubstr("host2 could not be reached"));
+    EXPECT_THAT(row.notes, Contains(HasSubstr("host2 could not be reached")));
   }
 }
 
