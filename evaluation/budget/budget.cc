@@ -90,28 +90,29 @@ bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
   return !cameras.clock_poll.is_on() && cameras.calibration == scenarios::CalibrationError{};
 }
 
-// All sets of ideal stages, by capture: worlds that differ in their scoring alone share one, that
-// of the first.
-std::vector<std::vector<StageSet>> captures(const scenarios::Scenario& scenario) {
-  const bool share_delivery = delivery_is_scoring_alone(scenario.cameras);
-  std::vector<std::vector<StageSet>> captures;
+// All sets of ideal stages, by world: those that change the pipeline or its scoring alone go
+// together, so that they share what they can of the world of the first.
+std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario) {
+  std::vector<Stage> within = {Stage::kGathering, Stage::kHostClock};
+  if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(Stage::kUsbDelivery);
+  std::vector<std::vector<StageSet>> worlds;
   for (std::size_t bits = 0; bits < StageSet::kSets; ++bits) {
-    const StageSet real(bits);
-    if (real.has(Stage::kGathering)) continue;
-    if (real.has(Stage::kUsbDelivery) && share_delivery) continue;
-    std::vector<StageSet> worlds = {real, real.with(Stage::kGathering)};
-    if (share_delivery) {
-      worlds.push_back(real.with(Stage::kUsbDelivery));
-      worlds.push_back(real.with(Stage::kUsbDelivery).with(Stage::kGathering));
+    const StageSet first(bits);
+    if (std::ranges::any_of(within, [&](Stage stage) { return first.has(stage); })) continue;
+    std::vector<StageSet>& sets = worlds.emplace_back(1, first);
+    for (const Stage stage : within) {
+      for (std::size_t i = 0, count = sets.size(); i < count; ++i) {
+        sets.push_back(sets[i].with(stage));
+      }
     }
-    captures.push_back(std::move(worlds));
   }
-  return captures;
+  return worlds;
 }
 
-// The pipeline of that world, over a capture of any that shares it.
+// The pipeline of that set, in the world of any that goes with it.
 PipelineChoice choice_of(const scenarios::Scenario& world, StageSet ideal) {
   PipelineChoice choice = choose_pipelines(world, {}).front();
+  choice.scores_offline = false;  // no part of a budget
   if (ideal.has(Stage::kUsbDelivery)) {
     const Nanoseconds quantum = from_ms(world.hosts.clock.arrival_quantum_ms);
     choice.view = [quantum](RecordingSink& sink) {
@@ -131,7 +132,7 @@ struct WorldScores {
   BySeed physical_ms = BySeed(StageSet::kSets);
 };
 
-void set_world(StageSet ideal, const Row& row, WorldScores& scores) {
+void set_scores(StageSet ideal, const Row& row, WorldScores& scores) {
   const std::size_t world = ideal.bits();
   for (const SeedScore& seed : row.seeds) {
     scores.set_amd_ms[world].push_back(seed.set_amd_ms);
@@ -229,19 +230,19 @@ Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeli
   of_worlds.share_captures = true;
   WorldScores scores;
   std::uint64_t done_before = 0;
-  for (const std::vector<StageSet>& worlds : captures(scenario)) {
-    const scenarios::Scenario captured = ideal_scenario(scenario, pipeline, worlds.front());
+  for (const std::vector<StageSet>& sets : sets_by_world(scenario)) {
+    const scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
     std::vector<PipelineChoice> choices;
-    for (const StageSet ideal : worlds) {
+    for (const StageSet ideal : sets) {
       choices.push_back(choice_of(ideal_scenario(scenario, pipeline, ideal), ideal));
     }
     const Results results = evaluate_choices(
-        captured, std::move(choices), [&] { return make_world(captured); }, of_worlds,
+        world, std::move(choices), [&] { return make_world(world); }, of_worlds,
         [&](std::uint64_t done, std::uint64_t) {
           if (progress) progress(done_before + done, StageSet::kSets * options.seeds);
         });
-    for (std::size_t i = 0; i < worlds.size(); ++i) set_world(worlds[i], results.rows[i], scores);
-    done_before += worlds.size() * options.seeds;
+    for (std::size_t i = 0; i < sets.size(); ++i) set_scores(sets[i], results.rows[i], scores);
+    done_before += sets.size() * options.seeds;
   }
   Budget budget;
   budget.pipeline = pipeline.name;

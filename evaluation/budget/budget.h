@@ -29,10 +29,11 @@
 // others are ideal. Lost frames stay lost. A host synchronisation that looks at frames gets their
 // real arrivals: its use of them is part of the host clock.
 //
-// Cost: 128 worlds of the pipeline per seed, of 32 captures: gathering and delivery only move what
-// is scored. 64 captures where the scenario has polls, or draws errors of its calibrations, which
-// an ideal delivery takes away. Source: Shapley, "A value for n-person games", 1953;
-// docs/design.md section 6. Each oracle is a definition.
+// Cost: 128 scores of the pipeline per seed, over 32 captures in 16 worlds: gathering and delivery
+// only change what is scored, the host clock only the pipeline. 64 captures in 32 worlds where the
+// scenario has polls, or draws errors of its calibrations, which an ideal delivery takes away.
+// Source: Shapley, "A value for n-person games", 1953; docs/design.md section 6. Each oracle is a
+// definition.
 //
 //   const Budget budget = error_budget(scenario, pipeline, make_world, {.seeds = 32}, nullptr);
 #ifndef SIMBENCH_EVALUATION_BUDGET_BUDGET_H_

@@ -250,6 +250,7 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
                            .gathering = gathering,
                            .gathering_parameters = parameters_of(scenario, gathering.info),
                            .calibrated_delays = calibrated_delays(scenario, variants),
+                           .scores_offline = needs_offline_amd(pipeline.name),
                            .problem = problem};
   check_can_be_made(scenario, choice);
   return choice;
@@ -304,7 +305,7 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
         };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
-  if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&
+  if (choice.scores_offline && offline != nullptr &&
       scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
     setup.make_second_estimator = [make = offline->make,
                                    parameters = parameters_of(scenario, offline->info)] {

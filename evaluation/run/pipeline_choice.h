@@ -41,6 +41,7 @@ struct PipelineChoice {
   GatheringEntry gathering;
   Parameters gathering_parameters;
   CalibratedDelays calibrated_delays{};
+  bool scores_offline = false;  // SeedScore::offline_amd_ms, for claim C7
   std::string problem{};  // why its programs cannot run, one line
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
   // Empty: all as it is.
