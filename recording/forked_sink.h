@@ -3,7 +3,7 @@
 // What a sink throws is kept as its failure; it gets nothing more, and the others go on. Once all
 // have failed there is nobody to record for: the last failure is thrown.
 //
-//   ForkedSink fork({&first, &second});
+//   ForkedSink fork({&first_scorer, &second_scorer});
 //   source.record(request, fork);
 //   if (fork.failure(0)) std::rethrow_exception(fork.failure(0));
 #ifndef SIMBENCH_RECORDING_FORKED_SINK_H_
