@@ -3,7 +3,7 @@
 // Copies share the value, which is made once; several threads may ask at the same time. What `make`
 // throws reaches whoever asks, and the next one tries again.
 //
-//   Lazy<std::string> text([document] { return document->dump(2); });
+//   const Lazy<std::string> text([] { return camera_profiles_json(); });
 //   std::cout << text();
 #ifndef SIMBENCH_SCENARIOS_LAZY_H_
 #define SIMBENCH_SCENARIOS_LAZY_H_
