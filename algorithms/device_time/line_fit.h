@@ -17,6 +17,7 @@
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_LINE_FIT_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_LINE_FIT_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -87,6 +88,8 @@ class LineSums {
   }
 
   LinePoint within_reach(LinePoint point) const {
+    const auto is_within = [this](std::int64_t v) { return v >= -reach_ && v <= reach_; };
+    if (is_within(point.x) && is_within(point.y)) return point;
     return {std::clamp(point.x, -reach_, reach_), std::clamp(point.y, -reach_, reach_)};
   }
 
@@ -123,24 +126,26 @@ class LineWindow {
 
   void push(LinePoint point) {
     point = sums_.within_reach(point);
-    if (full_) {
-      moments_.replace(points_[next_], point);
-    } else {
-      sums_.add(point);
-      moments_ = sums_.moments();
-    }
-    points_[next_] = point;
-    if (++next_ == points_.size()) {
-      next_ = 0;
-      full_ = true;
-    }
+    if (!full_) return grow(point);
+    LinePoint& oldest = points_[static_cast<std::size_t>(next_)];
+    moments_.replace(oldest, point);
+    oldest = point;
+    if (++next_ == moments_.count) next_ = 0;
   }
   Line line() const { return moments_.line(); }
 
  private:
+  [[gnu::noinline]] void grow(LinePoint point) {
+    sums_.add(point);
+    moments_ = sums_.moments();
+    const auto count = static_cast<std::size_t>(moments_.count);
+    points_[count - 1] = point;
+    full_ = count == points_.size();
+  }
+
   LineMoments moments_;
   std::vector<LinePoint> points_;  // a ring; the oldest is at next_ once it is full
-  std::size_t next_ = 0;
+  std::int64_t next_ = 0;
   bool full_ = false;
   LineSums sums_;  // until it is full
 };

@@ -34,8 +34,7 @@ class SampleAnchor {
         return point;
       }
     }
-    const Int128 x = elapsed_us(sample.sensor);
-    return {saturate(x), saturate(Int128{arrival_ns} - arrival_ns_ - 1000 * x)};
+    return far_point(sample);
   }
 
   std::int64_t x(DeviceTime sensor) const {
@@ -53,7 +52,7 @@ class SampleAnchor {
         return GlobalTime(Nanoseconds(stamp_ns));
       }
     }
-    return GlobalTime(Nanoseconds(saturate(arrival_ns_ + 1000 * elapsed_us(sensor) + offset)));
+    return far_stamp(sensor, offset);
   }
 
  private:
@@ -62,10 +61,18 @@ class SampleAnchor {
     std::int64_t ns = 0;
   };
 
-  // Nearly always; the way of 128 bits is for stamps from anywhere.
+  // Nearly always; the far ones, in 128 bits, are for stamps from anywhere.
   bool in_64_bits(DeviceTime sensor, Elapsed& elapsed) const {
     return !__builtin_sub_overflow(sensor.time_since_epoch().count(), sensor_us_, &elapsed.us) &&
            !__builtin_mul_overflow(elapsed.us, std::int64_t{1000}, &elapsed.ns);
+  }
+
+  [[gnu::cold, gnu::noinline]] LinePoint far_point(const DeviceSample& sample) const {
+    const Int128 x = elapsed_us(sample.sensor);
+    return {saturate(x), saturate(Int128{nanoseconds_of(sample.arrival)} - arrival_ns_ - 1000 * x)};
+  }
+  [[gnu::cold, gnu::noinline]] GlobalTime far_stamp(DeviceTime sensor, std::int64_t offset) const {
+    return GlobalTime(Nanoseconds(saturate(arrival_ns_ + 1000 * elapsed_us(sensor) + offset)));
   }
 
   Int128 elapsed_us(DeviceTime sensor) const {

@@ -7,7 +7,7 @@
 // samples, which lie in one piece, and then stamp them; gathering wants all in order of delivery.
 // Memory: 52 bytes a frame. Complexity: amortised O(1) a frame.
 //
-//   KeptFrames kept(/*cameras=*/18);
+//   KeptFrames kept(/*cameras=*/18, /*frames=*/500);
 //   kept.add(block);
 //   estimator->learn(kept.samples(3));
 //   kept.replay([&](FrameBlock& again) { use(again); });
@@ -58,7 +58,14 @@ class KeptFrames {
     GlobalTime delivered{};
   };
 
-  explicit KeptFrames(std::size_t cameras) : cameras_(cameras) {}
+  // `frames` are expected of each camera; there may be more.
+  KeptFrames(std::size_t cameras, std::size_t frames) : cameras_(cameras) {
+    for (Camera& camera : cameras_) {
+      camera.samples.reserve(frames);
+      camera.deliveries.reserve(frames);
+    }
+    order_.reserve(cameras * frames);
+  }
 
   void add(const FrameBlock& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {

@@ -52,6 +52,11 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   if (cameras > 0) make_banks();
 }
 
+// Of a camera, after the warm-up; the capture goes on for a while after the last evaluated pulse.
+std::size_t PipelineScorer::expected_frames() const {
+  return static_cast<std::size_t>(layout_.pulses + layout_.pulses / 8);
+}
+
 void PipelineScorer::make_banks() {
   if (setup_.make_estimator) {
     bank_ = make_bank(setup_.make_estimator, sources_.size());
@@ -63,39 +68,64 @@ void PipelineScorer::make_banks() {
   if (setup_.make_second_estimator) {
     second_bank_ = make_bank(setup_.make_second_estimator, sources_.size());
   }
-  if (offline_ || second_bank_) kept_.emplace(sources_.size());
+  if (offline_ || second_bank_) kept_.emplace(sources_.size(), expected_frames());
 }
 
 void PipelineScorer::on_frame(const FrameRecord& frame, const FrameTruth* truth) {
   on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
 }
 
+// Whether a frame precedes the evaluated part.
+inline bool PipelineScorer::in_warm_up(std::int64_t pulse) {
+  if (pulse >= layout_.first_pulse) warm_up_over_ = true;
+  return pulse == kNoPulse ? !warm_up_over_ : pulse < layout_.first_pulse;
+}
+
+inline std::int64_t PipelineScorer::pulse_of(Source& source, const FrameTruth* truth,
+                                             DeviceTime sensor) {
+  if (!setup_.genlock) return truth != nullptr ? truth->pulse : kNoPulse;
+  const std::int64_t index = source.order.next(sensor);
+  if (truth == nullptr) return index;
+  if (index != truth->pulse - first_true_pulse_) ++genlock_index_errors_;
+  return truth->pulse;
+}
+
+inline PipelineScorer::Place PipelineScorer::place_of(Source& source, const FrameRecord& frame,
+                                                      const FrameTruth* truth, DeviceTime sensor) {
+  if (unverified_) {
+    using Part = UnverifiedScores::Part;
+    const Part part = unverified_->part_of(frame);
+    return {.pulse = part == Part::kEvaluated ? kUnknownPulse : kNoPulse,
+            .warm_up = part == Part::kWarmUp};
+  }
+  const std::int64_t pulse = pulse_of(source, truth, sensor);
+  return {.pulse = pulse, .warm_up = in_warm_up(pulse)};
+}
+
 void PipelineScorer::on_frames(std::span<const FrameRecord> frames,
                                std::span<const FrameTruth> truths) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].stream == setup_.stream) take(frames[i], truths.empty() ? nullptr : &truths[i]);
-  }
-  finish_block();
-}
-
-void PipelineScorer::take(const FrameRecord& frame, const FrameTruth* truth) {
-  SIMBENCH_ASSERT(frame.camera < sources_.size(), "a frame of a camera that the rig does not have");
-  if (!ground_truth_) learn_ground_truth(truth);
-  Source& source = sources_[frame.camera];
-  const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
-  const Place place = place_of(source, frame, truth, sensor);
-  if (!anchor_) note_anchor(frame);
-  if (place.warm_up && !stamp_warm_up_ && !gather_warm_up_) return;
-  if (place.warm_up != is_warm_up_) finish_block();
-  is_warm_up_ = place.warm_up;
-  if (!place.warm_up) {
-    if (truth != nullptr && table_->holds(place.pulse)) {
+    const FrameRecord& frame = frames[i];
+    const FrameTruth* truth = truths.empty() ? nullptr : &truths[i];
+    if (frame.stream != setup_.stream) continue;
+    SIMBENCH_ASSERT(frame.camera < layout_.cameras.size(),
+                    "a frame of a camera that the rig does not have");
+    if (!ground_truth_) learn_ground_truth(truth);
+    Source& source = sources_[frame.camera];
+    const DeviceTime sensor = source.unwrapper.unwrap(frame.sensor);
+    const Place place = place_of(source, frame, truth, sensor);
+    if (!anchor_) note_anchor(frame);
+    if (place.warm_up && !stamp_warm_up_ && !gather_warm_up_) continue;
+    if (place.warm_up != is_warm_up_) finish_block();
+    is_warm_up_ = place.warm_up;
+    if (!place.warm_up && truth != nullptr) {
       table_->store_truth(place.pulse, frame.camera, *truth);
     }
-    if (!bank_) block_.stamps.push_back(oracle_stamp(truth));
+    if (!place.warm_up && !bank_) block_.stamps.push_back(oracle_stamp(truth));
+    block_.add(frame.camera, {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
+               place.pulse, on_global_scale(truth != nullptr ? truth->delivered : frame.arrival));
   }
-  block_.add(frame.camera, {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
-             place.pulse, on_global_scale(truth != nullptr ? truth->delivered : frame.arrival));
+  finish_block();
 }
 
 void PipelineScorer::finish_block() {
@@ -125,7 +155,7 @@ void PipelineScorer::settle(FrameBlock& block) {
     const GlobalTime global = block.stamps[i];
     frame.stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global)));
     if (is_warm_up_) continue;
-    if (table_->holds(frame.tag)) table_->store(frame.tag, frame.source, global);
+    table_->store(frame.tag, frame.source, global);
     if (observer_ == nullptr) continue;
     observer_->on_stamp({frame.source, frame.tag, block.samples[i], frame.arrival}, global);
   }
@@ -141,6 +171,7 @@ void PipelineScorer::settle(FrameBlock& block) {
 void PipelineScorer::learn_ground_truth(const FrameTruth* truth) {
   if (truth != nullptr) {
     ground_truth_ = GroundTruth::kSimulation;
+    first_true_pulse_ = truth->pulse;
   } else if (setup_.genlock) {
     ground_truth_ = GroundTruth::kGenlockOrder;
   } else {
@@ -158,33 +189,6 @@ GroundTruth PipelineScorer::ground_truth() const {
   if (ground_truth_) return *ground_truth_;
   if (pulses_with_truth_) return GroundTruth::kSimulation;
   return setup_.genlock ? GroundTruth::kGenlockOrder : GroundTruth::kNone;
-}
-
-PipelineScorer::Place PipelineScorer::place_of(Source& source, const FrameRecord& frame,
-                                               const FrameTruth* truth, DeviceTime sensor) {
-  if (unverified_) {
-    using Part = UnverifiedScores::Part;
-    const Part part = unverified_->part_of(frame);
-    return {.pulse = part == Part::kEvaluated ? kUnknownPulse : kNoPulse,
-            .warm_up = part == Part::kWarmUp};
-  }
-  const std::int64_t pulse = pulse_of(source, truth, sensor);
-  return {.pulse = pulse, .warm_up = in_warm_up(pulse)};
-}
-
-std::int64_t PipelineScorer::pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor) {
-  if (!setup_.genlock) return truth != nullptr ? truth->pulse : kNoPulse;
-  const std::int64_t index = source.order.next(sensor);
-  if (truth == nullptr) return index;
-  if (!first_true_pulse_) first_true_pulse_ = truth->pulse;
-  if (index != truth->pulse - *first_true_pulse_) ++genlock_index_errors_;
-  return truth->pulse;
-}
-
-// Whether a frame precedes the evaluated part.
-bool PipelineScorer::in_warm_up(std::int64_t pulse) {
-  if (pulse >= layout_.first_pulse) warm_up_over_ = true;
-  return pulse == kNoPulse ? !warm_up_over_ : pulse < layout_.first_pulse;
 }
 
 void PipelineScorer::note_anchor(const FrameRecord& frame) {

@@ -92,7 +92,6 @@ class PipelineScorer final : public RecordingSink {
   };
 
   void make_banks();
-  void take(const FrameRecord& frame, const FrameTruth* truth);
   void learn_ground_truth(const FrameTruth* truth);
   Place place_of(Source& source, const FrameRecord& frame, const FrameTruth* truth,
                  DeviceTime sensor);
@@ -109,6 +108,7 @@ class PipelineScorer final : public RecordingSink {
   void stamp_offline();
   double second_amd_ms();
   Nanoseconds period() const;
+  std::size_t expected_frames() const;
   GroundTruth ground_truth() const;
 
   ScorerSetup setup_;
@@ -129,8 +129,8 @@ class PipelineScorer final : public RecordingSink {
   std::optional<std::uint32_t> anchor_camera_;  // the master's first
   std::optional<HostTime> anchor_;
   std::optional<HostTime> first_arrival_;
-  std::optional<std::int64_t> first_true_pulse_;  // of the capture's first frame
-  std::optional<GroundTruth> ground_truth_;       // of the frames, from the first on
+  std::int64_t first_true_pulse_ = 0;        // of the capture's first frame, with truth
+  std::optional<GroundTruth> ground_truth_;  // of the frames, from the first on
   bool pulses_with_truth_ = false;
   // Made when the capture starts.
   std::optional<PulseTable> table_;

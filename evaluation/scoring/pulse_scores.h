@@ -36,28 +36,29 @@ class PulseTable {
   PulseTable(std::int64_t first_pulse, std::int64_t pulses, std::size_t sources);
 
   // Whether the pulse is evaluated.
-  bool holds(std::int64_t pulse) const {
-    return pulse >= first_pulse_ && pulse - first_pulse_ < static_cast<std::int64_t>(rows_.size());
-  }
+  bool holds(std::int64_t pulse) const { return row_of(pulse) < rows_.size(); }
 
-  // Stores the stamp of the source's frame of this pulse, which must be held. A second frame of the
-  // same pulse is ignored.
+  // Stores the stamp of the source's frame of this pulse. A second frame of the same pulse is
+  // ignored, and one of a pulse that is not held.
   void store(std::int64_t pulse, std::size_t source, GlobalTime global) {
     const std::size_t row = row_of(pulse);
+    if (row >= rows_.size()) return;
     std::int64_t& cell = global_ns_[row * sources_ + source];
     if (cell != kNothing) return;
     cell = clamped_ns(global);
     ++rows_[row].delivered;
   }
 
-  // Stores the truth about that frame; that about a second one is ignored too.
+  // Stores the truth about that frame; likewise.
   void store_truth(std::int64_t pulse, std::size_t source, const FrameTruth& truth) {
     const std::size_t row = row_of(pulse);
+    if (row >= rows_.size()) return;
     std::int64_t& cell = reference_ns_[row * sources_ + source];
     if (cell != kNoReference) return;
     cell = nanoseconds_of(truth.reference);
-    rows_[row].earliest = std::min(rows_[row].earliest, truth.mid_exposure());
-    rows_[row].latest = std::max(rows_[row].latest, truth.mid_exposure());
+    const TrueTime exposed = truth.mid_exposure();
+    if (exposed < rows_[row].earliest) rows_[row].earliest = exposed;
+    if (exposed > rows_[row].latest) rows_[row].latest = exposed;
     has_truth_ = true;
   }
 
@@ -69,9 +70,9 @@ class PulseTable {
   std::int64_t pulse_of(std::size_t row) const {
     return first_pulse_ + static_cast<std::int64_t>(row);
   }
-  // `pulse` must be held.
+  // Beyond the rows for a pulse that is not held.
   std::size_t row_of(std::int64_t pulse) const {
-    return static_cast<std::size_t>(pulse - first_pulse_);
+    return static_cast<std::size_t>(pulse) - static_cast<std::size_t>(first_pulse_);
   }
   bool complete(std::size_t row) const { return rows_[row].delivered == sources_; }
   std::size_t delivered(std::size_t row) const { return rows_[row].delivered; }
@@ -99,7 +100,7 @@ class PulseTable {
   static constexpr std::int64_t kFarthest = (std::int64_t{1} << 62) - 1;
   static constexpr std::int64_t kNoReference = -kFarthest;  // so that differences do not overflow
 
-  struct Row {
+  struct alignas(32) Row {
     std::size_t delivered = 0;
     TrueTime earliest = TrueTime::max();  // mid-exposure
     TrueTime latest = TrueTime::min();

@@ -1,14 +1,15 @@
 // The cameras' half of a world: trigger pulses, exposures, USB, deliveries and polls of device
-// clocks, in true time.
+// clocks, in true time since the cameras' start, which is true zero here.
 //
 // The way of a frame:
 //
 //   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
 //     -> transfer complete -> delivery to its host
 //
-// None of it depends on a clock that a host synchronisation disciplines: the same scenario, seed
-// and start give the same half, whatever the pipeline. So it is made once and read by every
-// capture of that start (sim/rig/capture.h), whose hosts stamp the frames with their own clocks.
+// None of it depends on a clock, nor on when the capture starts (but for bursts of load on the
+// hosts, which come and go in true time: depends_on_start()). So it is made once for a scenario and
+// a seed and read by every capture (sim/rig/capture.h), whatever the pipeline: the cameras stamp
+// its frames with their clocks (sim/rig/camera_stamps.h) and the hosts with theirs.
 //
 // It is made period by period, a period being the time from one pulse of the main trigger to the
 // next. Periods are kept while all of them together take less than `kept_bytes`; then only the last
@@ -28,7 +29,7 @@
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
 // are kept.
 //
-//   CameraWorld world(scenario, seed, capture_start);
+//   CameraWorld world(scenario, seed);
 //   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) use(*period);
 #ifndef SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
 #define SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
@@ -60,9 +61,8 @@ struct CameraFrame {
   std::uint32_t stream = 0;  // of Cameras::stream()
   std::uint32_t counter = 0;
   std::uint32_t exposure_us = 0;
-  DeviceStamp sensor{};
-  DeviceStamp frame{};
   FrameFate fate = FrameFate::kDelivered;
+  double stamp_noise_ns = 0;  // of the camera's own stamps
   std::int64_t pulse = kNoPulse;
   TrueTime exposure_start{};
   TrueTime exposure_end{};
@@ -98,9 +98,9 @@ class CameraWorld {
  public:
   static constexpr std::size_t kKeptBytes = 64 << 20;
 
-  // The cameras start at `start`. The scenario must outlive this. Of the limits that of events
-  // counts.
-  CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+  // Of a capture that starts at `start`. The scenario must outlive this. Of the limits, that of
+  // events counts.
+  CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
               const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes);
   CameraWorld(const CameraWorld&) = delete;
   CameraWorld& operator=(const CameraWorld&) = delete;
@@ -108,9 +108,12 @@ class CameraWorld {
   // Period `index`, until the next one is asked for; null after the last. If not all are kept, they
   // can only be asked for in turn. Throws EngineLimitReached.
   const CameraPeriod* period(std::size_t index);
-  // Whether all periods until now are kept, and in how many bytes.
+  // Whether all periods until now are kept.
   bool is_whole() const { return dropped_ == 0; }
-  std::size_t bytes() const { return bytes_; }
+
+  static bool depends_on_start(const scenarios::Scenario& scenario) {
+    return scenario.hosts.load_burst.rate_hz > 0;
+  }
 
   std::uint64_t seed() const { return seed_; }
   TrueTime start() const { return start_; }
@@ -122,8 +125,6 @@ class CameraWorld {
   std::uint64_t events() const { return events_; }
   std::uint64_t trace_hash() const { return trace_hash_; }
 
-  const TriggerTree& trigger() const { return trigger_; }
-  EvaluatedSlots slots() const { return slots_; }
   const Cameras& cameras() const { return cameras_; }
 
  private:
@@ -176,10 +177,8 @@ class CameraWorld {
   Nanoseconds unstable_start_;
   double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
-  TrueTime last_exposure_;
   Cameras cameras_;
   CameraFaults camera_faults_;
-  ClockPolls polls_;
   EventQueue timers_;  // of shutters; payload: stream
   std::vector<Bus> buses_;
   std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
@@ -187,6 +186,8 @@ class CameraWorld {
   Slots<FrameInFlight> frames_;
   std::vector<Step> transferred_;  // of one host
   std::vector<Step> ended_;        // delivered or lost
+  TrueTime last_exposure_;
+  ClockPolls polls_;
   TrueTime end_;
   std::int64_t next_slot_ = 0;
   TrueTime next_slot_at_;

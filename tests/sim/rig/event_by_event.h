@@ -22,7 +22,6 @@ class EventByEvent {
         cameras_(scenario, seed),
         faults_(scenario.faults) {
     faults_.start(TrueTime{});
-    cameras_.start(TrueTime{});
     buses_ = cameras_.make_controllers();
     for (std::size_t host = 0; host < static_cast<std::size_t>(scenario.hosts.count); ++host) {
       jitters_.emplace_back(scenario.usb, seed, host, TrueTime{}, trigger_.period_ns());
@@ -91,8 +90,7 @@ class EventByEvent {
     CameraFrame& frame = frames_.back();
     const TrueTime read_out = exposure.end - stream.readout;
     frame.exposure_us = static_cast<std::uint32_t>((read_out - exposure.start).count() / 1000);
-    frame.sensor = cameras_.clock(stream.camera).stamp(frame.mid_exposure(), noise_ns);
-    frame.frame = cameras_.clock(stream.camera).stamp(read_out, noise_ns);
+    frame.stamp_noise_ns = noise_ns;
     const double delivery_ns = delays.delivery_ns + faults_.take_delay_ns(stream.camera);
     delays_.resize(frames_.size());
     delays_.back() = {.kernel_copy_ns = delays.kernel_copy_ns, .delivery_ns = delivery_ns};
