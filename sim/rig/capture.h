@@ -2,9 +2,8 @@
 //
 // What happens to frames, polls and pulses in true time is known beforehand (CameraWorld), and what
 // the cameras stamp (CameraStamps). The hosts' clocks can be read at any past instant, so nothing
-// here needs an event of the engine: what
-// happened until now is reported when somebody asks for it by catch_up(), in the order in which it
-// happened. Who must not come before it asks first:
+// here needs an event of the engine: what happened until now is reported when somebody asks for it
+// by catch_up(), in the order in which it happened. Who must not come before it asks first:
 //
 //  - what else is recorded or observed: adjustments, exchanges, outcomes, messages;
 //  - capture traffic, in which frames leave through the same ports as messages: each message;
