@@ -109,17 +109,43 @@ std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scen
   return worlds;
 }
 
-// The pipeline of that set, in the world of any that goes with it.
-PipelineChoice choice_of(const scenarios::Scenario& world, StageSet ideal) {
-  PipelineChoice choice = choose_pipelines(world, {}).front();
-  choice.scores_offline = false;  // no part of a budget
-  if (ideal.has(Stage::kUsbDelivery)) {
-    const Nanoseconds quantum = from_ms(world.hosts.clock.arrival_quantum_ms);
-    choice.view = [quantum](RecordingSink& sink) {
-      return std::make_unique<IdealDelivery>(sink, quantum);
-    };
+scenarios::Pipeline ideal_pipeline(scenarios::Pipeline pipeline, StageSet ideal) {
+  if (ideal.has(Stage::kHostClock)) {
+    pipeline.host_sync = kOracle;
+    pipeline.programs.reset();
   }
-  return choice;
+  if (ideal.has(Stage::kGathering)) pipeline.gathering = kOracle;
+  return pipeline;
+}
+
+void see_ideal_delivery(const scenarios::Scenario& world, PipelineChoice& choice) {
+  const Nanoseconds quantum = from_ms(world.hosts.clock.arrival_quantum_ms);
+  choice.view = [quantum](RecordingSink& sink) {
+    return std::make_unique<IdealDelivery>(sink, quantum);
+  };
+  choice.view_delays = calibrated_delays(world, choice.device_time_variants);
+}
+
+// The pipelines of sets that go together; those with one delivery are neighbours.
+std::vector<PipelineChoice> choices_of(const scenarios::Scenario& scenario,
+                                       const scenarios::Pipeline& pipeline,
+                                       std::span<const StageSet> sets) {
+  std::vector<PipelineChoice> choices;
+  while (!sets.empty()) {
+    const bool ideal = sets.front().has(Stage::kUsbDelivery);
+    scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
+    world.pipelines.clear();
+    for (; !sets.empty() && sets.front().has(Stage::kUsbDelivery) == ideal;
+         sets = sets.subspan(1)) {
+      world.pipelines.push_back(ideal_pipeline(pipeline, sets.front()));
+    }
+    for (PipelineChoice& choice : choose_pipelines(world, {})) {
+      choice.scores_offline = false;  // no part of a budget
+      if (ideal) see_ideal_delivery(world, choice);
+      choices.push_back(std::move(choice));
+    }
+  }
+  return choices;
 }
 
 // The scores by world, then by seed.
@@ -179,7 +205,7 @@ ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal) {
   scenarios::Scenario world = scenario;
-  world.pipelines = {pipeline};
+  world.pipelines = {ideal_pipeline(pipeline, ideal)};
   world.published.clear();
   if (ideal.has(Stage::kTrigger)) idealise_trigger(world.trigger);
   if (ideal.has(Stage::kExposure)) idealise_exposure(world.cameras);
@@ -192,11 +218,6 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.cameras.skew_of_camera_ppm.clear();
   }
   if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
-  if (ideal.has(Stage::kHostClock)) {
-    world.pipelines.front().host_sync = kOracle;
-    world.pipelines.front().programs.reset();
-  }
-  if (ideal.has(Stage::kGathering)) world.pipelines.front().gathering = kOracle;
   return world;
 }
 
@@ -232,12 +253,8 @@ Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeli
   std::uint64_t done_before = 0;
   for (const std::vector<StageSet>& sets : sets_by_world(scenario)) {
     const scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
-    std::vector<PipelineChoice> choices;
-    for (const StageSet ideal : sets) {
-      choices.push_back(choice_of(ideal_scenario(scenario, pipeline, ideal), ideal));
-    }
     const Results results = evaluate_choices(
-        world, std::move(choices), [&] { return make_world(world); }, of_worlds,
+        world, choices_of(scenario, pipeline, sets), [&] { return make_world(world); }, of_worlds,
         [&](std::uint64_t done, std::uint64_t) {
           if (progress) progress(done_before + done, StageSet::kSets * options.seeds);
         });

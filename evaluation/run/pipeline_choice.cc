@@ -186,16 +186,6 @@ Nanoseconds earlier_by_sdk(const Scenario& scenario, const DeviceTimeName& varia
   return variants.sdk && quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
 }
 
-CalibratedDelays calibrated_delays(const Scenario& scenario, const DeviceTimeName& variants) {
-  CalibratedDelays delays;
-  delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
-  if (const scenarios::Stream* scored = scenario.scored_stream()) {
-    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored)) -
-                     earlier_by_sdk(scenario, variants);
-  }
-  return delays;
-}
-
 template <class Entry>
 const Entry& algorithm_at(const Scenario& scenario, std::size_t pipeline, const char* stage,
                           const std::string& name, const std::vector<Entry>& entries) {
@@ -249,7 +239,6 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
                            .device_time_parameters = parameters_of(scenario, device_time.info),
                            .gathering = gathering,
                            .gathering_parameters = parameters_of(scenario, gathering.info),
-                           .calibrated_delays = calibrated_delays(scenario, variants),
                            .scores_offline = needs_offline_amd(pipeline.name),
                            .problem = problem};
   check_can_be_made(scenario, choice);
@@ -286,6 +275,16 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   return chosen;
 }
 
+CalibratedDelays calibrated_delays(const Scenario& scenario, const DeviceTimeName& variants) {
+  CalibratedDelays delays;
+  delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
+  if (const scenarios::Stream* scored = scenario.scored_stream()) {
+    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored)) -
+                     earlier_by_sdk(scenario, variants);
+  }
+  return delays;
+}
+
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;
@@ -298,11 +297,13 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.make) {
-    setup.make_estimator =
-        [make = choice.device_time.make, parameters = choice.device_time_parameters,
-         variants = choice.device_time_variants, delays = choice.calibrated_delays] {
-          return make_variant(variants, make(parameters), delays);
-        };
+    setup.make_estimator = [make = choice.device_time.make,
+                            parameters = choice.device_time_parameters,
+                            variants = choice.device_time_variants,
+                            delays = choice.view_delays.value_or(
+                                calibrated_delays(scenario, choice.device_time_variants))] {
+      return make_variant(variants, make(parameters), delays);
+    };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
   if (choice.scores_offline && offline != nullptr &&

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,13 @@ struct PipelineChoice {
   Parameters device_time_parameters;
   GatheringEntry gathering;
   Parameters gathering_parameters;
-  CalibratedDelays calibrated_delays{};
   bool scores_offline = false;  // SeedScore::offline_amd_ms, for claim C7
-  std::string problem{};  // why its programs cannot run, one line
+  std::string problem{};        // why its programs cannot run, one line
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
   // Empty: all as it is.
   std::function<std::unique_ptr<RecordingSink>(RecordingSink& sink)> view{};
+  // What was measured of that view, in place of the scenario's.
+  std::optional<CalibratedDelays> view_delays{};
 };
 
 // The host synchronisation that a pipeline's programs are, and why they cannot run here, one line;
@@ -66,6 +68,10 @@ void set_program_maker(ProgramMaker maker);
 // named twice, or a parameter that is not declared or not allowed.
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
+
+// The delays that a user of the scenario knows, as the variants of a device_time subtract them.
+CalibratedDelays calibrated_delays(const scenarios::Scenario& scenario,
+                                   const DeviceTimeName& variants);
 
 // Returns the scorer's setup for the pipeline. It has the second, offline estimator, which keeps
 // all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.
