@@ -198,7 +198,7 @@ std::string ExperimentSource::record_cameras(std::uint64_t seed) {
   const RecordingRequest request = {.seed = seed, .pipeline = kPlayed};
   sim::make_simulation(scenario_)->record(request, played_);
   if (!std::filesystem::exists(folder)) {
-    RecordingWriter writer(folder, {.backend = "sim", .scenario_json = scenario_.resolved_json});
+    RecordingWriter writer(folder, {.backend = "sim", .scenario_json = scenario_.resolved_json()});
     played_.play(writer.begin(kPlayed, seed));
     writer.end({});
   }

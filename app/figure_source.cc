@@ -269,7 +269,8 @@ ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& o
         {.first_seed = *first,
          .seeds = over ? std::max(over_seeds, shown) : shown,
          .pipelines = chosen.pipelines,
-         .keep_pulses = true},
+         .keep_pulses = true,
+         .share_captures = true},
         progress);
   }
   maker.add_result_figures();

@@ -4,9 +4,9 @@
 // wrong during a capture (RecordingCost::notes) is a warning and is kept with it. A folder
 // evaluated again gives the table that its run printed.
 //
-//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
-//   CapturesMade made;
-//   record_captures(choices, *simulated_world(scenario), {.seeds = 3}, writer, made, progress);
+//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json =
+//   scenario.resolved_json()}); CapturesMade made; record_captures(choices,
+//   *simulated_world(scenario), {.seeds = 3}, writer, made, progress);
 //
 //   const RecordedRun run("monday");
 //   const evaluation::Results results = run.evaluate(run.chosen({}), false, progress);

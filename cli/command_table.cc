@@ -54,16 +54,27 @@ CommandEntry entry_of(CLI::App& command) {
   return entry;
 }
 
+// Also those that are not used.
+std::vector<CLI::App*> all_commands(CLI::App& app) {
+  return app.get_subcommands([](CLI::App*) { return true; });
+}
+
 }  // namespace
 
 CommandTable command_table(CLI::App& app) {
   CommandTable table;
   table.program = entry_of(app);
   table.program.name.clear();
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+  for (CLI::App* command : all_commands(app)) {
     table.commands.push_back(entry_of(*command));
   }
   return table;
+}
+
+std::vector<std::string> command_names(CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : all_commands(app)) names.push_back(command->get_name());
+  return names;
 }
 
 }  // namespace simbench::cli

@@ -46,6 +46,9 @@ struct CommandTable {
 // FOLDER...), else a file. `app` is not changed; CLI11 has no const access to its checks.
 CommandTable command_table(CLI::App& app);
 
+// The names of its commands alone.
+std::vector<std::string> command_names(CLI::App& app);
+
 // The command that options without one mean: `simbench --scenario S`.
 inline constexpr const char* kDefaultCommand = "run";
 

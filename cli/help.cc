@@ -176,8 +176,7 @@ void group_commands(CLI::App& app, const std::string& group) {
 
 std::optional<std::string> unknown_command(CLI::App& app,
                                            const std::vector<std::string>& arguments) {
-  std::vector<std::string> known;
-  for (const CommandEntry& command : command_table(app).commands) known.push_back(command.name);
+  const std::vector<std::string> known = command_names(app);
   if (arguments.size() < 2) {
     return fmt::format("a command is required, allowed: {}", fmt::join(known, ", "));
   }

@@ -84,7 +84,8 @@ typename O::Instant instant_after(const O& oscillator, typename O::Instant ancho
   typename O::Instant t = anchor + from_ns(local_ns);
   for (int pass = 0; pass < kPasses; ++pass) {
     const double ahead_ns = oscillator.deviation_ns(t) - anchor_deviation_ns;
-    t = anchor + from_ns(local_ns - ahead_ns);
+    const typename O::Instant before = std::exchange(t, anchor + from_ns(local_ns - ahead_ns));
+    if (t == before) break;
   }
   return t;
 }
@@ -221,9 +222,9 @@ class DisciplinedClock {
   static HostTime limited(HostTime value) { return HostTime(limited(value.time_since_epoch())); }
 
   // What the oscillator has counted since the setting's anchor.
-  double counted_ns(const Setting& setting, Instant t) const {
+  static double counted_ns(const Setting& setting, Instant t, double deviation_ns) {
     return static_cast<double>((t - setting.anchor).count()) +
-           (oscillator_.deviation_ns(t) - setting.anchor_deviation_ns);
+           (deviation_ns - setting.anchor_deviation_ns);
   }
   Reading reading(const Setting& setting, Instant t) const {
     return reading(setting, t, oscillator_.deviation_ns(t));
@@ -341,14 +342,15 @@ void DisciplinedClock<O>::slew(Instant at, Nanoseconds offset, double max_rate_p
 
 template <Oscillator O>
 auto DisciplinedClock<O>::continued(const Setting& setting, Instant at) const -> Setting {
-  const Reading then = reading(setting, at);
+  const double deviation_ns = oscillator_.deviation_ns(at);
+  const Reading then = reading(setting, at, deviation_ns);
   Setting next = setting;
   next.since = next.anchor = at;
   next.until = Instant::max();
-  next.anchor_deviation_ns = oscillator_.deviation_ns(at);
+  next.anchor_deviation_ns = deviation_ns;
   next.base = then.whole;
   next.base_part_ns = then.part_ns;
-  next.slew_left_ns -= setting.slew_rate * counted_ns(setting, at);
+  next.slew_left_ns -= setting.slew_rate * counted_ns(setting, at, deviation_ns);
   return next;
 }
 
@@ -377,7 +379,7 @@ void DisciplinedClock<O>::plan_end(Instant now) {
   if (setting.slew_rate == 0) return;
   const double duration_ns = std::max(0.0, setting.slew_left_ns / setting.slew_rate);
   if (duration_ns > kNeverNs) return;
-  const double left_ns = duration_ns - counted_ns(setting, now);
+  const double left_ns = duration_ns - counted_ns(setting, now, oscillator_.deviation_ns(now));
   if (left_ns > kFarEndNs) {
     look_again_ = now + from_ns(left_ns / 2);
     return;

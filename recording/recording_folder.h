@@ -23,8 +23,8 @@
 // Errors: RecordingFolderError, "FILE:LINE: ..." with what was found and allowed, also for a full
 // disk; it is thrown by the call that failed, and what was written stays readable.
 //
-//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json = scenario.resolved_json});
-//   source.record(request, writer.begin("yoon2021_both", 1));
+//   RecordingWriter writer("monday", {.backend = "sim", .scenario_json =
+//   scenario.resolved_json()}); source.record(request, writer.begin("yoon2021_both", 1));
 //   writer.end(cost);                // or abandon(notes)
 //
 //   RecordingFolder folder("monday");

@@ -19,7 +19,7 @@ const std::vector<BuiltinFile>& builtin_files();
 // scenarios/schema.json.
 std::string_view schema_text();
 
-// The profiles of camera models in alphabetical order; their schema is not among them.
+// The profiles of camera models, by model, in alphabetical order; their schema is not among them.
 const std::vector<BuiltinFile>& camera_files();
 
 // scenarios/cameras/schema.json.

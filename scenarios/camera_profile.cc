@@ -1,10 +1,12 @@
 #include "scenarios/camera_profile.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/builtin_files.h"
 #include "scenarios/fields.h"
+#include "scenarios/lazy.h"
 
 namespace simbench::scenarios {
 
@@ -72,20 +74,25 @@ bool CameraProfile::triggers(SyncMode mode, StreamKind kind) const {
   return found != nullptr && std::ranges::count(found->triggered, kind) > 0;
 }
 
+const CameraProfile* find_camera_profile(std::string_view model) {
+  static const std::map<std::string_view, Lazy<CameraProfile>> profiles = [] {
+    std::map<std::string_view, Lazy<CameraProfile>> all;
+    for (const BuiltinFile& file : camera_files()) {
+      all.emplace(file.name, [&file] { return profile_of(json::parse(file.text)); });
+    }
+    return all;
+  }();
+  const auto found = profiles.find(model);
+  return found == profiles.end() ? nullptr : &found->second();
+}
+
 const std::vector<CameraProfile>& camera_profiles() {
   static const std::vector<CameraProfile> profiles = [] {
     std::vector<CameraProfile> all;
-    for (const BuiltinFile& file : camera_files())
-      all.push_back(profile_of(json::parse(file.text)));
+    for (const BuiltinFile& file : camera_files()) all.push_back(*find_camera_profile(file.name));
     return all;
   }();
   return profiles;
-}
-
-const CameraProfile* find_camera_profile(std::string_view model) {
-  const std::vector<CameraProfile>& all = camera_profiles();
-  const auto found = std::ranges::find(all, model, &CameraProfile::model);
-  return found == all.end() ? nullptr : &*found;
 }
 
 std::string camera_profiles_json() {

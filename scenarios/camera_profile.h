@@ -80,7 +80,7 @@ struct CameraProfile {
 // In alphabetical order of the models.
 const std::vector<CameraProfile>& camera_profiles();
 
-// Null if there is no such model.
+// Null if there is no such model. Reads the file of the model alone.
 const CameraProfile* find_camera_profile(std::string_view model);
 
 // All profiles as one JSON array, as their files have them.

@@ -27,28 +27,33 @@ json world_of(json scenario) {
 }
 
 // Whether its members are compared one by one: an object, or a list of objects.
-bool has_members(const ordered_json* value) {
+template <class Json>
+bool has_members(const Json* value) {
   if (value == nullptr) return false;
   return value->is_object() || (value->is_array() && !value->empty() && value->front().is_object());
 }
 
-std::string text_or_nothing(const ordered_json* value) {
+template <class Json>
+std::string text_or_nothing(const Json* value) {
   return value == nullptr ? "" : value->dump();
 }
 
 // The member, or the element at that place; null: not there.
-const ordered_json* member(const ordered_json* value, const std::string& key) {
+template <class Json>
+const Json* member(const Json* value, const std::string& key) {
   if (value == nullptr || !value->is_object()) return nullptr;
   const auto found = value->find(key);
   return found == value->end() ? nullptr : &*found;
 }
-const ordered_json* element_at(const ordered_json* value, std::size_t index) {
+template <class Json>
+const Json* element_at(const Json* value, std::size_t index) {
   if (value == nullptr || !value->is_array() || index >= value->size()) return nullptr;
   return &(*value)[index];
 }
 
 // Null: not there. Elements of lists by their place.
-void compare(const std::string& pointer, const ordered_json* from, const ordered_json* to,
+template <class Json>
+void compare(const std::string& pointer, const Json* from, const Json* to,
              std::vector<Change>& changes) {
   if (from != nullptr && to != nullptr && *from == *to) return;
   if (!has_members(from) && !has_members(to)) {
@@ -66,7 +71,7 @@ void compare(const std::string& pointer, const ordered_json* from, const ordered
   if (from != nullptr && from->is_object()) {
     for (const auto& [key, value] : from->items()) {
       if (member(to, key) == nullptr) {
-        compare(child_pointer(pointer, key), &value, nullptr, changes);
+        compare<Json>(child_pointer(pointer, key), &value, nullptr, changes);
       }
     }
   }
@@ -75,6 +80,7 @@ void compare(const std::string& pointer, const ordered_json* from, const ordered
 }  // namespace
 
 std::vector<Change> world_changes(const json& from, const json& to) {
+  if (from == to) return {};
   const json before = world_of(from);
   const json after = world_of(to);
   std::vector<Change> changes;
@@ -83,6 +89,15 @@ std::vector<Change> world_changes(const json& from, const json& to) {
   const ordered_json ordered_after = in_schema_order(after);
   compare("", &ordered_before, &ordered_after, changes);
   return changes;
+}
+
+bool same_world(const json& from, const json& to) {
+  if (from == to) return true;
+  const json before = world_of(from);
+  const json after = world_of(to);
+  std::vector<Change> changes;
+  compare("", &before, &after, changes);
+  return changes.empty();
 }
 
 std::vector<Change> pipeline_changes(const json& from, const json& to) {

@@ -13,6 +13,9 @@ namespace simbench::scenarios {
 // The changes of a world (derivation.h), in the order of scenarios/schema.json.
 std::vector<Change> world_changes(const nlohmann::json& from, const nlohmann::json& to);
 
+// Whether there are none.
+bool same_world(const nlohmann::json& from, const nlohmann::json& to);
+
 // The changes of the stages of pipelines that have the same name in both.
 std::vector<Change> pipeline_changes(const nlohmann::json& from, const nlohmann::json& to);
 

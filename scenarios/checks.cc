@@ -320,8 +320,8 @@ void check_smear(const Scenario& scenario, const std::string& pointer, double sm
           fmt::format("found {}, allowed 0 (a step) or at least {}", smear_ms, kShortestSmearMs));
 }
 
-void check_faults(const Scenario& scenario) {
-  const auto stated = nlohmann::json::parse(scenario.resolved_json).at("faults");
+void check_faults(const Scenario& scenario, const nlohmann::json& document) {
+  const nlohmann::json& stated = document.at("faults");
   for (std::size_t i = 0; i < scenario.faults.size(); ++i) {
     const std::string pointer = fmt::format("/faults/{}", i);
     std::visit(
@@ -566,7 +566,7 @@ void check_studio(const Scenario& scenario) {
 
 }  // namespace
 
-void check(const Scenario& scenario) {
+void check(const Scenario& scenario, const nlohmann::json& document) {
   check_name(scenario, "/name", scenario.name);
   check_hosts(scenario);
   check_frames(scenario);
@@ -581,7 +581,7 @@ void check(const Scenario& scenario) {
   check_shutters(scenario);
   check_calibrations(scenario);
   check_auto_exposure(scenario);
-  check_faults(scenario);
+  check_faults(scenario, document);
   check_pipelines(scenario);
   check_studio(scenario);
 }

@@ -177,7 +177,7 @@ std::string world_text(const Scenario& scenario) {
 }
 
 std::vector<ParameterLine> describe(const Scenario& scenario) {
-  ordered_json document = ordered_json::parse(scenario.resolved_json);
+  ordered_json document = ordered_json::parse(scenario.resolved_json());
   Walker walker(scenario, state_calibrations(scenario, document));
   walker.walk("", "", &ordered_schema(), document);
   return walker.take();

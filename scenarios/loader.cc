@@ -229,13 +229,14 @@ void apply_override(const Override& setting, std::size_t level, json& document, 
   places.set(walked, std::move(place));
 }
 
-// One file as written, checked by itself.
+// One file as written, checked by itself. Those built in are checked by
+// tests/scenarios/builtin_test.cc.
 PlacedDocument read_layer(const Source& source, std::size_t level) {
   PlacedDocument layer = parse_placed(
       source.text, {.label = source.is_builtin ? source.label : shown_text(source.label),
                     .is_builtin = source.is_builtin,
                     .level = level});
-  validate(layer.root, Completeness::kDifferences, layer.places);
+  if (!source.is_builtin) validate(layer.root, Completeness::kDifferences, layer.places);
   return layer;
 }
 
@@ -265,10 +266,15 @@ std::vector<PlacedDocument> read_layers(Source source) {
   return layers;
 }
 
+bool has_null(const json& value) {
+  return value.is_null() || (value.is_object() && std::ranges::any_of(value, has_null));
+}
+
 // RFC 7386, for the values and their places.
 void merge(const std::string& pointer, const json& patch, const Places& patch_places, json& target,
            Places& places) {
-  if (!patch.is_object()) {
+  const bool is_whole = !target.is_object() && !has_null(patch);
+  if (!patch.is_object() || is_whole) {
     target = patch;
     places.erase(pointer);
     places.adopt(pointer, patch_places);
@@ -350,15 +356,17 @@ void drop_outlived_results(Resolved& resolved) {
 
 void derive(Resolved& resolved);
 
-// Validates every file by itself, merges it over its base (RFC 7386: objects are merged, anything
-// else is replaced, null removes), applies the overrides in their order, then the classes of
-// oscillators, and validates the whole.
+// Validates every file of a user's by itself, merges it over its base (RFC 7386: objects are
+// merged, anything else is replaced, null removes), applies the overrides in their order, then the
+// classes of oscillators, and validates the whole, unless it is a built-in scenario as it stands.
 // Drops inherited published results whose pipelines or worlds are gone. Throws InputError.
 Resolved resolve(Source source, const std::vector<Override>& overrides) {
   Resolved resolved;
   for (PlacedDocument& layer : read_layers(std::move(source))) {
-    layer.root.erase("base");
-    layer.root.erase("$schema");
+    for (const std::string key : {"base", "$schema"}) {
+      layer.root.erase(key);
+      layer.places.erase('/' + key);
+    }
     merge("", layer.root, layer.places, resolved.document, *resolved.places);
     const Place& file = layer.places.nearest("");
     json document = resolved.document;
@@ -372,10 +380,12 @@ Resolved resolve(Source source, const std::vector<Override>& overrides) {
     apply_override(setting, ++level, resolved.document, *resolved.places);
   }
   apply_oscillator_classes(resolved.document, *resolved.places);
-  validate(resolved.document, Completeness::kResolved, *resolved.places);
+  if (!resolved.stages.back().is_builtin || !overrides.empty()) {
+    validate(resolved.document, Completeness::kResolved, *resolved.places);
+  }
   for (Stage& stage : resolved.stages) {
     const bool is_all = &stage == &resolved.stages.back() && overrides.empty();
-    stage.same_world = is_all || world_changes(stage.document, resolved.document).empty();
+    stage.same_world = is_all || same_world(stage.document, resolved.document);
   }
   drop_outlived_results(resolved);
   derive(resolved);
@@ -434,7 +444,10 @@ void derive(Resolved& resolved) {
   if (derivation.unpublished.empty()) derivation.unpublished = builtin.derivation.unpublished;
 }
 
-std::string text_of(const json& scenario) { return in_schema_order(scenario).dump(2) + '\n'; }
+Lazy<std::string> text_of(json scenario) {
+  return Lazy<std::string>(
+      [document = std::move(scenario)] { return in_schema_order(document).dump(2) + '\n'; });
+}
 
 // Replaces a summary that was written for another world.
 void renew_summary(Resolved& resolved, Scenario& scenario) {
@@ -451,7 +464,7 @@ Scenario load(Source source, const std::vector<Override>& overrides) {
   scenario.derivation = resolved.derivation;
   scenario.resolved_json = text_of(resolved.document);
   scenario.origin = resolved.places;
-  check(scenario);
+  check(scenario, resolved.document);
   renew_summary(resolved, scenario);
   return scenario;
 }

@@ -29,6 +29,7 @@
 
 #include "scenarios/choices.h"
 #include "scenarios/derivation.h"
+#include "scenarios/lazy.h"
 
 namespace simbench::scenarios {
 
@@ -292,6 +293,8 @@ struct CalibrationError {
   double delay_error_sigma_ms = 0;           // end of exposure to arrival, of all cameras
   double camera_delay_error_sigma_ms = 0;    // the same, of each camera
   double poll_asymmetry_error_sigma_ms = 0;  // request minus reply, of all cameras
+
+  bool operator==(const CalibrationError&) const = default;
 };
 
 struct Cameras {
@@ -497,7 +500,7 @@ struct Scenario {
   std::map<std::string, Published> published;  // by pipeline name
   std::optional<Studio> studio;                // only of scenarios that have one
   Derivation derivation;                       // from a built-in scenario
-  std::string resolved_json;                   // the fully resolved scenario, pretty-printed
+  Lazy<std::string> resolved_json;             // fully resolved, pretty-printed
   std::shared_ptr<const Origin> origin;
 
   // The host that camera j is plugged into.
@@ -508,6 +511,12 @@ struct Scenario {
   }
   // How many cameras each host has.
   std::vector<std::size_t> cameras_by_host() const;
+  // Whether each pipeline draws a load of its own, which its sends, messages and settings of clocks
+  // meet (sim/network/load.h).
+  bool draws_load() const {
+    return hosts.send_cost_session_exponential_ms > 0 ||
+           network.latency_session_exponential_ms > 0 || hosts.clock.set_cost_session_log_sigma > 0;
+  }
   // The scored stream; a loaded scenario has it.
   const Stream* scored_stream() const { return cameras.stream(evaluation.stream); }
   // The rate at which a stream delivers frames if none is lost.

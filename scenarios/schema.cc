@@ -52,6 +52,7 @@ std::vector<JsonSchema::Refusal> JsonSchema::validate(const nlohmann::json& docu
 namespace {
 
 using nlohmann::json;
+using nlohmann::ordered_json;
 
 // Makes every property of every object required, except those in the schema's "x-optional".
 void require_all(json& node) {
@@ -73,31 +74,21 @@ void require_all(json& node) {
 
 // Replaces each {"$ref": "#/definitions/NAME", ...} by that definition, and merges the members
 // beside the reference into it (the texts for this place).
-template <class Json>
-void expand(Json& node, const Json& definitions) {
+void expand(ordered_json& node, const ordered_json& definitions) {
   if (node.is_object() && node.contains("$ref")) {
     constexpr std::string_view kDefinitions = "#/definitions/";
-    const auto name = node["$ref"].template get<std::string>().substr(kDefinitions.size());
-    Json whole = definitions.at(name);
+    const auto name = node["$ref"].get<std::string>().substr(kDefinitions.size());
+    ordered_json whole = definitions.at(name);
     node.erase("$ref");
     whole.merge_patch(node);
     node = std::move(whole);
   }
   if (!node.is_structured()) return;
-  for (Json& child : node) expand(child, definitions);
-}
-
-template <class Json>
-Json expanded_schema() {
-  Json schema = Json::parse(schema_text());
-  const Json definitions = schema.at("definitions");
-  schema.erase("definitions");
-  expand(schema, definitions);
-  return schema;
+  for (ordered_json& child : node) expand(child, definitions);
 }
 
 json schema_for(Completeness completeness) {
-  auto schema = expanded_schema<json>();
+  json schema = ordered_schema();
   if (completeness == Completeness::kResolved) require_all(schema);
   return schema;
 }
@@ -202,10 +193,9 @@ std::vector<Problem> problems_of(const JsonSchema::Refusal& refusal, const json&
   return problems_at(pointer, *node, *value);
 }
 
-nlohmann::ordered_json in_order_of(const nlohmann::ordered_json* node, const json& value) {
+ordered_json in_order_of(const ordered_json* node, const json& value) {
   if (!value.is_structured()) return value;
-  auto result =
-      value.is_array() ? nlohmann::ordered_json::array() : nlohmann::ordered_json::object();
+  auto result = value.is_array() ? ordered_json::array() : ordered_json::object();
   const auto child = [node](const std::string& key) {
     return node == nullptr ? nullptr : schema_of_child(*node, key);
   };
@@ -245,12 +235,18 @@ void validate(const json& document, const JsonSchema& schema, const Places& plac
   throw InputError(places.describe(first->pointer) + ": " + first->text);
 }
 
-nlohmann::ordered_json in_schema_order(const json& document) {
+ordered_json in_schema_order(const json& document) {
   return in_order_of(&ordered_schema(), document);
 }
 
-const nlohmann::ordered_json& ordered_schema() {
-  static const auto schema = expanded_schema<nlohmann::ordered_json>();
+const ordered_json& ordered_schema() {
+  static const ordered_json schema = [] {
+    auto whole = ordered_json::parse(schema_text());
+    const ordered_json definitions = whole.at("definitions");
+    whole.erase("definitions");
+    expand(whole, definitions);
+    return whole;
+  }();
   return schema;
 }
 

@@ -51,7 +51,8 @@ void validate(const nlohmann::json& document, Completeness completeness, const P
 void validate(const nlohmann::json& document, const JsonSchema& schema, const Places& places);
 
 // What the schema cannot say: throws InputError about the first members that contradict each other.
-void check(const Scenario& scenario);
+// `document` is the scenario as JSON.
+void check(const Scenario& scenario, const nlohmann::json& document);
 
 // scenarios/schema.json with its references resolved and its properties in the order of the file.
 const nlohmann::ordered_json& ordered_schema();

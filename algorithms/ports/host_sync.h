@@ -36,6 +36,9 @@ class HostSync {
   virtual InitialClocks initial_clocks() const { return InitialClocks::kUnsynchronised; }
   // For a service: how long it runs before the capture. Nothing: it ends by itself.
   virtual std::optional<Nanoseconds> warm_up() const { return std::nullopt; }
+  // Whether it neither sends nor calls a clock, so that no load of a host or the network reaches
+  // it.
+  virtual bool is_idle() const { return false; }
   // What the run should say beside its numbers, a line each.
   virtual std::vector<std::string> notes() const { return {}; }
   virtual Task<void> run_master(Host& host, std::vector<PeerId> slaves) = 0;

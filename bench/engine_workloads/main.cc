@@ -30,12 +30,12 @@ struct Case {
   double target_ratio;
 };
 
-constexpr std::array<Case, 6> kCases = {{{"w1", 24, 2'000'000, 1.1},
-                                         {"w1", 1000, 2'000'000, 0.9},
-                                         {"w1", 100'000, 1'000'000, 0.8},
-                                         {"w2", 18, 300'000, 0.75},
-                                         {"w2", 1800, 3'000, 0.55},
-                                         {"w2", 18'000, 400, 0.5}}};
+constexpr std::array<Case, 6> kCases = {{{"w1", 24, 2'000'000, 1.0},
+                                         {"w1", 1000, 2'000'000, 0.75},
+                                         {"w1", 100'000, 1'000'000, 0.4},
+                                         {"w2", 18, 300'000, 0.65},
+                                         {"w2", 1800, 3'000, 0.5},
+                                         {"w2", 18'000, 400, 0.45}}};
 
 WorkloadResult run_simbench(const Case& c) {
   return c.workload[1] == '1' ? run_hold(c.size, static_cast<std::uint64_t>(c.length))

@@ -48,7 +48,7 @@ int describe(const DescribeOptions& options) {
   const scenarios::Scenario scenario =
       scenarios::load_scenario(options.scenario, overrides_of(options.sets));
   print_warnings(scenarios::warnings(scenario));
-  print_result(options.format == "json" ? scenario.resolved_json + "\n"
+  print_result(options.format == "json" ? scenario.resolved_json() + "\n"
                                         : parameters_text(scenario));
   return kOk;
 }

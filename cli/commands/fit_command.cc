@@ -58,7 +58,7 @@ evaluation::FitBase own_base(const std::string& folder, const std::string& scena
   const std::string& name = base.scenario.name;
   for (const scenarios::BuiltinScenario& builtin : scenarios::builtin_scenarios()) {
     if (builtin.name != name) continue;
-    if (scenarios::load_scenario(name).resolved_json != base.scenario.resolved_json) continue;
+    if (scenarios::load_scenario(name).resolved_json() != base.scenario.resolved_json()) continue;
     base.stated = name;
   }
   return base;

@@ -50,7 +50,7 @@ struct RecordOptions {
 RecordingDescription description_of(const scenarios::Scenario& scenario,
                                     const PlannedCaptures& planned, const std::string& rig_file) {
   RecordingDescription description = {
-      .backend = "sim", .scenario_json = scenario.resolved_json, .planned = planned};
+      .backend = "sim", .scenario_json = scenario.resolved_json(), .planned = planned};
   if (rig_file.empty()) return description;
   description.backend = "hardware";
   for (const hardware::RigHost& host : hardware::load_rig(rig_file).hosts) {

@@ -61,7 +61,8 @@ std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
 }
 
 std::optional<evaluation::Results> simulate(const scenarios::Scenario& scenario,
-                                            const evaluation::EvaluationOptions& options) {
+                                            evaluation::EvaluationOptions options) {
+  options.share_captures = true;
   return evaluate(
       scenario, [&] { return app::simulated_world(scenario); }, options);
 }

@@ -35,12 +35,6 @@ std::string script(CLI::App& app, const std::string& shell) {
   return fish_completion(table);
 }
 
-std::vector<std::string> names_of(CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CommandEntry& command : command_table(app).commands) names.push_back(command.name);
-  return names;
-}
-
 std::string page(const CommandTable& table, const std::string& name) {
   for (const CommandEntry& command : table.commands) {
     if (command.name == name) return manual_page(table, command);
@@ -70,12 +64,12 @@ void add_completion_command(CommandLine& line) {
 void add_manual_command(CommandLine& line) {
   auto options = std::make_shared<ManualOptions>();
   Command command(line, "manual", "Print the man page of simbench or of a command");
-  command.word("command", "COMMAND", options->command, names_of(line.parser),
+  command.word("command", "COMMAND", options->command, command_names(line.parser),
                "The command. Default: simbench itself");
   command.flag("--names", options->names, "Instead of a page, print the commands that have one");
   command.footer(kManualExamples);
   command.runs([options, &app = line.parser] {
-    print_result(options->names ? fmt::format("{}\n", fmt::join(names_of(app), "\n"))
+    print_result(options->names ? fmt::format("{}\n", fmt::join(command_names(app), "\n"))
                                 : page(command_table(app), options->command));
     return kOk;
   });

@@ -232,7 +232,10 @@ int validate_model(ValidateModelOptions options) {
   const auto simulated = watched<evaluation::Results>([&](const evaluation::Progress& progress) {
     return evaluation::evaluate(
         scenario, [&] { return app::simulated_world(scenario); },
-        {.seeds = options.seeds, .pipelines = pipelines_of(*study, options)}, progress);
+        {.seeds = options.seeds,
+         .pipelines = pipelines_of(*study, options),
+         .share_captures = true},
+        progress);
   });
   if (!simulated) return kInterrupted;
   print_result(model_gap_text(reports::model_gap_report(*study, *simulated), options.format));

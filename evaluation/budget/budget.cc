@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -61,56 +62,85 @@ class IdealDelivery final : public ForwardingSink {
   IdealDelivery(RecordingSink& sink, Nanoseconds quantum)
       : ForwardingSink(sink), quantum_(quantum) {}
   void on_frame(const FrameRecord& frame, const FrameTruth* truth) override {
-    if (truth == nullptr) {
+    on_frames({&frame, 1}, {truth, truth != nullptr ? std::size_t{1} : std::size_t{0}});
+  }
+  void on_frames(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths) override {
+    if (truths.size() != frames.size()) {
       throw std::runtime_error("an ideal delivery needs the truth, which only a simulation has");
     }
-    FrameRecord ideal = frame;
-    ideal.backend = floored(truth->own_host, quantum_);
-    ideal.arrival = ideal.backend;
-    ideal.arrival_steady = floored(truth->own_steady, quantum_);
-    ideal.exposure_us = 0;  // no part of it lies between the stamp and the arrival
-    sink().on_frame(ideal, truth);
+    ideal_.assign(frames.begin(), frames.end());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ideal_[i].backend = floored(truths[i].own_host, quantum_);
+      ideal_[i].arrival = ideal_[i].backend;
+      ideal_[i].arrival_steady = floored(truths[i].own_steady, quantum_);
+      ideal_[i].exposure_us = 0;  // no part of it lies between the stamp and the arrival
+    }
+    sink().on_frames(ideal_, truths);
   }
 
  private:
   Nanoseconds quantum_;
+  std::vector<FrameRecord> ideal_;  // scratch
 };
 
-class IdealDeliverySource final : public RecordingSource {
- public:
-  IdealDeliverySource(std::unique_ptr<RecordingSource> source, Nanoseconds quantum)
-      : source_(std::move(source)), quantum_(quantum) {}
-  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
-    IdealDelivery ideal(sink, quantum_);
-    return source_->record(request, ideal);
+// Whether an ideal delivery leaves the world as it is. Of what it takes away, the delays that a
+// user measured are used by the stages under test alone; polls and drawn errors are part of the
+// world.
+bool delivery_is_scoring_alone(const scenarios::Cameras& cameras) {
+  return !cameras.clock_poll.is_on() && cameras.calibration == scenarios::CalibrationError{};
+}
+
+// All sets of ideal stages, by world: those that change the pipeline or its scoring alone go
+// together, so that they share what they can of the world of the first.
+std::vector<std::vector<StageSet>> sets_by_world(const scenarios::Scenario& scenario) {
+  std::vector<Stage> within = {Stage::kGathering, Stage::kHostClock};
+  if (delivery_is_scoring_alone(scenario.cameras)) within.push_back(Stage::kUsbDelivery);
+  std::vector<std::vector<StageSet>> worlds;
+  for (std::size_t bits = 0; bits < StageSet::kSets; ++bits) {
+    const StageSet first(bits);
+    if (std::ranges::any_of(within, [&](Stage stage) { return first.has(stage); })) continue;
+    std::vector<StageSet>& sets = worlds.emplace_back(1, first);
+    for (const Stage stage : within) {
+      for (std::size_t i = 0, count = sets.size(); i < count; ++i) {
+        sets.push_back(sets[i].with(stage));
+      }
+    }
   }
+  return worlds;
+}
 
- private:
-  std::unique_ptr<RecordingSource> source_;
-  Nanoseconds quantum_;
-};
+// The pipeline of that set, in the world of any that goes with it.
+PipelineChoice choice_of(const scenarios::Scenario& world, StageSet ideal) {
+  PipelineChoice choice = choose_pipelines(world, {}).front();
+  choice.scores_offline = false;  // no part of a budget
+  if (ideal.has(Stage::kUsbDelivery)) {
+    const Nanoseconds quantum = from_ms(world.hosts.clock.arrival_quantum_ms);
+    choice.view = [quantum](RecordingSink& sink) {
+      return std::make_unique<IdealDelivery>(sink, quantum);
+    };
+  }
+  return choice;
+}
 
 // The scores by world, then by seed.
 struct WorldScores {
-  std::vector<std::vector<double>> set_amd_ms;
-  std::vector<std::vector<double>> amd_ms;
-  std::vector<std::vector<double>> set_absolute_error_ms;
-  std::vector<std::vector<double>> absolute_error_ms;
-  std::vector<std::vector<double>> physical_ms;
+  using BySeed = std::vector<std::vector<double>>;
+  BySeed set_amd_ms = BySeed(StageSet::kSets);
+  BySeed amd_ms = BySeed(StageSet::kSets);
+  BySeed set_absolute_error_ms = BySeed(StageSet::kSets);
+  BySeed absolute_error_ms = BySeed(StageSet::kSets);
+  BySeed physical_ms = BySeed(StageSet::kSets);
 };
 
-void add_world(const Row& row, WorldScores& scores) {
-  std::vector<double> set_amd_ms;
-  std::vector<double> set_absolute_error_ms;
+void set_scores(StageSet ideal, const Row& row, WorldScores& scores) {
+  const std::size_t world = ideal.bits();
   for (const SeedScore& seed : row.seeds) {
-    set_amd_ms.push_back(seed.set_amd_ms);
-    set_absolute_error_ms.push_back(seed.set_absolute_error_ms);
+    scores.set_amd_ms[world].push_back(seed.set_amd_ms);
+    scores.set_absolute_error_ms[world].push_back(seed.set_absolute_error_ms);
   }
-  scores.set_amd_ms.push_back(std::move(set_amd_ms));
-  scores.set_absolute_error_ms.push_back(std::move(set_absolute_error_ms));
-  scores.amd_ms.push_back(row.amd_ms.values);
-  scores.absolute_error_ms.push_back(row.absolute_error_ms.values);
-  scores.physical_ms.push_back(row.exposure_spread_ms.values);
+  scores.amd_ms[world] = row.amd_ms.values;
+  scores.absolute_error_ms[world] = row.absolute_error_ms.values;
+  scores.physical_ms[world] = row.exposure_spread_ms.values;
 }
 
 bool all_exist(const std::vector<std::vector<double>>& values) {
@@ -170,13 +200,6 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
   return world;
 }
 
-std::unique_ptr<RecordingSource> ideal_delivery(std::unique_ptr<RecordingSource> source,
-                                                const scenarios::Scenario& world, StageSet ideal) {
-  if (!ideal.has(Stage::kUsbDelivery)) return source;
-  return std::make_unique<IdealDeliverySource>(std::move(source),
-                                               from_ms(world.hosts.clock.arrival_quantum_ms));
-}
-
 std::vector<double> shapley_values(std::span<const double> worth) {
   SIMBENCH_ASSERT(std::has_single_bit(worth.size()), "a worth for each of 2^n coalitions");
   const auto players = static_cast<std::size_t>(std::countr_zero(worth.size()));
@@ -202,20 +225,24 @@ std::vector<double> shapley_values(std::span<const double> worth) {
 Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline,
                     const WorldFactory& make_world, const EvaluationOptions& options,
                     const Progress& progress) {
-  EvaluationOptions of_world = options;
-  of_world.pipelines.clear();
-  of_world.keep_pulses = false;
+  EvaluationOptions of_worlds = options;
+  of_worlds.keep_pulses = false;
+  of_worlds.share_captures = true;
   WorldScores scores;
-  for (std::size_t world = 0; world < StageSet::kSets; ++world) {
-    const StageSet ideal(world);
-    const scenarios::Scenario changed = ideal_scenario(scenario, pipeline, ideal);
-    const std::uint64_t done_before = world * options.seeds;
-    const Results results = evaluate(
-        changed, [&] { return ideal_delivery(make_world(changed), changed, ideal); }, of_world,
+  std::uint64_t done_before = 0;
+  for (const std::vector<StageSet>& sets : sets_by_world(scenario)) {
+    const scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
+    std::vector<PipelineChoice> choices;
+    for (const StageSet ideal : sets) {
+      choices.push_back(choice_of(ideal_scenario(scenario, pipeline, ideal), ideal));
+    }
+    const Results results = evaluate_choices(
+        world, std::move(choices), [&] { return make_world(world); }, of_worlds,
         [&](std::uint64_t done, std::uint64_t) {
           if (progress) progress(done_before + done, StageSet::kSets * options.seeds);
         });
-    add_world(results.rows.front(), scores);
+    for (std::size_t i = 0; i < sets.size(); ++i) set_scores(sets[i], results.rows[i], scores);
+    done_before += sets.size() * options.seeds;
   }
   Budget budget;
   budget.pipeline = pipeline.name;

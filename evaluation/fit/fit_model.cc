@@ -219,7 +219,7 @@ Json cameras_json(const RigFit& fit, const FitInput& input, const FitBase& base,
   cameras["drop_probability"] = rounded(fit.drop_share(), 1e-9);
   cameras["sensor_stamp_jitter_sigma_us"] = 0;
   if (base.mode_rate_hz) {
-    Json streams = Json::parse(base.scenario.resolved_json)["cameras"]["streams"];
+    Json streams = Json::parse(base.scenario.resolved_json())["cameras"]["streams"];
     for (Json& stream : streams) stream["mode_rate_hz"] = *base.mode_rate_hz;
     cameras["streams"] = streams;
   }
@@ -359,7 +359,7 @@ FitModel fit_model(const RigFit& fit, const FitInput& input, const FitBase& base
   model.evidence = fit_evidence(fit, input);
   model.not_identified = not_identified(fit, input, base.scenario);
   Tables tables;
-  Json document = base.stated.empty() ? Json::parse(base.scenario.resolved_json)
+  Json document = base.stated.empty() ? Json::parse(base.scenario.resolved_json())
                                       : Json{{"base", stated_base(base, path)}};
   document["name"] = name_from(path);
   document["summary"] = summary_of(model, fit, base);

@@ -10,11 +10,11 @@
 #include <optional>
 #include <utility>
 
+#include "evaluation/run/capture_groups.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/named_job.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/claims.h"
-#include "evaluation/scoring/pipeline_scorer.h"
 #include "evaluation/scoring/rows.h"
 #include "recording/counted.h"
 #include "scenarios/loader.h"
@@ -39,13 +39,16 @@ double drawn_asymmetry_ms(const scenarios::Network& network) {
 // The jobs of one evaluation and their results.
 class Evaluation {
  public:
-  Evaluation(const Scenario& scenario, const SourceFactory& make_source,
-             const EvaluationOptions& options, const Progress& progress)
+  Evaluation(const Scenario& scenario, std::vector<PipelineChoice> choices,
+             const SourceFactory& make_source, const EvaluationOptions& options,
+             const Progress& progress)
       : scenario_(scenario),
         make_source_(make_source),
         options_(options),
         progress_(progress),
-        choices_(choose_pipelines(scenario, options.pipelines)),
+        choices_(std::move(choices)),
+        groups_(options.share_captures ? capture_groups(scenario, choices_)
+                                       : single_captures(choices_)),
         scores_(choices_.size() * options.seeds) {}
 
   Results run() {
@@ -55,7 +58,8 @@ class Evaluation {
     };
     try {
       const bool finished = run_jobs_with_workers(
-          scores_.size(), {.threads = options_.jobs, .cancel = options_.cancel}, [this]() -> Job {
+          groups_.size() * options_.seeds, {.threads = options_.jobs, .cancel = options_.cancel},
+          [this]() -> Job {
             return [this, worker = std::make_shared<Worker>(*this)](std::size_t job) {
               run_job(job, *worker->source);
             };
@@ -72,12 +76,6 @@ class Evaluation {
   }
 
  private:
-  // Jobs of one seed are neighbours, so that the remaining time follows from the elapsed time.
-  std::size_t pipeline_of(std::size_t job) const { return job % choices_.size(); }
-  std::uint64_t seed_of(std::size_t job) const {
-    return options_.first_seed + job / choices_.size();
-  }
-
   // One thread's backend; its CPU time ends when that is gone.
   struct Worker {
     explicit Worker(Evaluation& all) : timer(all.cpu_time_), source(all.make_source_()) {}
@@ -86,25 +84,27 @@ class Evaluation {
     std::unique_ptr<RecordingSource> source;
   };
 
+  // A capture and the scores of its pipelines. Jobs of one seed are neighbours, so that the
+  // remaining time follows from the elapsed time.
   void run_job(std::size_t job, RecordingSource& source) {
-    const PipelineChoice& choice = choices_[pipeline_of(job)];
-    const std::uint64_t seed = seed_of(job);
-    run_named({scenario_.name, choice.pipeline.name, seed}, [&] {
-      try {
-        scores_[job] = score_of(choice, seed, source);
-      } catch (const RecordingFailed& failure) {
-        scores_[job] = missing_score(seed, failure.what());
-      }
-    });
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    if (progress_) progress_(done_, scores_.size());
-  }
-
-  SeedScore score_of(const PipelineChoice& choice, std::uint64_t seed,
-                     RecordingSource& source) const {
-    PipelineScorer scorer(scorer_setup(scenario_, choice));
-    return score_run(source, choice, seed, scorer, scorer);
+    const std::vector<std::size_t>& group = groups_[job % groups_.size()];
+    const std::uint64_t number = job / groups_.size();
+    const std::uint64_t seed = options_.first_seed + number;
+    SharedCapture capture(scenario_, choices_, group, seed);
+    capture.record(source);
+    for (std::size_t member = 0; member < group.size(); ++member) {
+      std::optional<SeedScore>& score = scores_[number * choices_.size() + group[member]];
+      run_named({scenario_.name, choices_[group[member]].pipeline.name, seed}, [&] {
+        try {
+          score = capture.score(member);
+        } catch (const RecordingFailed& failure) {
+          score = missing_score(seed, failure.what());
+        }
+      });
+      const std::lock_guard lock(mutex_);
+      ++done_;
+      if (progress_) progress_(done_, scores_.size());
+    }
   }
 
   // Returns the results of the finished jobs, and moves their scores there.
@@ -119,7 +119,9 @@ class Evaluation {
     const RowSetting setting = row_setting(scenario_);
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
       results.rows.push_back(row(pipeline, setting));
-      add_cost(results.rows.back(), results.performance);
+    }
+    for (const std::vector<std::size_t>& group : groups_) {
+      add_cost(results.rows[group.front()], results.performance);
     }
     add_genlock_warning(results);
     Performance& performance = results.performance;
@@ -132,8 +134,8 @@ class Evaluation {
 
   Row row(std::size_t pipeline, const RowSetting& setting) {
     std::vector<SeedScore> seeds;
-    for (std::size_t job = pipeline; job < scores_.size(); job += choices_.size()) {
-      if (scores_[job]) seeds.push_back(std::move(*scores_[job]));
+    for (std::size_t at = pipeline; at < scores_.size(); at += choices_.size()) {
+      if (scores_[at]) seeds.push_back(std::move(*scores_[at]));
     }
     Row row = make_row(choices_[pipeline].pipeline, std::move(seeds), setting);
     row.offline = is_offline(choices_[pipeline]);
@@ -179,8 +181,10 @@ class Evaluation {
   const EvaluationOptions& options_;
   const Progress& progress_;
   const std::vector<PipelineChoice> choices_;
-  std::vector<std::optional<SeedScore>> scores_;  // by job; each written by one worker
-  std::mutex mutex_;                              // guards what follows
+  const CaptureGroups groups_;
+  // By seed, then by choice; each written by one worker.
+  std::vector<std::optional<SeedScore>> scores_;
+  std::mutex mutex_;  // guards what follows
   std::size_t done_ = 0;
   CpuTime cpu_time_;
 };
@@ -189,7 +193,14 @@ class Evaluation {
 
 Results evaluate(const Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress) {
-  return Evaluation(scenario, make_source, options, progress).run();
+  return evaluate_choices(scenario, choose_pipelines(scenario, options.pipelines), make_source,
+                          options, progress);
+}
+
+Results evaluate_choices(const Scenario& scenario, std::vector<PipelineChoice> choices,
+                         const SourceFactory& make_source, const EvaluationOptions& options,
+                         const Progress& progress) {
+  return Evaluation(scenario, std::move(choices), make_source, options, progress).run();
 }
 
 void check_pipelines(const Scenario& scenario) { choose_pipelines(scenario, {}); }

@@ -1,7 +1,9 @@
 // Many seeds, many pipelines, all cores: from a scenario and a backend to Results.
 //
-// Each (pipeline, seed) is one job: one recording, streamed into a scorer. Jobs run on `jobs`
-// threads; results do not depend on their number. A job that throws ends the evaluation after the
+// Each (pipeline, seed) is one job: one recording, streamed into a scorer. In a simulated world
+// pipelines whose captures would be the same (evaluation/run/capture_groups.h) can share one, and
+// with it a job; Results::performance counts it once. Jobs run on `jobs` threads; results do not
+// depend on their number, nor on what is shared. A job that throws ends the evaluation after the
 // running jobs have finished; the error holds the finished jobs (EvaluationFailed). A capture that
 // could not be made (RecordingFailed) is no failure of the evaluation: its seed is missing from its
 // row, whose notes have the reason and the notes of other captures (RecordingCost::notes).
@@ -9,8 +11,8 @@
 // With one thread the source is called in order: every pipeline at the first seed, then at the
 // next.
 //
-//   Results r = evaluate(scenario, [&] { return make_simulation(scenario); }, {.seeds = 32},
-//                        nullptr);
+//   Results r = evaluate(scenario, [&] { return make_simulation(scenario); },
+//                        {.seeds = 32, .share_captures = true}, nullptr);
 #ifndef SIMBENCH_EVALUATION_RUN_EVALUATE_H_
 #define SIMBENCH_EVALUATION_RUN_EVALUATE_H_
 
@@ -22,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/run/pipeline_choice.h"
 #include "evaluation/scoring/results.h"
 #include "recording/recording.h"
 #include "scenarios/scenario.h"
@@ -34,6 +37,7 @@ struct EvaluationOptions {
   unsigned jobs = 0;                     // threads; 0: as many as there are cores
   std::vector<std::string> pipelines{};  // by name, in this order; empty: all of the scenario
   bool keep_pulses = false;              // keep SeedScore::pulses (for frames.csv)
+  bool share_captures = false;           // of pipelines that the source records alike
   // Polled before each job; once true, no further job begins. A signal handler may set it.
   const std::atomic<bool>* cancel = nullptr;
 };
@@ -69,6 +73,12 @@ class EvaluationCancelled final : public EvaluationFailed {
 // message; and what make_source throws.
 Results evaluate(const scenarios::Scenario& scenario, const SourceFactory& make_source,
                  const EvaluationOptions& options, const Progress& progress);
+
+// The same of pipelines already chosen, possibly changed (PipelineChoice::view), in place of those
+// that the options name.
+Results evaluate_choices(const scenarios::Scenario& scenario, std::vector<PipelineChoice> choices,
+                         const SourceFactory& make_source, const EvaluationOptions& options,
+                         const Progress& progress);
 
 // Checks that every pipeline of the scenario names known algorithms with allowed parameters.
 void check_pipelines(const scenarios::Scenario& scenario);

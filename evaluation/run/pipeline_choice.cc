@@ -249,6 +249,8 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
                            .device_time_parameters = parameters_of(scenario, device_time.info),
                            .gathering = gathering,
                            .gathering_parameters = parameters_of(scenario, gathering.info),
+                           .calibrated_delays = calibrated_delays(scenario, variants),
+                           .scores_offline = needs_offline_amd(pipeline.name),
                            .problem = problem};
   check_can_be_made(scenario, choice);
   return choice;
@@ -296,15 +298,14 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.make) {
-    setup.make_estimator = [make = choice.device_time.make,
-                            parameters = choice.device_time_parameters,
-                            variants = choice.device_time_variants,
-                            delays = calibrated_delays(scenario, choice.device_time_variants)] {
-      return make_variant(variants, make(parameters), delays);
-    };
+    setup.make_estimator =
+        [make = choice.device_time.make, parameters = choice.device_time_parameters,
+         variants = choice.device_time_variants, delays = choice.calibrated_delays] {
+          return make_variant(variants, make(parameters), delays);
+        };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
-  if (needs_offline_amd(choice.pipeline.name) && offline != nullptr &&
+  if (choice.scores_offline && offline != nullptr &&
       scenario.timeline.frames * scenario.cameras.count <= kMostFramesKept) {
     setup.make_second_estimator = [make = offline->make,
                                    parameters = parameters_of(scenario, offline->info)] {
@@ -327,9 +328,7 @@ RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, 
   return cost;
 }
 
-SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
-                    PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer) {
-  RecordingCost cost = record_run(source, choice, seed, sink, observer);
+SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64_t seed) {
   SeedScore score = scorer.finish();
   score.seed = seed;
   if (cost.messages && cost.simulated_seconds > 0) {
@@ -337,6 +336,11 @@ SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::
   }
   score.cost = std::move(cost);
   return score;
+}
+
+SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
+                    PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer) {
+  return captured_score(scorer, record_run(source, choice, seed, sink, observer), seed);
 }
 
 }  // namespace simbench::evaluation

@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,12 @@ struct PipelineChoice {
   Parameters device_time_parameters;
   GatheringEntry gathering;
   Parameters gathering_parameters;
+  CalibratedDelays calibrated_delays{};
+  bool scores_offline = false;  // SeedScore::offline_amd_ms, for claim C7
   std::string problem{};  // why its programs cannot run, one line
+  // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
+  // Empty: all as it is.
+  std::function<std::unique_ptr<RecordingSink>(RecordingSink& sink)> view{};
 };
 
 // The host synchronisation that a pipeline's programs are, and why they cannot run here, one line;
@@ -70,7 +76,10 @@ ScorerSetup scorer_setup(const scenarios::Scenario& scenario, const PipelineChoi
 RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                          RecordingSink& sink, WorldObserver* observer = nullptr);
 
-// The same, and its score. `sink` passes the capture on to the scorer, or is the scorer.
+// The score of a capture that has gone to the scorer; call once.
+SeedScore captured_score(PipelineScorer& scorer, RecordingCost cost, std::uint64_t seed);
+
+// Records one and returns its score. `sink` passes the capture on to the scorer, or is the scorer.
 SeedScore score_run(RecordingSource& source, const PipelineChoice& choice, std::uint64_t seed,
                     PipelineScorer& scorer, RecordingSink& sink, WorldObserver* observer = nullptr);
 

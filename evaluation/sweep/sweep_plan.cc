@@ -296,7 +296,7 @@ SweepPlan make_plan(const SweepRequest& request) {
   const Scenario scenario = scenarios::load_scenario(request.scenario, request.overrides);
   plan.scenario = scenario.name;
   plan.derivation = scenario.derivation;
-  plan.scenario_json = scenario.resolved_json;
+  plan.scenario_json = scenario.resolved_json();
   ClockPipelines chosen = pipelines_of(scenario, request, request.pipelines);
   plan.pipelines = std::move(chosen.names);
   plan.left_out = std::move(chosen.left_out);

@@ -297,7 +297,7 @@ Task<void> RigSession::greet(std::size_t host) {
 
 Task<void> RigSession::begin(std::size_t host) {
   co_await hosts_[host].link.ask(
-      "begin", session_terms(id_, scenario_.resolved_json, request_.pipeline), kConductorSilence);
+      "begin", session_terms(id_, scenario_.resolved_json(), request_.pipeline), kConductorSilence);
   hosts_[host].begun = true;
   asio::co_spawn(context_, fetch(host), [this, host](const std::exception_ptr& failure) {
     if (failure) give_up(host, message_of(failure));

@@ -107,7 +107,7 @@ ExperimentRig::ExperimentRig(ExperimentSettings settings) : settings_(std::move(
   place(hosts);
   SecretKey::create_file(folder_.file("rig.key"));
   key_ = SecretKey::from_file(folder_.file("rig.key"));
-  write_text(folder_.file("scenario.json"), settings_.scenario->resolved_json);
+  write_text(folder_.file("scenario.json"), settings_.scenario->resolved_json());
   write_text(folder_.file("rig.json"), rig_text(std::nullopt));
   conductor_ = load_rig(folder_.file("rig.json"));
   std::vector<std::string> files;

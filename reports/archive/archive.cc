@@ -82,7 +82,7 @@ void write_archive(OutputFolder& output, const evaluation::Results& results,
   Json more = {{"seeds", {{"first", results.first_seed}, {"count", results.seed_count}}},
                {"pipelines", Json::array()}};
   state_derivation(results.derivation, more);
-  more["scenario"] = Json::parse(scenario.resolved_json);
+  more["scenario"] = Json::parse(scenario.resolved_json());
   for (const evaluation::Row& row : results.rows) more["pipelines"].push_back(row.pipeline);
   output.file("manifest.json") << manifest_json(provenance, more);
   output.file("results.json") << json(results);

@@ -263,7 +263,7 @@ void write_clock_archive(OutputFolder& output, const ClockResults& results,
                {"from_s", of.clock_period.from_s},
                {"pipelines", Json::array()}};
   state_derivation(of.derivation, more);
-  more["scenario"] = Json::parse(scenario.resolved_json);
+  more["scenario"] = Json::parse(scenario.resolved_json());
   for (const Row& row : of.rows) more["pipelines"].push_back(row.pipeline);
   output.file("manifest.json") << manifest_json(provenance, more);
   output.file("results.json") << clock_json(results);

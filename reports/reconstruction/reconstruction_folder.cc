@@ -77,11 +77,11 @@ std::string pictures_html(const ReconstructionPage& page) {
 std::string reproduce_html(const ReconstructionPage& page) {
   std::string text =
       fmt::format("<dl>\n{}</dl>\n", html_command("All of this", simbench_line(page.command)));
-  if (!page.results.scenario.resolved_json.empty()) {
+  if (!page.results.scenario.resolved_json().empty()) {
     text += fmt::format(
         "<details><summary>The resolved scenario</summary>\n<pre class=\"scroll\" "
         "tabindex=\"0\">{}</pre>\n</details>\n",
-        html_escaped(page.results.scenario.resolved_json));
+        html_escaped(page.results.scenario.resolved_json()));
   }
   return fmt::format("<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}</section>\n",
                      text);
@@ -168,7 +168,7 @@ std::string ReconstructionFolder::write(const ReconstructionResults& results,
   const Figure figure = reconstruction_figure(results);
   std::string not_drawn;
   output_.file("manifest.json") << manifest_json(provenance, {{"kind", "reconstruction"}});
-  output_.file("scenario.json") << results.scenario.resolved_json;
+  output_.file("scenario.json") << results.scenario.resolved_json();
   {
     const FilePage page;
     output_.file("table.txt") << plain(reconstruction_document(results));

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "algorithms/ports/time.h"
@@ -41,20 +42,10 @@ class GridWalk {
   // that grid point to the next.
   template <class Step>
   double phase_ns(std::int64_t since_zero_ns, const Step& step) const {
-    const std::int64_t index = floor_div(since_zero_ns, step_ns_);
+    if (!cell_.has(since_zero_ns, step_ns_)) look_up(floor_div(since_zero_ns, step_ns_), step);
     const double part =
-        static_cast<double>(since_zero_ns - index * step_ns_) / static_cast<double>(step_ns_);
-    const bool forward = index >= 0;
-    Side& side = forward ? forward_ : backward_;
-    // The grid points around the query, by their distance from zero: `inner` and the next.
-    const auto inner = static_cast<std::size_t>(forward ? index : -index - 1);
-    std::size_t at = inner - side.first;
-    // Also where `inner` lies before the first one kept.
-    if (at >= side.phases_ns.size() - 1) at = reach(side, inner, forward, step);
-    const double inner_ns = side.phases_ns[at];
-    const double outer_ns = side.phases_ns[at + 1];
-    return forward ? inner_ns + part * (outer_ns - inner_ns)
-                   : outer_ns + part * (inner_ns - outer_ns);
+        static_cast<double>(since_zero_ns - cell_.begin_ns) / static_cast<double>(step_ns_);
+    return cell_.phase_ns + part * cell_.growth_ns;
   }
 
  private:
@@ -74,6 +65,34 @@ class GridWalk {
     State state{};             // at the last of these points
     std::vector<Point> saved;  // every kBlock-th, as far as they were sampled
   };
+
+  // The step of the grid that the last query met: most meet it again.
+  struct Cell {
+    bool has(std::int64_t t_ns, std::int64_t step_ns) const {
+      return static_cast<std::uint64_t>(t_ns) - static_cast<std::uint64_t>(begin_ns) <
+             static_cast<std::uint64_t>(step_ns);
+    }
+    std::int64_t begin_ns = std::numeric_limits<std::int64_t>::max();
+    double phase_ns = 0;  // at its beginning
+    double growth_ns = 0;
+  };
+
+  // Makes the step that begins at grid point `index` the cell at hand.
+  template <class Step>
+  void look_up(std::int64_t index, const Step& step) const {
+    const bool forward = index >= 0;
+    Side& side = forward ? forward_ : backward_;
+    // The grid points around the step, by their distance from zero: `inner` and the next.
+    const auto inner = static_cast<std::size_t>(forward ? index : -index - 1);
+    std::size_t at = inner - side.first;
+    // Also where `inner` lies before the first one kept.
+    if (at >= side.phases_ns.size() - 1) at = reach(side, inner, forward, step);
+    const double inner_ns = side.phases_ns[at];
+    const double outer_ns = side.phases_ns[at + 1];
+    cell_ = {.begin_ns = index * step_ns_,
+             .phase_ns = forward ? inner_ns : outer_ns,
+             .growth_ns = forward ? outer_ns - inner_ns : inner_ns - outer_ns};
+  }
 
   // Samples the points at `inner` and the next; returns the place of `inner`. Out of the hot path.
   template <class Step>
@@ -107,7 +126,8 @@ class GridWalk {
   }
 
   std::int64_t step_ns_ = 0;
-  mutable Side forward_;  // a cache: values are functions of the index alone
+  mutable Cell cell_;  // caches: values are functions of the index alone
+  mutable Side forward_;
   mutable Side backward_;
 };
 

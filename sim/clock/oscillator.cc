@@ -19,7 +19,7 @@ constexpr double kCoarsestStepMs = 100.0;
 
 FlickerNoise::FlickerNoise(double floor_ppb, double step_ms, std::uint64_t run_seed,
                            std::string_view component)
-    : run_seed_(run_seed), key_(std::string(component) + ": flicker") {
+    : steps_(run_seed, ComponentKey(std::string(component) + ": flicker")) {
   const std::int64_t step_ns = from_ms(std::min(step_ms, kCoarsestStepMs)).count();
   const double step_s = static_cast<double>(step_ns) * 1e-9;
   const double variance = floor_ppb * floor_ppb;
@@ -53,7 +53,7 @@ double FlickerNoise::phase_ns(std::int64_t since_zero_ns) const {
 
 // The processes are reversible in time, so a step is the same forwards and backwards.
 double FlickerNoise::step(Frequencies& frequencies, std::int64_t index, double /*sign*/) const {
-  RandomStream draw(run_seed_, key_, static_cast<std::uint64_t>(index));
+  RandomStream draw = steps_.of(static_cast<std::uint64_t>(index)).stream(0);
   double change_ns = draw.normal(phase_sigma_ns_);
   for (std::size_t i = 0; i < kProcesses; ++i) {
     const Transition& transition = transitions_[i];
@@ -75,8 +75,7 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
                                  std::string_view component, TrueTime switched_on)
     : skew_(RandomStream(run_seed, std::string(component) + ": skew")
                 .normal(parameters.skew_sigma_ppm * 1e-6)),
-      run_seed_(run_seed),
-      wander_key_(std::string(component) + ": wander"),
+      wander_(run_seed, ComponentKey(std::string(component) + ": wander")),
       ramp_per_s_(parameters.ramp_ppm_per_hour * kPerPpmPerHour),
       heating_(parameters.self_heating_ppm * 1e-6),
       heating_time_constant_s_(parameters.self_heating_time_constant_s),
@@ -160,7 +159,7 @@ double OscillatorModel::ramp_ns(double since_zero_s) const {
 }
 
 double OscillatorModel::step(double& frequency_ppb, std::int64_t index, double sign) const {
-  RandomStream draw(run_seed_, wander_key_, static_cast<std::uint64_t>(index));
+  RandomStream draw = wander_.of(static_cast<std::uint64_t>(index)).stream(0);
   const double before_ppb = frequency_ppb;
   const double free_ppb = before_ppb + sign * draw.normal(walk_sigma_ppb_);
   frequency_ppb = std::clamp(free_ppb, -kMostWalkPpb, kMostWalkPpb);

@@ -85,8 +85,7 @@ class FlickerNoise {
 
   std::array<Transition, kProcesses> transitions_{};
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
-  std::uint64_t run_seed_;
-  ComponentKey key_;
+  KeyedStreams steps_;
   GridWalk<Frequencies> walk_;
 };
 
@@ -133,8 +132,7 @@ class OscillatorModel {
   double step_s_ = 0;
   double walk_sigma_ppb_ = 0;  // of the frequency's change in one step
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
-  std::uint64_t run_seed_ = 0;
-  ComponentKey wander_key_{""};
+  KeyedStreams wander_{0, ComponentKey("")};
   GridWalk<double> walk_;  // the state is the walking frequency in ppb
   // The first step of the grid at which the walk was cut; a cache, as the walk is.
   mutable std::int64_t first_cut_ = std::numeric_limits<std::int64_t>::max();

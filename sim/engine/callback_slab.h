@@ -13,11 +13,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "algorithms/ports/assert.h"
 
@@ -43,7 +44,7 @@ class CallbackSlab {
                   "the capture is larger than 48 bytes: capture a pointer to it");
     static_assert(std::is_invocable_v<Callback>, "a callback is called without arguments");
     const std::uint32_t index = free_slot();
-    Slot& slot = slots_[index];
+    Slot& slot = at(index);
     ::new (static_cast<void*>(slot.storage)) Callback(std::forward<F>(callback));
     // Only now that construction cannot fail any more is the slot taken.
     first_free_ = slot.next_free;
@@ -54,23 +55,23 @@ class CallbackSlab {
 
   // Runs the callable in the slot, then destroys it and frees the slot.
   void run(std::uint32_t index) {
-    Slot& slot = slots_[index];
+    Slot& slot = at(index);
     const Release release{*this, slot, index};
     begin(slot)(slot.storage, true);
   }
 
   // Destroys the callable in the slot without running it. The slot stays taken until release().
   void destroy(std::uint32_t index) {
-    Slot& slot = slots_[index];
+    Slot& slot = at(index);
     begin(slot)(slot.storage, false);
   }
-  void release(std::uint32_t index) { free(slots_[index], index); }
+  void release(std::uint32_t index) { free(at(index), index); }
 
   // False once the callable runs, has run or was destroyed.
-  bool holds(std::uint32_t index) const { return slots_[index].operate != nullptr; }
+  bool holds(std::uint32_t index) const { return at(index).operate != nullptr; }
   // Changes whenever the slot is used for another callable.
-  std::uint32_t generation(std::uint32_t index) const { return slots_[index].generation; }
-  bool exists(std::uint32_t index) const { return index < slots_.size(); }
+  std::uint32_t generation(std::uint32_t index) const { return at(index).generation; }
+  bool exists(std::uint32_t index) const { return index < size_; }
   // Callables waiting to be run.
   std::size_t live() const { return live_; }
 
@@ -79,6 +80,7 @@ class CallbackSlab {
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kChunk = 64;
   using Operate = void (*)(std::byte* storage, bool run);
 
   struct Slot {
@@ -105,6 +107,8 @@ class CallbackSlab {
     if (run) std::move(destroy.callback)();
   }
 
+  Slot& at(std::uint32_t index) const { return chunks_[index / kChunk][index % kChunk]; }
+
   Operate begin(Slot& slot) {
     --live_;
     return std::exchange(slot.operate, nullptr);
@@ -112,9 +116,9 @@ class CallbackSlab {
 
   std::uint32_t free_slot() {
     if (first_free_ == kNone) {
-      SIMBENCH_ASSERT(slots_.size() < kNone, "more callbacks than the slab can number");
-      slots_.emplace_back();
-      first_free_ = static_cast<std::uint32_t>(slots_.size() - 1);
+      SIMBENCH_ASSERT(size_ < kNone, "more callbacks than the slab can number");
+      if (size_ == chunks_.size() * kChunk) chunks_.push_back(std::make_unique<Slot[]>(kChunk));
+      first_free_ = size_++;
     }
     return first_free_;
   }
@@ -124,7 +128,8 @@ class CallbackSlab {
     slot.next_free = std::exchange(first_free_, index);
   }
 
-  std::deque<Slot> slots_;
+  std::vector<std::unique_ptr<Slot[]>> chunks_;
+  std::uint32_t size_ = 0;  // slots that were ever taken
   std::uint32_t first_free_ = kNone;
   std::size_t live_ = 0;
 };

@@ -31,7 +31,7 @@ class NormalProcess {
  public:
   // `kind` and `number` tell the processes of a run apart; `step` is positive.
   NormalProcess(std::uint64_t run_seed, ComponentKey kind, std::uint64_t number, Nanoseconds step)
-      : run_seed_(run_seed), kind_(kind), number_(number), step_ns_(step.count()) {
+      : values_(KeyedStreams(run_seed, kind).of(number)), step_ns_(step.count()) {
     SIMBENCH_ASSERT(step_ns_ > 0, "a process needs a grid");
   }
 
@@ -52,12 +52,10 @@ class NormalProcess {
 
  private:
   double value(std::int64_t index) const {
-    return RandomStream(run_seed_, kind_, number_, static_cast<std::uint64_t>(index)).normal(1);
+    return values_.stream(static_cast<std::uint64_t>(index)).normal(1);
   }
 
-  std::uint64_t run_seed_;
-  ComponentKey kind_;
-  std::uint64_t number_;
+  KeyedStreams values_;
   std::int64_t step_ns_;
   std::int64_t index_ = 0;  // of the grid point before the last reading
   double begin_ = 0;        // the values there and at the next

@@ -19,6 +19,9 @@
 //
 //   static constexpr ComponentKey kDelay("link delay");
 //   RandomStream draw(run_seed, kDelay, link_and_direction, message_index);
+//
+//   const KeyedStreams delays = KeyedStreams(run_seed, kDelay).of(link_and_direction);
+//   RandomStream same = delays.stream(message_index);  // half of the way is gone already
 #ifndef SIMBENCH_SIM_ENGINE_RANDOM_H_
 #define SIMBENCH_SIM_ENGINE_RANDOM_H_
 
@@ -88,6 +91,29 @@ class ComponentKey {
   std::uint64_t hash_ = 0xCBF29CE484222325;
 };
 
+class RandomStream;
+
+// The streams of a component's events, as far as their keys are known already.
+class KeyedStreams {
+ public:
+  constexpr KeyedStreams(std::uint64_t run_seed, ComponentKey component)
+      : hash_(absorb(SplitMix64(run_seed)(), component.hash())) {}
+
+  // Those whose next key is `a`.
+  constexpr KeyedStreams of(std::uint64_t a) const { return KeyedStreams(absorb(hash_, a)); }
+  // The one whose last key is `b`.
+  RandomStream stream(std::uint64_t b) const;
+
+ private:
+  friend class RandomStream;
+  constexpr explicit KeyedStreams(std::uint64_t hash) : hash_(hash) {}
+  static constexpr std::uint64_t absorb(std::uint64_t hash, std::uint64_t value) {
+    return SplitMix64(hash ^ SplitMix64::mix(value + 0x9E3779B97F4A7C15))();
+  }
+
+  std::uint64_t hash_;
+};
+
 class RandomStream {
  public:
   using result_type = std::uint64_t;
@@ -96,7 +122,7 @@ class RandomStream {
   RandomStream(std::uint64_t run_seed, std::string_view component)
       : RandomStream(run_seed, ComponentKey(component)) {}
   RandomStream(std::uint64_t run_seed, ComponentKey component)
-      : generator_(expand(root_of(run_seed, component))) {}
+      : RandomStream(KeyedStreams(run_seed, component)) {}
 
   // The stream of one event of a component, e.g. (link and direction, message index).
   // Differs from the component's own stream for every a and b.
@@ -104,7 +130,7 @@ class RandomStream {
                std::uint64_t b = 0)
       : RandomStream(run_seed, ComponentKey(component), a, b) {}
   RandomStream(std::uint64_t run_seed, ComponentKey component, std::uint64_t a, std::uint64_t b = 0)
-      : generator_(expand(absorb(absorb(root_of(run_seed, component), a), b))) {}
+      : RandomStream(KeyedStreams(run_seed, component).of(a).of(b)) {}
 
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
@@ -133,12 +159,8 @@ class RandomStream {
   std::uint64_t below(std::uint64_t n);
 
  private:
-  static std::uint64_t root_of(std::uint64_t run_seed, ComponentKey component) {
-    return absorb(SplitMix64(run_seed)(), component.hash());
-  }
-  static std::uint64_t absorb(std::uint64_t hash, std::uint64_t value) {
-    return SplitMix64(hash ^ SplitMix64::mix(value + 0x9E3779B97F4A7C15))();
-  }
+  friend class KeyedStreams;
+  explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
   static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
     SplitMix64 words(root);
     Xoshiro256PlusPlus::State state{};
@@ -148,6 +170,8 @@ class RandomStream {
 
   Xoshiro256PlusPlus generator_;
 };
+
+inline RandomStream KeyedStreams::stream(std::uint64_t b) const { return RandomStream(of(b)); }
 
 }  // namespace simbench::sim
 

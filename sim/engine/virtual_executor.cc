@@ -3,56 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/asio/associated_cancellation_slot.hpp>
-#include <boost/asio/async_result.hpp>
-#include <boost/asio/error.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <utility>
 
 namespace simbench::sim {
-namespace {
-
-namespace asio = boost::asio;
-using boost::system::error_code;
-
-// A wait and the handler that resumes its coroutine, called with (error) or (error, notified).
-template <class Handler>
-class HandlerWait : public PendingWait {
- public:
-  HandlerWait(VirtualContext& context, std::string_view label, std::optional<TrueTime> deadline,
-              Handler handler)
-      : PendingWait(context, label, deadline),
-        handler_(std::move(handler)),
-        cancellation_(asio::get_associated_cancellation_slot(handler_)) {
-    if (cancellation_.is_connected()) {
-      cancellation_.assign([this](asio::cancellation_type) { finish(Outcome::kAborted); });
-    }
-  }
-  ~HandlerWait() override { cancellation_.clear(); }
-
- private:
-  void complete(Outcome outcome) override {
-    Handler handler = std::move(handler_);
-    delete this;
-    const error_code error =
-        outcome == Outcome::kAborted ? error_code(asio::error::operation_aborted) : error_code();
-    if constexpr (std::is_invocable_v<Handler, error_code, bool>) {
-      std::move(handler)(error, outcome == Outcome::kNotified);
-    } else {
-      std::move(handler)(error);
-    }
-  }
-
-  Handler handler_;
-  asio::cancellation_slot cancellation_;
-};
-
-template <class Handler>
-PendingWait& start_wait(VirtualContext& context, std::string_view label,
-                        std::optional<TrueTime> deadline, Handler handler) {
-  return *new HandlerWait<Handler>(context, label, deadline, std::move(handler));
-}
-
-}  // namespace
 
 PendingWait::PendingWait(VirtualContext& context, std::string_view label,
                          std::optional<TrueTime> deadline)
@@ -96,7 +49,7 @@ VirtualContext::~VirtualContext() {
   engine_.set_wait_reporter({});
   // Destroying a wait makes Asio post the destruction of its coroutine, which may end other waits.
   while (!waits_.empty() || posted_.live() > 0) {
-    if (!waits_.empty()) delete &waits_.front();
+    if (!waits_.empty()) waits_.front().dispose();
     posted_.clear();
   }
 }
@@ -109,25 +62,11 @@ std::vector<std::string> VirtualContext::waiting() const {
   return lines;
 }
 
-asio::awaitable<void> sleep_until(VirtualContext& context, TrueTime at, std::string_view label) {
-  return asio::async_initiate<const asio::use_awaitable_t<>, void(error_code)>(
-      [&context, at, label](auto handler) { start_wait(context, label, at, std::move(handler)); },
-      asio::use_awaitable);
-}
-
 WaitPoint::WaitPoint(VirtualContext& context, std::string label)
     : context_(context), label_(std::move(label)) {}
 
 WaitPoint::~WaitPoint() {
   if (wait_ != nullptr) wait_->finish(PendingWait::Outcome::kAborted);
-}
-
-asio::awaitable<bool> WaitPoint::wait(std::optional<TrueTime> deadline) {
-  return asio::async_initiate<const asio::use_awaitable_t<>, void(error_code, bool)>(
-      [this, deadline](auto handler) {
-        begin(start_wait(context_, label_, deadline, std::move(handler)));
-      },
-      asio::use_awaitable);
 }
 
 void WaitPoint::begin(PendingWait& wait) {

@@ -15,7 +15,10 @@
 // The context must be destroyed before its engine, and the engine must not run after that.
 // Destroying it destroys all coroutines that still wait. One context per engine.
 //
-// Cost: at most two allocations per await (the frame of the await and the state of the wait).
+// Waits are Asio's asynchronous operations: co_await them, or call them with a completion token,
+// as awaitable_operators need it: `point.wait()(use_awaitable) || sleep(use_awaitable)`.
+//
+// Cost: no allocation per await in steady state.
 //
 //   boost::asio::awaitable<void> blink(VirtualContext& context, Lamp& lamp) {
 //     for (;;) {
@@ -32,13 +35,18 @@
 #define SIMBENCH_SIM_ENGINE_VIRTUAL_EXECUTOR_H_
 
 #include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/associated_cancellation_slot.hpp>
+#include <boost/asio/async_result.hpp>
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/execution.hpp>
 #include <boost/asio/execution_context.hpp>
 #include <boost/intrusive/list.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -77,7 +85,8 @@ class VirtualExecutor {
   VirtualContext* context_;
 };
 
-// One suspended co_await. Owned by its context from its start until its handler is called.
+// One suspended co_await. It lies in its context's memory from its start until its handler is
+// called.
 class PendingWait : public boost::intrusive::list_base_hook<> {
  public:
   enum class Outcome { kNotified, kDeadline, kAborted };
@@ -94,10 +103,15 @@ class PendingWait : public boost::intrusive::list_base_hook<> {
   std::string describe() const;
 
  protected:
-  // Destroys the wait, then calls its handler.
+  // Disposes of the wait, then calls its handler.
   virtual void complete(Outcome outcome) = 0;
+  // Destroys the wait and gives its memory back.
+  virtual void dispose() = 0;
+
+  VirtualContext& context() const { return context_; }
 
  private:
+  friend class VirtualContext;
   friend class WaitPoint;
 
   VirtualContext& context_;
@@ -141,13 +155,79 @@ class VirtualContext : public boost::asio::execution_context, private EventHandl
 
  private:
   friend class PendingWait;
+  template <class Handler>
+  friend class HandlerWait;
+
+  // Of a wait: two pointers are left for its handler.
+  struct WaitMemory {
+    alignas(std::max_align_t) std::byte bytes[128];
+  };
 
   void handle(const Event& event) override { posted_.run(event.subject); }
+  WaitMemory& take_memory() {
+    if (free_memory_.empty()) return memory_.emplace_back();
+    WaitMemory* const memory = free_memory_.back();
+    free_memory_.pop_back();
+    return *memory;
+  }
 
   Engine& engine_;
   HandlerId handler_id_;
+  std::deque<WaitMemory> memory_;
+  std::vector<WaitMemory*> free_memory_;
   boost::intrusive::list<PendingWait> waits_;
   CallbackSlab posted_;
+};
+
+// A wait and the handler that resumes its coroutine, called with (error) or (error, notified).
+template <class Handler>
+class HandlerWait final : public PendingWait {
+ public:
+  static PendingWait& start(VirtualContext& context, std::string_view label,
+                            std::optional<TrueTime> deadline, Handler handler) {
+    static_assert(sizeof(HandlerWait) <= sizeof(VirtualContext::WaitMemory),
+                  "the handler is larger than its place");
+    VirtualContext::WaitMemory& memory = context.take_memory();
+    return *::new (static_cast<void*>(memory.bytes))
+               HandlerWait(memory, context, label, deadline, std::move(handler));
+  }
+
+ private:
+  HandlerWait(VirtualContext::WaitMemory& memory, VirtualContext& context, std::string_view label,
+              std::optional<TrueTime> deadline, Handler handler)
+      : PendingWait(context, label, deadline),
+        memory_(memory),
+        handler_(std::move(handler)),
+        cancellation_(boost::asio::get_associated_cancellation_slot(handler_)) {
+    if (cancellation_.is_connected()) {
+      cancellation_.assign([this](boost::asio::cancellation_type) { finish(Outcome::kAborted); });
+    }
+  }
+  ~HandlerWait() override { cancellation_.clear(); }
+
+  void complete(Outcome outcome) override {
+    Handler handler = std::move(handler_);
+    dispose();
+    using boost::system::error_code;
+    const error_code error = outcome == Outcome::kAborted
+                                 ? error_code(boost::asio::error::operation_aborted)
+                                 : error_code();
+    if constexpr (std::is_invocable_v<Handler, error_code, bool>) {
+      std::move(handler)(error, outcome == Outcome::kNotified);
+    } else {
+      std::move(handler)(error);
+    }
+  }
+  void dispose() override {
+    std::vector<VirtualContext::WaitMemory*>& free = context().free_memory_;
+    VirtualContext::WaitMemory& memory = memory_;
+    this->~HandlerWait();
+    free.push_back(&memory);
+  }
+
+  VirtualContext::WaitMemory& memory_;
+  Handler handler_;
+  boost::asio::cancellation_slot cancellation_;
 };
 
 template <class Work>
@@ -155,10 +235,33 @@ void VirtualExecutor::execute(Work&& work) const {
   context_->post(std::forward<Work>(work));
 }
 
+// The operation of sleep_until().
+class [[nodiscard]] Sleep {
+ public:
+  Sleep(VirtualContext& context, TrueTime at, std::string_view label)
+      : context_(&context), at_(at), label_(label) {}
+
+  template <boost::asio::completion_token_for<void(boost::system::error_code)> Token>
+  auto operator()(Token&& token) const {
+    return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
+        [sleep = *this](auto handler) {
+          HandlerWait<decltype(handler)>::start(*sleep.context_, sleep.label_, sleep.at_,
+                                                std::move(handler));
+        },
+        token);
+  }
+
+ private:
+  VirtualContext* context_;
+  TrueTime at_;
+  std::string_view label_;
+};
+
 // Waits until virtual time `at`; if that is past, until after the events already due now. `label`
 // names the purpose and must outlive the wait (a literal).
-boost::asio::awaitable<void> sleep_until(VirtualContext& context, TrueTime at,
-                                         std::string_view label);
+inline Sleep sleep_until(VirtualContext& context, TrueTime at, std::string_view label) {
+  return {context, at, label};
+}
 
 // One coroutine at a time waits here for an event, e.g. for a message in a mailbox.
 //
@@ -178,10 +281,31 @@ class WaitPoint {
   // A wait that is under way ends as if cancelled.
   ~WaitPoint();
 
+  // The operation of wait().
+  class [[nodiscard]] Wait {
+   public:
+    Wait(WaitPoint& point, std::optional<TrueTime> deadline) : point_(&point), deadline_(deadline) {}
+
+    template <boost::asio::completion_token_for<void(boost::system::error_code, bool)> Token>
+    auto operator()(Token&& token) const {
+      return boost::asio::async_initiate<Token, void(boost::system::error_code, bool)>(
+          [wait = *this](auto handler) {
+            WaitPoint& point = *wait.point_;
+            point.begin(HandlerWait<decltype(handler)>::start(
+                point.context_, point.label_, wait.deadline_, std::move(handler)));
+          },
+          token);
+    }
+
+   private:
+    WaitPoint* point_;
+    std::optional<TrueTime> deadline_;
+  };
+
   // True when notified, false when the deadline came first; for a notify() and a deadline at the
   // same instant, the earlier event counts. The point must outlive the wait, and no other coroutine
   // may wait here.
-  boost::asio::awaitable<bool> wait(std::optional<TrueTime> deadline = std::nullopt);
+  Wait wait(std::optional<TrueTime> deadline = std::nullopt) { return {*this, deadline}; }
 
   void notify();
   bool waiting() const { return wait_ != nullptr; }

@@ -24,8 +24,10 @@ void Departures::on_left(MessageId first, std::size_t count, TrueTime passed) {
   if (!stamps_in_kernel_ && host_.nic() == nullptr) return;
   const HostTime stamp =
       host_.clock_interface().tick_of(host_.system_clock().read(host_.true_now()));
-  sent_.resize(static_cast<std::size_t>(first - first_sent_));
-  sent_.insert(sent_.end(), count, {.has_left = true, .left = stamp, .passed = passed});
+  while (first_sent_ + sent_.size() < first) sent_.emplace_back();
+  for (; count > 0; --count) {
+    sent_.push_back({.has_left = true, .left = stamp, .passed = passed});
+  }
   while (sent_.size() > kStampsKept) {
     sent_.pop_front();
     ++first_sent_;

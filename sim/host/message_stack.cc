@@ -22,12 +22,12 @@ double speed_of(const scenarios::Stack& stack, std::uint64_t run_seed, PeerId ho
 
 DelayProcess::DelayProcess(const scenarios::DelayLaw& law, std::uint64_t run_seed,
                            ComponentKey name, PeerId host, double factor)
-    : law_(&law), run_seed_(run_seed), name_(name), factor_(factor), table_us_(law.quantiles_us) {
+    : law_(&law), draws_(run_seed, name), factor_(factor), table_us_(law.quantiles_us) {
   if (law.common_share > 0) common_.emplace(run_seed, name, host, from_ms(law.common_time_ms));
 }
 
 Nanoseconds DelayProcess::draw(TrueTime at, const MessageKey& key) {
-  RandomStream draw(run_seed_, name_, key.direction, key.message);
+  RandomStream draw = draws_.of(key.direction).stream(key.message);
   const double probability = quantile(at, draw);
   double delay_us = table_us_.empty()
                         ? law_->fixed_us - law_->exponential_us * std::log1p(-probability)
@@ -56,7 +56,7 @@ MessageStack::Parts::Parts(const scenarios::Stack& stack, std::uint64_t run_seed
       sleepiness(run_seed, kSleepiness, host, from_ms(stack.sleep_time_ms)) {}
 
 MessageStack::MessageStack(const scenarios::Hosts& hosts, std::uint64_t run_seed, PeerId host)
-    : run_seed_(run_seed) {
+    : moderation_(run_seed, kModeration) {
   if (!hosts.stack) return;
   parts_.emplace(*hosts.stack, run_seed, host, speed_of(*hosts.stack, run_seed, host));
 }
@@ -99,7 +99,7 @@ TrueTime MessageStack::interrupt(TrueTime at, const MessageKey& key) {
   const Nanoseconds period = from_us(parts_->stated.interrupt_moderation_us);
   // The interrupt that is already due serves this message too.
   if (parts_->last_interrupt >= at) return parts_->last_interrupt;
-  RandomStream draw(run_seed_, kModeration, key.direction, key.message);
+  RandomStream draw = moderation_.of(key.direction).stream(key.message);
   const double load = parts_->stated.interrupts_per_s * 1e-9 * static_cast<double>(period.count());
   const bool is_blocked = draw.chance(load / (1 + load));
   const double wait = draw.uniform();

@@ -68,8 +68,7 @@ class DelayProcess {
   double quantile(TrueTime at, RandomStream& draw);
 
   const scenarios::DelayLaw* law_;
-  std::uint64_t run_seed_;
-  ComponentKey name_;
+  KeyedStreams draws_;
   double factor_;
   QuantileTable table_us_;
   std::optional<NormalProcess> common_;
@@ -110,7 +109,7 @@ class MessageStack {
   bool sleeps(TrueTime at);
   void stay_awake(TrueTime from);
 
-  std::uint64_t run_seed_;
+  KeyedStreams moderation_;
   std::optional<Parts> parts_;  // nothing without /hosts/stack
 };
 

@@ -13,6 +13,10 @@ constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
 constexpr ComponentKey kAckDraws("network: acknowledgement");
 
+KeyedStreams draws_of(std::uint64_t run_seed, Transport kind) {
+  return KeyedStreams(run_seed, kind == Transport::kDatagram ? kDatagramDraws : kStreamDraws);
+}
+
 // The buffers of the sending program are bounded.
 constexpr Nanoseconds kMaxCaptureBacklog = std::chrono::seconds(1);
 
@@ -22,6 +26,7 @@ Network::Path::Path(const Network& network, PeerId from_host, PeerId to_host, Tr
     : from(from_host),
       to(to_host),
       transport(kind),
+      draws(draws_of(network.run_seed_, kind).of(direction_of(from, to))),
       latency(network.parameters_, network.run_seed_, from, to,
               network.load_.session(from, to).latency_ms) {
   if (network.parameters_.nagle && transport == Transport::kStream) {
@@ -74,7 +79,7 @@ void Network::send(PathId path_id, MessageId id, Bytes message) {
   send_segment(std::move(segment));
 }
 
-void Network::send_segment(Segment segment) {
+void Network::send_segment(Segment&& segment) {
   const PathId path_id = segment.path;
   Path& path = paths_[path_id];
   const MessageId first = segment.first;
@@ -212,7 +217,7 @@ void Network::travel(SegmentId id, TrueTime at) {
 void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
-  RandomStream draw = draws_of(path, segment.first);
+  RandomStream draw = path.draws.stream(segment.first);
   const TrueTime arrival = at + path.latency.draw(draw, segment.left);
   const TrueTime copy_arrival = at + path.latency.draw(draw, segment.left);
   const bool is_lost = draw.chance(parameters_.loss_probability);
@@ -229,7 +234,7 @@ void Network::travel_as_datagram(SegmentId id, TrueTime at) {
   const TrueTime arrives = is_reordered ? in_order + from_ms(detour_ms) : in_order;
   report(segment, outages_.unreachable(path.to, arrives) ? std::nullopt : std::optional(arrives));
   // Before the message itself is corrected.
-  const SegmentId duplicate = is_duplicated ? keep(segment) : id;
+  const SegmentId duplicate = is_duplicated ? keep(Segment(segment)) : id;
   deliver(id, arrives, 0);
   if (is_duplicated) deliver(duplicate, std::max(copy_arrival, in_order), 1);
 }
@@ -251,7 +256,7 @@ void Network::deliver(SegmentId id, TrueTime arrival, std::uint32_t copy) {
 void Network::travel_on_stream(SegmentId id, TrueTime at) {
   const Segment& segment = segments_[id];
   Path& path = paths_[segment.path];
-  RandomStream draw = draws_of(path, segment.first);
+  RandomStream draw = path.draws.stream(segment.first);
   TrueTime left = segment.left;
   TrueTime arrival = at + path.latency.draw(draw, left);
   double timeout_ms = parameters_.retransmit_timeout_ms;
@@ -293,11 +298,6 @@ void Network::arrive(SegmentId id) {
   if (path.receiver != nullptr) path.receiver->on_arrival();
 }
 
-RandomStream Network::draws_of(const Path& path, MessageId id) const {
-  const ComponentKey key = path.transport == Transport::kDatagram ? kDatagramDraws : kStreamDraws;
-  return RandomStream(run_seed_, key, direction_of(path.from, path.to), id);
-}
-
 void Network::acknowledge(PathId path_id) {
   Nagle& nagle = *paths_[path_id].nagle;
   Path& way_back = paths_[path_id ^ 1];
@@ -333,7 +333,7 @@ void Network::report(const Segment& segment, std::optional<TrueTime> arrival) {
   }
 }
 
-Network::SegmentId Network::keep(Segment segment) {
+Network::SegmentId Network::keep(Segment&& segment) {
   const SegmentId id = segments_.add();
   segments_[id] = std::move(segment);
   return id;
@@ -341,7 +341,7 @@ Network::SegmentId Network::keep(Segment segment) {
 
 Segment Network::release(SegmentId id) {
   segments_.release(id);
-  return std::exchange(segments_[id], {});
+  return std::move(segments_[id]);
 }
 
 }  // namespace simbench::sim

@@ -169,6 +169,7 @@ class Network : private EventHandler {
     PeerId from;
     PeerId to;
     Transport transport;
+    KeyedStreams draws;  // of its messages
     LinkLatency latency;
     TrueTime last_arrival = TrueTime::min();
     bool is_broken = false;
@@ -188,7 +189,6 @@ class Network : private EventHandler {
 
   void handle(const Event& event) override;
 
-  RandomStream draws_of(const Path& path, MessageId id) const;
   Nanoseconds on_the_line(const Segment& segment) const {
     return rate_.duration(segment.bytes + parameters_.overhead_bytes);
   }
@@ -211,10 +211,10 @@ class Network : private EventHandler {
   // Counts the segment's messages and reports to the observer that they arrive then, or never.
   void report(const Segment& segment, std::optional<TrueTime> arrival);
 
-  SegmentId keep(Segment segment);
+  SegmentId keep(Segment&& segment);
   Segment release(SegmentId id);
 
-  void send_segment(Segment segment);
+  void send_segment(Segment&& segment);
   // The segment is through the switch at `at`.
   void travel(SegmentId id, TrueTime at);
   void travel_as_datagram(SegmentId id, TrueTime at);

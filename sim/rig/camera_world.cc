@@ -40,19 +40,17 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
       cameras_(scenario, seed),
       camera_faults_(scenario.faults),
-      polls_(scenario, seed, cameras_, camera_faults_),
+      last_exposure_(trigger_.due(slots_.last + 2)),
+      polls_(scenario, seed, camera_faults_, last_exposure_),
+      end_(last_exposure_),
+      next_slot_at_(time_of_slot(0)),
       kept_bytes_(kept_bytes) {
-  trigger_.start(start);
-  camera_faults_.start(start);
-  cameras_.start(start);
+  camera_faults_.start(TrueTime{});
   make_hosts();
-  end_ = last_exposure_ = trigger_.due(slots_.last + 2);
-  next_slot_at_ = time_of_slot(0);
   for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
     const TrueTime timer = cameras_.stream(id).shutter.next_timer();
     if (timer != TrueTime::max()) timers_.push(timer, id);
   }
-  polls_.start(last_exposure_);
 }
 
 // Cameras are numbered host by host, and so are controllers.
@@ -60,11 +58,14 @@ void CameraWorld::make_hosts() {
   for (UsbController& controller : cameras_.make_controllers()) {
     buses_.push_back({.controller = std::move(controller), .offers = {}});
   }
+  for (const scenarios::Stream& stream : scenario_.cameras.streams) {
+    bytes_of_kind_.push_back(stream.image_bytes());
+  }
   const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
   hosts_.reserve(hosts);
   for (std::size_t host = 0; host < hosts; ++host) {
     hosts_.push_back(
-        {.jitter = HostJitter(scenario_.usb, seed_, host, start_, trigger_.period_ns()),
+        {.jitter = HostJitter(scenario_.usb, seed_, host, TrueTime{}, trigger_.period_ns()),
          .load = HostLoad(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host)),
          .first_bus = 0,
          .buses = 0});
@@ -129,7 +130,7 @@ void CameraWorld::sort(std::vector<Step>& steps) {
 }
 
 TrueTime CameraWorld::time_of_slot(std::int64_t slot) const {
-  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), start_);
+  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), TrueTime{});
 }
 
 // By the pulse of the next slot; a slot without one still takes its time.
@@ -194,21 +195,19 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
     return ended_.push_back(step(now, now, id));
   }
   const Nanoseconds exposed = exposure.end - stream.readout - exposure.start;
-  DeviceClock& clock = cameras_.clock(stream.camera);
   frame.exposure_us = static_cast<std::uint32_t>(exposed.count() / 1000);
-  frame.sensor = clock.stamp(frame.mid_exposure(), stamp_noise_ns);
-  // Readout begins with the first row.
-  frame.frame = clock.stamp(exposure.end - stream.readout, stamp_noise_ns);
+  frame.stamp_noise_ns = stamp_noise_ns;
   way.kernel_copy_ns = delays.kernel_copy_ns;
   way.delivery_ns = delays.delivery_ns + camera_faults_.take_delay_ns(stream.camera);
   frame.offered = exposure.end + stream.latency;
-  buses_[stream.controller].offers.push_back(step(frame.offered, {}, id));
+  buses_[stream.controller].offers.push_back(
+      step(frame.offered, {}, id, stream.index_on_controller));
 }
 
 // What happens on this bus before that, in order of time.
 void CameraWorld::transfer(Bus& bus, TrueTime before) {
   sort(bus.offers);
-  auto next = bus.offers.begin();
+  auto next = pass(bus, before);
   for (;;) {
     const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
     const TrueTime woken = bus.controller.wake_up();
@@ -222,6 +221,25 @@ void CameraWorld::transfer(Bus& bus, TrueTime before) {
     }
   }
   bus.offers.erase(bus.offers.begin(), next);
+}
+
+// The first of the offers, as long as they meet no others under way; returns the next one.
+auto CameraWorld::pass(Bus& bus, TrueTime before) -> std::vector<Step>::iterator {
+  constexpr std::uint32_t kMost = 64;
+  std::uint64_t seen = 0;
+  const auto is_second = [&seen](const Step& offer) {
+    const std::uint64_t stream = std::uint64_t{1} << (offer.place % kMost);
+    return (std::exchange(seen, seen | stream) & stream) != 0;
+  };
+  auto next = bus.offers.begin();
+  if (std::any_of(next, bus.offers.end(), is_second)) return next;
+  for (; next != bus.offers.end() && next->at < before; ++next) {
+    const double bytes = bytes_of_kind_[next->place % bytes_of_kind_.size()];
+    const auto done = bus.controller.pass(next->at, next->place, bytes, before);
+    if (!done) break;
+    transferred_.push_back(step(*done, *done, next->frame));
+  }
+  return next;
 }
 
 void CameraWorld::offer(Bus& bus, const Step& offer) {
@@ -243,7 +261,8 @@ void CameraWorld::deliver(HostSide& host, const Step& transferred) {
   frame.copied = now + from_ns(way.kernel_copy_ns);
   const double delivery_ns = way.delivery_ns + host_jitter_ns + stream.late_ns;
   TrueTime arrival = frame.copied + from_ns(std::max(0.0, delivery_ns));
-  arrival += host.load.delay(arrival, kLateFrame, frame.stream, frame.counter);
+  arrival +=
+      host.load.delay(start_ + arrival.time_since_epoch(), kLateFrame, frame.stream, frame.counter);
   stream.last_arrival = std::max(stream.last_arrival, arrival);
   ended_.push_back(step(stream.last_arrival, now, transferred.frame));
 }

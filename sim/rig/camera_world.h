@@ -1,14 +1,15 @@
 // The cameras' half of a world: trigger pulses, exposures, USB, deliveries and polls of device
-// clocks, in true time.
+// clocks, in true time since the cameras' start, which is true zero here.
 //
 // The way of a frame:
 //
 //   pulse (or a free-running shutter) -> readout: the frame is offered to its USB controller
 //     -> transfer complete -> delivery to its host
 //
-// None of it depends on a clock that a host synchronisation disciplines: the same scenario, seed
-// and start give the same half, whatever the pipeline. So it is made once and read by every
-// capture of that start (sim/rig/capture.h), whose hosts stamp the frames with their own clocks.
+// None of it depends on a clock, nor on when the capture starts (but for bursts of load on the
+// hosts, which come and go in true time: depends_on_start()). So it is made once for a scenario and
+// a seed and read by every capture (sim/rig/capture.h), whatever the pipeline: the cameras stamp
+// its frames with their clocks (sim/rig/camera_stamps.h) and the hosts with theirs.
 //
 // It is made period by period, a period being the time from one pulse of the main trigger to the
 // next. Periods are kept while all of them together take less than `kept_bytes`; then only the last
@@ -20,14 +21,15 @@
 // In a period each stage goes over all cameras before the next begins: exposures (also of shutters
 // that run free, in order of time), then host by host the transfers of its controllers and the
 // delays of what was transferred, then a sort of what was delivered. What is under way when the
-// period ends goes on in the next. Frames that are delivered in the same nanosecond come in the
-// order in which their transfers ended, then host by host.
+// period ends goes on in the next. In one nanosecond, a transfer that ends makes room before a
+// frame is offered, and frames are delivered in the order in which their transfers ended, then host
+// by host.
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
 // are kept.
 //
-//   CameraWorld world(scenario, seed, capture_start);
+//   CameraWorld world(scenario, seed);
 //   for (std::size_t i = 0; const CameraPeriod* period = world.period(i); ++i) use(*period);
 #ifndef SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
 #define SIMBENCH_SIM_RIG_CAMERA_WORLD_H_
@@ -59,9 +61,8 @@ struct CameraFrame {
   std::uint32_t stream = 0;  // of Cameras::stream()
   std::uint32_t counter = 0;
   std::uint32_t exposure_us = 0;
-  DeviceStamp sensor{};
-  DeviceStamp frame{};
   FrameFate fate = FrameFate::kDelivered;
+  double stamp_noise_ns = 0;  // of the camera's own stamps
   std::int64_t pulse = kNoPulse;
   TrueTime exposure_start{};
   TrueTime exposure_end{};
@@ -97,9 +98,9 @@ class CameraWorld {
  public:
   static constexpr std::size_t kKeptBytes = 64 << 20;
 
-  // The cameras start at `start`. The scenario must outlive this. Of the limits that of events
-  // counts.
-  CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+  // Of a capture that starts at `start`. The scenario must outlive this. Of the limits, that of
+  // events counts.
+  CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
               const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes);
   CameraWorld(const CameraWorld&) = delete;
   CameraWorld& operator=(const CameraWorld&) = delete;
@@ -109,6 +110,10 @@ class CameraWorld {
   const CameraPeriod* period(std::size_t index);
   // Whether all periods until now are kept.
   bool is_whole() const { return dropped_ == 0; }
+
+  static bool depends_on_start(const scenarios::Scenario& scenario) {
+    return scenario.hosts.load_burst.rate_hz > 0;
+  }
 
   std::uint64_t seed() const { return seed_; }
   TrueTime start() const { return start_; }
@@ -120,8 +125,6 @@ class CameraWorld {
   std::uint64_t events() const { return events_; }
   std::uint64_t trace_hash() const { return trace_hash_; }
 
-  const TriggerTree& trigger() const { return trigger_; }
-  EvaluatedSlots slots() const { return slots_; }
   const Cameras& cameras() const { return cameras_; }
 
  private:
@@ -136,6 +139,7 @@ class CameraWorld {
     TrueTime transferred;
     std::uint64_t order;  // among all steps
     std::uint32_t frame;  // in flight
+    std::uint32_t place;  // of its stream on the controller
   };
   struct Bus {
     UsbController controller;
@@ -149,8 +153,8 @@ class CameraWorld {
   };
 
   static void sort(std::vector<Step>& steps);
-  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame) {
-    return {.at = at, .transferred = transferred, .order = events_++, .frame = frame};
+  Step step(TrueTime at, TrueTime transferred, std::uint32_t frame, std::uint32_t place = 0) {
+    return {at, transferred, events_++, frame, place};
   }
   void make_hosts();
   void make_period(CameraPeriod& period);
@@ -160,6 +164,7 @@ class CameraWorld {
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
   void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
   void transfer(Bus& bus, TrueTime before);
+  std::vector<Step>::iterator pass(Bus& bus, TrueTime before);
   void offer(Bus& bus, const Step& offer);
   void deliver(HostSide& host, const Step& transferred);
   void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
@@ -172,16 +177,17 @@ class CameraWorld {
   Nanoseconds unstable_start_;
   double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
-  TrueTime last_exposure_;
   Cameras cameras_;
   CameraFaults camera_faults_;
-  ClockPolls polls_;
   EventQueue timers_;  // of shutters; payload: stream
   std::vector<Bus> buses_;
+  std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
   std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
   std::vector<Step> transferred_;  // of one host
   std::vector<Step> ended_;        // delivered or lost
+  TrueTime last_exposure_;
+  ClockPolls polls_;
   TrueTime end_;
   std::int64_t next_slot_ = 0;
   TrueTime next_slot_at_;

@@ -20,24 +20,52 @@ ShutterMode shutter_mode(const scenarios::Cameras& cameras, const scenarios::Str
 
 }  // namespace
 
-void Cameras::start(TrueTime at) {
-  start_ = at;
+Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
+                        std::size_t camera) {
+  if (scenario.cameras.common_start) return Nanoseconds(0);
+  RandomStream spread(seed, "camera/start", camera);
+  return from_ms(spread.uniform(0, scenario.cameras.start_spread_ms));
+}
+
+std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std::uint64_t seed,
+                                       TrueTime start) {
+  const scenarios::Cameras& cameras = scenario.cameras;
+  const auto count = static_cast<std::size_t>(cameras.count);
+  std::vector<DeviceClock> clocks;
+  clocks.reserve(count);
+  for (std::size_t camera = 0; camera < count; ++camera) {
+    RandomStream epoch(seed, "camera/epoch", camera);
+    OscillatorModel oscillator(cameras.oscillator, seed,
+                               "camera/oscillator/" + std::to_string(camera),
+                               start + start_delay(scenario, seed, camera));
+    if (!cameras.skew_of_camera_ppm.empty()) {
+      oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
+    }
+    clocks.emplace_back(std::move(oscillator), epoch.uniform(0, cameras.clock_epoch_max_ms), start);
+  }
+  return clocks;
+}
+
+Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
+    : scenario_(scenario), seed_(seed) {
   const auto count = static_cast<std::size_t>(scenario_.cameras.count);
   const std::size_t kinds = scenario_.cameras.streams.size();
   const auto per_controller = static_cast<std::uint32_t>(scenario_.usb.cameras_per_controller);
   const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
+  const std::vector<DeviceClock> clocks = device_clocks(scenario, seed, TrueTime{});
   std::vector<std::uint32_t> cameras_on_host(hosts, 0);
   std::vector<std::uint32_t> controller_of_host(hosts, 0);
-  clocks_.reserve(count);
+  streams_.reserve(count * kinds);
   for (std::size_t camera = 0; camera < count; ++camera) {
     const auto host =
         static_cast<std::size_t>(scenario_.host_of(static_cast<std::int64_t>(camera)));
     SIMBENCH_ASSERT(host < hosts, "a camera is on a host that does not exist");
     const std::uint32_t place = cameras_on_host[host]++ % per_controller;
     if (place == 0) controller_of_host[host] = controllers_++;
-    add_camera(camera);
+    exposures_.emplace_back(scenario_.cameras.auto_exposure, first_exposure(camera), seed, camera,
+                            TrueTime{} + start_delay(scenario, seed, camera));
     for (std::size_t which = 0; which < kinds; ++which) {
-      CameraStream stream = make_stream(camera, which);
+      CameraStream stream = make_stream(clocks[camera], camera, which);
       stream.host = static_cast<std::uint32_t>(host);
       stream.controller = controller_of_host[host];
       stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
@@ -49,34 +77,16 @@ void Cameras::start(TrueTime at) {
   }
 }
 
-TrueTime Cameras::start_of(std::size_t camera) const {
-  if (scenario_.cameras.common_start) return start_;
-  RandomStream spread(seed_, "camera/start", camera);
-  return start_ + from_ms(spread.uniform(0, scenario_.cameras.start_spread_ms));
-}
-
-void Cameras::add_camera(std::size_t camera) {
-  const scenarios::Cameras& cameras = scenario_.cameras;
-  RandomStream epoch(seed_, "camera/epoch", camera);
-  const TrueTime started = start_of(camera);
-  OscillatorModel oscillator(cameras.oscillator, seed_,
-                             "camera/oscillator/" + std::to_string(camera), started);
-  if (!cameras.skew_of_camera_ppm.empty()) {
-    oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
-  }
-  clocks_.emplace_back(std::move(oscillator), epoch.uniform(0, cameras.clock_epoch_max_ms), start_);
-  exposures_.emplace_back(cameras.auto_exposure, first_exposure(camera), seed_, camera, started);
-}
-
-CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
+CameraStream Cameras::make_stream(const DeviceClock& clock, std::size_t camera,
+                                  std::size_t which) const {
   const scenarios::Stream& profile = scenario_.cameras.streams[which];
-  const ShutterSettings shutter = shutter_settings(camera, profile);
+  const ShutterSettings shutter = shutter_settings(clock, camera, profile);
   const scenarios::CalibrationError& error = scenario_.cameras.calibration;
   const double bytes = profile.image_bytes();
   RandomStream latency(seed_, "camera/latency", camera);
   RandomStream of_model(seed_, "calibration/delay");
   RandomStream of_camera(seed_, "calibration/camera_delay", camera);
-  TrueTime started = start_of(camera);
+  TrueTime started = TrueTime{} + start_delay(scenario_, seed_, camera);
   if (shutter.mode == ShutterMode::kFreeRunning) {
     // Nothing aligns the frames of a free-running stream: they begin anywhere in a period.
     RandomStream phase(seed_, "camera/free_running_phase", camera, which);
@@ -105,11 +115,11 @@ CameraStream Cameras::make_stream(std::size_t camera, std::size_t which) const {
           .unsteadiness = RandomStream(seed_, "camera/unsteadiness", id)};
 }
 
-ShutterSettings Cameras::shutter_settings(std::size_t camera,
+ShutterSettings Cameras::shutter_settings(const DeviceClock& clock, std::size_t camera,
                                           const scenarios::Stream& profile) const {
   const scenarios::Cameras& cameras = scenario_.cameras;
   return {.mode = shutter_mode(cameras, profile),
-          .mode_period_ns = 1e9 / profile.mode_rate_hz * clocks_[camera].true_per_device(),
+          .mode_period_ns = 1e9 / profile.mode_rate_hz * clock.true_per_device(),
           .exposure = first_exposure(camera),
           .readout =
               from_ms(profile.shutter == scenarios::ShutterKind::kRolling ? profile.readout_ms : 0),

@@ -1,5 +1,5 @@
-// The cameras of a rig, each with its clock, its exposure time and its image streams, and where
-// their streams are plugged in: at which host, on which USB controller.
+// The cameras of a rig, each with its exposure time, its image streams and its clock, and where
+// their streams are plugged in: at which host, on which USB controller. They start at true zero.
 //
 // Cameras are numbered host by host (Scenario::host_of); usb/cameras_per_controller neighbours on a
 // host share a controller. The values of a stream are drawn from random streams named after its
@@ -13,8 +13,8 @@
 // docs/reference/d455.md.
 //
 //   Cameras cameras(scenario, seed);
-//   cameras.start(engine.now());
 //   for (CameraStream& stream : cameras.streams()) timers.push_back(stream.shutter.next_timer());
+//   std::vector<DeviceClock> clocks = device_clocks(scenario, seed, capture_start);
 #ifndef SIMBENCH_SIM_RIG_CAMERAS_H_
 #define SIMBENCH_SIM_RIG_CAMERAS_H_
 
@@ -56,20 +56,19 @@ struct CameraStream {
   std::uint32_t counter = 0;  // of the next frame
 };
 
+// How long after the capture's start this camera starts.
+Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
+                        std::size_t camera);
+
+// The clocks of the cameras of a capture that starts at `start`. Oscillators are functions of true
+// time, so the same capture at another time has other stamps.
+std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std::uint64_t seed,
+                                       TrueTime start);
+
 class Cameras {
  public:
   // `scenario` must outlive the cameras.
-  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
-      : scenario_(scenario), seed_(seed) {}
-
-  // Starts the cameras at `at`, once. There are no clocks and streams before that.
-  void start(TrueTime at);
-
-  // When this camera starts: with all others, or somewhat later.
-  TrueTime start_of(std::size_t camera) const;
-
-  DeviceClock& clock(std::size_t camera) { return clocks_[camera]; }
-  const std::vector<DeviceClock>& clocks() const { return clocks_; }
+  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed);
   // The exposure time that a camera begins with at `at`.
   Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
 
@@ -83,16 +82,14 @@ class Cameras {
   std::vector<UsbController> make_controllers() const;
 
  private:
-  void add_camera(std::size_t camera);
-  CameraStream make_stream(std::size_t camera, std::size_t which) const;
-  ShutterSettings shutter_settings(std::size_t camera, const scenarios::Stream& profile) const;
+  CameraStream make_stream(const DeviceClock& clock, std::size_t camera, std::size_t which) const;
+  ShutterSettings shutter_settings(const DeviceClock& clock, std::size_t camera,
+                                   const scenarios::Stream& profile) const;
   Nanoseconds first_exposure(std::size_t camera) const;
 
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
-  TrueTime start_{};
   std::uint32_t controllers_ = 0;
-  std::vector<DeviceClock> clocks_;
   std::vector<AutoExposure> exposures_;
   std::vector<CameraStream> streams_;
   std::vector<std::uint32_t> triggered_streams_;

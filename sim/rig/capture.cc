@@ -34,22 +34,25 @@ RigLayout Capture::layout() const {
   return layout;
 }
 
-void Capture::start(CameraWorld& world, std::function<void()> on_end,
+void Capture::start(CameraWorld& world, CameraStamps& stamps, std::function<void()> on_end,
                     const std::atomic<bool>* cancel) {
-  SIMBENCH_ASSERT(world.start() == engine_.now(), "the cameras start with the capture");
+  const TrueTime now = engine_.now();
+  SIMBENCH_ASSERT(stamps.start() == now, "the cameras start with the capture");
   world_ = &world;
-  for (const SystemClock* clock : clocks_) steady_starts_.push_back(clock->steady(world.start()));
+  stamps_ = &stamps;
+  shift_ = now.time_since_epoch();
   cancel_ = cancel;
+  for (const SystemClock* clock : clocks_) steady_starts_.push_back(clock->steady(now));
   on_end_ = std::move(on_end);
-  reports_.start(engine_.now());
+  reports_.start(now);
   for (const scenarios::Fault& fault : scenario_.faults) {
     const auto* step = std::get_if<scenarios::ClockStep>(&fault);
     if (step == nullptr) continue;
-    engine_.call_at(engine_.now() + from_ms(step->at_ms), [this, step] { step_clock(*step); });
+    engine_.call_at(now + from_ms(step->at_ms), [this, step] { step_clock(*step); });
   }
-  engine_.call_at(world.last_exposure(), [this] { end(); });
+  engine_.call_at(date(world.last_exposure()), [this] { end(); });
   begin_period(0);
-  next_at_ = next_in_period();
+  next_at_ = date(next_in_period());
 }
 
 void Capture::step_clock(const scenarios::ClockStep& fault) {
@@ -60,8 +63,8 @@ void Capture::step_clock(const scenarios::ClockStep& fault) {
 // No exposure begins any more: the last period has been made, and with it the end is known.
 void Capture::end() {
   catch_up();
-  if (world_->end() > engine_.now()) {
-    engine_.call_at(world_->end(), [this] { end(); });
+  if (date(world_->end()) > engine_.now()) {
+    engine_.call_at(date(world_->end()), [this] { end(); });
   } else {
     on_end_();
   }
@@ -70,6 +73,7 @@ void Capture::end() {
 void Capture::begin_period(std::size_t number) {
   if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
   period_ = world_->period(number);
+  if (period_ != nullptr) period_stamps_ = stamps_->of_period(number, *period_);
   period_number_ = number;
   is_pulse_reported_ = false;
   frames_reported_ = polls_reported_ = 0;
@@ -98,38 +102,42 @@ TrueTime Capture::next_in_period() {
 
 void Capture::report_through(TrueTime now) {
   next_at_ = TrueTime::max();  // who is reported to may ask again
+  const TrueTime until = now - shift_;
   TrueTime next = next_in_period();
-  for (; next <= now; next = next_in_period()) {
+  for (; next <= until; next = next_in_period()) {
     if (period_->pulse && !is_pulse_reported_) {
       is_pulse_reported_ = true;
       report_pulse(*period_->pulse);
     } else if (next == next_poll_at()) {
       report_poll(period_->polls[polls_reported_++]);
     } else {
-      report_frames(std::min(now, next_poll_at() - Nanoseconds(1)));
+      report_frames(std::min(until, next_poll_at() - Nanoseconds(1)));
     }
   }
-  next_at_ = next;
+  if (next != TrueTime::max()) next_at_ = date(next);
 }
 
 void Capture::report_pulse(const CameraPulse& pulse) {
+  const TrueTime at = date(pulse.at);
   if (pulse.slot >= slots_.first) {
-    read_errors(clocks_, pulse.at, host_errors_);
-    reports_.recorded_pulse({.pulse = pulse.slot, .at = pulse.at, .host_errors = host_errors_});
+    read_errors(clocks_, at, host_errors_);
+    reports_.recorded_pulse({.pulse = pulse.slot, .at = at, .host_errors = host_errors_});
   }
-  reports_.pulse(pulse);
+  reports_.pulse(pulse.slot, at);
 }
 
 void Capture::report_poll(const CameraPoll& poll) {
   const auto host = static_cast<std::size_t>(scenario_.host_of(poll.camera));
-  if (outages_.host_stopped(static_cast<PeerId>(host), poll.end)) return;
+  const TrueTime begin = date(poll.begin);
+  const TrueTime end = date(poll.end);
+  if (outages_.host_stopped(static_cast<PeerId>(host), end)) return;
   const SystemClock& clock = *clocks_[host];
   reports_.poll({.camera = poll.camera,
-                 .device = poll.device,
-                 .t0 = interfaces_[host].read(clock.read(poll.begin)),
-                 .t1 = interfaces_[host].read(clock.read(poll.end)),
-                 .t0_steady = clock.steady(poll.begin),
-                 .t1_steady = clock.steady(poll.end)});
+                 .device = stamps_->of_poll(poll),
+                 .t0 = interfaces_[host].read(clock.read(begin)),
+                 .t1 = interfaces_[host].read(clock.read(end)),
+                 .t0_steady = clock.steady(begin),
+                 .t1_steady = clock.steady(end)});
 }
 
 // Those of this period until `last`, at least one.
@@ -139,55 +147,59 @@ void Capture::report_frames(TrueTime last) {
   do {
     ++frames_reported_;
   } while (frames_reported_ < frames.size() && frames[frames_reported_].at <= last);
-  const std::span<const CameraFrame> block(frames.data() + first, frames_reported_ - first);
-  if (!reports_.are_single()) return report_block(block);
-  for (const CameraFrame& frame : block) report_single(frame);
+  const std::size_t end = frames_reported_;
+  if (!reports_.are_single()) return report_block(first, end);
+  for (std::size_t number = first; number < end; ++number) report_single(number);
 }
 
-void Capture::report_block(std::span<const CameraFrame> frames) {
+void Capture::report_block(std::size_t first, std::size_t end) {
   records_.clear();
   truths_.clear();
-  for (const CameraFrame& frame : frames) {
+  for (std::size_t i = first; i < end; ++i) {
+    const CameraFrame& frame = period_->frames[i];
     const CameraStream& stream = world_->cameras().stream(frame.stream);
-    if (frame.fate != FrameFate::kDelivered || is_stopped(stream.host, frame.at)) continue;
-    stamp(frame, stream);
+    if (frame.fate != FrameFate::kDelivered || is_stopped(stream.host, frame)) continue;
+    stamp(frame, stream, period_stamps_[i]);
   }
   if (!records_.empty()) reports_.frames(records_, truths_);
 }
 
-void Capture::report_single(const CameraFrame& frame) {
+void Capture::report_single(std::size_t number) {
+  const CameraFrame& frame = period_->frames[number];
   const CameraStream& stream = world_->cameras().stream(frame.stream);
   if (frame.fate == FrameFate::kDelivered) {
-    if (is_stopped(stream.host, frame.at)) return;
-    report_block({&frame, 1});
-    reports_.used(records_.front(), stream, frame.at);
+    if (is_stopped(stream.host, frame)) return;
+    report_block(number, number + 1);
+    reports_.used(records_.front(), stream, date(frame.at));
   }
-  reports_.observed(frame, stream);
+  reports_.observed(frame, stream, shift_);
 }
 
 // What its host and the master make of a frame.
-void Capture::stamp(const CameraFrame& frame, const CameraStream& stream) {
+void Capture::stamp(const CameraFrame& frame, const CameraStream& stream,
+                    const FrameStamps& stamps) {
   const SystemClock& clock = *clocks_[stream.host];
-  const TrueTime middle = frame.mid_exposure();
-  const SystemClock::Reading arrival = clock.read_both(frame.at);
+  const TrueTime middle = date(frame.mid_exposure());
+  const TrueTime at = date(frame.at);
+  const SystemClock::Reading arrival = clock.read_both(at);
   const SystemClock::Reading exposed = clock.read_both(middle);
-  records_.push_back(
-      {.camera = stream.camera,
-       .stream = stream.kind,
-       .counter = frame.counter,
-       .exposure_us = frame.exposure_us,
-       .sensor = frame.sensor,
-       .frame = frame.frame,
-       .backend = backend_stamps_.stamp(clock, steady_starts_[stream.host], frame.copied, arrival),
-       .arrival = round_down(arrival.system, arrival_quantum_),
-       .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
+  records_.push_back({.camera = stream.camera,
+                      .stream = stream.kind,
+                      .counter = frame.counter,
+                      .exposure_us = frame.exposure_us,
+                      .sensor = stamps.sensor,
+                      .frame = stamps.frame,
+                      .backend = backend_stamps_.stamp(clock, steady_starts_[stream.host],
+                                                       date(frame.copied), arrival),
+                      .arrival = round_down(arrival.system, arrival_quantum_),
+                      .arrival_steady = round_down(arrival.steady, arrival_quantum_)});
   truths_.push_back({.pulse = frame.pulse,
-                     .exposure_start = frame.exposure_start,
-                     .exposure_end = frame.exposure_end,
+                     .exposure_start = date(frame.exposure_start),
+                     .exposure_end = date(frame.exposure_end),
                      .reference = clocks_[0]->read(middle),
                      .own_host = exposed.system,
                      .own_steady = exposed.steady,
-                     .delivered = clocks_[0]->read(frame.at)});
+                     .delivered = clocks_[0]->read(at)});
 }
 
 }  // namespace simbench::sim

@@ -1,7 +1,8 @@
 // A capture: the cameras' half of a world, stamped by the clocks of its hosts' half.
 //
-// What happens to frames, polls and pulses in true time is known beforehand (CameraWorld). The
-// hosts' clocks can be read at any past instant, so nothing here needs an event of the engine: what
+// What happens to frames, polls and pulses in true time is known beforehand (CameraWorld), and what
+// the cameras stamp (CameraStamps). The hosts' clocks can be read at any past instant, so nothing
+// here needs an event of the engine: what
 // happened until now is reported when somebody asks for it by catch_up(), in the order in which it
 // happened. Who must not come before it asks first:
 //
@@ -19,7 +20,8 @@
 //   Capture capture(scenario, engine, clocks, outages, CaptureReports(sink));
 //   sink.on_start(capture.layout());
 //   CameraWorld world(scenario, seed, engine.now());
-//   capture.start(world, [&] { engine.stop(); });
+//   CameraStamps stamps(scenario, world, engine.now());
+//   capture.start(world, stamps, [&] { engine.stop(); });
 //   engine.run();
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_H_
@@ -37,6 +39,7 @@
 #include "sim/clock/system_clock.h"
 #include "sim/engine/engine.h"
 #include "sim/faults/faults.h"
+#include "sim/rig/camera_stamps.h"
 #include "sim/rig/camera_world.h"
 #include "sim/rig/capture_reports.h"
 #include "sim/usb/backend_stamp.h"
@@ -56,9 +59,9 @@ class Capture {
   // The layout of the recording; known from the beginning.
   RigLayout layout() const;
 
-  // Begins now, which is the world's start. Calls `on_end` when all has been reported. Once
+  // Begins now, which is the start of the stamps. Calls `on_end` when all has been reported. Once
   // `cancel` is true, throws RecordingCancelled from whatever is called next.
-  void start(CameraWorld& world, std::function<void()> on_end,
+  void start(CameraWorld& world, CameraStamps& stamps, std::function<void()> on_end,
              const std::atomic<bool>* cancel = nullptr);
 
   // Reports what has happened until now and has not been reported.
@@ -75,16 +78,19 @@ class Capture {
   TrueTime next_frame_at() const;
   TrueTime next_poll_at() const;
   TrueTime next_in_period();
+  // The instant of what happens in the world `since_start`.
+  TrueTime date(TrueTime since_start) const { return since_start + shift_; }
   void report_through(TrueTime now);
   void report_pulse(const CameraPulse& pulse);
   void report_poll(const CameraPoll& poll);
   void report_frames(TrueTime last);
-  void report_block(std::span<const CameraFrame> frames);
-  void report_single(const CameraFrame& frame);
-  bool is_stopped(std::uint32_t host, TrueTime at) const {
-    return outages_.host_stopped(static_cast<PeerId>(host), at);
+  void report_block(std::size_t first, std::size_t end);
+  void report_single(std::size_t number);
+  // Whether its host is stopped when a frame comes.
+  bool is_stopped(std::uint32_t host, const CameraFrame& frame) const {
+    return outages_.host_stopped(static_cast<PeerId>(host), date(frame.at));
   }
-  void stamp(const CameraFrame& frame, const CameraStream& stream);
+  void stamp(const CameraFrame& frame, const CameraStream& stream, const FrameStamps& stamps);
 
   const scenarios::Scenario& scenario_;
   Engine& engine_;
@@ -100,10 +106,13 @@ class Capture {
   std::function<void()> on_end_;
 
   CameraWorld* world_ = nullptr;
+  CameraStamps* stamps_ = nullptr;
+  Nanoseconds shift_{};  // of the world's times
   const std::atomic<bool>* cancel_ = nullptr;
   TrueTime next_at_ = TrueTime::max();
   // What was reported of the present period.
   const CameraPeriod* period_ = nullptr;
+  std::span<const FrameStamps> period_stamps_;
   std::size_t period_number_ = 0;
   bool is_pulse_reported_ = false;
   std::size_t frames_reported_ = 0;

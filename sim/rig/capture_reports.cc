@@ -6,19 +6,22 @@
 namespace simbench::sim {
 namespace {
 
-ObservedFrame observed_frame(const CameraFrame& frame, const CameraStream& stream) {
+ObservedFrame observed_frame(const CameraFrame& frame, const CameraStream& stream,
+                             Nanoseconds shift) {
   ObservedFrame observed{.camera = stream.camera,
                          .host = stream.host,
                          .stream = stream.kind,
                          .counter = frame.counter,
                          .pulse = frame.pulse,
                          .fate = frame.fate,
-                         .exposure_start = frame.exposure_start,
-                         .exposure_end = frame.exposure_end,
-                         .offered = frame.offered,
-                         .transferred = frame.transferred,
-                         .copied = frame.copied};
-  if (frame.fate == FrameFate::kDelivered) observed.delivered = frame.at;
+                         .exposure_start = frame.exposure_start + shift,
+                         .exposure_end = frame.exposure_end + shift};
+  if (frame.fate == FrameFate::kLostInCamera) return observed;
+  observed.offered = frame.offered + shift;
+  if (frame.fate == FrameFate::kLostOnUsb) return observed;
+  observed.transferred = frame.transferred + shift;
+  observed.copied = frame.copied + shift;
+  observed.delivered = frame.at + shift;
   return observed;
 }
 
@@ -59,16 +62,17 @@ void CaptureReports::start(TrueTime at) const {
   if (observer_ != nullptr) observer_->on_capture_start(at);
 }
 
-void CaptureReports::pulse(const CameraPulse& pulse) const {
+void CaptureReports::pulse(std::int64_t slot, TrueTime at) const {
   if (observer_ == nullptr) return;
-  observer_->sample_until(pulse.at);
-  observer_->on_pulse({.pulse = pulse.slot, .at = pulse.at});
+  observer_->sample_until(at);
+  observer_->on_pulse({.pulse = slot, .at = at});
 }
 
-void CaptureReports::observed(const CameraFrame& frame, const CameraStream& stream) const {
+void CaptureReports::observed(const CameraFrame& frame, const CameraStream& stream,
+                              Nanoseconds shift) const {
   if (observer_ == nullptr) return;
-  observer_->sample_until(frame.at);
-  observer_->on_frame(observed_frame(frame, stream));
+  observer_->sample_until(frame.at + shift);
+  observer_->on_frame(observed_frame(frame, stream, shift));
 }
 
 }  // namespace simbench::sim

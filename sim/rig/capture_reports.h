@@ -10,6 +10,7 @@
 #ifndef SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 #define SIMBENCH_SIM_RIG_CAPTURE_REPORTS_H_
 
+#include <cstdint>
 #include <span>
 
 #include "recording/recording.h"
@@ -57,7 +58,7 @@ class CaptureReports {
   // The cameras are started.
   void start(TrueTime at) const;
   // A pulse leaves the main trigger.
-  void pulse(const CameraPulse& pulse) const;
+  void pulse(std::int64_t slot, TrueTime at) const;
   // A pulse of the evaluated frames, for the recording.
   void recorded_pulse(const PulseTruth& pulse) const { sink_.on_pulse(pulse); }
   void poll(const DevicePoll& poll) const { sink_.on_poll(poll); }
@@ -72,8 +73,8 @@ class CaptureReports {
   void used(const FrameRecord& record, const CameraStream& stream, TrueTime at) const {
     if (feeds_ != nullptr) feeds_->on_delivery(record, stream, at);
   }
-  // One was delivered or lost.
-  void observed(const CameraFrame& frame, const CameraStream& stream) const;
+  // One was delivered or lost; its times are to be shifted.
+  void observed(const CameraFrame& frame, const CameraStream& stream, Nanoseconds shift) const;
 
  private:
   RecordingSink& sink_;

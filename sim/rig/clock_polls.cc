@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/engine/random.h"
+#include "sim/rig/cameras.h"
 
 namespace simbench::sim {
 namespace {
@@ -13,25 +14,21 @@ constexpr ComponentKey kAsymmetryError("calibration/poll_asymmetry");
 
 }  // namespace
 
-ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Cameras& cameras,
-                       const CameraFaults& faults)
+ClockPolls::ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed,
+                       const CameraFaults& faults, TrueTime end)
     : scenario_(scenario),
       seed_(seed),
-      cameras_(cameras),
       faults_(faults),
       interval_(from_ms(scenario.cameras.clock_poll.interval_ms)),
+      end_(end),
       asymmetry_error_ms_(RandomStream(seed, kAsymmetryError)
                               .normal(scenario.cameras.calibration.poll_asymmetry_error_sigma_ms)) {
-}
-
-void ClockPolls::start(TrueTime end) {
-  end_ = end;
   if (interval_.count() == 0) return;
   const auto cameras = static_cast<std::uint32_t>(scenario_.cameras.count);
   polls_.resize(cameras);
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
     RandomStream draw(seed_, kPhase, camera);
-    polls_[camera].first = cameras_.start_of(camera) +
+    polls_[camera].first = TrueTime{} + start_delay(scenario_, seed_, camera) +
                            from_ms(draw.uniform(0, scenario_.cameras.clock_poll.interval_ms));
     send(camera, 0);
   }
@@ -58,21 +55,14 @@ void ClockPolls::hand_out(TrueTime then, std::vector<CameraPoll>& polls) {
   while (ends_.pop_through(then - Nanoseconds(1), entry)) {
     const auto camera = static_cast<std::uint32_t>(entry.payload);
     const TrueTime end{Nanoseconds(entry.time_ns)};
-    report(camera, end, polls);
     const Poll& poll = polls_[camera];
+    if (!faults_.vanished(camera, poll.read)) {
+      polls.push_back({.camera = camera, .begin = poll.begin, .read = poll.read, .end = end});
+    }
     // The first that begins now or later.
     const std::int64_t due = (end - poll.first + interval_ - Nanoseconds(1)) / interval_;
     send(camera, std::max(poll.number + 1, due));
   }
-}
-
-void ClockPolls::report(std::uint32_t camera, TrueTime end, std::vector<CameraPoll>& polls) {
-  const Poll& poll = polls_[camera];
-  if (faults_.vanished(camera, poll.read)) return;
-  polls.push_back({.camera = camera,
-                   .device = cameras_.clock(camera).stamp(poll.read, 0),
-                   .begin = poll.begin,
-                   .end = end});
 }
 
 }  // namespace simbench::sim

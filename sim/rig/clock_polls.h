@@ -2,7 +2,7 @@
 //
 // A poll begins, reaches the camera after the request's delay, where it reads the register in whole
 // microseconds, and ends after the reply's delay. The capture (sim/rig/capture.h) adds what the
-// host's clocks read at both ends.
+// clocks read: the camera's, and its host's at both ends. The capture starts at true zero here.
 //
 // Polls of a camera begin at its start + phase + n * interval_ms of true time, the phase anywhere
 // in the interval, and before the end of the capture. A poll that takes longer than the interval
@@ -15,40 +15,35 @@
 //
 // Source: scenario /cameras/clock_poll; docs/reference/d455.md section 5.
 //
-//   ClockPolls polls(scenario, seed, cameras, camera_faults);
-//   polls.start(capture_end);         // the cameras have been started
-//   polls.hand_out(then, ended);      // those that end before then
+//   ClockPolls polls(scenario, seed, camera_faults, capture_end);
+//   polls.hand_out(then, ended);  // those that end before then
 #ifndef SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 #define SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 
 #include <cstdint>
 #include <vector>
 
-#include "algorithms/ports/time.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/event_queue.h"
 #include "sim/faults/faults.h"
-#include "sim/rig/cameras.h"
 
 namespace simbench::sim {
 
-// A reading of a camera's clock, at some instant between its begin and its end.
+// A reading of a camera's clock, at `read` between its begin and its end.
 struct CameraPoll {
   std::uint32_t camera = 0;
-  DeviceStamp device;
   TrueTime begin{};
+  TrueTime read{};
   TrueTime end{};
 };
 
 class ClockPolls {
  public:
-  // All references outlive the polls.
-  ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, Cameras& cameras,
-             const CameraFaults& faults);
+  // All references outlive the polls. None begins at `end` or later.
+  ClockPolls(const scenarios::Scenario& scenario, std::uint64_t seed, const CameraFaults& faults,
+             TrueTime end);
 
-  // No poll begins at `end` or later.
-  void start(TrueTime end);
   // Replaces `polls` by those that end before `then` and were not handed out, in order.
   void hand_out(TrueTime then, std::vector<CameraPoll>& polls);
 
@@ -62,14 +57,12 @@ class ClockPolls {
 
   // Sends the camera's poll of this number, unless the capture is over by then.
   void send(std::uint32_t camera, std::int64_t number);
-  void report(std::uint32_t camera, TrueTime end, std::vector<CameraPoll>& polls);
 
   const scenarios::Scenario& scenario_;
   std::uint64_t seed_;
-  Cameras& cameras_;
   const CameraFaults& faults_;
   Nanoseconds interval_;
-  TrueTime end_{};
+  TrueTime end_;
   double asymmetry_error_ms_;  // of the seed
   std::vector<Poll> polls_;    // by camera
   EventQueue ends_;            // payload: camera

@@ -14,6 +14,7 @@
 #include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
+#include "sim/rig/camera_stamps.h"
 #include "sim/rig/camera_world.h"
 #include "sim/rig/capture.h"
 #include "sim/rig/capture_reports.h"
@@ -50,24 +51,40 @@ class AfterCapture final : public ForwardingSink {
   Capture* capture_ = nullptr;
 };
 
-// The cameras' half of the world that was used last, for the next run with the same start.
+// The cameras' half of the world of a seed, and its stamps by their start, for further runs.
 class SharedCameras {
  public:
   SharedCameras(const scenarios::Scenario& scenario, const EngineLimits& limits)
       : scenario_(scenario), limits_(limits) {}
 
-  CameraWorld& of(std::uint64_t seed, TrueTime start) {
-    if (!world_ || world_->seed() != seed || world_->start() != start || !world_->is_whole()) {
-      world_.reset();
+  CameraWorld& world(std::uint64_t seed, TrueTime start) {
+    const bool is_other = !world_ || world_->seed() != seed || !world_->is_whole() ||
+                          (CameraWorld::depends_on_start(scenario_) && world_->start() != start);
+    if (is_other) {
+      stamps_.clear();
       world_ = std::make_unique<CameraWorld>(scenario_, seed, start, limits_);
     }
     return *world_;
+  }
+
+  // In the present world.
+  CameraStamps& stamps(TrueTime start) {
+    const auto has_start = [start](const auto& stamps) { return stamps->start() == start; };
+    auto found = std::ranges::find_if(stamps_, has_start);
+    if (found == stamps_.end()) {
+      // Most pipelines have the first start; those of others seldom share one.
+      if (stamps_.size() > 1) stamps_.pop_back();
+      stamps_.push_back(std::make_unique<CameraStamps>(scenario_, *world_, start));
+      found = stamps_.end() - 1;
+    }
+    return **found;
   }
 
  private:
   const scenarios::Scenario& scenario_;
   EngineLimits limits_;
   std::unique_ptr<CameraWorld> world_;
+  std::vector<std::unique_ptr<CameraStamps>> stamps_;  // at most two
 };
 
 std::vector<ClockInterface> interfaces_of(HostGroup& hosts) {
@@ -93,6 +110,7 @@ class Run {
                 start_),
         seed_(request.seed),
         cameras_(cameras),
+        trigger_(scenario.trigger, 0, request.seed),
         context_(std::make_unique<VirtualContext>(engine_)),
         after_capture_(sink),
         hosts_(scenario, request.seed, request.pipeline + "@" + scenario.name, initial_clocks(),
@@ -145,7 +163,7 @@ class Run {
     const auto limited_hosts = std::ranges::count_if(
         hosts, is_limited,
         [](const SystemClock* clock) -> const auto& { return clock->oscillator(); });
-    const std::vector<DeviceClock>& cameras = camera_world_->cameras().clocks();
+    const std::vector<DeviceClock>& cameras = camera_stamps_->clocks();
     const auto limited_cameras =
         std::ranges::count_if(cameras, is_limited, &DeviceClock::oscillator);
     std::vector<std::string> notes;
@@ -180,13 +198,15 @@ class Run {
 
   void start_capture_at(TrueTime at) {
     engine_.call_at(at, [this] {
-      camera_world_ = &cameras_.of(seed_, engine_.now());
+      camera_world_ = &cameras_.world(seed_, engine_.now());
+      camera_stamps_ = &cameras_.stamps(engine_.now());
+      trigger_.start(engine_.now());
       const auto on_end = [this] {
         captured_ = true;
         engine_.stop();
       };
-      capture_.start(*camera_world_, on_end, cancel_);
-      hosts_.on_capture_start(camera_world_->trigger(), camera_world_->slots().last);
+      capture_.start(*camera_world_, *camera_stamps_, on_end, cancel_);
+      hosts_.on_capture_start(trigger_, evaluated_slots(scenario_).last);
       if (frame_feeds_.is_awaited()) expect_frame();
     });
   }
@@ -216,6 +236,8 @@ class Run {
   std::uint64_t seed_;
   SharedCameras& cameras_;
   CameraWorld* camera_world_ = nullptr;  // from the capture's start on
+  CameraStamps* camera_stamps_ = nullptr;
+  TriggerTree trigger_;  // for the hosts; its cables to cameras are the other half's
   std::unique_ptr<VirtualContext> context_;
   AfterCapture after_capture_;
   HostGroup hosts_;

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
 #include <exception>
 #include <functional>
 #include <utility>
@@ -24,9 +26,14 @@
 namespace simbench::sim {
 
 // engine.run(); throws scenarios::InputError, one line, for a world too large for its limits.
+//
+// It runs inside a loop of Asio's own, since coroutines that end there leave their memory to the
+// next ones.
 inline void run_world(Engine& engine) {
   try {
-    engine.run();
+    boost::asio::io_context loop(1);
+    boost::asio::post(loop, [&engine] { engine.run(); });
+    loop.run();
   } catch (const EngineLimitReached& limit) {
     throw scenarios::InputError(fmt::format(
         "found a world that is too large: {}; allowed: fewer frames, cameras or hosts, or "

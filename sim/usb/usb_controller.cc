@@ -29,13 +29,6 @@ bool UsbController::later(const Transfer& a, const Transfer& b) {
   return a.done_at != b.done_at ? a.done_at > b.done_at : a.order > b.order;
 }
 
-// When a frame is transferred that waits for the frames before it on its lane.
-double UsbController::queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
-  double& free_at_ns = lane_free_at_ns_[lane];
-  free_at_ns = std::max(free_at_ns, as_ns(now)) + bytes / settings_.bytes_per_ns;
-  return free_at_ns;
-}
-
 void UsbController::serve_until(TrueTime now) {
   if (!pending_.empty()) {
     served_bytes_ += static_cast<double>((now - served_until_).count()) * settings_.bytes_per_ns /
@@ -71,9 +64,7 @@ bool UsbController::submit(TrueTime now, std::size_t stream, double bytes, std::
 TrueTime UsbController::next_completion() const {
   if (pending_.empty()) return TrueTime::max();
   const double done_at = pending_.front().done_at;
-  if (settings_.sharing != UsbSharing::kFair) {
-    return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at))));
-  }
+  if (settings_.sharing != UsbSharing::kFair) return whole(done_at);
   const double remaining_ns =
       (done_at - served_bytes_) * static_cast<double>(pending_.size()) / settings_.bytes_per_ns;
   return served_until_ +

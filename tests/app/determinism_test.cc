@@ -15,10 +15,10 @@
 namespace simbench {
 namespace {
 
-std::string results_without_performance(const scenarios::Scenario& scenario, unsigned jobs) {
+std::string results_without_performance(const scenarios::Scenario& scenario,
+                                        const evaluation::EvaluationOptions& options) {
   const evaluation::Results results =
-      evaluation::evaluate(scenario, [&] { return sim::make_simulation(scenario); },
-                           {.first_seed = 1, .seeds = 3, .jobs = jobs, .pipelines = {}}, {});
+      evaluation::evaluate(scenario, [&] { return sim::make_simulation(scenario); }, options, {});
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(reports::json(results));
   for (const char* varies : {"performance", "version", "commit"}) json.erase(varies);
   return json.dump();
@@ -35,10 +35,31 @@ TEST(Determinism, ResultsDependOnNeitherThreadsNorCompilerNorFlags) {
                                        std::pair{"18cam_6host_15fps_lan", 0x53064ae3e8f8ef87ULL}}) {
     const scenarios::Scenario scenario =
         scenarios::load_scenario(name, {{"/timeline/frames", "60"}});
-    const std::string one_thread = results_without_performance(scenario, 1);
-    EXPECT_EQ(one_thread, results_without_performance(scenario, 4)) << name << ", seeds 1 to 3";
+    const std::string one_thread = results_without_performance(scenario, {.seeds = 3, .jobs = 1});
+    EXPECT_EQ(one_thread, results_without_performance(scenario, {.seeds = 3, .jobs = 4}))
+        << name << ", seeds 1 to 3";
     EXPECT_EQ(digest(one_thread), expected)
         << name << ", seeds 1 to 3: the digest is now 0x" << std::hex << digest(one_thread);
+  }
+}
+
+// Of pipelines of one host_sync, with messages and with clocks left alone, and of both worlds:
+// with a load for each pipeline, and without.
+TEST(Determinism, SharedCapturesGiveTheSameBytes) {
+  for (const char* name : {"18cam_6host_45fps", "leaderboard_lan"}) {
+    scenarios::Scenario scenario = scenarios::load_scenario(name, {{"/timeline/frames", "60"}});
+    scenario.pipelines = {{"a", "yoon2021_both", "regression_30", "yoon2021"},
+                          {"b", "free_running", "sensor_normalised", "genlock"},
+                          {"c", "yoon2021_both", "regression_offline", "oracle"},
+                          {"d", "free_running", "regression_30", "yoon2021"},
+                          {"e", "yoon2021_both", "oracle", "yoon2021"}};
+    scenario.published.clear();
+    for (const unsigned jobs : {1U, 2U}) {
+      EXPECT_EQ(
+          results_without_performance(scenario, {.seeds = 2, .jobs = jobs, .share_captures = true}),
+          results_without_performance(scenario, {.seeds = 2, .jobs = jobs}))
+          << name << ", seeds 1 to 2, " << jobs << " threads";
+    }
   }
 }
 

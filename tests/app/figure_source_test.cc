@@ -36,7 +36,7 @@ Archive archive_of(const scenarios::Scenario& scenario, std::uint64_t seeds) {
   Archive archive;
   archive.path = "results";
   archive.version = "0";
-  archive.scenario_json = scenario.resolved_json;
+  archive.scenario_json = scenario.resolved_json();
   archive.results = evaluation::evaluate(
       scenario, [&] { return sim::make_simulation(scenario); },
       {.first_seed = 5, .seeds = seeds, .keep_pulses = true}, nullptr);

@@ -132,6 +132,7 @@ extern const Whatever pipeline, make_world, make_clocks, base, fit, simulated, m
 extern CsvRecordingReader reader;
 extern const FitInput input;
 extern const std::unique_ptr<RecordingSource> own_source;
+extern const std::vector<PipelineChoice> choices;
 extern Given<ScorerSetup> setup;
 extern PulseTable table;
 extern PipelineScorer scorer;

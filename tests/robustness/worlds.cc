@@ -62,7 +62,8 @@ Worlds::Worlds() {
     const scenarios::Scenario scenario = scenarios::load_scenario(name);
     World& world = worlds_.emplace_back(World{.name = name, .pipelines = {}, .parameters = {}});
     for (const auto& pipeline : scenario.pipelines) world.pipelines.push_back(pipeline.name);
-    collect("", json::parse(scenario.resolved_json), scenarios::ordered_schema(), world.parameters);
+    collect("", json::parse(scenario.resolved_json()), scenarios::ordered_schema(),
+            world.parameters);
   }
 }
 

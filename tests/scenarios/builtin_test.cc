@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "scenarios/builtin_files.h"
 #include "tests/nonempty.h"
 #include "tests/scenarios/support.h"
 
@@ -51,10 +52,17 @@ TEST(Builtin, AllLoadWithoutWarnings) {
   }
 }
 
+// As files of a user's, whose every line is checked.
+TEST(Builtin, AllAreValid) {
+  for (const BuiltinFile& file : nonempty(builtin_files())) {
+    EXPECT_EQ(error_of_text(std::string(file.text)), "") << file.name;
+  }
+}
+
 TEST(Builtin, ResolvedJsonLoadsAsTheSameScenario) {
   for (const BuiltinScenario& builtin : nonempty(builtin_scenarios())) {
-    const std::string once = load_scenario(builtin.name).resolved_json;
-    const std::string twice = load_scenario_text(once, "resolved.json").resolved_json;
+    const std::string once = load_scenario(builtin.name).resolved_json();
+    const std::string twice = load_scenario_text(once, "resolved.json").resolved_json();
     EXPECT_EQ(once, twice) << builtin.name;
   }
 }

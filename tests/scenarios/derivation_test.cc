@@ -58,7 +58,7 @@ TEST(Derivation, OfAnOwnScenarioIsFromTheNearestBuiltin) {
 
 TEST(Derivation, OfACompleteFileIsFromTheFile) {
   Scenario complete = load_scenario("3cam_1host_30fps");
-  std::string text = complete.resolved_json;
+  std::string text = complete.resolved_json();
   text.replace(text.find("3cam_1host_30fps"), 16, "mine");
   EXPECT_EQ(heading(load_scenario_text(text, "mine.json")), "mine");
   const Scenario set = load_scenario_text(text, "mine.json", {{"/timeline/frames", "8"}});
@@ -98,10 +98,10 @@ TEST(Derivation, APipelineThatKeepsItsNameAloneIsAChange) {
 
 TEST(Derivation, OutlivesTheResolvedText) {
   const Scenario scenario = load_changed({{"/trigger/rate_hz", "30"}});
-  const Scenario again = load_scenario_text(scenario.resolved_json, "manifest.json");
+  const Scenario again = load_scenario_text(scenario.resolved_json(), "manifest.json");
   EXPECT_EQ(changes_of(again), changes_of(scenario));
   EXPECT_EQ(again.derivation.unpublished, scenario.derivation.unpublished);
-  EXPECT_EQ(again.resolved_json, scenario.resolved_json);
+  EXPECT_EQ(again.resolved_json(), scenario.resolved_json());
 }
 
 TEST(PublishedWorld, HoldsTheValuesOfTheScenarioThatStatesThem) {
@@ -147,7 +147,7 @@ TEST(Summary, OfAChangedWorldIsDrawnFromIt) {
   EXPECT_EQ(scenario.summary,
             "Cameras: 12, hosts: 4, frames: 480, sync mode genlock, trigger at 45 Hz, depth of 848 "
             "x 480 at 45 Hz.");
-  EXPECT_THAT(scenario.resolved_json, Not(HasSubstr("18 cameras in genlock")));
+  EXPECT_THAT(scenario.resolved_json(), Not(HasSubstr("18 cameras in genlock")));
 }
 
 TEST(Summary, OfAnOwnScenarioStaysUntilItsWorldIsChanged) {

@@ -77,7 +77,7 @@ TEST(Base, PublishedResultsDoNotOutliveItsPipelines) {
                         "device_time": "regression_30", "gathering": "yoon2021"}])");
   ASSERT_EQ(scenario.published.size(), 1U);
   EXPECT_EQ(scenario.published.begin()->first, "yoon2021_both");
-  EXPECT_EQ(scenario.resolved_json.find("ntp_last_set"), std::string::npos);
+  EXPECT_EQ(scenario.resolved_json().find("ntp_last_set"), std::string::npos);
 }
 
 TEST_F(Files, BasesLieRelativeToTheFile) {

@@ -32,7 +32,7 @@ std::string damaged(std::string text, std::mt19937& random) {
 }
 
 TEST(Mutation, LoadsOrSaysWhatIsWrongInOneLine) {
-  const std::string whole = load_scenario("18cam_6host_45fps").resolved_json;
+  const std::string whole = load_scenario("18cam_6host_45fps").resolved_json();
   const std::string small = derived(R"("faults": [{"kind": "clock_step", "host": 1, "at_ms": 1,
     "step_ms": 2}], "trigger": {"pauses": [{"at_ms": 1, "duration_ms": 2}]})");
   for (std::mt19937::result_type seed = 0; seed < 400; ++seed) {

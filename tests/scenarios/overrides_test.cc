@@ -54,10 +54,10 @@ TEST(Set, MayCreateWhatTheSchemaCallsOptional) {
                             {"/network/links/0/latency_fixed_ms", "0.3"}});
   EXPECT_EQ(linked.network.links.at(0).latency_fixed_ms, 0.3);
   EXPECT_FALSE(linked.network.links.at(0).latency_exponential_ms.has_value());
-  EXPECT_EQ(load_scenario("18cam_6host_45fps").resolved_json,
+  EXPECT_EQ(load_scenario("18cam_6host_45fps").resolved_json(),
             load_scenario("18cam_6host_45fps",
                           {{"/hosts/master_is_exact", "true"}, {"/hosts/master_is_exact", "null"}})
-                .resolved_json);
+                .resolved_json());
   EXPECT_EQ(error_of_set("/hosts/master_is_exct", "true"),
             "--set /hosts/master_is_exct=true: found no \"master_is_exct\" in /hosts, did you mean "
             "master_is_exact?");

@@ -60,7 +60,7 @@ json full_document() {
     "cameras": {"oscillator": {"class": "ocxo"}, "host_of_camera": [0,0,0, 1,1,1, 2,2,2, 3,3,3, 4,4,4, 5,5,5],
                 "skew_of_camera_ppm": [1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3, 1,2,3]},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
-  json document = json::parse(load_scenario_text(text, "my.json").resolved_json);
+  json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
   // Beside which no link has a latency of its own, which only the checks say.
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
   json& stream = document["cameras"]["streams"][0];
@@ -333,7 +333,7 @@ TEST(Schema, EveryPropertyIsRequiredOfAResolvedScenario) {
 }
 
 TEST(Schema, KeepsItsOrder) {
-  const std::string text = load_scenario("18cam_6host_45fps").resolved_json;
+  const std::string text = load_scenario("18cam_6host_45fps").resolved_json();
   EXPECT_LT(text.find("\"schema_version\""), text.find("\"name\""));
   EXPECT_LT(text.find("\"timeline\""), text.find("\"hosts\""));
   EXPECT_LT(text.find("\"warm_up_ms\""), text.find("\"frames\""));

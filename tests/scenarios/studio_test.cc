@@ -38,7 +38,7 @@ std::vector<std::string> warnings_of(const Override& setting) {
 TEST(Studio, AScenarioMayDoWithout) {
   const Scenario scenario = load_scenario("18cam_6host_45fps");
   EXPECT_FALSE(scenario.studio.has_value());
-  EXPECT_EQ(scenario.resolved_json.find("studio"), std::string::npos);
+  EXPECT_EQ(scenario.resolved_json().find("studio"), std::string::npos);
 }
 
 TEST(Studio, OfThePaper) {
@@ -86,7 +86,7 @@ TEST(Studio, NullForgetsIt) {
        {load_over_studio(R"("studio": null)"), load_scenario(kStudio, {{"/studio", "null"}}),
         load_derived(R"("studio": null)")}) {
     EXPECT_FALSE(scenario.studio.has_value());
-    EXPECT_EQ(scenario.resolved_json.find("studio\":"), std::string::npos);
+    EXPECT_EQ(scenario.resolved_json().find("studio\":"), std::string::npos);
   }
 }
 

@@ -23,7 +23,7 @@ inline Scenario load_derived(const std::string& members,
 
 // The resolved studio of a built-in scenario, as JSON.
 inline std::string studio_of(const std::string& scenario) {
-  return nlohmann::json::parse(load_scenario(scenario).resolved_json).at("studio").dump();
+  return nlohmann::json::parse(load_scenario(scenario).resolved_json()).at("studio").dump();
 }
 
 // "FILE:LINE: /pointer" of a value of the built-in 18cam_6host_45fps.

@@ -175,11 +175,6 @@ std::optional<double> second_slope(std::span<const double> a, std::span<const do
   return (aa * by - ab * ay) / determinant;
 }
 
-double median(std::span<const double> values) {
-  std::vector<double> copy(values.begin(), values.end());
-  return median_in_place(copy);
-}
-
 int critical_runs(std::size_t n) {
   static const std::array<int, kTabulatedRuns> table_of_runs = [] {
     std::array<int, kTabulatedRuns> table{};
@@ -210,6 +205,7 @@ constexpr double kMaxSkew = 1e2;
 constexpr double kMinDeviation = 1e-9;         // s
 constexpr double kWorstFrequencyError = 2e-3;  // as a fraction
 constexpr std::size_t kDelayTestSamples = 6;
+constexpr double kEndlessDelay = std::numeric_limits<double>::infinity();
 
 double distance(const ChronySample& sample) { return sample.delay_s / 2 + sample.dispersion_s; }
 
@@ -232,6 +228,8 @@ void ChronySourceStats::add(const ChronySample& sample) {
   if (samples() >= settings_.max_samples) drop_oldest(1);
   if (!samples_.empty() && sample.at_s <= samples_.back().at_s) reset();
   samples_.push_back(sample);
+  min_delay_s_ = std::min(min_delay_s_, sample.delay_s);
+  fill_columns();
   update_asymmetry();
   regress();
 }
@@ -248,6 +246,7 @@ void ChronySourceStats::correct(double at_s, double offset_s, double frequency) 
 void ChronySourceStats::reset() {
   samples_.clear();
   extra_ = 0;
+  min_delay_s_ = kEndlessDelay;
   estimate_.reset();
   asymmetry_ = 0;
   asymmetry_run_ = 0;
@@ -262,39 +261,36 @@ double ChronySourceStats::frequency_error() const {
   return estimate_ ? std::min(estimate_->skew, kWorstFrequencyError) : kWorstFrequencyError;
 }
 
-double ChronySourceStats::min_delay_s() const {
-  if (samples_.empty()) return std::numeric_limits<double>::infinity();
-  return std::min_element(samples_.begin(), samples_.end(),
-                          [](const auto& a, const auto& b) { return a.delay_s < b.delay_s; })
-      ->delay_s;
+void ChronySourceStats::fill_columns() {
+  const std::size_t n = samples_.size();
+  columns_.time_s.resize(n);
+  columns_.delay_s.resize(n);
+  columns_.offset_s.resize(n);
+  const double last_s = samples_.back().at_s;
+  for (std::size_t i = 0; i < n; ++i) {
+    columns_.time_s[i] = samples_[i].at_s - last_s;
+    columns_.delay_s[i] = samples_[i].delay_s - min_delay_s_;
+    columns_.offset_s[i] = samples_[i].offset_s;
+  }
 }
 
-std::vector<double> ChronySourceStats::weights() const {
-  std::vector<double> values;
-  for (const ChronySample& sample : std::span(samples_).subspan(extra_)) {
-    values.push_back(distance(sample));
-  }
+void ChronySourceStats::fill_weights() {
+  std::vector<double>& values = columns_.weight;
+  values.resize(samples());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = distance(samples_[extra_ + i]);
   const double least = *std::min_element(values.begin(), values.end());
-  const double spread = std::min((median(values) - least) / kMedianToSd, least);
+  columns_.sorted = values;
+  const double spread = std::min((median_in_place(columns_.sorted) - least) / kMedianToSd, least);
   const double sd = std::max(spread, settings_.precision_s);
   for (double& value : values) {
     const double factor = 1 + std::max(0.0, value - least - settings_.precision_s) / sd;
     value = factor * factor;
   }
-  return values;
 }
 
 void ChronySourceStats::update_asymmetry() {
-  std::vector<double> time;
-  std::vector<double> delay;
-  std::vector<double> offset;
-  const double least_s = min_delay_s();
-  for (const ChronySample& sample : samples_) {
-    time.push_back(sample.at_s - samples_.back().at_s);
-    delay.push_back(sample.delay_s - least_s);
-    offset.push_back(sample.offset_s);
-  }
-  const std::optional<double> slope = second_slope(time, delay, offset);
+  const std::optional<double> slope =
+      second_slope(columns_.time_s, columns_.delay_s, columns_.offset_s);
   if (!slope || *slope * asymmetry_run_ < 0) {
     asymmetry_ = 0;
     asymmetry_run_ = 0;
@@ -307,21 +303,18 @@ void ChronySourceStats::update_asymmetry() {
 }
 
 void ChronySourceStats::regress() {
-  const double last_s = samples_.back().at_s;
-  const double least_s = min_delay_s();
-  std::vector<double> time;
-  std::vector<double> offset;
-  for (const ChronySample& sample : samples_) {
-    time.push_back(sample.at_s - last_s);
-    offset.push_back(sample.offset_s - asymmetry_ * (sample.delay_s - least_s));
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    columns_.offset_s[i] -= asymmetry_ * columns_.delay_s[i];
   }
-  const auto best = best_regression(time, offset, weights(), extra_, settings_.min_samples);
+  fill_weights();
+  const auto best = best_regression(columns_.time_s, columns_.offset_s, columns_.weight, extra_,
+                                    settings_.min_samples);
   if (!best) {
     estimate_.reset();
     return;
   }
   ChronyEstimate estimate;
-  estimate.at_s = last_s;
+  estimate.at_s = samples_.back().at_s;
   estimate.offset_s = best->line.intercept;
   estimate.offset_sd_s = best->line.intercept_sd;
   estimate.frequency = best->line.slope;
@@ -338,6 +331,8 @@ void ChronySourceStats::drop_oldest(std::size_t count) {
   if (extra_ <= used) return;
   samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(extra_ - used));
   extra_ = used;
+  min_delay_s_ = kEndlessDelay;
+  for (const ChronySample& sample : samples_) min_delay_s_ = std::min(min_delay_s_, sample.delay_s);
 }
 
 }  // namespace simbench

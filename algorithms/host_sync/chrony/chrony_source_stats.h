@@ -10,6 +10,7 @@
 #define SIMBENCH_ALGORITHMS_HOST_SYNC_CHRONY_CHRONY_SOURCE_STATS_H_
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -64,9 +65,6 @@ std::optional<BestRegression> best_regression(std::span<const double> x, std::sp
 // do not determine it.
 std::optional<double> second_slope(std::span<const double> a, std::span<const double> b,
                                    std::span<const double> y);
-
-// Mean of the middle two if their number is even. Must not be empty.
-double median(std::span<const double> values);
 
 // The number of runs at or below which n residuals are rejected; 0 for n < 8.
 int critical_runs(std::size_t n);
@@ -141,14 +139,24 @@ class ChronySourceStats {
   // The estimated offset at a time; without an estimate that of the last sample, or 0.
   double predict_s(double at_s) const;
   // The least delay of the samples, the dropped ones too; infinite without any.
-  double min_delay_s() const;
+  double min_delay_s() const { return min_delay_s_; }
   // Bound of the frequency's error, as a fraction; at most 0.2 %, which it is without an estimate.
   double frequency_error() const;
   std::size_t samples() const { return samples_.size() - extra_; }
   double asymmetry() const { return asymmetry_; }
 
  private:
-  std::vector<double> weights() const;
+  // Of the samples as columns, as far as a fit needs them; allocated once.
+  struct Columns {
+    std::vector<double> time_s;  // since the last sample
+    std::vector<double> delay_s;  // above the least
+    std::vector<double> offset_s;
+    std::vector<double> weight;
+    std::vector<double> sorted;
+  };
+
+  void fill_columns();
+  void fill_weights();
   void update_asymmetry();
   void regress();
   void drop_oldest(std::size_t count);
@@ -156,6 +164,8 @@ class ChronySourceStats {
   ChronyStatsSettings settings_;
   std::vector<ChronySample> samples_;  // in order of time; the first `extra_` not in use
   std::size_t extra_ = 0;
+  double min_delay_s_ = std::numeric_limits<double>::infinity();
+  Columns columns_;
   std::optional<ChronyEstimate> estimate_;
   double asymmetry_ = 0;
   int asymmetry_run_ = 0;

@@ -39,7 +39,7 @@ class NullGate : public testing::Test {
     const scenarios::Scenario scenario =
         scenarios::load_scenario("6cam_2host_30fps", {{"/timeline/frames", "30"}});
     archives = new Archive;
-    archives->scenario_json = scenario.resolved_json;
+    archives->scenario_json = scenario.resolved_json();
     archives->results = evaluation::evaluate(
         scenario, [&] { return sim::make_simulation(scenario); },
         {.seeds = 2 * kGates * kSeeds,

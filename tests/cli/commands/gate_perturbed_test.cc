@@ -76,7 +76,7 @@ class PerturbedGate : public ProgramTest {
  private:
   static std::string device_time_of(const std::string& scenario, const std::string& pipeline) {
     const auto resolved =
-        nlohmann::json::parse(scenarios::load_scenario(scenario).resolved_json)["pipelines"];
+        nlohmann::json::parse(scenarios::load_scenario(scenario).resolved_json())["pipelines"];
     std::size_t index = 0;
     while (resolved.at(index)["name"] != pipeline) ++index;
     return "/pipelines/" + std::to_string(index) + "/device_time";

@@ -121,6 +121,25 @@ TEST(Budget, PartsAddUpAndNothingIsLeft) {
   EXPECT_GT(stage_mean(budget.amd_ms, Stage::kHostClock), 0);
 }
 
+void expect_equal_parts(const ErrorParts& a, const ErrorParts& b) {
+  EXPECT_EQ(a.total.values, b.total.values);
+  EXPECT_EQ(a.remainder.values, b.remainder.values);
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+    EXPECT_EQ(a.stages[stage].values, b.stages[stage].values) << kStageNames[stage];
+  }
+}
+
+// Polls of the cameras' clocks, which the pipeline does not use, give an ideal delivery captures of
+// its own; without them it shares those of the real one.
+TEST(Budget, SharedCapturesGiveTheSameNumbers) {
+  const scenarios::Pipeline pipeline = {"both", "yoon2021_both", "regression_30", "yoon2021"};
+  const Budget shared = budget_of(small_world("/cameras/clock_poll/interval_ms", "0"), pipeline);
+  const Budget apart = budget_of(small_world("/cameras/clock_poll/interval_ms", "100"), pipeline);
+  expect_equal_parts(shared.amd_ms, apart.amd_ms);
+  expect_equal_parts(shared.absolute_error_ms, apart.absolute_error_ms);
+  expect_equal_parts(shared.physical_ms, apart.physical_ms);
+}
+
 TEST(Budget, ALateBranchIsPhysicalAndTheTriggersAlone) {
   const scenarios::Scenario scenario = small_world("/trigger/cable_delay_max_us", "3000");
   const Budget budget = budget_of(scenario, {"oracle", "oracle", "oracle", "yoon2021"});

@@ -59,7 +59,7 @@ TEST(SweepWorkers, AWorldThatIsRefusedIsBadInputWithItsPlace) {
       [](const scenarios::Scenario&) { return std::make_unique<TooLargeWorld>(); }, nullptr);
   const scenarios::Scenario world = scenarios::load_scenario("3cam_1host_30fps");
   const TaskWorker worker =
-      make(nlohmann::json{{"name", world.name}, {"scenario", world.resolved_json}}.dump());
+      make(nlohmann::json{{"name", world.name}, {"scenario", world.resolved_json()}}.dump());
   const std::string task = R"({"pipeline":"oracle","seed":7,"values":[["/timeline/frames","30"]]})";
   EXPECT_THAT([&] { worker(task); },
               testing::ThrowsMessage<scenarios::InputError>(testing::AllOf(

@@ -206,7 +206,7 @@ std::uint64_t kill_often(const std::filesystem::path& folder, unsigned seed,
 TEST(KilledNodes, LoseNothingThatWasRecorded) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
-  const std::string scenario = scenarios::load_scenario("3cam_1host_30fps").resolved_json;
+  const std::string scenario = scenarios::load_scenario("3cam_1host_30fps").resolved_json();
   const auto root = std::filesystem::temp_directory_path() /
                     fmt::format("simbench_kill_{}_{:08x}", getpid(), seed);
   std::uint64_t kept = 0;

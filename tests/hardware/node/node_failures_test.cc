@@ -184,7 +184,7 @@ class NodeFailures : public NodeHarness {
     answer = co_await refusal(with(test.terms(), "scenario", "{"));
     EXPECT_THAT(answer.error, HasSubstr("scenario:1"));
     const scenarios::Scenario other = scenarios::load_scenario("18cam_6host_45fps");
-    answer = co_await refusal(with(test.terms(), "scenario", other.resolved_json));
+    answer = co_await refusal(with(test.terms(), "scenario", other.resolved_json()));
     EXPECT_THAT(answer.error, HasSubstr("found 1 host, allowed 6"));
     EXPECT_THAT(test.journal(), IsEmpty());
     answer = co_await refusal(test.terms());

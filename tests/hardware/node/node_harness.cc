@@ -253,7 +253,7 @@ Task<void> NodeHarness::pause(Nanoseconds interval) {
 json NodeHarness::terms(const std::string& session) const {
   return {{"session", session},
           {"conductor", "me@here"},
-          {"scenario", scenario_.resolved_json},
+          {"scenario", scenario_.resolved_json()},
           {"pipeline", "free_running"}};
 }
 

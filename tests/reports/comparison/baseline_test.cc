@@ -152,7 +152,7 @@ TEST(CommittedBaselines, FitTheirScenarios) {
     const Baseline baseline = read_baseline(entry.path().string());
     EXPECT_EQ(baseline.scenario, entry.path().stem().string());
     EXPECT_EQ(seeds_text(baseline.seeds), "1-32");
-    const std::string now = scenarios::load_scenario(baseline.scenario).resolved_json;
+    const std::string now = scenarios::load_scenario(baseline.scenario).resolved_json();
     EXPECT_THAT(compare_scenarios(baseline.scenario_json, now).world, testing::IsEmpty());
     ++count;
   }

@@ -31,7 +31,7 @@ class ReconstructionFolderTest : public testing::Test {
  protected:
   std::string write() const {
     auto results = sample_reconstruction();
-    results.scenario.resolved_json = R"({"name": "a_studio"})";
+    results.scenario.resolved_json = scenarios::Lazy<std::string>(R"({"name": "a_studio"})");
     ReconstructionFolder folder(path(), scenario_with({"ntp_last_set", "yoon2021_both", "oracle"}));
     reconstruction::ShownMesh mesh;
     mesh.pipeline = "oracle";

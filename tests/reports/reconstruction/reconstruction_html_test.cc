@@ -84,7 +84,8 @@ TEST(ReconstructionHtml, AsksNothingOfAnyServer) {
 TEST(ReconstructionHtml, MarkupInNamesIsText) {
   const std::string evil = "</script><img src=x onerror=alert(1)>\"'&";
   auto results = sample_reconstruction();
-  results.scenario.name = results.scenario.summary = results.scenario.resolved_json = evil;
+  results.scenario.name = results.scenario.summary = evil;
+  results.scenario.resolved_json = scenarios::Lazy<std::string>(evil);
   results.notes = {evil};
   for (auto& row : results.rows) row.pipeline = row.host_sync = row.gathering = evil;
   results.speed_needed->pipeline = evil;

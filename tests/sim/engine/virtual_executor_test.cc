@@ -217,11 +217,14 @@ TEST_F(VirtualExecutorTest, CoroutinesTalkThroughMailboxes) {
 
 asio::awaitable<void> first_of(VirtualContext& context, WaitPoint& point,
                                std::vector<std::string>& log) {
-  const auto first = co_await (point.wait() || sleep_until(context, at_ns(10), "timeout"));
+  const auto first = co_await (point.wait()(asio::use_awaitable) ||
+                                sleep_until(context, at_ns(10), "timeout")(asio::use_awaitable));
   log.push_back("first " + std::to_string(first.index()));
-  const auto second = co_await (point.wait(at_ns(15)) || sleep_until(context, at_ns(99), "late"));
+  const auto second = co_await (point.wait(at_ns(15))(asio::use_awaitable) ||
+                                 sleep_until(context, at_ns(99), "late")(asio::use_awaitable));
   log.push_back("second " + std::to_string(second.index()));
-  co_await (sleep_until(context, at_ns(30), "x") && sleep_until(context, at_ns(20), "y"));
+  co_await (sleep_until(context, at_ns(30), "x")(asio::use_awaitable) &&
+            sleep_until(context, at_ns(20), "y")(asio::use_awaitable));
   log.push_back("both at " + std::to_string(context.engine().now().time_since_epoch().count()));
 }
 
@@ -236,7 +239,8 @@ TEST_F(VirtualExecutorTest, OperatorsWaitForOneOrBothAndCancelTheLoser) {
 
 asio::awaitable<void> fail_beside(VirtualContext& context, std::vector<std::string>& log) {
   try {
-    co_await (answer_after(context, at_ns(5), -1) && sleep_until(context, at_ns(1000), "long"));
+    co_await (answer_after(context, at_ns(5), -1) &&
+              sleep_until(context, at_ns(1000), "long")(asio::use_awaitable));
   } catch (const asio::multiple_exceptions& errors) {  // the failure and the cancelled sleep
     try {
       std::rethrow_exception(errors.first_exception());
@@ -310,7 +314,8 @@ TEST_F(VirtualExecutorTest, AMillionReadyAwaitsNeedNoStack) {
 
 asio::awaitable<void> hold_and_wait(VirtualContext& context, WaitPoint& point,
                                     std::shared_ptr<int> held) {
-  co_await (point.wait() || sleep_until(context, TrueTime(std::chrono::hours(1)), "hour"));
+  co_await (point.wait()(asio::use_awaitable) ||
+            sleep_until(context, TrueTime(std::chrono::hours(1)), "hour")(asio::use_awaitable));
   ++*held;
 }
 

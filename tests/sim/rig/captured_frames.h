@@ -59,9 +59,10 @@ inline CapturedFrames capture(const scenarios::Scenario& scenario, std::uint64_t
   outages.start(TrueTime{});
   Capture capture(scenario, engine, views, outages, CaptureReports(frames));
   frames.on_start(capture.layout());
-  CameraWorld world(scenario, seed, TrueTime{});
+  CameraWorld world(scenario, seed);
+  CameraStamps stamps(scenario, world, TrueTime{});
   bool ended = false;
-  capture.start(world, [&] { ended = true; });
+  capture.start(world, stamps, [&] { ended = true; });
   engine.run();
   EXPECT_TRUE(ended);
   return frames;

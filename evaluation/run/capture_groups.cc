@@ -1,0 +1,82 @@
+#include "evaluation/run/capture_groups.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "algorithms/ports/host_sync.h"
+#include "recording/forked_sink.h"
+
+namespace simbench::evaluation {
+namespace {
+
+bool meets_load(const scenarios::Scenario& scenario, const PipelineChoice& choice) {
+  return scenario.draws_load() && !choice.host_sync.make(choice.host_sync_parameters)->is_idle();
+}
+
+bool have_same_capture(const scenarios::Scenario& scenario, const PipelineChoice& a,
+                       const PipelineChoice& b) {
+  if (a.pipeline.programs || b.pipeline.programs) return false;
+  return a.host_sync.info.name == b.host_sync.info.name &&
+         a.host_sync_parameters.all() == b.host_sync_parameters.all() &&
+         (a.pipeline.name == b.pipeline.name || !meets_load(scenario, a));
+}
+
+}  // namespace
+
+CaptureGroups capture_groups(const scenarios::Scenario& scenario,
+                             const std::vector<PipelineChoice>& choices) {
+  CaptureGroups groups;
+  for (std::size_t place = 0; place < choices.size(); ++place) {
+    const auto found = std::ranges::find_if(groups, [&](const std::vector<std::size_t>& group) {
+      return have_same_capture(scenario, choices[group.front()], choices[place]);
+    });
+    if (found == groups.end()) {
+      groups.push_back({place});
+    } else {
+      found->push_back(place);
+    }
+  }
+  return groups;
+}
+
+CaptureGroups single_captures(const std::vector<PipelineChoice>& choices) {
+  CaptureGroups groups;
+  for (std::size_t place = 0; place < choices.size(); ++place) groups.push_back({place});
+  return groups;
+}
+
+SharedCapture::SharedCapture(const scenarios::Scenario& scenario,
+                             const std::vector<PipelineChoice>& choices,
+                             const std::vector<std::size_t>& group, std::uint64_t seed)
+    : recorded_(choices[group.front()]), seed_(seed) {
+  for (const std::size_t place : group) {
+    Member member;
+    member.scorer = std::make_unique<PipelineScorer>(scorer_setup(scenario, choices[place]));
+    if (choices[place].view) member.view = choices[place].view(*member.scorer);
+    members_.push_back(std::move(member));
+  }
+}
+
+void SharedCapture::record(RecordingSource& source) {
+  std::vector<RecordingSink*> sinks;
+  for (const Member& member : members_) {
+    sinks.push_back(member.view ? member.view.get() : member.scorer.get());
+  }
+  ForkedSink fork(sinks);
+  std::exception_ptr failure;
+  try {
+    cost_ = record_run(source, recorded_, seed_, fork);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    members_[i].failure = fork.failure(i) ? fork.failure(i) : failure;
+  }
+}
+
+SeedScore SharedCapture::score(std::size_t member) {
+  if (members_[member].failure) std::rethrow_exception(members_[member].failure);
+  return captured_score(*members_[member].scorer, cost_, seed_);
+}
+
+}  // namespace simbench::evaluation

@@ -1,0 +1,69 @@
+// One capture for several pipelines: which of them can share it, and their scores side by side.
+//
+// A capture follows from the scenario, the seed, the host synchronisation with its parameters, and
+// the load that is drawn for the pipeline (scenarios::Scenario::draws_load(), keyed by its name).
+// So pipelines share one if they differ in device_time and gathering alone, and either the scenario
+// draws no load, or their host synchronisation never meets it (HostSync::is_idle()), or they have
+// the same name. Pipelines of programs share none: what a program does is not simbench's to say.
+//
+//   for (const std::vector<std::size_t>& group : capture_groups(scenario, choices)) {
+//     SharedCapture capture(scenario, choices, group, seed);
+//     capture.record(source);
+//     const SeedScore first = capture.score(0);
+//   }
+#ifndef SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_
+#define SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <vector>
+
+#include "evaluation/run/pipeline_choice.h"
+#include "evaluation/scoring/pipeline_scorer.h"
+#include "recording/recording.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::evaluation {
+
+// The places of the choices that share a capture. Every place once: those of a group in their
+// order, the groups in that of their first. O(n^2).
+using CaptureGroups = std::vector<std::vector<std::size_t>>;
+CaptureGroups capture_groups(const scenarios::Scenario& scenario,
+                             const std::vector<PipelineChoice>& choices);
+
+// Each choice by itself, as on a rig, where every capture is another.
+CaptureGroups single_captures(const std::vector<PipelineChoice>& choices);
+
+// The capture of a group at a seed.
+class SharedCapture {
+ public:
+  // `choices` must outlive this.
+  SharedCapture(const scenarios::Scenario& scenario, const std::vector<PipelineChoice>& choices,
+                const std::vector<std::size_t>& group, std::uint64_t seed);
+
+  // Records it with the first choice of the group, to scorers of all. Keeps what goes wrong. Once.
+  void record(RecordingSource& source);
+
+  // The score of a member, by its place in the group; once for each. Throws what went wrong with it
+  // or with the capture.
+  SeedScore score(std::size_t member);
+
+ private:
+  // A scorer and what comes before it.
+  struct Member {
+    std::unique_ptr<PipelineScorer> scorer;
+    std::unique_ptr<RecordingSink> view;  // null: none
+    std::exception_ptr failure;
+  };
+
+  const PipelineChoice& recorded_;  // the first
+  std::uint64_t seed_;
+  std::vector<Member> members_;
+  RecordingCost cost_;
+};
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_RUN_CAPTURE_GROUPS_H_
