@@ -132,7 +132,7 @@ class LineWindow {
  private:
   // False, and no change, if a number does not fit. n x - sum of x is below 2^62.
   bool exchange(LinePoint point) {
-    LinePoint& oldest = points_[static_cast<std::size_t>(next_)];
+    const LinePoint oldest = points_[static_cast<std::size_t>(next_)];
     const std::int64_t dx = point.x - oldest.x;
     const std::int64_t dy = point.y - oldest.y;
     const std::int64_t lever = count_ * point.x - (sum_x_ + dx);
