@@ -56,7 +56,7 @@ BurstProcess::BurstProcess(const scenarios::Burst& parameters, std::uint64_t run
   cell_ms_ = to_ms(Nanoseconds(cell_ns_));
 }
 
-bool BurstProcess::active(TrueTime t) {
+bool BurstProcess::sampled(TrueTime t) {
   if (cell_ns_ == 0) return is_always_active_;
   const std::int64_t since_zero_ns = t.time_since_epoch().count();
   const std::int64_t cell = floor_div(since_zero_ns, cell_ns_);
@@ -86,8 +86,7 @@ HostLoad::HostLoad(const scenarios::Burst& parameters, std::uint64_t run_seed, P
       latency_ms_(parameters.latency_ms),
       bursts_(parameters, run_seed, kLoadBursts, host) {}
 
-Nanoseconds HostLoad::delay(TrueTime at, ComponentKey what, std::uint64_t a, std::uint64_t b) {
-  if (!bursts_.active(at)) return Nanoseconds(0);
+Nanoseconds HostLoad::drawn(ComponentKey what, std::uint64_t a, std::uint64_t b) const {
   RandomStream draw(run_seed_, what, a, b);
   return from_ms(draw.uniform(0, 2 * latency_ms_));
 }

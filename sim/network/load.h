@@ -82,7 +82,7 @@ class BurstProcess {
   BurstProcess(const scenarios::Burst& parameters, std::uint64_t run_seed, ComponentKey kind,
                std::uint64_t number);
 
-  bool active(TrueTime t);
+  bool active(TrueTime t) { return (is_always_active_ || cell_ns_ != 0) && sampled(t); }
 
  private:
   struct Interval {
@@ -90,6 +90,7 @@ class BurstProcess {
     TrueTime end;
   };
 
+  bool sampled(TrueTime t);
   void sample_cell(std::int64_t cell);
 
   std::uint64_t run_seed_;
@@ -112,9 +113,13 @@ class HostLoad {
   HostLoad(const scenarios::Burst& parameters, std::uint64_t run_seed, PeerId host);
 
   // The delay of what arrives at `at` with the key (what, a, b).
-  Nanoseconds delay(TrueTime at, ComponentKey what, std::uint64_t a, std::uint64_t b);
+  Nanoseconds delay(TrueTime at, ComponentKey what, std::uint64_t a, std::uint64_t b) {
+    return bursts_.active(at) ? drawn(what, a, b) : Nanoseconds(0);
+  }
 
  private:
+  Nanoseconds drawn(ComponentKey what, std::uint64_t a, std::uint64_t b) const;
+
   std::uint64_t run_seed_;
   double latency_ms_;
   BurstProcess bursts_;

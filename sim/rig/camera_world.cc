@@ -43,10 +43,10 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
       last_exposure_(trigger_.due(slots_.last + 2)),
       polls_(scenario, seed, camera_faults_, last_exposure_),
       end_(last_exposure_),
-      next_slot_at_(time_of_slot(0)),
       kept_bytes_(kept_bytes) {
   camera_faults_.start(TrueTime{});
   make_hosts();
+  plan_slot(TrueTime{});
   for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
     const TrueTime timer = cameras_.stream(id).shutter.next_timer();
     if (timer != TrueTime::max()) timers_.push(timer, id);
@@ -129,15 +129,17 @@ void CameraWorld::sort(std::vector<Step>& steps) {
   });
 }
 
-TrueTime CameraWorld::time_of_slot(std::int64_t slot) const {
-  return std::max(trigger_.pulse(slot).value_or(trigger_.due(slot)), TrueTime{});
+void CameraWorld::plan_slot(TrueTime earliest) {
+  const std::optional<TrueTime> pulse = trigger_.pulse(next_slot_);
+  next_slot_has_pulse_ = pulse.has_value();
+  next_slot_at_ = std::max(pulse.value_or(trigger_.due(next_slot_)), earliest);
 }
 
 // By the pulse of the next slot; a slot without one still takes its time.
 std::optional<CameraPulse> CameraWorld::expose_by_pulse() {
   const std::int64_t slot = next_slot_++;
   const TrueTime now = next_slot_at_;
-  const bool has_pulse = trigger_.pulse(slot).has_value();
+  const bool has_pulse = next_slot_has_pulse_;
   ++events_;
   if (has_pulse) {
     for (const std::uint32_t id : cameras_.triggered_streams()) {
@@ -148,7 +150,7 @@ std::optional<CameraPulse> CameraWorld::expose_by_pulse() {
       if (exposure) expose(id, *exposure, now);
     }
   }
-  next_slot_at_ = std::max(time_of_slot(next_slot_), now);
+  plan_slot(now);
   if (!has_pulse) return std::nullopt;
   return CameraPulse{.slot = slot, .at = now};
 }

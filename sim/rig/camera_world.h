@@ -158,7 +158,8 @@ class CameraWorld {
   }
   void make_hosts();
   void make_period(CameraPeriod& period);
-  TrueTime time_of_slot(std::int64_t slot) const;
+  // Slot next_slot_, not before `earliest`.
+  void plan_slot(TrueTime earliest);
   std::optional<CameraPulse> expose_by_pulse();
   void expose_by_timers(TrueTime before);
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
@@ -190,7 +191,8 @@ class CameraWorld {
   ClockPolls polls_;
   TrueTime end_;
   std::int64_t next_slot_ = 0;
-  TrueTime next_slot_at_;
+  TrueTime next_slot_at_{};
+  bool next_slot_has_pulse_ = false;
   bool has_begun_ = false;
   bool is_over_ = false;
   std::uint64_t events_ = 0;

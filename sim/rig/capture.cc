@@ -183,6 +183,7 @@ void Capture::stamp(const CameraFrame& frame, const CameraStream& stream,
   const TrueTime at = date(frame.at);
   const SystemClock::Reading arrival = clock.read_both(at);
   const SystemClock::Reading exposed = clock.read_both(middle);
+  const bool is_master = stream.host == 0;
   records_.push_back({.camera = stream.camera,
                       .stream = stream.kind,
                       .counter = frame.counter,
@@ -196,10 +197,10 @@ void Capture::stamp(const CameraFrame& frame, const CameraStream& stream,
   truths_.push_back({.pulse = frame.pulse,
                      .exposure_start = date(frame.exposure_start),
                      .exposure_end = date(frame.exposure_end),
-                     .reference = clocks_[0]->read(middle),
+                     .reference = is_master ? exposed.system : clocks_[0]->read(middle),
                      .own_host = exposed.system,
                      .own_steady = exposed.steady,
-                     .delivered = clocks_[0]->read(at)});
+                     .delivered = is_master ? arrival.system : clocks_[0]->read(at)});
 }
 
 }  // namespace simbench::sim
