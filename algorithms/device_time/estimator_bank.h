@@ -1,20 +1,23 @@
 // The estimators of many cameras, one for each, which stamp frames by the block.
 //
 // A stamp is the same here as from the estimator alone. A bank is quicker: its estimators are of
-// one type and lie side by side in memory, and a block costs one virtual call. An estimator gets
-// one by its base class, if a copy of a fresh one is as good as another fresh one:
+// one type and lie side by side in memory, and a block costs one virtual call. An estimator has one
+// by its base class, if a copy of a fresh one is as good as another fresh one:
 //
-//   class Doubled final : public Banked<Doubled> {
+//   class Latest final : public Banked<Latest> {
 //    public:
-//     GlobalTime stamp(const DeviceSample& s) override { return GlobalTime(2 *
-//     s.arrival.time_since_epoch()); }
+//     GlobalTime stamp(const DeviceSample& sample) override {
+//       return newest_ = std::max(newest_, GlobalTime(sample.arrival.time_since_epoch()));
+//     }
+//
+//    private:
+//     GlobalTime newest_ = GlobalTime::min();
 //   };
 //
 // Any other estimator works too, at the price of a virtual call for each frame.
 //
-//   auto bank = make_bank([] { return make_regression(RegressionWindow{30}); }, 18);
-//   bank->at(3).on_poll(poll);
-//   bank->stamp(cameras, samples, stamps);
+//   auto bank = make_bank([] { return make_regression(RegressionWindow{30}); }, /*cameras=*/18);
+//   bank->stamp(cameras, frames, global);
 #ifndef SIMBENCH_ALGORITHMS_DEVICE_TIME_ESTIMATOR_BANK_H_
 #define SIMBENCH_ALGORITHMS_DEVICE_TIME_ESTIMATOR_BANK_H_
 

@@ -49,10 +49,8 @@ class GenlockOrder {
  private:
   std::int64_t periods_in(std::int64_t elapsed_ns) const {
     // One, nearly always: from half a period to one and a half, without a division.
-    const std::int64_t half_up = period_ns_ - period_ns_ / 2;
-    const bool is_one =
-        static_cast<std::uint64_t>(elapsed_ns) - static_cast<std::uint64_t>(half_up) <
-        static_cast<std::uint64_t>(period_ns_);
+    const auto period = static_cast<std::uint64_t>(period_ns_);
+    const bool is_one = static_cast<std::uint64_t>(elapsed_ns) - (period + 1) / 2 < period;
     return is_one ? 1 : rounded_quotient(elapsed_ns, period_ns_);
   }
   static std::int64_t rounded_quotient(std::int64_t elapsed_ns, std::int64_t period_ns);

@@ -9,7 +9,7 @@
 //
 //   KeptFrames kept(/*cameras=*/18, /*frames=*/500);
 //   kept.add(block);
-//   estimator->learn(kept.samples(3));
+//   bank.at(3).learn(kept.samples(3));
 //   kept.replay([&](FrameBlock& again) { use(again); });
 #ifndef SIMBENCH_EVALUATION_SCORING_KEPT_FRAMES_H_
 #define SIMBENCH_EVALUATION_SCORING_KEPT_FRAMES_H_
@@ -25,30 +25,42 @@
 
 namespace simbench::evaluation {
 
-// All of one length, or the stamps empty.
-struct FrameBlock {
-  std::vector<std::uint32_t> cameras;
-  std::vector<DeviceSample> samples;
-  std::vector<GlobalTime> stamps;
-  std::vector<GatherFrame> frames;
-
-  std::size_t size() const { return cameras.size(); }
+class FrameBlock {
+ public:
+  // Empties it, with room for so many frames.
+  void start(std::size_t room) {
+    size_ = 0;
+    if (room <= cameras_.size()) return;
+    cameras_.resize(room);
+    samples_.resize(room);
+    stamps_.resize(room);
+    frames_.resize(room);
+  }
   void add(std::uint32_t camera, const DeviceSample& sample, std::int64_t pulse,
            GlobalTime delivered) {
-    cameras.push_back(camera);
-    samples.push_back(sample);
-    frames.push_back({.source = camera,
-                      .stamp = {},
-                      .arrival = delivered,
-                      .sensor = sample.sensor,
-                      .tag = pulse});
+    cameras_[size_] = camera;
+    samples_[size_] = sample;
+    GatherFrame& frame = frames_[size_++];
+    frame.source = camera;
+    frame.arrival = delivered;
+    frame.sensor = sample.sensor;
+    frame.tag = pulse;
   }
-  void clear() {
-    cameras.clear();
-    samples.clear();
-    stamps.clear();
-    frames.clear();
-  }
+  void clear() { size_ = 0; }
+
+  std::size_t size() const { return size_; }
+  std::span<const std::uint32_t> cameras() const { return {cameras_.data(), size_}; }
+  std::span<const DeviceSample> samples() const { return {samples_.data(), size_}; }
+  std::span<const GatherFrame> frames() const { return {frames_.data(), size_}; }
+  std::span<GatherFrame> frames() { return {frames_.data(), size_}; }
+  std::span<GlobalTime> stamps() { return {stamps_.data(), size_}; }
+
+ private:
+  std::size_t size_ = 0;
+  std::vector<std::uint32_t> cameras_;  // these have room for more
+  std::vector<DeviceSample> samples_;
+  std::vector<GlobalTime> stamps_;
+  std::vector<GatherFrame> frames_;
 };
 
 class KeptFrames {
@@ -69,11 +81,12 @@ class KeptFrames {
 
   void add(const FrameBlock& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {
-      Camera& camera = cameras_[block.cameras[i]];
-      camera.samples.push_back(block.samples[i]);
-      camera.deliveries.push_back({block.frames[i].tag, block.frames[i].arrival});
+      const GatherFrame& frame = block.frames()[i];
+      Camera& camera = cameras_[frame.source];
+      camera.samples.push_back(block.samples()[i]);
+      camera.deliveries.push_back({frame.tag, frame.arrival});
     }
-    order_.insert(order_.end(), block.cameras.begin(), block.cameras.end());
+    order_.insert(order_.end(), block.cameras().begin(), block.cameras().end());
   }
 
   std::size_t cameras() const { return cameras_.size(); }
@@ -91,7 +104,7 @@ class KeptFrames {
     FrameBlock block;
     std::vector<std::size_t> next(cameras_.size());
     for (std::size_t begin = 0; begin < order_.size(); begin += kBlock) {
-      block.clear();
+      block.start(kBlock);
       for (std::size_t i = begin; i < std::min(begin + kBlock, order_.size()); ++i) {
         const std::uint32_t camera = order_[i];
         const std::size_t place = next[camera]++;

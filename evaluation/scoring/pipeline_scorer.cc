@@ -1,5 +1,6 @@
 #include "evaluation/scoring/pipeline_scorer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -104,9 +105,10 @@ inline PipelineScorer::Place PipelineScorer::place_of(Source& source, const Fram
 
 void PipelineScorer::on_frames(std::span<const FrameRecord> frames,
                                std::span<const FrameTruth> truths) {
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const FrameRecord& frame = frames[i];
-    const FrameTruth* truth = truths.empty() ? nullptr : &truths[i];
+  block_.start(frames.size());
+  const FrameTruth* next_truth = truths.data();
+  for (const FrameRecord& frame : frames) {
+    const FrameTruth* truth = truths.empty() ? nullptr : next_truth++;
     if (frame.stream != setup_.stream) continue;
     SIMBENCH_ASSERT(frame.camera < layout_.cameras.size(),
                     "a frame of a camera that the rig does not have");
@@ -121,9 +123,9 @@ void PipelineScorer::on_frames(std::span<const FrameRecord> frames,
     if (!place.warm_up && truth != nullptr) {
       table_->store_truth(place.pulse, frame.camera, *truth);
     }
-    if (!place.warm_up && !bank_) block_.stamps.push_back(oracle_stamp(truth));
     block_.add(frame.camera, {sensor, frame.arrival, frame.arrival_steady, frame.exposure_us},
                place.pulse, on_global_scale(truth != nullptr ? truth->delivered : frame.arrival));
+    if (!place.warm_up && !bank_) block_.stamps().back() = oracle_stamp(truth);
   }
   finish_block();
 }
@@ -140,31 +142,35 @@ void PipelineScorer::finish_block() {
 
 void PipelineScorer::stamp(FrameBlock& block) const {
   if (is_warm_up_ && !stamp_warm_up_) {
-    for (const DeviceSample& sample : block.samples) {
-      block.stamps.push_back(on_global_scale(sample.arrival));
-    }
+    std::ranges::transform(block.samples(), block.stamps().begin(), [](const DeviceSample& sample) {
+      return on_global_scale(sample.arrival);
+    });
   } else if (bank_) {
-    block.stamps.resize(block.size());
-    bank_->stamp(block.cameras, block.samples, block.stamps);
+    bank_->stamp(block.cameras(), block.samples(), block.stamps());
   }
 }
 
 void PipelineScorer::settle(FrameBlock& block) {
   for (std::size_t i = 0; i < block.size(); ++i) {
-    GatherFrame& frame = block.frames[i];
-    const GlobalTime global = block.stamps[i];
-    frame.stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(global)));
-    if (is_warm_up_) continue;
-    table_->store(frame.tag, frame.source, global);
-    if (observer_ == nullptr) continue;
-    observer_->on_stamp({frame.source, frame.tag, block.samples[i], frame.arrival}, global);
+    block.frames()[i].stamp = GlobalTime(Nanoseconds(PulseTable::clamped_ns(block.stamps()[i])));
   }
-  if (is_warm_up_ && !gather_warm_up_) return;
+  if (!is_warm_up_) {
+    for (const GatherFrame& frame : block.frames()) {
+      table_->store(frame.tag, frame.source, frame.stamp);
+    }
+    for (std::size_t i = 0; observer_ != nullptr && i < block.size(); ++i) {
+      const GatherFrame& frame = block.frames()[i];
+      observer_->on_stamp({frame.source, frame.tag, block.samples()[i], frame.arrival},
+                          block.stamps()[i]);
+    }
+  } else if (!gather_warm_up_) {
+    return;
+  }
   if (unverified_) {
-    gatherer_->push_all(block.frames, *unverified_);
+    gatherer_->push_all(block.frames(), *unverified_);
   } else {
     sets_->set_shift(anchor_shift());
-    gatherer_->push_all(block.frames, *sets_);
+    gatherer_->push_all(block.frames(), *sets_);
   }
 }
 
@@ -281,8 +287,9 @@ double PipelineScorer::second_amd_ms() {
     second_bank_->at(camera).learn(samples);
     stamps.resize(samples.size());
     second_bank_->stamp(std::vector(samples.size(), camera), samples, stamps);
+    const std::span<const KeptFrames::Delivery> deliveries = kept_->deliveries(camera);
     for (std::size_t i = 0; i < stamps.size(); ++i) {
-      ranges.add(camera, kept_->deliveries(camera)[i].pulse, stamps[i]);
+      ranges.add(camera, deliveries[i].pulse, stamps[i]);
     }
   }
   return ranges.amd_ms(kept_->cameras());

@@ -81,7 +81,7 @@ class PipelineScorer final : public RecordingSink {
   SeedScore finish();
 
  private:
-  struct Source {
+  struct alignas(64) Source {
     DeviceStampUnwrapper unwrapper;
     GenlockOrder order;
   };

@@ -18,16 +18,20 @@ void SetCounter::on_partial_set(std::span<const GatherFrame> set) {
 
 void SetCounter::on_set(std::span<const GatherFrame> set) {
   if (!counts(set)) return;
-  const std::int64_t errors = index_errors(set);
-  index_errors_ += errors;
-  if (errors == 0) ++pure_;
   GlobalTime latest_arrival = set.front().arrival;
   GlobalTime first = set.front().stamp;
   GlobalTime last = first;
+  bool is_pure = true;
   for (const GatherFrame& frame : set) {
+    is_pure = is_pure && frame.tag == set.front().tag;
     latest_arrival = std::max(latest_arrival, frame.arrival);
     first = std::min(first, frame.stamp);
     last = std::max(last, frame.stamp);
+  }
+  if (is_pure) {
+    ++pure_;
+  } else {
+    index_errors_ += index_errors(set);
   }
   range_sum_ms_ += to_ms(last - first);
   const double latency_ms = to_ms(now() - latest_arrival);
@@ -38,13 +42,9 @@ void SetCounter::on_set(std::span<const GatherFrame> set) {
   if (observer_ != nullptr) observer_->on_set(set, /*complete=*/true, now());
 }
 
-// Members of another pulse than most members.
+// Members of another pulse than most members, which are not all of one.
 std::int64_t SetCounter::index_errors(std::span<const GatherFrame> set) {
   const auto size = static_cast<std::int64_t>(set.size());
-  const std::int64_t tag = set.front().tag;
-  if (std::all_of(set.begin(), set.end(), [tag](const GatherFrame& f) { return f.tag == tag; })) {
-    return 0;
-  }
   tags_.clear();
   for (const GatherFrame& frame : set) {
     if (frame.tag >= 0) tags_.push_back(frame.tag);  // "no pulse" cannot be that of most

@@ -10,7 +10,7 @@
 //    a member. Arrivals are true in a simulation; on a rig they are as good as the hosts' clocks.
 //
 //   SetCounter sets(table);
-//   gatherer.push_all(frames, sets);
+//   gatherer.push_all(block.frames(), sets);
 //   sets.score(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_
 #define SIMBENCH_EVALUATION_SCORING_SET_COUNTER_H_

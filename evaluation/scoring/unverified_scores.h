@@ -14,7 +14,7 @@
 //
 //   UnverifiedScores scores(layout, MedianKind::kUpperMiddle, nullptr);
 //   if (scores.part_of(frame) == UnverifiedScores::Part::kEvaluated) tag = kUnknownPulse;
-//   gatherer.push_all(frames, scores);
+//   gatherer.push_all(block.frames(), scores);
 //   scores.score(seed_score);
 #ifndef SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_
 #define SIMBENCH_EVALUATION_SCORING_UNVERIFIED_SCORES_H_

@@ -42,7 +42,7 @@ class Mine : public DeviceTimeEstimator {
 };
 Task<void> serve(Host&, PeerId);
 Task<void> tell_the_others(Sighting);
-extern const Whatever adjustment, line, x, y, w, own_clock, key, master, offset;
+extern const Whatever adjustment, cameras, line, x, y, w, own_clock, key, master, offset;
 extern const std::size_t capacity, extra;
 extern const std::uint32_t sources, camera;
 extern std::vector<DeviceSample> frames;
@@ -138,6 +138,8 @@ extern PulseTable table;
 extern PipelineScorer scorer;
 extern ScoreObserver& observer;
 extern Gatherer& gatherer;
+extern EstimatorBank& bank;
+extern FrameBlock& block;
 extern SeedScore seed_score;
 extern std::int64_t tag;
 extern const Series with, without;

@@ -105,5 +105,18 @@ TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   EXPECT_EQ(kept.layout().cameras.size(), 1U);
 }
 
+TEST(RecordingSinkTest, TakesABlockFrameByFrame) {
+  std::vector<FrameRecord> frames(2);
+  frames[1].camera = 3;
+  std::vector<FrameTruth> truths(2);
+  truths[1].pulse = 8;
+  Transcript simulated;
+  simulated.on_frames(frames, truths);
+  EXPECT_THAT(simulated.lines, ElementsAre("frame 0 0 0 -1 ", "frame 3 0 0 8 "));
+  Transcript of_a_rig;
+  of_a_rig.on_frames(frames, {});
+  EXPECT_THAT(of_a_rig.lines, ElementsAre("frame 0 0 0 -1 ", "frame 3 0 0 -1 "));
+}
+
 }  // namespace
 }  // namespace simbench

@@ -251,6 +251,49 @@ TEST_P(EveryGatherer, AFrameOfTheFarFutureIsSurvived) {
   EXPECT_GE(out.pure(), 30 + 100 - 20);
 }
 
+// Notes when each set came, in whatever blocks frames are pushed.
+class TimedSets final : public TimedSetSink {
+ public:
+  void on_set(std::span<const GatherFrame> set) override { note(set, true); }
+  void on_partial_set(std::span<const GatherFrame> set) override { note(set, false); }
+
+  std::vector<std::int64_t> notes;
+
+ private:
+  void note(std::span<const GatherFrame> set, bool complete) {
+    notes.push_back(complete ? -1 : -2);
+    notes.push_back(nanoseconds_of(now()));
+    for (const GatherFrame& frame : set) notes.push_back(frame.source);
+    for (const GatherFrame& frame : set) notes.push_back(nanoseconds_of(frame.stamp));
+  }
+};
+
+TEST_P(EveryGatherer, BlocksGiveTheSameSetsAtTheSameTimes) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const GatheringSetup setup = short_setup(1 + seed % 7, 1 + seed % 12);
+    auto frames = noisy_frames(setup.sources, 100, seed % 5 * 1.5, 0.05 * (seed % 4), seed);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      frames[i].arrival = GlobalTime(Microseconds(static_cast<std::int64_t>(i)));
+    }
+    TimedSets one_by_one;
+    const auto single = make(setup);
+    for (const GatherFrame& frame : frames) {
+      one_by_one.advance_to(frame.arrival);
+      single->push(frame, one_by_one);
+    }
+    TimedSets in_blocks;
+    const auto blocked = make(setup);
+    boost::random::mt19937 random(seed);
+    for (std::size_t begin = 0; begin < frames.size();) {
+      const std::size_t size = std::min<std::size_t>(random() % 30, frames.size() - begin);
+      blocked->push_all(std::span(frames).subspan(begin, size), in_blocks);
+      begin += size;
+    }
+    ASSERT_EQ(in_blocks.notes, one_by_one.notes) << "seed " << seed;
+    ASSERT_EQ(blocked->discarded(), single->discarded()) << "seed " << seed;
+  }
+}
+
 TEST_P(EveryGatherer, ASourceThatDoesNotExistIsAProgrammingError) {
   const auto gatherer = make(short_setup(2));
   CollectedSets out;

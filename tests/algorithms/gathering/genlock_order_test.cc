@@ -51,6 +51,19 @@ TEST(GenlockOrder, RoundsToTheNearestPeriodOnBothSides) {
   }
 }
 
+TEST(GenlockOrder, HalfAPeriodCountsUpOnBothSides) {
+  for (const std::int64_t period_us : {20'000, 20'001}) {
+    for (std::int64_t elapsed_us = -3 * period_us; elapsed_us <= 3 * period_us; ++elapsed_us) {
+      GenlockOrder order(Microseconds(period_us), Variant::kReanchored);
+      order.next(DeviceTime{});
+      const auto nearest = static_cast<std::int64_t>(std::floor(
+          static_cast<double>(2 * elapsed_us + period_us) / static_cast<double>(2 * period_us)));
+      ASSERT_EQ(order.next(DeviceTime(Microseconds(elapsed_us))), nearest)
+          << elapsed_us << " us of a period of " << period_us;
+    }
+  }
+}
+
 TEST(GenlockOrder, PrintedVariantIsOffAfterHalfAPeriodOfDrift) {
   // 575 ppm reach half a period after 1 / (2 * 575e-6) = 870 frames: 19 s.
   const std::int64_t wrong = first_wrong(Variant::kFirstStamp, 10);

@@ -86,6 +86,16 @@ void expect_mean(const char* what, double expected, double deviation,
 
 double squared(double x) { return x * x; }
 
+TEST(KeyedStreams, AreThoseOfTheWholeKey) {
+  constexpr ComponentKey kComponent("link delay");
+  for (const std::uint64_t a : {0UL, 7UL, ~0UL}) {
+    const KeyedStreams keyed = KeyedStreams(42, kComponent).of(a);
+    for (const std::uint64_t b : {0UL, 1UL, 1UL << 40}) {
+      EXPECT_EQ(keyed.stream(b)(), RandomStream(42, kComponent, a, b)()) << a << ' ' << b;
+    }
+  }
+}
+
 TEST(RandomStream, UniformHasItsMoments) {
   expect_mean("uniform", 0.5, std::sqrt(1.0 / 12), [](RandomStream& r) { return r.uniform(); });
   expect_mean("uniform squared", 1.0 / 3, std::sqrt(4.0 / 45),
