@@ -42,7 +42,7 @@ struct PipelineChoice {
   Parameters gathering_parameters;
   CalibratedDelays calibrated_delays{};
   bool scores_offline = false;  // SeedScore::offline_amd_ms, for claim C7
-  std::string problem{};  // why its programs cannot run, one line
+  std::string problem{};        // why its programs cannot run, one line
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
   // Empty: all as it is.
   std::function<std::unique_ptr<RecordingSink>(RecordingSink& sink)> view{};

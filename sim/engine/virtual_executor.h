@@ -189,7 +189,7 @@ class HandlerWait final : public PendingWait {
                   "the handler is larger than its place");
     VirtualContext::WaitMemory& memory = context.take_memory();
     return *::new (static_cast<void*>(memory.bytes))
-               HandlerWait(memory, context, label, deadline, std::move(handler));
+        HandlerWait(memory, context, label, deadline, std::move(handler));
   }
 
  private:
@@ -284,15 +284,16 @@ class WaitPoint {
   // The operation of wait().
   class [[nodiscard]] Wait {
    public:
-    Wait(WaitPoint& point, std::optional<TrueTime> deadline) : point_(&point), deadline_(deadline) {}
+    Wait(WaitPoint& point, std::optional<TrueTime> deadline)
+        : point_(&point), deadline_(deadline) {}
 
     template <boost::asio::completion_token_for<void(boost::system::error_code, bool)> Token>
     auto operator()(Token&& token) const {
       return boost::asio::async_initiate<Token, void(boost::system::error_code, bool)>(
           [wait = *this](auto handler) {
             WaitPoint& point = *wait.point_;
-            point.begin(HandlerWait<decltype(handler)>::start(
-                point.context_, point.label_, wait.deadline_, std::move(handler)));
+            point.begin(HandlerWait<decltype(handler)>::start(point.context_, point.label_,
+                                                              wait.deadline_, std::move(handler)));
           },
           token);
     }

@@ -148,7 +148,7 @@ class ChronySourceStats {
  private:
   // Of the samples as columns, as far as a fit needs them; allocated once.
   struct Columns {
-    std::vector<double> time_s;  // since the last sample
+    std::vector<double> time_s;   // since the last sample
     std::vector<double> delay_s;  // above the least
     std::vector<double> offset_s;
     std::vector<double> weight;

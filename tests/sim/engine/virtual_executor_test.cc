@@ -218,10 +218,10 @@ TEST_F(VirtualExecutorTest, CoroutinesTalkThroughMailboxes) {
 asio::awaitable<void> first_of(VirtualContext& context, WaitPoint& point,
                                std::vector<std::string>& log) {
   const auto first = co_await (point.wait()(asio::use_awaitable) ||
-                                sleep_until(context, at_ns(10), "timeout")(asio::use_awaitable));
+                               sleep_until(context, at_ns(10), "timeout")(asio::use_awaitable));
   log.push_back("first " + std::to_string(first.index()));
   const auto second = co_await (point.wait(at_ns(15))(asio::use_awaitable) ||
-                                 sleep_until(context, at_ns(99), "late")(asio::use_awaitable));
+                                sleep_until(context, at_ns(99), "late")(asio::use_awaitable));
   log.push_back("second " + std::to_string(second.index()));
   co_await (sleep_until(context, at_ns(30), "x")(asio::use_awaitable) &&
             sleep_until(context, at_ns(20), "y")(asio::use_awaitable));
