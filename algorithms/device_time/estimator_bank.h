@@ -9,7 +9,6 @@
 //     GlobalTime stamp(const DeviceSample& sample) override {
 //       return newest_ = std::max(newest_, GlobalTime(sample.arrival.time_since_epoch()));
 //     }
-//
 //    private:
 //     GlobalTime newest_ = GlobalTime::min();
 //   };

@@ -76,7 +76,6 @@ class Gatherer {
 //    public:
 //     void push(const GatherFrame&, FrameSetSink&) override { ++pushed_; }
 //     std::uint64_t discarded() const override { return pushed_; }
-//
 //    private:
 //     std::uint64_t pushed_ = 0;
 //   };
