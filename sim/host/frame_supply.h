@@ -2,7 +2,7 @@
 // it is asked to.
 //
 //   FrameSupply supply;
-//   supply.connect([&] { capture.catch_up(); }, [&] { deliver_the_next_one_in_time(); });
+//   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); });
 //   supply.catch_up();
 #ifndef SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
 #define SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_

@@ -4,8 +4,8 @@
 // cameras' oscillators are functions of true time, so their stamps are not: each start has its own.
 // Stamps are taken once and kept as long as their periods are.
 //
-//   CameraStamps stamps(scenario, world, capture_start);
-//   const std::span<const FrameStamps> of_frames = stamps.of_period(3, *world.period(3));
+//   CameraStamps stamps(scenario, camera_world, capture_start);
+//   const std::span<const FrameStamps> of_frames = stamps.of_period(3, *camera_world.period(3));
 #ifndef SIMBENCH_SIM_RIG_CAMERA_STAMPS_H_
 #define SIMBENCH_SIM_RIG_CAMERA_STAMPS_H_
 

@@ -16,6 +16,7 @@
 // Source: scenario /cameras/clock_poll; docs/reference/d455.md section 5.
 //
 //   ClockPolls polls(scenario, seed, camera_faults, capture_end);
+//   std::vector<CameraPoll> ended;
 //   polls.hand_out(then, ended);  // those that end before then
 #ifndef SIMBENCH_SIM_RIG_CLOCK_POLLS_H_
 #define SIMBENCH_SIM_RIG_CLOCK_POLLS_H_

@@ -20,8 +20,9 @@
 // until pull request #13997; docs/reference/d455.md section 1.
 //
 //   const BackendStamps stamps(scenario.usb.backend_stamp, arrival_quantum);
-//   const HostTime backend = stamps.stamp(clock, clock.steady(capture_start), copied,
-//                                         clock.read_both(delivered));
+//   const SystemClock::Reading reading = system_clock.read_both(now);
+//   const SteadyTime switched_on = system_clock.steady(capture_start);
+//   const HostTime backend = stamps.stamp(system_clock, switched_on, copied, reading);
 #ifndef SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 #define SIMBENCH_SIM_USB_BACKEND_STAMP_H_
 

@@ -221,8 +221,8 @@ double draw(std::int64_t index);
 extern const std::int64_t step_ns;
 extern const Whatever settings, slot, expose, frequency_at_zero, t_ns, to, from, id, copy,
     direction, offset, bytes, world, clocks, handler, kReadout, path, message, send, send_ack,
-    schedule, deliver;
-extern const TrueTime now, at, arrival, start, capture_start, camera_start, t;
+    schedule, deliver, lose;
+extern const TrueTime now, at, arrival, start, capture_start, capture_end, camera_start, then, t;
 extern const Nanoseconds residence;
 extern const SystemClock system_clock;
 extern const SwitchClock clock;
@@ -239,11 +239,16 @@ extern const HostTime zero;
 extern const double coefficient_ppb_per_k;
 extern UsbController bus;
 extern FrameFeeds feeds;
+extern FrameSupply& frame_supply;
+extern CameraWorld& camera_world;
+extern const CameraFaults camera_faults;
+extern ClockSampling sampling;
 extern std::vector<TrueTime> timers;
 extern const ComponentKey kMessage;
 extern HostGroup& hosts;
 extern Capture& capture;
 void start_capture();
+void expect_frame();
 extern WorldObserver& observer;
 extern Endpoint& endpoint;
 extern const RunLoad load;

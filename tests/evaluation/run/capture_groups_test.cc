@@ -144,7 +144,7 @@ TEST(SharedCaptures, ACaptureThatFailsIsMissingFromAllItsRows) {
 }
 
 // A view that cannot go on, of the second pipeline alone.
-class Broken final : public ForwardingSink {
+class BrokenSink final : public ForwardingSink {
  public:
   using ForwardingSink::ForwardingSink;
   void on_pulse(const PulseTruth&) override { throw std::runtime_error("a pulse too many"); }
@@ -153,7 +153,7 @@ class Broken final : public ForwardingSink {
 TEST(SharedCaptures, AnErrorNamesThePipelineThatHadIt) {
   const scenarios::Scenario scenario = test_scenario();
   std::vector<PipelineChoice> choices = choose_pipelines(scenario, {});
-  choices[1].view = [](RecordingSink& sink) { return std::make_unique<Broken>(sink); };
+  choices[1].view = [](RecordingSink& sink) { return std::make_unique<BrokenSink>(sink); };
   try {
     evaluate_choices(
         scenario, choices, [] { return std::make_unique<TestSource>(); },

@@ -53,7 +53,7 @@ const scenarios::Pipeline& pipeline_of(const scenarios::Scenario& scenario,
 }
 
 // 64-bit FNV-1a.
-std::uint64_t hash_of(const KeptRecording& recording) {
+std::uint64_t recording_hash(const KeptRecording& recording) {
   std::uint64_t hash = 0xCBF29CE484222325;
   for (const RecordingEvent& event : recording.events()) {
     for (const char c : to_line(event) + "\n") {
@@ -78,7 +78,8 @@ Golden run_golden(const Golden& golden) {
   KeptRecording recording;
   const RecordingCost cost = make_simulation(scenario)->record(
       {.seed = 1, .pipeline = pipeline.name, .host_sync = host_sync.get()}, recording);
-  return {golden.scenario, golden.pipeline, cost.events, cost.trace_hash, hash_of(recording)};
+  return {golden.scenario, golden.pipeline, cost.events, cost.trace_hash,
+          recording_hash(recording)};
 }
 
 // The pipeline is the one that uses most of what is special about the scenario.
