@@ -100,12 +100,12 @@ class KeptFrames {
   // Calls use(FrameBlock&) with block after block of all frames, in order of delivery.
   template <class Use>
   void replay(Use use) const {
-    constexpr std::size_t kBlock = 1024;
+    constexpr std::size_t kFramesInBlock = 1024;
     FrameBlock block;
     std::vector<std::size_t> next(cameras_.size());
-    for (std::size_t begin = 0; begin < order_.size(); begin += kBlock) {
-      block.start(kBlock);
-      for (std::size_t i = begin; i < std::min(begin + kBlock, order_.size()); ++i) {
+    for (std::size_t begin = 0; begin < order_.size(); begin += kFramesInBlock) {
+      block.start(kFramesInBlock);
+      for (std::size_t i = begin; i < std::min(begin + kFramesInBlock, order_.size()); ++i) {
         const std::uint32_t camera = order_[i];
         const std::size_t place = next[camera]++;
         const Delivery& delivery = cameras_[camera].deliveries[place];
