@@ -191,6 +191,9 @@ class HandlerWait final : public PendingWait {
     return *::new (static_cast<void*>(memory.bytes))
         HandlerWait(memory, context, label, deadline, std::move(handler));
   }
+  HandlerWait(const HandlerWait&) = delete;
+  HandlerWait& operator=(const HandlerWait&) = delete;
+  ~HandlerWait() override { cancellation_.clear(); }
 
  private:
   HandlerWait(VirtualContext::WaitMemory& memory, VirtualContext& context, std::string_view label,
@@ -203,7 +206,6 @@ class HandlerWait final : public PendingWait {
       cancellation_.assign([this](boost::asio::cancellation_type) { finish(Outcome::kAborted); });
     }
   }
-  ~HandlerWait() override { cancellation_.clear(); }
 
   void complete(Outcome outcome) override {
     Handler handler = std::move(handler_);

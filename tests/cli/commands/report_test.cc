@@ -173,9 +173,13 @@ TEST_F(Report, AFullDiskLeavesTheEarlierReport) {
 }
 
 TEST_F(Report, CtrlCLeavesNothing) {
-  make_archive("monday");
-  const ProgramResult result = run({"report", "monday", "-o", "report.html", "--budget-seeds", "3"},
-                                   {.interrupt_after = std::chrono::milliseconds(300)});
+  const ProgramResult made = run({"run", "--scenario", "18cam_6host_45fps", "--seeds", "20",
+                                  "--pipelines", "yoon2021_both,oracle", "--output", "monday"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  // The budgets of 20 seeds take seconds.
+  const ProgramResult result =
+      run({"report", "monday", "-o", "report.html", "--budget-seeds", "20"},
+          {.interrupt_after = std::chrono::milliseconds(400)});
   EXPECT_EQ(result.status, 130);
   EXPECT_THAT(result.err, HasSubstr("interrupted after"));
   EXPECT_THAT(names_in(), ElementsAre("monday"));
