@@ -25,7 +25,7 @@
 //
 //   const char* program = "/usr/sbin/chronyd";
 //   char* const none[] = {nullptr};
-//   Confinement confinement("/tmp/host1", program);
+//   Confinement confinement(folder, program);
 //   if (fork() == 0) {
 //     const Confinement::Failure failure = confinement.apply();
 //     if (failure.what == nullptr) execve(program, none, none);
