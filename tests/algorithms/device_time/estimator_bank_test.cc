@@ -8,32 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/device_time/variants.h"
-#include "algorithms/registry.h"
 #include "tests/algorithms/device_time/polls.h"
+#include "tests/algorithms/device_time/registered.h"
 #include "tests/algorithms/device_time/streams.h"
 
 namespace simbench {
 namespace {
 
 constexpr std::size_t kBankCameras = 3;
-
-EstimatorFactory factory_of(const std::string& full_name) {
-  return [name = parse_device_time_name(full_name)] {
-    const DeviceTimeEntry* entry = find_device_time(name.base);
-    return make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
-  };
-}
-
-std::vector<std::string> names_of_estimators() {
-  std::vector<std::string> names;
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
-    if (!entry.make || entry.info.source == "test") continue;
-    names.push_back(entry.info.name);
-    names.push_back(entry.info.name + "_steady_calibrated");
-  }
-  return names;
-}
 
 // Noisy frames of random cameras, in order of delivery.
 struct Frames {
@@ -61,13 +43,13 @@ struct Frames {
 
 class EveryBank : public ::testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryBank, ::testing::ValuesIn(names_of_estimators()),
+INSTANTIATE_TEST_SUITE_P(Registered, EveryBank, ::testing::ValuesIn(registered_estimators()),
                          [](const auto& test) { return test.param; });
 
 TEST_P(EveryBank, StampsBlocksAsItsEstimatorsDoAlone) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     const Frames frames(seed);
-    const EstimatorFactory make = factory_of(GetParam());
+    const EstimatorFactory make = [] { return make_registered(GetParam()); };
     const auto bank = make_bank(make, kBankCameras);
     std::vector<std::unique_ptr<DeviceTimeEstimator>> alone;
     for (std::size_t camera = 0; camera < kBankCameras; ++camera) {

@@ -14,6 +14,7 @@
 #include "algorithms/device_time/variants.h"
 #include "algorithms/registry.h"
 #include "tests/algorithms/device_time/polls.h"
+#include "tests/algorithms/device_time/registered.h"
 #include "tests/algorithms/device_time/streams.h"
 #include "tests/nonempty.h"
 
@@ -22,23 +23,9 @@ namespace {
 
 constexpr std::int64_t kHourUs = 3'600'000'000;
 
-std::vector<std::string> all_names() {
-  std::vector<std::string> names;
-  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
-    if (!entry.make || entry.info.source == "test") continue;
-    names.push_back(entry.info.name);
-    names.push_back(entry.info.name + "_steady_calibrated");
-  }
-  return names;
-}
-
 class EveryEstimator : public ::testing::TestWithParam<std::string> {
  protected:
-  std::unique_ptr<DeviceTimeEstimator> make() const {
-    const DeviceTimeName name = parse_device_time_name(GetParam());
-    const DeviceTimeEntry* entry = find_device_time(name.base);
-    return make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
-  }
+  std::unique_ptr<DeviceTimeEstimator> make() const { return make_registered(GetParam()); }
 
   // The paper's estimators have no rule against clocks that are set.
   bool knows_steps() const {
@@ -49,7 +36,7 @@ class EveryEstimator : public ::testing::TestWithParam<std::string> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryEstimator, ::testing::ValuesIn(all_names()),
+INSTANTIATE_TEST_SUITE_P(Registered, EveryEstimator, ::testing::ValuesIn(registered_estimators()),
                          [](const auto& test) { return test.param; });
 
 // Stamps, with an adjustment before the first frame and a poll of the same clocks before each.

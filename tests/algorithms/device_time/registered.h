@@ -1,0 +1,33 @@
+// The registered device_time estimators that can be made here, also with all variants.
+#ifndef SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_
+#define SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/device_time/variants.h"
+#include "algorithms/registry.h"
+
+namespace simbench {
+
+inline std::vector<std::string> registered_estimators() {
+  std::vector<std::string> names;
+  for (const DeviceTimeEntry& entry : device_time_algorithms()) {
+    if (!entry.make || entry.info.source == "test") continue;
+    names.push_back(entry.info.name);
+    names.push_back(entry.info.name + "_steady_calibrated");
+  }
+  return names;
+}
+
+// With the default parameters.
+inline std::unique_ptr<DeviceTimeEstimator> make_registered(const std::string& full_name) {
+  const DeviceTimeName name = parse_device_time_name(full_name);
+  const DeviceTimeEntry* entry = find_device_time(name.base);
+  return make_variant(name, entry->make(check_parameters(entry->info.parameters, {})), {});
+}
+
+}  // namespace simbench
+
+#endif  // SIMBENCH_TESTS_ALGORITHMS_DEVICE_TIME_REGISTERED_H_
