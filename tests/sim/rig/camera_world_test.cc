@@ -161,22 +161,67 @@ Task<void> adjust(Host& host, double ppb) {
   }
 }
 
+// Ends after a while, so that the capture starts at another time.
+class Brief final : public HostSync {
+ public:
+  explicit Brief(double ms) : ms_(ms) {}
+  Task<void> run_master(Host& host, std::vector<PeerId>) override {
+    return host.sleep_for(from_ms(ms_));
+  }
+  Task<void> run_slave(Host& host, PeerId) override { return host.sleep_for(from_ms(1)); }
+
+ private:
+  double ms_;
+};
+
+void expect_same_as_alone(const scenarios::Scenario& scenario, RecordingSource& shared,
+                          std::uint64_t seed, HostSync& host_sync) {
+  const RecordingRequest request = {.seed = seed, .pipeline = "p", .host_sync = &host_sync};
+  KeptRecording alone;
+  KeptRecording together;
+  const RecordingCost cost = make_simulation(scenario)->record(request, alone);
+  EXPECT_EQ(shared.record(request, together).trace_hash, cost.trace_hash);
+  EXPECT_EQ(lines_of(together), lines_of(alone));
+}
+
 TEST(CameraWorld, SharedByRunsGivesEachWhatItGetsAlone) {
-  const scenarios::Scenario scenario = lively_scenario();
-  const auto shared = make_simulation(scenario);
-  for (const double ppb : {0.0, 1e3, -2e5}) {
+  scenarios::Scenario with_bursts = lively_scenario();
+  with_bursts.hosts.load_burst = {.rate_hz = 4, .duration_exponential_ms = 50, .latency_ms = 8};
+  for (const scenarios::Scenario& scenario : {lively_scenario(), with_bursts}) {
+    const auto shared = make_simulation(scenario);
     for (const std::uint64_t seed : {1u, 2u, 1u}) {
-      for (const double warm_up_ms : {0.0, 50.0}) {
-        Service service([ppb](Host& host) { return adjust(host, ppb); }, from_ms(warm_up_ms));
-        const RecordingRequest request = {.seed = seed, .pipeline = "p", .host_sync = &service};
-        KeptRecording alone;
-        KeptRecording together;
-        const RecordingCost cost = make_simulation(scenario)->record(request, alone);
-        EXPECT_EQ(shared->record(request, together).trace_hash, cost.trace_hash);
-        EXPECT_EQ(lines_of(together), lines_of(alone));
+      for (const double ppb : {0.0, 1e3, -2e5}) {
+        Service service([ppb](Host& host) { return adjust(host, ppb); });
+        expect_same_as_alone(scenario, *shared, seed, service);
+      }
+      for (const double ms : {0.5, 333.3, 0.5, 1234.5678}) {
+        Brief brief(ms);
+        expect_same_as_alone(scenario, *shared, seed, brief);
       }
     }
   }
+}
+
+// The same capture, in the cameras' half, at whatever time it starts; only stamps differ.
+TEST(CameraWorld, AnotherStartGivesTheSameFramesAndOtherStamps) {
+  const scenarios::Scenario scenario = lively_scenario();
+  KeptLists early;
+  KeptLists late;
+  Brief at_once(0.5);
+  Brief after_a_while(50'000);
+  run_world(scenario, &at_once, early);
+  run_world(scenario, &after_a_while, late);
+  ASSERT_EQ(nonempty(early.frames).size(), late.frames.size());
+  const Nanoseconds shift =
+      late.frames[0].truth.exposure_start - early.frames[0].truth.exposure_start;
+  EXPECT_GT(shift, from_ms(49'000));
+  std::size_t other_stamps = 0;
+  for (std::size_t i = 0; i < early.frames.size(); ++i) {
+    EXPECT_EQ(late.frames[i].record.camera, early.frames[i].record.camera);
+    EXPECT_EQ(late.frames[i].truth.exposure_end - early.frames[i].truth.exposure_end, shift);
+    other_stamps += late.frames[i].record.sensor != early.frames[i].record.sensor ? 1 : 0;
+  }
+  EXPECT_GT(other_stamps, early.frames.size() / 2) << "50 s at 20 ppm are a millisecond";
 }
 
 // What is recorded comes in the order in which it happened, however the capture lags behind.
