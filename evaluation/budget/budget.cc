@@ -123,7 +123,6 @@ void see_ideal_delivery(const scenarios::Scenario& world, PipelineChoice& choice
   choice.view = [quantum](RecordingSink& sink) {
     return std::make_unique<IdealDelivery>(sink, quantum);
   };
-  choice.view_delays = calibrated_delays(world, choice.device_time_variants);
 }
 
 // The pipelines of sets that go together; those with one delivery are neighbours.

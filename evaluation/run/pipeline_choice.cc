@@ -181,9 +181,26 @@ void check_needs(const Scenario& scenario, std::size_t pipeline, const char* sta
 }
 
 // Stamps that are rounded down to steps are half a step early on average.
-Nanoseconds earlier_by_sdk(const Scenario& scenario, const DeviceTimeName& variants) {
+CalibratedDelays calibrated_delays(const Scenario& scenario) {
+  CalibratedDelays delays;
+  delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
+  if (const scenarios::Stream* scored = scenario.scored_stream()) {
+    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored));
+  }
+  return delays;
+}
+
+Nanoseconds earlier_by_sdk(const Scenario& scenario) {
   const Nanoseconds quantum = from_ms(scenario.hosts.clock.arrival_quantum_ms);
-  return variants.sdk && quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
+  return quantum < kSdkResolution ? (kSdkResolution - quantum) / 2 : Nanoseconds(0);
+}
+
+// What the pipeline's device_time subtracts.
+CalibratedDelays delays_of(const Scenario& scenario, const PipelineChoice& choice) {
+  if (!choice.device_time_variants.calibrated) return {};
+  CalibratedDelays delays = choice.delays();
+  if (choice.device_time_variants.sdk) delays.arrival -= earlier_by_sdk(scenario);
+  return delays;
 }
 
 template <class Entry>
@@ -254,8 +271,10 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   check_all_parameters(scenario);
   std::vector<PipelineChoice> all;
   std::vector<std::string> known;
+  const scenarios::Lazy<CalibratedDelays> delays([scenario] { return calibrated_delays(scenario); });
   for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
     all.push_back(choose(scenario, index));
+    all.back().delays = delays;
     known.push_back(scenario.pipelines[index].name);
   }
   if (names.empty()) return all;
@@ -275,16 +294,6 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   return chosen;
 }
 
-CalibratedDelays calibrated_delays(const Scenario& scenario, const DeviceTimeName& variants) {
-  CalibratedDelays delays;
-  delays.poll_asymmetry = from_ms(scenarios::calibrated_asymmetry_ms(scenario.cameras.clock_poll));
-  if (const scenarios::Stream* scored = scenario.scored_stream()) {
-    delays.arrival = from_ms(scenarios::calibrated_delay_ms(scenario, *scored)) -
-                     earlier_by_sdk(scenario, variants);
-  }
-  return delays;
-}
-
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;
@@ -300,8 +309,7 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
     setup.make_estimator = [make = choice.device_time.make,
                             parameters = choice.device_time_parameters,
                             variants = choice.device_time_variants,
-                            delays = choice.view_delays.value_or(
-                                calibrated_delays(scenario, choice.device_time_variants))] {
+                            delays = delays_of(scenario, choice)] {
       return make_variant(variants, make(parameters), delays);
     };
   }

@@ -28,6 +28,7 @@
 #include "algorithms/registry.h"
 #include "evaluation/scoring/pipeline_scorer.h"
 #include "recording/recording.h"
+#include "scenarios/lazy.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
@@ -46,8 +47,8 @@ struct PipelineChoice {
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
   // Empty: all as it is.
   std::function<std::unique_ptr<RecordingSink>(RecordingSink& sink)> view{};
-  // What was measured of that view, in place of the scenario's.
-  std::optional<CalibratedDelays> view_delays{};
+  // What a user of the scenario knows, for a device_time that subtracts it. Shared by all.
+  scenarios::Lazy<CalibratedDelays> delays{};
 };
 
 // The host synchronisation that a pipeline's programs are, and why they cannot run here, one line;
@@ -68,10 +69,6 @@ void set_program_maker(ProgramMaker maker);
 // named twice, or a parameter that is not declared or not allowed.
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
-
-// The delays that a user of the scenario knows, as the variants of a device_time subtract them.
-CalibratedDelays calibrated_delays(const scenarios::Scenario& scenario,
-                                   const DeviceTimeName& variants);
 
 // Returns the scorer's setup for the pipeline. It has the second, offline estimator, which keeps
 // all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.
