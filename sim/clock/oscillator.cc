@@ -75,9 +75,9 @@ OscillatorModel::OscillatorModel(const scenarios::Oscillator& parameters, std::u
                                  std::string_view component, TrueTime switched_on)
     : skew_(RandomStream(run_seed, std::string(component) + ": skew")
                 .normal(parameters.skew_sigma_ppm * 1e-6)),
-      wander_(run_seed, ComponentKey(std::string(component) + ": wander")),
       ramp_per_s_(parameters.ramp_ppm_per_hour * kPerPpmPerHour),
       heating_(parameters.self_heating_ppm * 1e-6),
+      wander_(run_seed, ComponentKey(std::string(component) + ": wander")),
       heating_time_constant_s_(parameters.self_heating_time_constant_s),
       switched_on_(switched_on) {
   SIMBENCH_ASSERT(heating_ == 0 || heating_time_constant_s_ > 0, "heating takes time");

@@ -127,21 +127,23 @@ class OscillatorModel {
   // White noise and random walk over one step of their grid, for GridWalk.
   double step(double& frequency_ppb, std::int64_t index, double sign) const;
 
+  // What each query needs, together in the cache, up to the beginning of the walk.
   double skew_ = 0;
-  bool is_steady_ = true;  // skew is all there is
+  bool is_steady_ = true;                        // skew is all there is
+  std::unique_ptr<const FlickerNoise> flicker_;  // large, and rarely there
+  std::unique_ptr<const TemperatureCourse> temperature_;
+  double ramp_per_s_ = 0;
+  double heating_ = 0;
+  GridWalk<double> walk_;  // the state is the walking frequency in ppb
+
   double step_s_ = 0;
   double walk_sigma_ppb_ = 0;  // of the frequency's change in one step
   double phase_sigma_ns_ = 0;  // of the phase's change that the frequencies do not explain
   KeyedStreams wander_{0, ComponentKey("")};
-  GridWalk<double> walk_;  // the state is the walking frequency in ppb
   // The first step of the grid at which the walk was cut; a cache, as the walk is.
   mutable std::int64_t first_cut_ = std::numeric_limits<std::int64_t>::max();
-  std::unique_ptr<const FlickerNoise> flicker_;  // large, and rarely there
-  double ramp_per_s_ = 0;
-  double heating_ = 0;
   double heating_time_constant_s_ = 0;
   TrueTime switched_on_{};
-  std::unique_ptr<const TemperatureCourse> temperature_;
   double coefficient_ppb_per_k_ = 0;
 };
 

@@ -23,7 +23,7 @@ namespace simbench::sim {
 
 struct FrameStamps {
   DeviceStamp sensor{};  // middle of the exposure
-  DeviceStamp frame{};   // begin of the readout
+  DeviceStamp frame{};   // begin of the readout, which is that of its first row
 };
 
 class CameraStamps {
@@ -56,11 +56,9 @@ class CameraStamps {
 
   FrameStamps stamps_of(const CameraFrame& frame) {
     if (frame.fate != FrameFate::kDelivered) return {};
-    const CameraStream& stream = world_.cameras().stream(frame.stream);
-    DeviceClock& clock = clocks_[stream.camera];
-    // Readout begins with the first row.
+    DeviceClock& clock = clocks_[frame.camera];
     return {.sensor = clock.stamp(date(frame.mid_exposure()), frame.stamp_noise_ns),
-            .frame = clock.stamp(date(frame.exposure_end - stream.readout), frame.stamp_noise_ns)};
+            .frame = clock.stamp(date(frame.readout_start), frame.stamp_noise_ns)};
   }
 
   const CameraWorld& world_;

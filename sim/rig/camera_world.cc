@@ -47,10 +47,6 @@ CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed
   camera_faults_.start(TrueTime{});
   make_hosts();
   plan_slot(TrueTime{});
-  for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
-    const TrueTime timer = cameras_.stream(id).shutter.next_timer();
-    if (timer != TrueTime::max()) timers_.push(timer, id);
-  }
 }
 
 // Cameras are numbered host by host, and so are controllers.
@@ -67,13 +63,20 @@ void CameraWorld::make_hosts() {
     hosts_.push_back(
         {.jitter = HostJitter(scenario_.usb, seed_, host, TrueTime{}, trigger_.period_ns()),
          .load = HostLoad(scenario_.hosts.load_burst, seed_, static_cast<PeerId>(host)),
+         .first_stream = 0,
+         .end_stream = 0,
          .first_bus = 0,
-         .buses = 0});
+         .end_bus = 0});
   }
-  for (const CameraStream& stream : cameras_.streams()) {
+  for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
+    const CameraStream& stream = cameras_.stream(id);
     HostSide& host = hosts_[stream.host];
-    if (host.buses == 0) host.first_bus = stream.controller;
-    host.buses = stream.controller - host.first_bus + 1;
+    if (host.end_stream == 0) {
+      host.first_stream = id;
+      host.first_bus = stream.controller;
+    }
+    host.end_stream = id + 1;
+    host.end_bus = stream.controller + 1;
   }
 }
 
@@ -101,18 +104,14 @@ const CameraPeriod* CameraWorld::period(std::size_t index) {
 
 // The first period ends with slot 0, the last one when all is over.
 void CameraWorld::make_period(CameraPeriod& period) {
-  period.pulse.reset();
-  if (has_begun_) period.pulse = expose_by_pulse();
+  period.pulse = has_begun_ ? begin_slot() : std::nullopt;
   has_begun_ = true;
   is_over_ = next_slot_ > slots_.last;
   period.end = is_over_ ? TrueTime::max() : next_slot_at_;
-  expose_by_timers(period.end);
   for (HostSide& host : hosts_) {
-    transferred_.clear();
-    for (std::uint32_t bus = host.first_bus; bus < host.first_bus + host.buses; ++bus) {
-      transfer(buses_[bus], period.end);
-    }
-    sort(transferred_);
+    if (period.pulse) expose_by_pulse(host, *period.pulse);
+    expose_by_timers(host, std::min(period.end, last_exposure_));
+    transfer(host, period.end);
     for (const Step& step : transferred_) deliver(host, step);
   }
   hand_out_frames(period.end, period.frames);
@@ -135,38 +134,50 @@ void CameraWorld::plan_slot(TrueTime earliest) {
   next_slot_at_ = std::max(pulse.value_or(trigger_.due(next_slot_)), earliest);
 }
 
-// By the pulse of the next slot; a slot without one still takes its time.
-std::optional<CameraPulse> CameraWorld::expose_by_pulse() {
-  const std::int64_t slot = next_slot_++;
-  const TrueTime now = next_slot_at_;
+// Also a slot without a pulse takes its time.
+std::optional<CameraPulse> CameraWorld::begin_slot() {
+  const CameraPulse pulse{.slot = next_slot_++, .at = next_slot_at_};
   const bool has_pulse = next_slot_has_pulse_;
   ++events_;
-  if (has_pulse) {
-    for (const std::uint32_t id : cameras_.triggered_streams()) {
+  plan_slot(pulse.at);
+  if (!has_pulse) return std::nullopt;
+  return pulse;
+}
+
+void CameraWorld::expose_by_pulse(const HostSide& host, const CameraPulse& pulse) {
+  for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
+    CameraStream& stream = cameras_.stream(id);
+    if (stream.shutter.mode() == ShutterMode::kFreeRunning) continue;
+    const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
+    stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
+    const auto exposure = stream.shutter.on_pulse(at_camera, pulse.slot);
+    if (exposure) expose(id, *exposure, pulse.at);
+  }
+}
+
+void CameraWorld::expose_by_timers(const HostSide& host, TrueTime before) {
+  const auto kinds = static_cast<std::uint32_t>(bytes_of_kind_.size());
+  for (std::uint32_t first = host.first_stream; first < host.end_stream; first += kinds) {
+    for (;; ++events_) {
+      const std::uint32_t id = next_timer(first);
       CameraStream& stream = cameras_.stream(id);
-      const TrueTime at_camera = now + trigger_.delay_to(stream.camera);
-      stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
-      const auto exposure = stream.shutter.on_pulse(at_camera, slot);
+      const TrueTime now = stream.shutter.next_timer();
+      if (now >= before) break;
+      stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
+      const auto exposure = stream.shutter.on_timer(now);
       if (exposure) expose(id, *exposure, now);
     }
   }
-  plan_slot(now);
-  if (!has_pulse) return std::nullopt;
-  return CameraPulse{.slot = slot, .at = now};
 }
 
-void CameraWorld::expose_by_timers(TrueTime before) {
-  QueueEntry timer;
-  while (timers_.pop_through(std::min(before, last_exposure_) - Nanoseconds(1), timer)) {
-    const TrueTime now{Nanoseconds(timer.time_ns)};
-    const auto id = static_cast<std::uint32_t>(timer.payload);
-    CameraStream& stream = cameras_.stream(id);
-    stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
-    const auto exposure = stream.shutter.on_timer(now);
-    if (exposure) expose(id, *exposure, now);
-    timers_.push(stream.shutter.next_timer(), id);
-    ++events_;
+// The stream with the earliest timer, of the camera whose first stream that is.
+std::uint32_t CameraWorld::next_timer(std::uint32_t first) const {
+  std::uint32_t next = first;
+  for (std::uint32_t id = first + 1; id < first + bytes_of_kind_.size(); ++id) {
+    const TrueTime timer = cameras_.stream(id).shutter.next_timer();
+    if (timer < cameras_.stream(next).shutter.next_timer()) next = id;
   }
+  return next;
 }
 
 // Soon after its start a camera may expose late.
@@ -188,15 +199,19 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
   const std::uint32_t id = frames_.add();
   FrameInFlight& way = frames_[id];
   CameraFrame& frame = way.frame = {.stream = stream_id,
+                                    .camera = stream.camera,
+                                    .host = stream.host,
                                     .counter = stream.counter++,
+                                    .kind = stream.kind,
                                     .pulse = exposure.pulse,
                                     .exposure_start = exposure.start,
-                                    .exposure_end = exposure.end};
+                                    .exposure_end = exposure.end,
+                                    .readout_start = exposure.end - stream.readout};
   if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
     frame.fate = FrameFate::kLostInCamera;
     return ended_.push_back(step(now, now, id));
   }
-  const Nanoseconds exposed = exposure.end - stream.readout - exposure.start;
+  const Nanoseconds exposed = frame.readout_start - exposure.start;
   frame.exposure_us = static_cast<std::uint32_t>(exposed.count() / 1000);
   frame.stamp_noise_ns = stamp_noise_ns;
   way.kernel_copy_ns = delays.kernel_copy_ns;
@@ -206,11 +221,20 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
       step(frame.offered, {}, id, stream.index_on_controller));
 }
 
+// What is transferred to the host before that, in order of time.
+void CameraWorld::transfer(const HostSide& host, TrueTime before) {
+  transferred_.clear();
+  for (std::uint32_t bus = host.first_bus; bus < host.end_bus; ++bus) transfer(buses_[bus], before);
+  sort(transferred_);
+}
+
 // What happens on this bus before that, in order of time.
 void CameraWorld::transfer(Bus& bus, TrueTime before) {
   sort(bus.offers);
-  auto next = pass(bus, before);
+  const bool are_single = is_each_stream_once(bus.offers);
+  auto next = bus.offers.begin();
   for (;;) {
+    if (are_single) next = pass(bus, next, before);
     const TrueTime offered = next != bus.offers.end() ? next->at : TrueTime::max();
     const TrueTime woken = bus.controller.wake_up();
     if (std::min(offered, woken) >= before) break;
@@ -225,16 +249,19 @@ void CameraWorld::transfer(Bus& bus, TrueTime before) {
   bus.offers.erase(bus.offers.begin(), next);
 }
 
-// The first of the offers, as long as they meet no others under way; returns the next one.
-auto CameraWorld::pass(Bus& bus, TrueTime before) -> std::vector<Step>::iterator {
+// Up to 64 streams; of more, it may say no.
+bool CameraWorld::is_each_stream_once(const std::vector<Step>& offers) {
   constexpr std::uint32_t kMost = 64;
   std::uint64_t seen = 0;
-  const auto is_second = [&seen](const Step& offer) {
+  return std::none_of(offers.begin(), offers.end(), [&seen](const Step& offer) {
     const std::uint64_t stream = std::uint64_t{1} << (offer.place % kMost);
     return (std::exchange(seen, seen | stream) & stream) != 0;
-  };
-  auto next = bus.offers.begin();
-  if (std::any_of(next, bus.offers.end(), is_second)) return next;
+  });
+}
+
+// From this offer on, as long as they meet no others under way; returns the next one.
+auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before)
+    -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {
     const double bytes = bytes_of_kind_[next->place % bytes_of_kind_.size()];
     const auto done = bus.controller.pass(next->at, next->place, bytes, before);

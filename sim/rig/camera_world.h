@@ -18,12 +18,12 @@
 // All random numbers of a frame are drawn when its exposure begins, from streams of its own camera
 // and stream.
 //
-// In a period each stage goes over all cameras before the next begins: exposures (also of shutters
-// that run free, in order of time), then host by host the transfers of its controllers and the
-// delays of what was transferred, then a sort of what was delivered. What is under way when the
-// period ends goes on in the next. In one nanosecond, a transfer that ends makes room before a
-// frame is offered, and frames are delivered in the order in which their transfers ended, then host
-// by host.
+// In a period each host goes through all stages before the next one begins, since no host's frames
+// meet another's and a host's cameras fit into the cache: exposures by the pulse and by shutters
+// that run free, transfers of its controllers, delays of what was transferred. Then what was
+// delivered is sorted. What is under way when the period ends goes on in the next. In one
+// nanosecond, a transfer that ends makes room before a frame is offered, and frames are delivered
+// in the order in which their transfers ended, then host by host.
 //
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
@@ -44,7 +44,6 @@
 #include "recording/world_observer.h"
 #include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
-#include "sim/engine/event_queue.h"
 #include "sim/engine/slots.h"
 #include "sim/faults/faults.h"
 #include "sim/network/load.h"
@@ -59,13 +58,17 @@ namespace simbench::sim {
 // A frame that was delivered or lost.
 struct CameraFrame {
   std::uint32_t stream = 0;  // of Cameras::stream()
+  std::uint32_t camera = 0;
+  std::uint32_t host = 0;
   std::uint32_t counter = 0;
   std::uint32_t exposure_us = 0;
   FrameFate fate = FrameFate::kDelivered;
+  StreamKind kind{};
   double stamp_noise_ns = 0;  // of the camera's own stamps
   std::int64_t pulse = kNoPulse;
   TrueTime exposure_start{};
   TrueTime exposure_end{};
+  TrueTime readout_start{};
   TrueTime offered{};      // to its USB controller
   TrueTime transferred{};  // the last byte is with the host
   TrueTime copied{};       // to the kernel
@@ -148,8 +151,11 @@ class CameraWorld {
   struct HostSide {
     HostJitter jitter;  // of all of its frames
     HostLoad load;
+    // From here to before there.
+    std::uint32_t first_stream;
+    std::uint32_t end_stream;
     std::uint32_t first_bus;
-    std::uint32_t buses;
+    std::uint32_t end_bus;
   };
 
   static void sort(std::vector<Step>& steps);
@@ -160,12 +166,16 @@ class CameraWorld {
   void make_period(CameraPeriod& period);
   // Slot next_slot_, not before `earliest`.
   void plan_slot(TrueTime earliest);
-  std::optional<CameraPulse> expose_by_pulse();
-  void expose_by_timers(TrueTime before);
+  std::optional<CameraPulse> begin_slot();
+  void expose_by_pulse(const HostSide& host, const CameraPulse& pulse);
+  void expose_by_timers(const HostSide& host, TrueTime before);
+  std::uint32_t next_timer(std::uint32_t first) const;
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
   void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
+  void transfer(const HostSide& host, TrueTime before);
   void transfer(Bus& bus, TrueTime before);
-  std::vector<Step>::iterator pass(Bus& bus, TrueTime before);
+  static bool is_each_stream_once(const std::vector<Step>& offers);
+  std::vector<Step>::iterator pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before);
   void offer(Bus& bus, const Step& offer);
   void deliver(HostSide& host, const Step& transferred);
   void hand_out_frames(TrueTime before, std::vector<CameraFrame>& frames);
@@ -180,7 +190,6 @@ class CameraWorld {
   TriggerTree trigger_;
   Cameras cameras_;
   CameraFaults camera_faults_;
-  EventQueue timers_;  // of shutters; payload: stream
   std::vector<Bus> buses_;
   std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
   std::vector<HostSide> hosts_;

@@ -69,9 +69,6 @@ Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
       stream.host = static_cast<std::uint32_t>(host);
       stream.controller = controller_of_host[host];
       stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
-      if (stream.shutter.mode() != ShutterMode::kFreeRunning) {
-        triggered_streams_.push_back(static_cast<std::uint32_t>(streams_.size()));
-      }
       streams_.push_back(std::move(stream));
     }
   }

@@ -75,8 +75,6 @@ class Cameras {
   CameraStream& stream(std::uint32_t id) { return streams_[id]; }
   const CameraStream& stream(std::uint32_t id) const { return streams_[id]; }
   std::vector<CameraStream>& streams() { return streams_; }
-  // The numbers of the streams that pulses start.
-  const std::vector<std::uint32_t>& triggered_streams() const { return triggered_streams_; }
 
   // A controller of its own for each group of cameras, as CameraStream::controller counts them.
   std::vector<UsbController> make_controllers() const;
@@ -92,7 +90,6 @@ class Cameras {
   std::uint32_t controllers_ = 0;
   std::vector<AutoExposure> exposures_;
   std::vector<CameraStream> streams_;
-  std::vector<std::uint32_t> triggered_streams_;
 };
 
 }  // namespace simbench::sim

@@ -157,40 +157,37 @@ void Capture::report_block(std::size_t first, std::size_t end) {
   truths_.clear();
   for (std::size_t i = first; i < end; ++i) {
     const CameraFrame& frame = period_->frames[i];
-    const CameraStream& stream = world_->cameras().stream(frame.stream);
-    if (frame.fate != FrameFate::kDelivered || is_stopped(stream.host, frame)) continue;
-    stamp(frame, stream, period_stamps_[i]);
+    if (frame.fate != FrameFate::kDelivered || is_stopped(frame)) continue;
+    stamp(frame, period_stamps_[i]);
   }
   if (!records_.empty()) reports_.frames(records_, truths_);
 }
 
 void Capture::report_single(std::size_t number) {
   const CameraFrame& frame = period_->frames[number];
-  const CameraStream& stream = world_->cameras().stream(frame.stream);
   if (frame.fate == FrameFate::kDelivered) {
-    if (is_stopped(stream.host, frame)) return;
+    if (is_stopped(frame)) return;
     report_block(number, number + 1);
-    reports_.used(records_.front(), stream, date(frame.at));
+    reports_.used(records_.front(), world_->cameras().stream(frame.stream), date(frame.at));
   }
-  reports_.observed(frame, stream, shift_);
+  reports_.observed(frame, shift_);
 }
 
 // What its host and the master make of a frame.
-void Capture::stamp(const CameraFrame& frame, const CameraStream& stream,
-                    const FrameStamps& stamps) {
-  const SystemClock& clock = *clocks_[stream.host];
+void Capture::stamp(const CameraFrame& frame, const FrameStamps& stamps) {
+  const SystemClock& clock = *clocks_[frame.host];
   const TrueTime middle = date(frame.mid_exposure());
   const TrueTime at = date(frame.at);
   const SystemClock::Reading arrival = clock.read_both(at);
   const SystemClock::Reading exposed = clock.read_both(middle);
-  const bool is_master = stream.host == 0;
-  records_.push_back({.camera = stream.camera,
-                      .stream = stream.kind,
+  const bool is_master = frame.host == 0;
+  records_.push_back({.camera = frame.camera,
+                      .stream = frame.kind,
                       .counter = frame.counter,
                       .exposure_us = frame.exposure_us,
                       .sensor = stamps.sensor,
                       .frame = stamps.frame,
-                      .backend = backend_stamps_.stamp(clock, steady_starts_[stream.host],
+                      .backend = backend_stamps_.stamp(clock, steady_starts_[frame.host],
                                                        date(frame.copied), arrival),
                       .arrival = round_down(arrival.system, arrival_quantum_),
                       .arrival_steady = round_down(arrival.steady, arrival_quantum_)});

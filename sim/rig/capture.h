@@ -86,10 +86,10 @@ class Capture {
   void report_block(std::size_t first, std::size_t end);
   void report_single(std::size_t number);
   // Whether its host is stopped when a frame comes.
-  bool is_stopped(std::uint32_t host, const CameraFrame& frame) const {
-    return outages_.host_stopped(static_cast<PeerId>(host), date(frame.at));
+  bool is_stopped(const CameraFrame& frame) const {
+    return outages_.host_stopped(static_cast<PeerId>(frame.host), date(frame.at));
   }
-  void stamp(const CameraFrame& frame, const CameraStream& stream, const FrameStamps& stamps);
+  void stamp(const CameraFrame& frame, const FrameStamps& stamps);
 
   const scenarios::Scenario& scenario_;
   Engine& engine_;

@@ -6,11 +6,10 @@
 namespace simbench::sim {
 namespace {
 
-ObservedFrame observed_frame(const CameraFrame& frame, const CameraStream& stream,
-                             Nanoseconds shift) {
-  ObservedFrame observed{.camera = stream.camera,
-                         .host = stream.host,
-                         .stream = stream.kind,
+ObservedFrame observed_frame(const CameraFrame& frame, Nanoseconds shift) {
+  ObservedFrame observed{.camera = frame.camera,
+                         .host = frame.host,
+                         .stream = frame.kind,
                          .counter = frame.counter,
                          .pulse = frame.pulse,
                          .fate = frame.fate,
@@ -68,11 +67,10 @@ void CaptureReports::pulse(std::int64_t slot, TrueTime at) const {
   observer_->on_pulse({.pulse = slot, .at = at});
 }
 
-void CaptureReports::observed(const CameraFrame& frame, const CameraStream& stream,
-                              Nanoseconds shift) const {
+void CaptureReports::observed(const CameraFrame& frame, Nanoseconds shift) const {
   if (observer_ == nullptr) return;
   observer_->sample_until(frame.at + shift);
-  observer_->on_frame(observed_frame(frame, stream, shift));
+  observer_->on_frame(observed_frame(frame, shift));
 }
 
 }  // namespace simbench::sim

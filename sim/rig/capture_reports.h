@@ -74,7 +74,7 @@ class CaptureReports {
     if (feeds_ != nullptr) feeds_->on_delivery(record, stream, at);
   }
   // One was delivered or lost; its times are to be shifted.
-  void observed(const CameraFrame& frame, const CameraStream& stream, Nanoseconds shift) const;
+  void observed(const CameraFrame& frame, Nanoseconds shift) const;
 
  private:
   RecordingSink& sink_;

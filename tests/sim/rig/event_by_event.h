@@ -45,8 +45,9 @@ class EventByEvent {
   }
   void on_slot(std::int64_t slot) {
     if (trigger_.pulse(slot)) {
-      for (const std::uint32_t id : cameras_.triggered_streams()) {
+      for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
         CameraStream& stream = cameras_.stream(id);
+        if (stream.shutter.mode() == ShutterMode::kFreeRunning) continue;
         const TrueTime at = engine_.now() + trigger_.delay_to(stream.camera);
         stream.shutter.set_exposure(cameras_.exposure(stream.camera, at));
         if (const auto exposure = stream.shutter.on_pulse(at, slot)) expose(id, *exposure);
