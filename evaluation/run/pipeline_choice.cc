@@ -271,7 +271,8 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   check_all_parameters(scenario);
   std::vector<PipelineChoice> all;
   std::vector<std::string> known;
-  const scenarios::Lazy<CalibratedDelays> delays([scenario] { return calibrated_delays(scenario); });
+  const scenarios::Lazy<CalibratedDelays> delays(
+      [scenario] { return calibrated_delays(scenario); });
   for (std::size_t index = 0; index < scenario.pipelines.size(); ++index) {
     all.push_back(choose(scenario, index));
     all.back().delays = delays;
@@ -306,12 +307,11 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   };
   setup.gatherer_needs_pulses = choice.pipeline.gathering == "oracle";
   if (choice.device_time.make) {
-    setup.make_estimator = [make = choice.device_time.make,
-                            parameters = choice.device_time_parameters,
-                            variants = choice.device_time_variants,
-                            delays = delays_of(scenario, choice)] {
-      return make_variant(variants, make(parameters), delays);
-    };
+    setup.make_estimator =
+        [make = choice.device_time.make, parameters = choice.device_time_parameters,
+         variants = choice.device_time_variants, delays = delays_of(scenario, choice)] {
+          return make_variant(variants, make(parameters), delays);
+        };
   }
   const DeviceTimeEntry* offline = find_device_time("regression_offline");
   if (choice.scores_offline && offline != nullptr &&

@@ -13,9 +13,9 @@ constexpr std::size_t kSettingsKept = 1 << 18;
 
 SystemClock::SystemClock(std::uint32_t host, OscillatorModel oscillator, Nanoseconds offset,
                          SteadyTime steady_epoch)
-    : host_(host),
-      own_(host, {std::move(oscillator), steady_epoch}, TrueTime{}, HostTime(offset),
-           kSettingsKept) {
+    : own_(host, {steady_epoch, std::move(oscillator)}, TrueTime{}, HostTime(offset),
+           kSettingsKept),
+      host_(host) {
   own_.observe([this](const ClockAdjustment& adjustment) { notify(adjustment); });
 }
 

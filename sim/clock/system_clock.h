@@ -33,8 +33,8 @@ namespace simbench::sim {
 // A host's oscillator with its steady clock, which reads `steady_epoch` at true zero.
 struct HostOscillator {
   using Instant = TrueTime;
-  OscillatorModel model;
   SteadyTime steady_epoch{};
+  OscillatorModel model;
 
   double deviation_ns(TrueTime t) const { return model.deviation_ns(t); }
   SteadyTime steady(TrueTime t) const { return steady(t, deviation_ns(t)); }
@@ -71,6 +71,9 @@ class SystemClock {
     const double deviation_ns = oscillator.deviation_ns(t);
     return {clock_->read(t, deviation_ns), oscillator.steady(t, deviation_ns)};
   }
+  // Prepare a reading (clocks::DisciplinedClock).
+  void prefetch() const { own_.prefetch(); }
+  void prefetch_setting() const { clock_->prefetch_setting(); }
   // How far the clock is ahead of true time, with its part of a nanosecond.
   double ahead_ns(TrueTime t) const {
     return clock_->read_since_ns(t, HostTime(t.time_since_epoch()));
@@ -106,9 +109,9 @@ class SystemClock {
   bool is_follower() const { return clock_ != &own_; }
   void notify(ClockAdjustment adjustment);
 
-  std::uint32_t host_;
-  Clock own_;
   const Clock* clock_ = &own_;  // the master's, if this one follows it
+  Clock own_;
+  std::uint32_t host_;
   bool is_adjusted_ = false;
   double frequency_ppb_ = 0;  // as set by programs
   double smear_ppb_ = 0;

@@ -43,7 +43,11 @@ class CameraStamps {
     std::vector<FrameStamps>& stamps = world_.is_whole() ? kept_.emplace_back() : passing_;
     stamps.clear();
     stamps.reserve(period.frames.size());
-    for (const CameraFrame& frame : period.frames) stamps.push_back(stamps_of(frame));
+    const std::vector<CameraFrame>& frames = period.frames;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (i + kAhead < frames.size()) clocks_[frames[i + kAhead].camera].prefetch();
+      stamps.push_back(stamps_of(frames[i]));
+    }
     return stamps;
   }
 
@@ -52,6 +56,8 @@ class CameraStamps {
   }
 
  private:
+  static constexpr std::size_t kAhead = 16;  // frames, for the cache
+
   TrueTime date(TrueTime since_start) const { return start_ + since_start.time_since_epoch(); }
 
   FrameStamps stamps_of(const CameraFrame& frame) {

@@ -5,6 +5,11 @@
 #include <variant>
 
 namespace simbench::sim {
+namespace {
+
+constexpr std::size_t kAhead = 16;  // frames, for the cache
+
+}  // namespace
 
 Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
                  std::vector<SystemClock*> clocks, const Outages& outages,
@@ -155,8 +160,11 @@ void Capture::report_frames(TrueTime last) {
 void Capture::report_block(std::size_t first, std::size_t end) {
   records_.clear();
   truths_.clear();
+  const std::vector<CameraFrame>& frames = period_->frames;
   for (std::size_t i = first; i < end; ++i) {
-    const CameraFrame& frame = period_->frames[i];
+    if (i + 2 * kAhead < end) clocks_[frames[i + 2 * kAhead].host]->prefetch();
+    if (i + kAhead < end) clocks_[frames[i + kAhead].host]->prefetch_setting();
+    const CameraFrame& frame = frames[i];
     if (frame.fate != FrameFate::kDelivered || is_stopped(frame)) continue;
     stamp(frame, period_stamps_[i]);
   }
