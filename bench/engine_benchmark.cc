@@ -26,7 +26,7 @@ class Timers : public sim::EventHandler {
   void add(std::uint32_t timer) {
     engine_.schedule(engine_.now() + draw_delay(random_), id_, 0, timer);
   }
-  void handle(const sim::Event& event) override { add(event.subject); }
+  void handle(sim::Event event) override { add(event.subject); }
 
  private:
   sim::Engine& engine_;

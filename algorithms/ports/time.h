@@ -69,7 +69,7 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 }
 
 // The nearest whole nanosecond, halves away from zero as std::llround has them, and the next below
-// or equal, as std::floor has it: without a call of either. |ns| < 2^63.
+// or above, or equal, as std::floor and std::ceil have it: without a call of them. |ns| < 2^63.
 constexpr Nanoseconds from_ns(double ns) {
   const auto whole = static_cast<std::int64_t>(ns);
   const double rest = ns - static_cast<double>(whole);
@@ -79,6 +79,10 @@ constexpr Nanoseconds from_ns(double ns) {
 constexpr Nanoseconds from_ns_down(double ns) {
   const auto whole = static_cast<std::int64_t>(ns);
   return Nanoseconds(ns < static_cast<double>(whole) ? whole - 1 : whole);
+}
+constexpr Nanoseconds from_ns_up(double ns) {
+  const auto whole = static_cast<std::int64_t>(ns);
+  return Nanoseconds(ns > static_cast<double>(whole) ? whole + 1 : whole);
 }
 // To the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
 constexpr Nanoseconds from_ms(double ms) { return from_ns(ms * 1e6); }

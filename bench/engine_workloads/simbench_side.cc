@@ -16,7 +16,7 @@ class Timers final : public sim::EventHandler {
       engine.schedule(at_ns(first_expiry_ns(i)), id_, 0, i);
   }
 
-  void handle(const sim::Event& event) override {
+  void handle(sim::Event event) override {
     const std::int64_t delay_ns = model_.expire(event.subject);
     if (model_.ended()) {
       engine_.stop();
@@ -46,7 +46,7 @@ class Rig final : public sim::EventHandler {
     }
   }
 
-  void handle(const sim::Event& event) override {
+  void handle(sim::Event event) override {
     const std::int64_t now_ns = event.time.time_since_epoch().count();
     switch (event.kind) {
       case RigModel::kTrigger: {

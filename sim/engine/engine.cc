@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace simbench::sim {
 namespace {
@@ -43,13 +44,13 @@ bool Engine::cancel(TimerId id) {
   ++cancelled_;
   callbacks_.destroy(id.slot_);
   if (cancelled_ > kFewCancelled && cancelled_ > queue_.size() / 2) {
-    queue_.erase_if([this](const QueueEntry& entry) { return release_if_cancelled(entry); });
+    queue_.erase_if(
+        [this](const QueueEntry& entry) { return release_if_cancelled(entry.event()); });
   }
   return true;
 }
 
-bool Engine::release_if_cancelled(const QueueEntry& entry) {
-  const Event event = entry.event();
+bool Engine::release_if_cancelled(Event event) {
   if (event.handler != kCallbackHandler || callbacks_.holds(event.subject)) return false;
   --cancelled_;
   callbacks_.release(event.subject);
@@ -70,6 +71,13 @@ void Engine::run_until(TrueTime end) {
   now_ = end;
 }
 
+// The time of an event, and its place in the trace.
+inline void Engine::begin(TrueTime at, std::uint64_t payload) {
+  now_ = at;
+  ++events_;
+  trace_hash_ = extend_hash(trace_hash_, at.time_since_epoch().count(), payload);
+}
+
 void Engine::execute_through(TrueTime last) {
   SIMBENCH_ASSERT(!running_, "an event must not run the engine that executes it");
   struct Running {
@@ -78,43 +86,36 @@ void Engine::execute_through(TrueTime last) {
     ~Running() { flag = false; }
   } const running(running_);
   stopped_ = false;
-  QueueEntry entry;
   while (events_ < limits_.max_events) {
     stopped_ = is_cancelled();
     if (stopped_) return;
     const std::uint64_t next_poll = std::min(limits_.max_events, events_ + kEventsBetweenPolls);
     while (events_ < next_poll) {
+      QueueEntry entry;
       if (!queue_.pop_through(last, entry)) return;
-      if (release_if_cancelled(entry)) continue;
-      execute(entry);
+      const Event event = entry.event();
+      if (event.handler != kCallbackHandler) {
+        begin(event.time, entry.payload);
+        handlers_[event.handler]->handle(event);
+      } else if (!release_if_cancelled(event)) {
+        // The slot of a callback says nothing about the world.
+        begin(event.time, payload_of(kCallbackHandler, 0, 0));
+        callbacks_.run(event.subject);
+      }
       if (stopped_) return;
     }
   }
 }
 
-void Engine::execute(const QueueEntry& entry) {
-  const Event event = entry.event();
-  now_ = event.time;
-  ++events_;
-  if (event.handler != kCallbackHandler) {
-    trace_hash_ = extend_hash(trace_hash_, entry.time_ns, entry.payload);
-    handlers_[event.handler]->handle(event);
-  } else {
-    // The slot of a callback says nothing about the world.
-    trace_hash_ = extend_hash(trace_hash_, entry.time_ns, payload_of(kCallbackHandler, 0, 0));
-    callbacks_.run(event.subject);
-  }
-}
-
 bool Engine::has_event_through(TrueTime last) {
   const std::int64_t last_ns = last.time_since_epoch().count();
-  const QueueEntry* first = queue_.first();
-  while (first != nullptr && first->time_ns <= last_ns && release_if_cancelled(*first)) {
+  std::optional<QueueEntry> first = queue_.first();
+  while (first && first->time_ns <= last_ns && release_if_cancelled(first->event())) {
     QueueEntry cancelled;
     queue_.pop_through(last, cancelled);
     first = queue_.first();
   }
-  return first != nullptr && first->time_ns <= last_ns;
+  return first && first->time_ns <= last_ns;
 }
 
 void Engine::throw_limit_reached() const {

@@ -15,7 +15,7 @@
 //    public:
 //     explicit Metronome(Engine& engine) : engine_(engine), id_(engine.attach(*this)) {}
 //     void start(TrueTime at) { engine_.schedule(at, id_, 0, 0); }
-//     void handle(const Event& event) override {
+//     void handle(Event event) override {
 //       engine_.schedule(event.time + from_ms(500), id_, event.kind, event.subject + 1);
 //     }
 //    private:
@@ -149,8 +149,8 @@ class Engine {
   bool is_cancelled() const {
     return limits_.cancel != nullptr && limits_.cancel->load(std::memory_order_relaxed);
   }
-  void execute(const QueueEntry& entry);
-  bool release_if_cancelled(const QueueEntry& entry);
+  void begin(TrueTime at, std::uint64_t payload);
+  bool release_if_cancelled(Event event);
   bool has_event_through(TrueTime last);
   [[noreturn]] void throw_limit_reached() const;
 

@@ -8,17 +8,17 @@ bool EventQueue::refill() {
   return true;
 }
 
-void EventQueue::insert_into_full_heap(std::int64_t time_ns, std::uint64_t payload,
-                                       std::uint64_t sequence) {
-  make_room_in_heap();
+void EventQueue::insert_into_full(std::int64_t time_ns, std::uint64_t payload,
+                                  std::uint64_t sequence) {
+  make_room();
   insert({.time_ns = time_ns, .payload = payload, .sequence = sequence});
 }
 
-// A heap of its full size spills into the ladder. Not so while a run as long as the heap is being
-// popped, which would have to go back with it: then a deeper heap costs less.
-void EventQueue::make_room_in_heap() {
-  if (heap_.size() < kHeapEntries || heap_.size() < run_.size() || !ladder_.has_room()) {
-    heap_.grow();
+// A tournament of its full size spills into the ladder. Not so while a run as long is being popped,
+// which would have to go back with it: then a larger tournament costs less.
+void EventQueue::make_room() {
+  if (near_.size() < kNearEntries || near_.size() < run_.size() || !ladder_.has_room()) {
+    near_.grow();
     return;
   }
   drain_near(spilled_);
@@ -26,7 +26,7 @@ void EventQueue::make_room_in_heap() {
 }
 
 void EventQueue::drain_near(std::vector<QueueEntry>& out) {
-  heap_.drain(out);
+  near_.drain(out);
   out.insert(out.end(), run_.begin(), run_.end());
   run_.clear();
 }

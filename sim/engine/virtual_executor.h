@@ -163,7 +163,7 @@ class VirtualContext : public boost::asio::execution_context, private EventHandl
     alignas(std::max_align_t) std::byte bytes[128];
   };
 
-  void handle(const Event& event) override { posted_.run(event.subject); }
+  void handle(Event event) override { posted_.run(event.subject); }
   WaitMemory& take_memory() {
     if (free_memory_.empty()) return memory_.emplace_back();
     WaitMemory* const memory = free_memory_.back();

@@ -169,7 +169,7 @@ void Network::send_capture_traffic(PeerId from, double bytes, TrueTime at) {
   port.pass(at, rate_.duration(bytes));
 }
 
-void Network::handle(const Event& event) {
+void Network::handle(Event event) {
   switch (static_cast<EventKind>(event.kind)) {
     case kAtSwitch:
       pass_switch(event.subject, event.time);

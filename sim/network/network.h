@@ -187,7 +187,7 @@ class Network : private EventHandler {
     std::vector<Recipient> recipients;
   };
 
-  void handle(const Event& event) override;
+  void handle(Event event) override;
 
   Nanoseconds on_the_line(const Segment& segment) const {
     return rate_.duration(segment.bytes + parameters_.overhead_bytes);

@@ -54,8 +54,8 @@ void CameraWorld::make_hosts() {
   for (UsbController& controller : cameras_.make_controllers()) {
     buses_.push_back({.controller = std::move(controller), .offers = {}});
   }
-  for (const scenarios::Stream& stream : scenario_.cameras.streams) {
-    bytes_of_kind_.push_back(stream.image_bytes());
+  for (std::uint32_t kind = 0; kind < scenario_.cameras.streams.size(); ++kind) {
+    transfer_ns_of_kind_.push_back(cameras_.stream(kind).transfer_ns);
   }
   const auto hosts = static_cast<std::size_t>(scenario_.hosts.count);
   hosts_.reserve(hosts);
@@ -66,7 +66,8 @@ void CameraWorld::make_hosts() {
          .first_stream = 0,
          .end_stream = 0,
          .first_bus = 0,
-         .end_bus = 0});
+         .end_bus = 0,
+         .next_timer = {}});
   }
   for (std::uint32_t id = 0; id < cameras_.streams().size(); ++id) {
     const CameraStream& stream = cameras_.stream(id);
@@ -155,14 +156,19 @@ void CameraWorld::expose_by_pulse(const HostSide& host, const CameraPulse& pulse
   }
 }
 
-void CameraWorld::expose_by_timers(const HostSide& host, TrueTime before) {
-  const auto kinds = static_cast<std::uint32_t>(bytes_of_kind_.size());
+void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
+  if (host.next_timer >= before) return;
+  host.next_timer = TrueTime::max();
+  const auto kinds = static_cast<std::uint32_t>(transfer_ns_of_kind_.size());
   for (std::uint32_t first = host.first_stream; first < host.end_stream; first += kinds) {
     for (;; ++events_) {
       const std::uint32_t id = next_timer(first);
       CameraStream& stream = cameras_.stream(id);
       const TrueTime now = stream.shutter.next_timer();
-      if (now >= before) break;
+      if (now >= before) {
+        host.next_timer = std::min(host.next_timer, now);
+        break;
+      }
       stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
       const auto exposure = stream.shutter.on_timer(now);
       if (exposure) expose(id, *exposure, now);
@@ -173,7 +179,7 @@ void CameraWorld::expose_by_timers(const HostSide& host, TrueTime before) {
 // The stream with the earliest timer, of the camera whose first stream that is.
 std::uint32_t CameraWorld::next_timer(std::uint32_t first) const {
   std::uint32_t next = first;
-  for (std::uint32_t id = first + 1; id < first + bytes_of_kind_.size(); ++id) {
+  for (std::uint32_t id = first + 1; id < first + transfer_ns_of_kind_.size(); ++id) {
     const TrueTime timer = cameras_.stream(id).shutter.next_timer();
     if (timer < cameras_.stream(next).shutter.next_timer()) next = id;
   }
@@ -263,10 +269,10 @@ bool CameraWorld::is_each_stream_once(const std::vector<Step>& offers) {
 auto CameraWorld::pass(Bus& bus, std::vector<Step>::iterator next, TrueTime before)
     -> std::vector<Step>::iterator {
   for (; next != bus.offers.end() && next->at < before; ++next) {
-    const double bytes = bytes_of_kind_[next->place % bytes_of_kind_.size()];
-    const auto done = bus.controller.pass(next->at, next->place, bytes, before);
-    if (!done) break;
-    transferred_.push_back(step(*done, *done, next->frame));
+    const double transfer_ns = transfer_ns_of_kind_[next->place % transfer_ns_of_kind_.size()];
+    const TrueTime done = bus.controller.pass(next->at, next->place, transfer_ns, before);
+    if (done == TrueTime::max()) break;
+    transferred_.push_back(step(done, done, next->frame));
   }
   return next;
 }

@@ -156,6 +156,7 @@ class CameraWorld {
     std::uint32_t end_stream;
     std::uint32_t first_bus;
     std::uint32_t end_bus;
+    TrueTime next_timer;  // not later than the earliest of its shutters'
   };
 
   static void sort(std::vector<Step>& steps);
@@ -168,7 +169,7 @@ class CameraWorld {
   void plan_slot(TrueTime earliest);
   std::optional<CameraPulse> begin_slot();
   void expose_by_pulse(const HostSide& host, const CameraPulse& pulse);
-  void expose_by_timers(const HostSide& host, TrueTime before);
+  void expose_by_timers(HostSide& host, TrueTime before);
   std::uint32_t next_timer(std::uint32_t first) const;
   Exposure with_unsteady_start(CameraStream& stream, const Exposure& planned) const;
   void expose(std::uint32_t stream_id, const Exposure& planned, TrueTime now);
@@ -191,7 +192,7 @@ class CameraWorld {
   Cameras cameras_;
   CameraFaults camera_faults_;
   std::vector<Bus> buses_;
-  std::vector<double> bytes_of_kind_;  // of a frame, by the number of the camera's stream
+  std::vector<double> transfer_ns_of_kind_;  // by the number of the camera's stream
   std::vector<HostSide> hosts_;
   Slots<FrameInFlight> frames_;
   std::vector<Step> transferred_;  // of one host

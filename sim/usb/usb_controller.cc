@@ -1,7 +1,6 @@
 #include "sim/usb/usb_controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "algorithms/ports/assert.h"
@@ -67,8 +66,7 @@ TrueTime UsbController::next_completion() const {
   if (settings_.sharing != UsbSharing::kFair) return whole(done_at);
   const double remaining_ns =
       (done_at - served_bytes_) * static_cast<double>(pending_.size()) / settings_.bytes_per_ns;
-  return served_until_ +
-         Nanoseconds(static_cast<std::int64_t>(std::ceil(std::max(0.0, remaining_ns))));
+  return served_until_ + from_ns_up(std::max(0.0, remaining_ns));
 }
 
 std::optional<std::uint32_t> UsbController::take_completed(TrueTime now) {

@@ -23,7 +23,6 @@
 #define SIMBENCH_SIM_USB_USB_CONTROLLER_H_
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -49,16 +48,17 @@ class UsbController {
   // Stream `stream` offers a frame of `bytes` with the number `ticket`. False: it was lost.
   bool submit(TrueTime now, std::size_t stream, double bytes, std::uint32_t ticket);
 
-  // The common case at once: if nothing is pending and the frame completes before that, whatever
-  // else is offered, it does so and this returns when. Else nothing happens: submit() it. Until
-  // then the stream must not offer another.
-  std::optional<TrueTime> pass(TrueTime now, std::size_t stream, double bytes, TrueTime before) {
-    if (!pending_.empty() || settings_.sharing == UsbSharing::kFair) return std::nullopt;
+  // The common case at once: if nothing is pending and the frame, which alone takes that long,
+  // completes before that, whatever else is offered, it does so and this returns when. Else nothing
+  // happens and this returns TrueTime::max(): submit() it. Until then the stream must not offer
+  // another.
+  TrueTime pass(TrueTime now, std::size_t stream, double transfer_ns, TrueTime before) {
+    if (!pending_.empty() || settings_.sharing == UsbSharing::kFair) return TrueTime::max();
     const bool is_shared = settings_.sharing == UsbSharing::kFifo;
     double& free_at_ns = lane_free_at_ns_[is_shared ? 0 : stream / settings_.streams_per_camera];
-    const double done_at_ns = queued_on(free_at_ns, now, bytes);
+    const double done_at_ns = queued_on(free_at_ns, now, transfer_ns);
     const TrueTime done = whole(done_at_ns);
-    if (done >= before) return std::nullopt;
+    if (done >= before) return TrueTime::max();
     free_at_ns = done_at_ns;
     return done;
   }
@@ -85,16 +85,15 @@ class UsbController {
     std::uint32_t stream;
   };
   static bool later(const Transfer& a, const Transfer& b);
-  static TrueTime whole(double done_at_ns) {
-    return TrueTime(Nanoseconds(static_cast<std::int64_t>(std::ceil(done_at_ns))));
-  }
+  static TrueTime whole(double done_at_ns) { return TrueTime(from_ns_up(done_at_ns)); }
   // When a frame is transferred that waits until its lane is free.
-  double queued_on(double free_at_ns, TrueTime now, double bytes) const {
+  static double queued_on(double free_at_ns, TrueTime now, double transfer_ns) {
     const auto now_ns = static_cast<double>(now.time_since_epoch().count());
-    return std::max(free_at_ns, now_ns) + bytes / settings_.bytes_per_ns;
+    return std::max(free_at_ns, now_ns) + transfer_ns;
   }
   double queue_on_lane(std::size_t lane, TrueTime now, double bytes) {
-    return lane_free_at_ns_[lane] = queued_on(lane_free_at_ns_[lane], now, bytes);
+    return lane_free_at_ns_[lane] =
+               queued_on(lane_free_at_ns_[lane], now, bytes / settings_.bytes_per_ns);
   }
   void serve_until(TrueTime now);
 

@@ -29,6 +29,7 @@ TEST(Time, NanosecondsAreRoundedAsTheStandardLibraryRounds) {
     for (const double ns : {value, -value}) {
       EXPECT_EQ(from_ns(ns).count(), std::llround(ns)) << ns;
       EXPECT_EQ(static_cast<double>(from_ns_down(ns).count()), std::floor(ns)) << ns;
+      EXPECT_EQ(static_cast<double>(from_ns_up(ns).count()), std::ceil(ns)) << ns;
     }
   }
 }

@@ -20,7 +20,7 @@ class Recorder : public EventHandler {
     engine_.schedule(at_ns(time_ns), id_, kind, subject);
   }
 
-  void handle(const Event& event) override {
+  void handle(Event event) override {
     events.push_back(event);
     subjects.push_back(event.subject);
     if (on_event) on_event(event);
