@@ -65,24 +65,25 @@ inline constexpr std::int64_t kDeviceRegisterNs = (std::int64_t{1} << 32) * 1000
 
 // a / b, rounded down; b > 0.
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) {
-  return a / b - (a % b < 0 ? 1 : 0);
+  return a / b - static_cast<std::int64_t>(a % b < 0);
 }
 
 // The nearest whole nanosecond, halves away from zero as std::llround has them, and the next below
-// or above, or equal, as std::floor and std::ceil have it: without a call of them. |ns| < 2^63.
+// or above, or equal, as std::floor and std::ceil have it: without a call of them, and without a
+// branch, which half of all values would take. |ns| < 2^63.
 constexpr Nanoseconds from_ns(double ns) {
   const auto whole = static_cast<std::int64_t>(ns);
   const double rest = ns - static_cast<double>(whole);
-  if (rest >= 0.5) return Nanoseconds(whole + 1);
-  return Nanoseconds(rest <= -0.5 ? whole - 1 : whole);
+  return Nanoseconds(whole + static_cast<std::int64_t>(rest >= 0.5) -
+                     static_cast<std::int64_t>(rest <= -0.5));
 }
 constexpr Nanoseconds from_ns_down(double ns) {
   const auto whole = static_cast<std::int64_t>(ns);
-  return Nanoseconds(ns < static_cast<double>(whole) ? whole - 1 : whole);
+  return Nanoseconds(whole - static_cast<std::int64_t>(ns < static_cast<double>(whole)));
 }
 constexpr Nanoseconds from_ns_up(double ns) {
   const auto whole = static_cast<std::int64_t>(ns);
-  return Nanoseconds(ns > static_cast<double>(whole) ? whole + 1 : whole);
+  return Nanoseconds(whole + static_cast<std::int64_t>(ns > static_cast<double>(whole)));
 }
 // To the nearest nanosecond, and back. Exact for |ms| < 9e9 (104 days).
 constexpr Nanoseconds from_ms(double ms) { return from_ns(ms * 1e6); }

@@ -320,6 +320,7 @@ struct ChronyForm {
   bool initial_burst = true;
   bool is_interleaved = false;
   const char* stamps = "available";
+  double service_hours = 4;
 };
 
 std::vector<ParameterSpec> polling_parameters(const ChronyForm& form) {
@@ -344,7 +345,7 @@ std::vector<ParameterSpec> polling_parameters(const ChronyForm& form) {
   };
 }
 
-std::vector<ParameterSpec> clock_parameters() {
+std::vector<ParameterSpec> clock_parameters(const ChronyForm& form) {
   return {
       number_parameter("min_samples", 6, 3, 64, "samples that the runs test leaves",
                        kChronyDocumentation),
@@ -365,7 +366,7 @@ std::vector<ParameterSpec> clock_parameters() {
                        kDebianConfiguration),
       number_parameter("step_updates", 3, 0, 1e6, "first updates that may step (makestep)",
                        kDebianConfiguration),
-      number_parameter("service_hours", 4, 0, 1e4,
+      number_parameter("service_hours", form.service_hours, 0, 1e4,
                        "how long the service has run when the capture starts",
                        "assumption: start-up transients are over"),
   };
@@ -376,7 +377,7 @@ std::vector<ParameterSpec> chrony_parameters(const ChronyForm& form) {
   for (ParameterSpec& spec : specs) {
     if (spec.name == "stamps") spec.fallback = std::string(form.stamps);
   }
-  const std::vector<ParameterSpec> rest = clock_parameters();
+  const std::vector<ParameterSpec> rest = clock_parameters(form);
   specs.insert(specs.end(), rest.begin(), rest.end());
   return specs;
 }
@@ -429,7 +430,8 @@ std::vector<HostSyncEntry> host_sync_chrony() {
               .max_poll = -2,
               .initial_burst = false,
               .is_interleaved = true,
-              .stamps = "kernel"}),
+              .stamps = "kernel",
+              .service_hours = 0.5}),
   };
 }
 
