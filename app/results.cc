@@ -14,6 +14,7 @@
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
+#include "reports/results/summary_document.h"
 #include "reports/sweep/sweep_ranking.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_file.h"
@@ -82,18 +83,33 @@ std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& fol
   return "";
 }
 
+reports::Document document_of(const evaluation::Results& results,
+                              const scenarios::Scenario& scenario, bool leaderboard,
+                              const reports::Block& answer, Detail detail) {
+  if (detail == Detail::kAnswer) return reports::quiet_document(results, answer);
+  if (detail == Detail::kScreen) {
+    return reports::summary_document(
+        results, {.summary = scenario.summary, .is_leaderboard = leaderboard}, answer);
+  }
+  reports::Document document = leaderboard
+                                   ? reports::leaderboard_document(results, scenario.summary)
+                                   : reports::results_document(results, scenario.summary);
+  document.head.insert(document.head.begin(), answer.prose.begin(), answer.prose.end());
+  return document;
+}
+
 }  // namespace
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, const std::vector<reports::Block>& more) {
+                         const std::string& format, Detail detail, const reports::Block& answer,
+                         const std::vector<reports::Block>& more) {
   const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
   if (format == "json") {
     return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
   }
   if (format == "csv") return reports::csv(results);
-  reports::Document document = leaderboard
-                                   ? reports::leaderboard_document(results, scenario.summary)
-                                   : reports::results_document(results, scenario.summary);
+  reports::Document document = document_of(results, scenario, leaderboard, answer,
+                                           format == "markdown" ? Detail::kAll : detail);
   document.blocks.insert(document.blocks.end(), more.begin(), more.end());
   return format == "markdown" ? markdown(document) : plain(document);
 }

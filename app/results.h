@@ -7,6 +7,7 @@
 #ifndef SIMBENCH_APP_RESULTS_H_
 #define SIMBENCH_APP_RESULTS_H_
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,10 +23,15 @@
 
 namespace simbench::app {
 
-// The results as `simbench run` prints them. `format`: table, markdown, csv or json. `more`: blocks
-// that follow in a table or in Markdown.
+// How much of the results a reader wants: the answer, a screen, or all of it.
+enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
+
+// The results as `simbench run` prints them. `format`: table, markdown, csv or json; the detail is
+// that of a table, Markdown has all. `answer`: the first paragraph of a table and of Markdown.
+// `more`: blocks that follow.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, const std::vector<reports::Block>& more = {});
+                         const std::string& format, Detail detail, const reports::Block& answer,
+                         const std::vector<reports::Block>& more = {});
 
 // The same of `simbench clocks`.
 std::string clock_text(const evaluation::ClockResults& results, const scenarios::Scenario& scenario,

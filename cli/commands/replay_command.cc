@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/answer.h"
 #include "app/interrupt.h"
 #include "app/recordings.h"
 #include "app/results.h"
@@ -18,6 +19,7 @@
 #include "evaluation/replay/replay.h"
 #include "recording/recording.h"
 #include "reports/archive/archive.h"
+#include "reports/results/answer_block.h"
 #include "reports/rigs/replay_report.h"
 
 namespace simbench::cli {
@@ -141,7 +143,9 @@ int run_folder(const std::string& folder, const ReplayOptions& options) {
   if (archive.write(*results, run.scenario())) {
     print_note("results written to " + options.output);
   }
-  print_result(app::results_text(*results, run.scenario(), options.format));
+  print_result(
+      app::results_text(*results, run.scenario(), options.format, app::Detail::kAll,
+                        reports::answer_block(*results, app::ranked_by(run.scenario()), nullptr)));
   return kOk;
 }
 

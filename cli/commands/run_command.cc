@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/answer.h"
 #include "app/interrupt.h"
 #include "app/results.h"
 #include "cli/command.h"
@@ -14,6 +15,7 @@
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
+#include "reports/results/answer_block.h"
 #include "reports/results/budget_report.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/rigs/prediction_report.h"
@@ -46,7 +48,13 @@ struct RunOptions {
   std::string format;
   std::string output;
   bool budget = false;
+  bool quiet = false;
+  bool verbose = false;
   std::vector<std::string> command;
+
+  app::Detail detail() const {
+    return quiet ? app::Detail::kAnswer : verbose ? app::Detail::kAll : app::Detail::kScreen;
+  }
 };
 
 std::optional<evaluation::Results> evaluate(const scenarios::Scenario& scenario,
@@ -123,9 +131,10 @@ void check_budget_options(const RunOptions& options) {
 
 std::string text_with_prediction(const evaluation::Results& measured,
                                  const evaluation::Results& simulated,
-                                 const scenarios::Scenario& scenario, const std::string& format) {
-  if (format == "json") return reports::json_with_prediction(measured, simulated);
-  return app::results_text(measured, scenario, format,
+                                 const scenarios::Scenario& scenario, const RunOptions& options) {
+  if (options.format == "json") return reports::json_with_prediction(measured, simulated);
+  return app::results_text(measured, scenario, options.format, options.detail(),
+                           reports::answer_block(measured, app::ranked_by(scenario), nullptr),
                            {reports::prediction_block(measured, simulated)});
 }
 
@@ -155,8 +164,18 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
                  .jobs = options.evaluation.jobs,
                  .pipelines = options.evaluation.pipelines});
   if (!predicted) return kInterrupted;
-  print_result(text_with_prediction(*measured, *predicted, scenario, options.format));
+  print_result(text_with_prediction(*measured, *predicted, scenario, options));
   return kOk;
+}
+
+// Empty for a format that only programs read; nothing after an interruption.
+std::optional<reports::Block> answer_for_people(const evaluation::Results& results,
+                                                const scenarios::Scenario& scenario,
+                                                const RunOptions& options) {
+  if (options.format == "csv" || options.format == "json") return reports::Block{};
+  return watched<reports::Block>([&](const evaluation::Progress& progress) {
+    return app::run_answer(results, scenario, progress);
+  });
 }
 
 int run(RunOptions options) {
@@ -175,7 +194,9 @@ int run(RunOptions options) {
   if (!results) return kInterrupted;
   print_warnings(results->warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
-  print_result(app::results_text(*results, scenario, options.format));
+  const std::optional<reports::Block> answer = answer_for_people(*results, scenario, options);
+  if (!answer) return kInterrupted;
+  print_result(app::results_text(*results, scenario, options.format, options.detail(), *answer));
   return kOk;
 }
 
@@ -201,6 +222,12 @@ void add_run_command(CommandLine& line) {
   command.text("--output", "DIR", options->output,
                "Write a result archive to this folder: manifest.json, results.json,\n"
                "frames.csv, hosts.csv. Replaces an earlier archive there");
+  const Option quiet =
+      command.flag("--quiet", options->quiet, "Print the answer alone: one paragraph");
+  command
+      .flag("--verbose", options->verbose,
+            "Print all metrics, their meaning and the paper's claims")
+      .excludes(quiet);
   command.flag("--budget", options->budget,
                "Instead of the table, divide each pipeline's error among the stages that\n"
                "cause it (128 runs for every seed)");

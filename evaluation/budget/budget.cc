@@ -189,11 +189,13 @@ ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
     const std::vector<double> values = shapley_values(worth);
     for (std::size_t stage = 0; stage < kStageCount; ++stage) {
       parts.stages[stage].values.push_back(values[stage]);
+      parts.alone[stage].values.push_back(worth.front() - worth[std::size_t{1} << stage]);
     }
     parts.total.values.push_back(worth.front());
     parts.remainder.values.push_back(worth.back());
   }
   for (BudgetPart& part : parts.stages) finish(part);
+  for (BudgetPart& part : parts.alone) finish(part);
   finish(parts.total);
   finish(parts.remainder);
   return parts;

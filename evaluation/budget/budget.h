@@ -104,6 +104,8 @@ struct ErrorParts {
   BudgetPart total;
   std::array<BudgetPart, kStageCount> stages;
   BudgetPart remainder;
+  // By how much the error falls if that stage alone is ideal.
+  std::array<BudgetPart, kStageCount> alone;
 };
 
 struct Budget {

@@ -137,6 +137,7 @@ enum class CsvColumns : std::uint8_t {
 
 // The metric's place, from 1, among the columns or panels of each report; 0: it is not shown.
 struct TablePlaces {
+  int summary = 0;         // the few of the first table
   int paper = 0;           // the paper's metrics
   int truth = 0;           // metrics that need true time
   int time_errors = 0;     // the hosts' time errors
@@ -315,7 +316,7 @@ inline constexpr Metric kMetricTable[] = {
      .title = "AMD",
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::amd_ms, &MetricValues<Series>::amd_ms},
-     .tables = {.paper = 1, .response = 1, .response_panel = 1},
+     .tables = {.summary = 1, .paper = 1, .response = 1, .response_panel = 1},
      .heading = "AMD\nmedian ms",
      .band_heading = "AMD\n5-95 %",
      .legend = "AMD: mean range of the global stamps of a pulse over all cameras;",
@@ -340,7 +341,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kTruth,
      .place = SeriesPlace{&MetricValues<double>::absolute_error_ms,
                           &MetricValues<Series>::absolute_error_ms},
-     .tables = {.truth = 1, .response = 2, .response_panel = 2},
+     .tables = {.summary = 2, .truth = 1, .response = 2, .response_panel = 2},
      .heading = "absolute error\nmedian ms",
      .band_heading = "absolute error\n5-95 %",
      .legend = "absolute error: mean |global stamp - true mid-exposure on the master's clock|;",
@@ -365,7 +366,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kTruth,
      .place =
          SeriesPlace{&MetricValues<double>::host_error_ms, &MetricValues<Series>::host_error_ms},
-     .tables = {.truth = 3, .response = 3},
+     .tables = {.summary = 3, .truth = 3, .response = 3},
      .heading = "host clock error\nmedian ms",
      .band_heading = "host clock error\n5-95 %",
      .legend = "host clock error: mean |slave - master|.",
@@ -395,7 +396,7 @@ inline constexpr Metric kMetricTable[] = {
      .better = Better::kHigher,
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::precision,
-     .tables = {.truth = 5, .sets = 2, .response = 4},
+     .tables = {.summary = 4, .truth = 5, .sets = 2, .response = 4},
      .heading = "sets:\nprecision",
      .legend = "precision: gathered sets that hold one pulse only;",
      .json_in = kInGathering,
@@ -407,7 +408,7 @@ inline constexpr Metric kMetricTable[] = {
      .better = Better::kHigher,
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::recall,
-     .tables = {.truth = 6, .sets = 3, .response = 5, .response_panel = 3},
+     .tables = {.summary = 5, .truth = 6, .sets = 3, .response = 5, .response_panel = 3},
      .heading = "sets:\nrecall",
      .legend = "recall: complete pulses found whole;",
      .legend_continues = true,

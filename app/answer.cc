@@ -1,0 +1,61 @@
+#include "app/answer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "app/interrupt.h"
+#include "evaluation/budget/budget.h"
+#include "reports/results/answer_block.h"
+
+namespace simbench::app {
+namespace {
+
+using evaluation::Budget;
+using evaluation::Results;
+using evaluation::Row;
+using scenarios::Pipeline;
+using scenarios::Scenario;
+
+constexpr std::uint64_t kMostBudgetSeeds = 4;
+constexpr double kMostBudgetEvents = 20e6;
+
+// As many seeds as are cheap, going by the events of a mean run.
+std::uint64_t affordable_seeds(const Results& results) {
+  const std::uint64_t runs = results.rows.size() * results.seed_count;
+  if (runs == 0 || results.performance.events == 0) return 0;
+  const double of_seed = static_cast<double>(results.performance.events) /
+                         static_cast<double>(runs) *
+                         static_cast<double>(evaluation::StageSet::kSets);
+  const auto affordable = static_cast<std::uint64_t>(kMostBudgetEvents / of_seed);
+  return std::min({kMostBudgetSeeds, affordable, results.seed_count});
+}
+
+std::optional<Budget> affordable_budget(const Results& results, const Scenario& scenario,
+                                        const Row& row, const evaluation::Progress& progress) {
+  const auto pipeline = std::ranges::find(scenario.pipelines, row.pipeline, &Pipeline::name);
+  if (pipeline == scenario.pipelines.end() || pipeline->programs.has_value()) return std::nullopt;
+  const std::uint64_t seeds = affordable_seeds(results);
+  if (seeds == 0) return std::nullopt;
+  return evaluation::error_budget(scenario, *pipeline, simulated_world,
+                                  {.first_seed = results.first_seed, .seeds = seeds}, progress);
+}
+
+}  // namespace
+
+evaluation::RankedBy ranked_by(const Scenario& scenario) {
+  return scenario.evaluation.table == scenarios::TableKind::kLeaderboard
+             ? evaluation::RankedBy::kAbsoluteError
+             : evaluation::RankedBy::kAmd;
+}
+
+reports::Block run_answer(const Results& results, const Scenario& scenario,
+                          const evaluation::Progress& progress) {
+  const evaluation::RankedBy by = ranked_by(scenario);
+  const Row* const best = evaluation::answer_of(results, by).best;
+  std::optional<Budget> budget;
+  if (best != nullptr) budget = affordable_budget(results, scenario, *best, progress);
+  return reports::answer_block(results, by, budget ? &*budget : nullptr);
+}
+
+}  // namespace simbench::app

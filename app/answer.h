@@ -1,0 +1,27 @@
+// The answer of a simulated run: its first paragraph, with an error budget of the best pipeline
+// where that is affordable.
+//
+//   const reports::Block first = run_answer(results, scenario, progress);
+#ifndef SIMBENCH_APP_ANSWER_H_
+#define SIMBENCH_APP_ANSWER_H_
+
+#include "evaluation/answer/answer.h"
+#include "evaluation/run/evaluate.h"
+#include "evaluation/scoring/results.h"
+#include "reports/text/block.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::app {
+
+// What a scenario's answer ranks by: leaderboards are in order of the absolute error.
+evaluation::RankedBy ranked_by(const scenarios::Scenario& scenario);
+
+// The budget is over the first seeds of the results, at most four, as many as take at most some 20
+// million events; none for programs, whose runs are too slow. The same results have the same
+// answer. Throws what evaluation::error_budget() throws.
+reports::Block run_answer(const evaluation::Results& results, const scenarios::Scenario& scenario,
+                          const evaluation::Progress& progress);
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_ANSWER_H_

@@ -1,0 +1,175 @@
+#include "reports/results/summary_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "evaluation/run/leaderboard.h"
+#include "evaluation/scoring/metrics.h"
+#include "evaluation/scoring/rows.h"
+#include "reports/results/ground_truth_text.h"
+#include "reports/results/results_document.h"
+#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Board;
+using evaluation::Metric;
+using evaluation::Rank;
+using evaluation::Results;
+using evaluation::Row;
+using evaluation::TablePlaces;
+using RowFields = std::vector<Field<Row>>;
+
+// So that all of it stays on a screen of 50 lines.
+constexpr std::size_t kMostRows = 20;
+constexpr std::size_t kMostRowsOfBoard = 7;
+constexpr std::size_t kMostNotes = 3;
+
+std::vector<const Metric*> summary_metrics() {
+  return evaluation::table_metrics(&TablePlaces::summary);
+}
+
+std::string short_cell_text(const Metric& metric, const Row& row) {
+  const double value = metric.value(row);
+  if (std::string_view(metric.unit) == "ms") return time_text(value);
+  return metric.is_share() ? share_text(value) : significant_text(value);
+}
+
+// The median; with a band, both.
+void add_metric(const Metric& metric, RowFields& fields) {
+  const bool is_time = std::string_view(metric.unit) == "ms";
+  const std::string heading = is_time ? fmt::format("{}\nmedian", metric.title) : metric.heading;
+  // Copied, since the address of a metric may not last.
+  fields.push_back({{heading, Align::kRight, metric.legend},
+                    [metric](const Row& row) { return short_cell_text(metric, row); }});
+}
+
+void add_band(const Metric& metric, RowFields& fields) {
+  fields.push_back({{fmt::format("{}\n5-95 %", metric.title), Align::kRight, metric.legend},
+                    [metric](const Row& row) {
+                      const evaluation::Series& series = metric.series(row);
+                      return time_band_text(series.p05, series.p95);
+                    }});
+}
+
+void add_published(const Results& results, RowFields& fields) {
+  if (std::ranges::none_of(results.rows, [](const Row& row) { return row.published.has_value(); }))
+    return;
+  fields.push_back({{"published\nAMD"}, [](const Row& row) {
+                      return row.published ? time_text(row.published->amd_ms) : "-";
+                    }});
+  fields.push_back({{"it is", Align::kLeft}, [](const Row& row) {
+                      return row.published ? placement_text(row.published->amd_percentile) : "-";
+                    }});
+}
+
+RowFields summary_fields(const Results& results, const std::vector<const Row*>& rows) {
+  RowFields fields = {pipeline_field<Row>()};
+  if (has_real_rows(results)) {
+    fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
+  }
+  const RowFields seeds = scored_seeds_field(rows, summary_metrics());
+  fields.insert(fields.end(), seeds.begin(), seeds.end());
+  for (const Metric* metric : summary_metrics()) {
+    add_metric(*metric, fields);
+    if (metric->id != std::string_view("amd_ms")) continue;
+    add_band(*metric, fields);
+    add_published(results, fields);
+  }
+  return fields;
+}
+
+Table table_of_rows(const RowFields& fields, const std::vector<const Row*>& rows) {
+  std::vector<std::reference_wrapper<const Row>> subjects;
+  for (const Row* row : rows) subjects.emplace_back(*row);
+  return table_of(fields, subjects);
+}
+
+std::string rest_text(std::size_t rows, std::size_t most) {
+  if (rows <= most) return "";
+  return fmt::format("... and {} more: --verbose shows them.", rows - most);
+}
+
+void shorten(std::vector<const Row*>& rows, std::size_t most, Block& block) {
+  if (const std::string rest = rest_text(rows.size(), most); !rest.empty()) {
+    block.prose.push_back(rest);
+    rows.resize(most);
+  }
+}
+
+Block rows_block(const Results& results) {
+  std::vector<const Row*> rows;
+  for (const Row& row : results.rows) rows.push_back(&row);
+  Block block;
+  shorten(rows, kMostRows, block);
+  block.table = table_of_rows(summary_fields(results, rows), rows);
+  return block;
+}
+
+Block board_block(const Results& results, const Board& board) {
+  std::vector<const Row*> rows;
+  for (const std::vector<Rank>* ranks : {&board.online, &board.offline}) {
+    for (const Rank& rank : *ranks) rows.push_back(rank.row);
+  }
+  Block block;
+  shorten(rows, kMostRowsOfBoard, block);
+  block.table = table_of_rows(summary_fields(results, rows), rows);
+  return block;
+}
+
+std::string summary_legend() {
+  return "Medians over the seeds, one world each for all pipelines, with the band from 5 to 95 %. "
+         "AMD: range of the stamps of a pulse over all cameras. Absolute error: against the true "
+         "mid-exposure. Host clock error: slaves against the master. precision: sets of one pulse "
+         "only; recall: pulses found whole.";
+}
+
+void add_failures(const Results& results, Document& document) {
+  if (Block failures = failures_block(results); !failures.prose.empty()) {
+    document.blocks.push_back(std::move(failures));
+  }
+  std::vector<std::string> notes = note_lines(results);
+  if (notes.empty()) return;
+  if (notes.size() > kMostNotes) {
+    const std::string rest = fmt::format("... and {} more: --verbose", notes.size() - kMostNotes);
+    notes.resize(kMostNotes);
+    notes.push_back(rest);
+  }
+  document.blocks.push_back({.heading = "What went wrong", .items = notes, .is_warning = true});
+}
+
+}  // namespace
+
+Document summary_document(const Results& results, const SummaryOptions& options,
+                          const Block& answer) {
+  Document document{.title = results_title(results), .head = answer.prose};
+  const std::vector<std::string> head = results_head(results, options.summary);
+  document.head.insert(document.head.end(), head.begin(), head.end());
+  if (options.is_leaderboard) {
+    for (const Board& board : evaluation::leaderboard(results)) {
+      document.blocks.push_back(board_block(results, board));
+    }
+  } else {
+    document.blocks.push_back(rows_block(results));
+  }
+  add_failures(results, document);
+  document.blocks.push_back(
+      {.prose = {summary_legend(),
+                 "More: --verbose has all metrics, their meaning and the paper's claims, --budget "
+                 "what each stage costs; --output DIR, then simbench report DIR, the figures."}});
+  return document;
+}
+
+Document quiet_document(const Results& results, const Block& answer) {
+  Document document{.title = results_title(results), .head = answer.prose};
+  add_failures(results, document);
+  return document;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,34 @@
+// Results for people in a hurry: what `simbench run` prints by default, on one screen.
+//
+// The answer (reports/results/answer_block.h), what the scenario is, and one table with a row per
+// pipeline and the metrics that name it (evaluation::TablePlaces::summary), each value in the unit
+// that fits it. A leaderboard has a short table for each board. Whatever failed is said; so is
+// where the rest is. Of many pipelines the first are shown, in order of the answer's metric for
+// leaderboards, else in the scenario's order.
+//
+//   std::cout << plain(summary_document(results, {.summary = scenario.summary}, answer));
+#ifndef SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
+#define SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
+
+#include <string>
+
+#include "evaluation/scoring/results.h"
+#include "reports/text/block.h"
+
+namespace simbench::reports {
+
+struct SummaryOptions {
+  std::string summary{};  // the scenario's own description
+  bool is_leaderboard = false;
+};
+
+// The default output. `answer` becomes its first paragraph.
+Document summary_document(const evaluation::Results& results, const SummaryOptions& options,
+                          const Block& answer);
+
+// The answer alone, with what failed: --quiet.
+Document quiet_document(const evaluation::Results& results, const Block& answer);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_

@@ -1,0 +1,42 @@
+#include "reports/text/time_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+struct TimeUnit {
+  double from_ms;  // the smallest size that is shown in it
+  double per_ms;
+  const char* name;
+};
+constexpr TimeUnit kTimeUnits[] = {
+    {999.5, 1e-3, "s"}, {0.09995, 1, "ms"}, {0.9995e-4, 1e3, "us"}, {0, 1e6, "ns"}};
+
+const TimeUnit& unit_of(double ms) {
+  return *std::find_if(std::begin(kTimeUnits), std::end(kTimeUnits) - 1,
+                       [ms](const TimeUnit& unit) { return std::abs(ms) >= unit.from_ms; });
+}
+
+}  // namespace
+
+std::string time_text(double ms) {
+  if (!std::isfinite(ms)) return "-";
+  if (ms == 0) return "0";
+  const TimeUnit& unit = unit_of(ms);
+  return fmt::format("{} {}", significant_text(ms * unit.per_ms), unit.name);
+}
+
+std::string time_band_text(double low_ms, double high_ms) {
+  if (!std::isfinite(low_ms) || !std::isfinite(high_ms)) return "-";
+  const TimeUnit& unit = unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
+  return fmt::format("[{}, {}] {}", significant_text(low_ms * unit.per_ms),
+                     significant_text(high_ms * unit.per_ms), unit.name);
+}
+
+}  // namespace simbench::reports

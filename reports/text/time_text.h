@@ -1,0 +1,20 @@
+// Durations as people read them: in the unit that fits, with three significant digits.
+//
+//   time_text(0.0031);             // "3.10 us"
+//   time_band_text(0.35, 1.2);     // "[0.350, 1.20] ms"
+#ifndef SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_
+#define SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_
+
+#include <string>
+
+namespace simbench::reports {
+
+// "35.0 ns", "3.12 us", "0.694 ms", "543 ms", "1.61 s"; "0" for 0, "-" for what is not finite.
+std::string time_text(double ms);
+
+// Both ends in the unit of the one further from zero: "[0.350, 1.20] ms"; "-" if one is not finite.
+std::string time_band_text(double low_ms, double high_ms);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_TEXT_TIME_TEXT_H_
