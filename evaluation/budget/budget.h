@@ -34,6 +34,7 @@
 // scenario has polls, or draws errors of its calibrations, which an ideal delivery takes away. Of
 // several pipelines the cameras' half of a world is made once for all (docs/design.md section 2),
 // and so is the capture of an ideal host clock.
+// Memory: on each thread a scorer for every pipeline in four or two sets of stages at a time.
 // Source: Shapley, "A value for n-person games", 1953; docs/design.md section 6. Each oracle is a
 // definition.
 //

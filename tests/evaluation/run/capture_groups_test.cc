@@ -119,6 +119,7 @@ TEST(ScoringAlone, NoWorldReadsWhatIsSoCalled) {
     EXPECT_TRUE(is_scoring_alone(change.pointer)) << change.pointer;
     EXPECT_EQ(recorded_by({change}, choice), as_it_is) << change.pointer;
   }
+  EXPECT_NE(recorded_by({{"/usb/delivery_jitter_transfers", "0.9"}}, choice), as_it_is);
 }
 
 TEST(ScoringAlone, OtherMembersAreNotSoCalled) {
