@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "app/interrupt.h"
 #include "evaluation/budget/budget.h"
+#include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
 #include "recording/version.h"
@@ -100,16 +102,7 @@ class FigureMaker {
       for (const std::uint64_t seed : options_.seeds) add_seed(scenario, choices, seed);
     }
     if (!wants(kBudget) || options_.budget_seeds == 0) return;
-    for (const PipelineChoice& choice : choices) {
-      const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
-                                                   .seeds = options_.budget_seeds};
-      FigureSource source = source_of_repeated_run();
-      source.first_seed = seeds.first_seed;
-      source.seeds = seeds.seeds;
-      add({reports::budget_figure(evaluation::error_budget(scenario, choice.pipeline,
-                                                           simulated_world, seeds, progress_))},
-          source);
-    }
+    add_budgets(scenario, choices);
   }
 
   void note(std::string text) { made_.notes.push_back(std::move(text)); }
@@ -164,16 +157,39 @@ class FigureMaker {
 
   void add_seed(const Scenario& scenario, const std::vector<PipelineChoice>& choices,
                 std::uint64_t seed) {
+    std::vector<RunDetail> made(choices.size());
+    std::mutex mutex;  // of the progress
+    const auto make_worker = [&]() -> evaluation::Job {
+      // Keeps the cameras' half of the seed for the next pipeline.
+      const std::shared_ptr<RecordingSource> source = simulated_world(scenario);
+      return [&, source](std::size_t i) {
+        made[i] = evaluation::run_detail(scenario, choices[i], seed, *source);
+        const std::lock_guard lock(mutex);
+        if (progress_) progress_(++runs_, options_.seeds.size() * choices.size());
+      };
+    };
+    evaluation::run_jobs_with_workers(choices.size(), {}, make_worker);
     std::vector<RunDetail> runs;
-    for (const PipelineChoice& choice : choices) {
-      const std::unique_ptr<RecordingSource> source = simulated_world(scenario);
-      RunDetail run = evaluation::run_detail(scenario, choice, seed, *source);
-      if (progress_) progress_(++runs_, options_.seeds.size() * choices.size());
+    for (RunDetail& run : made) {
       if (is_the_archives(run)) runs.push_back(std::move(run));
     }
     const FigureSource source = source_of_repeated_run();
     for (const RunDetail& run : runs) add(reports::run_figures(run), source);
     if (!runs.empty()) add(reports::seed_figures(runs), source);
+  }
+
+  void add_budgets(const Scenario& scenario, const std::vector<PipelineChoice>& choices) {
+    const evaluation::EvaluationOptions seeds = {.first_seed = options_.seeds.front(),
+                                                 .seeds = options_.budget_seeds};
+    FigureSource source = source_of_repeated_run();
+    source.first_seed = seeds.first_seed;
+    source.seeds = seeds.seeds;
+    std::vector<scenarios::Pipeline> pipelines;
+    for (const PipelineChoice& choice : choices) pipelines.push_back(choice.pipeline);
+    for (const evaluation::Budget& budget :
+         evaluation::error_budgets(scenario, pipelines, simulated_world, seeds, progress_)) {
+      add({reports::budget_figure(budget)}, source);
+    }
   }
 
   bool is_the_archives(const RunDetail& run) {
@@ -286,7 +302,7 @@ struct Step {
   std::uint64_t runs = 0;
 };
 
-// All figures but error budgets at once, then a budget for each pipeline.
+// All figures but error budgets, then the budgets.
 std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
   Step first;
   first.options.pipelines = detail.pipelines;
@@ -299,15 +315,13 @@ std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
   first.runs = first.options.seeds.size() * detail.pipelines.size();
   std::vector<Step> steps = {first};
   const std::uint64_t budget_seeds = detail.budget_seeds.value_or(0);
-  for (const std::string& pipeline : detail.pipelines) {
-    if (budget_seeds == 0) break;
-    Step step;
-    step.options.pipelines = {pipeline};
-    step.options.budget_seeds = budget_seeds;
-    step.options.figures = {kBudget};
-    step.runs = budget_seeds * evaluation::StageSet::kSets;
-    steps.push_back(step);
-  }
+  if (budget_seeds == 0 || detail.pipelines.empty()) return steps;
+  Step budgets;
+  budgets.options.pipelines = detail.pipelines;
+  budgets.options.budget_seeds = budget_seeds;
+  budgets.options.figures = {kBudget};
+  budgets.runs = budget_seeds * detail.pipelines.size() * evaluation::StageSet::kSets;
+  steps.push_back(budgets);
   return steps;
 }
 

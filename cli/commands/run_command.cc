@@ -95,16 +95,18 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
                                   .first_seed = options.evaluation.first_seed,
                                   .seeds = options.evaluation.seeds,
                                   .budgets = {}};
+  std::vector<scenarios::Pipeline> pipelines;
   for (const evaluation::PipelineChoice& choice :
        evaluation::choose_pipelines(scenario, options.evaluation.pipelines)) {
-    std::optional<evaluation::Budget> budget =
-        watched<evaluation::Budget>([&](const evaluation::Progress& progress) {
-          return evaluation::error_budget(scenario, choice.pipeline, app::simulated_world,
-                                          options.evaluation, progress);
-        });
-    if (!budget) return kInterrupted;
-    report.budgets.push_back(std::move(*budget));
+    pipelines.push_back(choice.pipeline);
   }
+  std::optional<std::vector<evaluation::Budget>> budgets =
+      watched<std::vector<evaluation::Budget>>([&](const evaluation::Progress& progress) {
+        return evaluation::error_budgets(scenario, pipelines, app::simulated_world,
+                                         options.evaluation, progress);
+      });
+  if (!budgets) return kInterrupted;
+  report.budgets = std::move(*budgets);
   if (options.format == "json") {
     print_result(reports::budget_json(report));
   } else {

@@ -137,12 +137,15 @@ bool finish_runs(const SweepPlan& plan, reports::SweepLog& log, const std::strin
   }
   if (missing.empty()) return true;
   const auto work = [&](const evaluation::Progress& progress) {
-    evaluation::Tasks tasks = evaluation::sweep_tasks(plan, missing);
+    const evaluation::SweepTasks sweep_tasks(plan, missing);
+    evaluation::Tasks tasks = sweep_tasks.tasks();
     tasks.threads = jobs;
     std::size_t finished = 0;
     farm.run(tasks, [&](std::size_t task, const std::string& answer) {
-      log.append(missing[task], answer);
-      progress(++finished, missing.size());
+      sweep_tasks.each_run(task, answer, [&](std::size_t run, const std::string& text) {
+        log.append(run, text);
+        progress(++finished, missing.size());
+      });
     });
     return std::optional(true);
   };

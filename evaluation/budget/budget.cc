@@ -125,18 +125,20 @@ void see_ideal_delivery(const scenarios::Scenario& world, PipelineChoice& choice
   };
 }
 
-// The pipelines of sets that go together; those with one delivery are neighbours.
+// The pipelines with sets that go together, set by set; sets with one delivery are neighbours.
 std::vector<PipelineChoice> choices_of(const scenarios::Scenario& scenario,
-                                       const scenarios::Pipeline& pipeline,
+                                       const std::vector<scenarios::Pipeline>& pipelines,
                                        std::span<const StageSet> sets) {
   std::vector<PipelineChoice> choices;
   while (!sets.empty()) {
     const bool ideal = sets.front().has(Stage::kUsbDelivery);
-    scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
+    scenarios::Scenario world = ideal_scenario(scenario, pipelines.front(), sets.front());
     world.pipelines.clear();
     for (; !sets.empty() && sets.front().has(Stage::kUsbDelivery) == ideal;
          sets = sets.subspan(1)) {
-      world.pipelines.push_back(ideal_pipeline(pipeline, sets.front()));
+      for (const scenarios::Pipeline& pipeline : pipelines) {
+        world.pipelines.push_back(ideal_pipeline(pipeline, sets.front()));
+      }
     }
     for (PipelineChoice& choice : choose_pipelines(world, {})) {
       choice.scores_offline = false;  // no part of a budget
@@ -201,6 +203,17 @@ ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
   return parts;
 }
 
+Budget budget_of(const scenarios::Pipeline& pipeline, const WorldScores& scores) {
+  Budget budget;
+  budget.pipeline = pipeline.name;
+  budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
+  budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
+  budget.absolute_error_ms =
+      divide(budget.amd_of_sets ? scores.set_absolute_error_ms : scores.absolute_error_ms);
+  budget.physical_ms = divide(scores.physical_ms);
+  return budget;
+}
+
 }  // namespace
 
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
@@ -244,32 +257,34 @@ std::vector<double> shapley_values(std::span<const double> worth) {
   return values;
 }
 
-Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline,
-                    const WorldFactory& make_world, const EvaluationOptions& options,
-                    const Progress& progress) {
+std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
+                                  const std::vector<scenarios::Pipeline>& pipelines,
+                                  const WorldFactory& make_world, const EvaluationOptions& options,
+                                  const Progress& progress) {
+  if (pipelines.empty()) return {};
   EvaluationOptions of_worlds = options;
   of_worlds.keep_pulses = false;
   of_worlds.share_captures = true;
-  WorldScores scores;
+  const std::uint64_t total = StageSet::kSets * pipelines.size() * options.seeds;
+  std::vector<WorldScores> scores(pipelines.size());
   std::uint64_t done_before = 0;
   for (const std::vector<StageSet>& sets : sets_by_world(scenario)) {
-    const scenarios::Scenario world = ideal_scenario(scenario, pipeline, sets.front());
+    const scenarios::Scenario world = ideal_scenario(scenario, pipelines.front(), sets.front());
     const Results results = evaluate_choices(
-        world, choices_of(scenario, pipeline, sets), [&] { return make_world(world); }, of_worlds,
+        world, choices_of(scenario, pipelines, sets), [&] { return make_world(world); }, of_worlds,
         [&](std::uint64_t done, std::uint64_t) {
-          if (progress) progress(done_before + done, StageSet::kSets * options.seeds);
+          if (progress) progress(done_before + done, total);
         });
-    for (std::size_t i = 0; i < sets.size(); ++i) set_scores(sets[i], results.rows[i], scores);
-    done_before += sets.size() * options.seeds;
+    for (std::size_t i = 0; i < results.rows.size(); ++i) {
+      set_scores(sets[i / pipelines.size()], results.rows[i], scores[i % pipelines.size()]);
+    }
+    done_before += results.rows.size() * options.seeds;
   }
-  Budget budget;
-  budget.pipeline = pipeline.name;
-  budget.amd_of_sets = all_exist(scores.set_absolute_error_ms);  // of one camera too
-  budget.amd_ms = divide(budget.amd_of_sets ? scores.set_amd_ms : scores.amd_ms);
-  budget.absolute_error_ms =
-      divide(budget.amd_of_sets ? scores.set_absolute_error_ms : scores.absolute_error_ms);
-  budget.physical_ms = divide(scores.physical_ms);
-  return budget;
+  std::vector<Budget> budgets;
+  for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    budgets.push_back(budget_of(pipelines[i], scores[i]));
+  }
+  return budgets;
 }
 
 }  // namespace simbench::evaluation

@@ -1,4 +1,4 @@
-// The error budget of a pipeline: how much of its error comes from each stage.
+// The error budgets of pipelines: how much of the error of each comes from each stage.
 //
 // Each of the seven stages between a trigger pulse and a frame set can be replaced by its oracle:
 //
@@ -31,11 +31,15 @@
 //
 // Cost: 128 scores of the pipeline per seed, over 32 captures in 16 worlds: gathering and delivery
 // only change what is scored, the host clock only the pipeline. 64 captures in 32 worlds where the
-// scenario has polls, or draws errors of its calibrations, which an ideal delivery takes away.
+// scenario has polls, or draws errors of its calibrations, which an ideal delivery takes away. Of
+// several pipelines the cameras' half of a world is made once for all (docs/design.md section 2),
+// and so is the capture of an ideal host clock.
+// Memory: on each thread a scorer for every pipeline in four or two sets of stages at a time.
 // Source: Shapley, "A value for n-person games", 1953; docs/design.md section 6. Each oracle is a
 // definition.
 //
-//   const Budget budget = error_budget(scenario, pipeline, make_world, {.seeds = 32}, nullptr);
+//   const std::vector<Budget> budgets =
+//       error_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr);
 #ifndef SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
 #define SIMBENCH_EVALUATION_BUDGET_BUDGET_H_
 
@@ -116,10 +120,12 @@ struct Budget {
   ErrorParts physical_ms;
 };
 
-// Ignores EvaluationOptions::pipelines and keep_pulses. Throws what evaluate() throws.
-Budget error_budget(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline,
-                    const WorldFactory& make_world, const EvaluationOptions& options,
-                    const Progress& progress);
+// Returns a budget for each pipeline, in this order. Ignores EvaluationOptions::pipelines and
+// keep_pulses. Throws what evaluate() throws.
+std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
+                                  const std::vector<scenarios::Pipeline>& pipelines,
+                                  const WorldFactory& make_world, const EvaluationOptions& options,
+                                  const Progress& progress);
 
 // Returns the Shapley values of n players: by how much each lowers the worth. `worth[s]` belongs to
 // the coalition whose members are the bits of s, 2^n values in all. O(n 2^n).

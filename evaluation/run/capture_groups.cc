@@ -1,6 +1,7 @@
 #include "evaluation/run/capture_groups.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "algorithms/ports/host_sync.h"
@@ -22,6 +23,12 @@ bool have_same_capture(const scenarios::Scenario& scenario, const PipelineChoice
 }
 
 }  // namespace
+
+bool is_scoring_alone(std::string_view pointer) {
+  return pointer.starts_with("/algorithms/") ||
+         pointer == "/evaluation/gathering_interval_periods" ||
+         pointer == "/evaluation/rmdv_median";
+}
 
 CaptureGroups capture_groups(const scenarios::Scenario& scenario,
                              const std::vector<PipelineChoice>& choices) {
@@ -51,8 +58,10 @@ SharedCapture::SharedCapture(const scenarios::Scenario& scenario,
     : recorded_(choices[group.front()]), seed_(seed) {
   for (const std::size_t place : group) {
     Member member;
-    member.scorer = std::make_unique<PipelineScorer>(scorer_setup(scenario, choices[place]));
-    if (choices[place].view) member.view = choices[place].view(*member.scorer);
+    const PipelineChoice& choice = choices[place];
+    member.scorer =
+        std::make_unique<PipelineScorer>(scorer_setup(scoring_scenario(scenario, choice), choice));
+    if (choice.view) member.view = choice.view(*member.scorer);
     members_.push_back(std::move(member));
   }
 }

@@ -6,6 +6,9 @@
 // draws no load, or their host synchronisation never meets it (HostSync::is_idle()), or they have
 // the same name. Pipelines of programs share none: what a program does is not simbench's to say.
 //
+// Scenarios that differ in members of scoring alone (is_scoring_alone()) have the same captures, so
+// their pipelines share too, each scored as its own scenario says (PipelineChoice::scored_in).
+//
 //   for (const std::vector<std::size_t>& group : capture_groups(scenario, choices)) {
 //     SharedCapture capture(scenario, choices, group, seed);
 //     capture.record(source);
@@ -18,6 +21,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/run/pipeline_choice.h"
@@ -26,6 +30,17 @@
 #include "scenarios/scenario.h"
 
 namespace simbench::evaluation {
+
+// Whether a capture depends on this member of the scenario (a JSON pointer) at most through the
+// parameters of its host synchronisation, which capture_groups() compares:
+//
+//   /algorithms/...                          the world has no algorithm but the host_sync that it
+//                                            is given, with its parameters
+//   /evaluation/gathering_interval_periods   read by scorers and gatherers alone
+//   /evaluation/rmdv_median                  read by scorers alone
+//
+// Not /evaluation/stream: the world reports which pulses of that stream count.
+bool is_scoring_alone(std::string_view pointer);
 
 // The places of the choices that share a capture. Every place once: those of a group in their
 // order, the groups in that of their first. O(n^2).

@@ -116,9 +116,8 @@ class Evaluation {
     results.seed_count = options_.seeds;
     results.asymmetry_floor =
         asymmetry_floor(drawn_asymmetry_ms(scenario_.network), scenario_.hosts.count);
-    const RowSetting setting = row_setting(scenario_);
     for (std::size_t pipeline = 0; pipeline < choices_.size(); ++pipeline) {
-      results.rows.push_back(row(pipeline, setting));
+      results.rows.push_back(row(pipeline));
     }
     for (const std::vector<std::size_t>& group : groups_) {
       add_cost(results.rows[group.front()], results.performance);
@@ -132,7 +131,8 @@ class Evaluation {
     return results;
   }
 
-  Row row(std::size_t pipeline, const RowSetting& setting) {
+  Row row(std::size_t pipeline) {
+    const RowSetting setting = row_setting(scoring_scenario(scenario_, choices_[pipeline]));
     std::vector<SeedScore> seeds;
     for (std::size_t at = pipeline; at < scores_.size(); at += choices_.size()) {
       if (scores_[at]) seeds.push_back(std::move(*scores_[at]));

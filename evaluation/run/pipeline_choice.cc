@@ -295,6 +295,10 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
   return chosen;
 }
 
+const Scenario& scoring_scenario(const Scenario& scenario, const PipelineChoice& choice) {
+  return choice.scored_in ? *choice.scored_in : scenario;
+}
+
 ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice) {
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;

@@ -47,6 +47,9 @@ struct PipelineChoice {
   // What the stages after host_sync see in place of the capture: passes a changed one on to `sink`.
   // Empty: all as it is.
   std::function<std::unique_ptr<RecordingSink>(RecordingSink& sink)> view{};
+  // The scenario that states how it is scored, where that is not the capture's: one that differs in
+  // scoring alone (is_scoring_alone() in capture_groups.h). Null: the capture's.
+  std::shared_ptr<const scenarios::Scenario> scored_in{};
   // What a user of the scenario knows, for a device_time that subtracts it. Shared by all.
   scenarios::Lazy<CalibratedDelays> delays{};
 };
@@ -69,6 +72,10 @@ void set_program_maker(ProgramMaker maker);
 // named twice, or a parameter that is not declared or not allowed.
 std::vector<PipelineChoice> choose_pipelines(const scenarios::Scenario& scenario,
                                              const std::vector<std::string>& names);
+
+// Returns the scenario that states how the pipeline is scored in captures of `scenario`.
+const scenarios::Scenario& scoring_scenario(const scenarios::Scenario& scenario,
+                                            const PipelineChoice& choice);
 
 // Returns the scorer's setup for the pipeline. It has the second, offline estimator, which keeps
 // all frames, where claim C7 needs it, in captures of at most 200,000 evaluated frames.

@@ -5,15 +5,22 @@
 // A worker is made once for each thread, from `setup`, which all tasks share. Order, errors and
 // threads are those of evaluation/run/jobs.h, of which a farm is a thin adapter.
 //
+// A task has the runs that share captures, or at least the cameras' half of their world, so that
+// this is made once (evaluation/run/capture_groups.h). Which runs go together changes no result.
+//
 //   ThreadFarm farm(sweep_workers(make_world, make_clocks));
-//   farm.run(sweep_tasks(plan, missing), [&](std::size_t task, const std::string& answer) {
-//     scores[missing[task]] = score_of(answer, plan.kind);    // evaluation/sweep/sweep_score.h
+//   const SweepTasks tasks(plan, missing);
+//   farm.run(tasks.tasks(), [&](std::size_t task, const std::string& answer) {
+//     tasks.each_run(task, answer, [&](std::size_t run, const std::string& text) {
+//       scores[run] = score_of(text, plan.kind);              // evaluation/sweep/sweep_score.h
+//     });
 //   });
 #ifndef SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 #define SIMBENCH_EVALUATION_SWEEP_TASK_FARM_H_
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,11 +69,34 @@ AnswerKeeper one_at_a_time(const AnswerKeeper& keep);
 WorkerFactory task_workers(const Tasks& tasks, const TaskWorkerFactory& make_worker,
                            const AnswerKeeper& keep);
 
-// Returns one task for each of these runs of the plan, in this order. Both must outlive the tasks.
-Tasks sweep_tasks(const SweepPlan& plan, const std::vector<std::size_t>& runs);
+// Some runs of a plan as tasks. A task has the pipelines of one point and seed, and those of other
+// points that differ from it in scoring alone; once it has kSharedRuns of them, it takes no further
+// point. Runs of clocks alone share nothing, and are a task each.
+class SweepTasks {
+ public:
+  static constexpr std::size_t kSharedRuns = 16;
 
-// A worker keeps the scenario of its last task, which the next one mostly shares. It throws what
-// evaluate() and evaluate_clocks() throw.
+  // `plan` must outlive this.
+  SweepTasks(const SweepPlan& plan, std::vector<std::size_t> runs);
+  SweepTasks(const SweepTasks&) = delete;
+  SweepTasks& operator=(const SweepTasks&) = delete;
+
+  // This must outlive them.
+  Tasks tasks() const;
+  // The runs of a task, by their numbers in the plan, in the order in which it answers.
+  std::span<const std::size_t> runs(std::size_t task) const;
+  // Calls `keep` with each run of the task and its text.
+  void each_run(std::size_t task, const std::string& answer,
+                const std::function<void(std::size_t run, const std::string& text)>& keep) const;
+
+ private:
+  const SweepPlan& plan_;
+  std::vector<std::size_t> runs_;    // task by task
+  std::vector<std::size_t> begins_;  // of each task in runs_, and the end of the last
+};
+
+// A worker keeps what it made of the points of its last task, which the next one mostly shares. It
+// throws what evaluate() and evaluate_clocks() throw, with the run that failed first.
 TaskWorkerFactory sweep_workers(WorldFactory make_world, ClockWorldFactory make_clocks);
 
 }  // namespace simbench::evaluation

@@ -123,6 +123,28 @@ TEST(FigureSourceTest, FiguresComeInTheOrderOfTheCatalogue) {
   EXPECT_EQ(made.figures[2].pipeline, "oracle");
 }
 
+// Worlds are shared by the pipelines of a seed, and by their budgets.
+TEST(FigureSourceTest, PipelinesTogetherHaveTheFiguresOfEachAlone) {
+  Archive archive = archive_of(short_scenario(), 2);
+  FigureOptions options = {.seeds = {5, 6},
+                           .pipelines = {"yoon2021_both", "oracle", "genlock"},
+                           .budget_seeds = 1,
+                           .figures = {"hosts", "fig7", "budget"}};
+  std::vector<std::string> together;
+  for (const Figure& figure : archive_figures(archive, options).figures) {
+    together.push_back(figure_csv(figure));
+  }
+  std::vector<std::string> alone;
+  for (const std::string pipeline : {"yoon2021_both", "oracle", "genlock"}) {
+    options.pipelines = {pipeline};
+    for (const Figure& figure : archive_figures(archive, options).figures) {
+      alone.push_back(figure_csv(figure));
+    }
+  }
+  EXPECT_GT(together.size(), 9U);
+  EXPECT_THAT(together, ::testing::UnorderedElementsAreArray(alone));
+}
+
 TEST(FigureSourceTest, WithoutAManifestOnlyWhatIsInTheResultsIsDrawn) {
   Archive archive = archive_of(short_scenario(), 1);
   archive.scenario_json.clear();

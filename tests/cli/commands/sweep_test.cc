@@ -113,6 +113,38 @@ TEST_F(SweepTest, APointIsARun) {
   EXPECT_GT(amd.size(), 4U);
 }
 
+// Points that differ in scoring alone share captures, and are still what each is alone.
+TEST_F(SweepTest, PointsOfOneCaptureAreThoseOfSweepsOfTheirOwn) {
+  const auto sweep = [this](const std::string& intervals, const std::string& folder) {
+    return run({"sweep", "--scenario", "3cam_1host_30fps", "--sweep",
+                "/evaluation/gathering_interval_periods=" + intervals, "--sweep",
+                "/trigger/rate_hz=15,30", "--seeds", "3", "--output", folder})
+        .status;
+  };
+  ASSERT_EQ(sweep("0.05,0.5", "both"), 0);
+  std::string apart;
+  for (const std::string interval : {"0.05", "0.5"}) {
+    ASSERT_EQ(sweep(interval, interval), 0);
+    const std::string csv = content(interval + "/sweep.csv");
+    apart += apart.empty() ? csv : csv.substr(csv.find('\n') + 1);
+  }
+  EXPECT_EQ(content("both/sweep.csv"), apart);
+}
+
+// As after a kill in the middle of a point and seed.
+TEST_F(SweepTest, OfAPointAndSeedOnlyWhatIsMissingIsRun) {
+  ASSERT_EQ(run(command("whole")).status, 0);
+  ASSERT_EQ(run(command("out")).status, 0);
+  // Of point 0, raw_arrival, seed 1; genlock at the same point and seed stays.
+  const std::string log = content("out/runs.log");
+  file("out/runs.log", log.substr(log.find('\n') + 1));
+  const ProgramResult result = run(command("out"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("59 of 60 runs finished already"));
+  EXPECT_THAT(result.err, HasSubstr("1 run in"));
+  EXPECT_EQ(all_of("out"), all_of("whole"));
+}
+
 TEST_F(SweepTest, TheSameBytesWithAnyNumberOfThreads) {
   const ProgramResult one = run(command("one", {"--jobs", "1"}));
   const ProgramResult four = run(command("four", {"--jobs", "4"}));

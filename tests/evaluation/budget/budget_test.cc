@@ -87,11 +87,16 @@ scenarios::Scenario small_world(const std::string& set_pointer, const std::strin
                                    {set_pointer, value}});
 }
 
-Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
-  return error_budget(
-      scenario, pipeline,
+std::vector<Budget> budgets_of(const scenarios::Scenario& scenario,
+                               const std::vector<scenarios::Pipeline>& pipelines) {
+  return error_budgets(
+      scenario, pipelines,
       [](const scenarios::Scenario& world) { return sim::make_simulation(world); },
       {.seeds = 2, .jobs = 1}, nullptr);
+}
+
+Budget budget_of(const scenarios::Scenario& scenario, const scenarios::Pipeline& pipeline) {
+  return budgets_of(scenario, {pipeline}).front();
 }
 
 void expect_sum(const ErrorParts& error) {
@@ -138,6 +143,28 @@ TEST(Budget, SharedCapturesGiveTheSameNumbers) {
   expect_equal_parts(shared.amd_ms, apart.amd_ms);
   expect_equal_parts(shared.absolute_error_ms, apart.absolute_error_ms);
   expect_equal_parts(shared.physical_ms, apart.physical_ms);
+}
+
+// Two draw loads of their own and share ideal host clocks, the third is their world's own oracle.
+TEST(Budget, PipelinesTogetherHaveTheBudgetsOfEachAlone) {
+  const scenarios::Scenario scenario =
+      small_world("/hosts/send_cost_session_exponential_ms", "0.2");
+  ASSERT_TRUE(scenario.draws_load());
+  const std::vector<scenarios::Pipeline> pipelines = {
+      {"both", "yoon2021_both", "regression_30", "yoon2021"},
+      {"network", "yoon2021_network", "raw_arrival", "yoon2021"},
+      {"oracle", "oracle", "regression_30", "oracle"}};
+  const std::vector<Budget> together = budgets_of(scenario, pipelines);
+  ASSERT_EQ(together.size(), pipelines.size());
+  for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    SCOPED_TRACE(pipelines[i].name);
+    const Budget alone = budget_of(scenario, pipelines[i]);
+    EXPECT_EQ(together[i].pipeline, pipelines[i].name);
+    EXPECT_EQ(together[i].amd_of_sets, alone.amd_of_sets);
+    expect_equal_parts(together[i].amd_ms, alone.amd_ms);
+    expect_equal_parts(together[i].absolute_error_ms, alone.absolute_error_ms);
+    expect_equal_parts(together[i].physical_ms, alone.physical_ms);
+  }
 }
 
 TEST(Budget, ALateBranchIsPhysicalAndTheTriggersAlone) {

@@ -1,6 +1,7 @@
 // Who shares a capture, and what it costs a pipeline: nothing.
 #include "evaluation/run/capture_groups.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,9 +12,13 @@
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
+#include "recording/event.h"
+#include "recording/event_text.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/loader.h"
+#include "sim/rig/simulation.h"
 #include "tests/evaluation/test_scenario.h"
+#include "tests/nonempty.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -86,6 +91,45 @@ TEST(CaptureGroups, OtherParametersAreAnotherCapture) {
   EXPECT_EQ(capture_groups(scenario, choices).size(), 2U);
 }
 
+// What a world with these changes records of a host synchronisation at seed 3, line by line.
+std::vector<std::string> recorded_by(const std::vector<scenarios::Override>& changes,
+                                     const PipelineChoice& choice) {
+  std::vector<scenarios::Override> overrides = {{"/timeline/frames", "30"}};
+  overrides.insert(overrides.end(), changes.begin(), changes.end());
+  const scenarios::Scenario world = scenarios::load_scenario("18cam_6host_45fps", overrides);
+  KeptRecording recording;
+  record_run(*sim::make_simulation(world), choice, /*seed=*/3, recording);
+  const RigLayout& layout = recording.layout();
+  std::vector<std::string> lines = {
+      fmt::format("{} {} {}", layout.frame_rate_hz, layout.first_pulse, layout.pulses)};
+  for (const RecordingEvent& event : recording.events()) lines.push_back(to_line(event));
+  return lines;
+}
+
+TEST(ScoringAlone, NoWorldReadsWhatIsSoCalled) {
+  const scenarios::Scenario scenario = scenarios::load_scenario("18cam_6host_45fps");
+  const PipelineChoice choice = choose_pipelines(scenario, {"yoon2021_both"}).front();
+  const std::vector<std::string> as_it_is = nonempty(recorded_by({}, choice));
+  for (const scenarios::Override& change :
+       std::vector<scenarios::Override>{{"/evaluation/gathering_interval_periods", "0.07"},
+                                        {"/evaluation/rmdv_median", "mean_of_middle_two"},
+                                        {"/algorithms/yoon2021/stamps", "7"},
+                                        {"/algorithms/kalman/gate", "2"},
+                                        {"/algorithms/approximate_time/queue", "3"}}) {
+    EXPECT_TRUE(is_scoring_alone(change.pointer)) << change.pointer;
+    EXPECT_EQ(recorded_by({change}, choice), as_it_is) << change.pointer;
+  }
+  EXPECT_NE(recorded_by({{"/usb/delivery_jitter_transfers", "0.9"}}, choice), as_it_is);
+}
+
+TEST(ScoringAlone, OtherMembersAreNotSoCalled) {
+  for (const char* const pointer :
+       {"/evaluation/stream", "/usb/delivery_jitter_transfers", "/hosts/count", "/timeline/frames",
+        "/pipelines/0/host_sync", "/evaluation/gathering_interval", "/algorithms"}) {
+    EXPECT_FALSE(is_scoring_alone(pointer)) << pointer;
+  }
+}
+
 // The two pipelines of the test scenario share: both leave the clocks as they were set last.
 class CountedSource final : public RecordingSource {
  public:
@@ -140,6 +184,32 @@ TEST(SharedCaptures, ACaptureThatFailsIsMissingFromAllItsRows) {
   for (const Row& row : shared.results.rows) {
     EXPECT_THAT(row.amd_ms.values, ElementsAre(IsNan(), IsNan()));
     EXPECT_THAT(row.notes, Contains(HasSubstr("host2 could not be reached")));
+  }
+}
+
+// A narrower interval and another median: what either gives alone, from one capture.
+TEST(SharedCaptures, EachIsScoredAsItsOwnScenarioSays) {
+  std::vector<PipelineChoice> choices;
+  std::vector<std::vector<double>> alone;
+  for (const double periods : {0.5, 0.05}) {
+    scenarios::Scenario scenario = test_scenario();
+    scenario.pipelines.resize(1);
+    scenario.evaluation.gathering_interval_periods = periods;
+    const Results results = evaluate(
+        scenario, [] { return std::make_unique<TestSource>(); }, {.seeds = 3, .jobs = 1}, nullptr);
+    alone.push_back({results.rows[0].margin_ms, results.rows[0].recall});
+    choices.push_back(choose_pipelines(scenario, {}).front());
+    choices.back().scored_in = std::make_shared<const scenarios::Scenario>(scenario);
+  }
+  EXPECT_NE(alone[0], alone[1]);
+  std::vector<std::pair<std::string, std::uint64_t>> calls;
+  const Results together = evaluate_choices(
+      test_scenario(), choices, [&] { return std::make_unique<CountedSource>(calls, false); },
+      {.seeds = 3, .jobs = 1, .share_captures = true}, nullptr);
+  EXPECT_EQ(calls.size(), 3U);
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const Row& row = together.rows[i];
+    EXPECT_THAT(alone[i], ElementsAre(row.margin_ms, row.recall));
   }
 }
 
