@@ -37,8 +37,9 @@ std::optional<Budget> affordable_budget(const Results& results, const Scenario& 
   if (pipeline == scenario.pipelines.end() || pipeline->programs.has_value()) return std::nullopt;
   const std::uint64_t seeds = affordable_seeds(results);
   if (seeds == 0) return std::nullopt;
-  return evaluation::error_budget(scenario, *pipeline, simulated_world,
-                                  {.first_seed = results.first_seed, .seeds = seeds}, progress);
+  return evaluation::error_budgets(scenario, {*pipeline}, simulated_world,
+                                   {.first_seed = results.first_seed, .seeds = seeds}, progress)
+      .front();
 }
 
 }  // namespace

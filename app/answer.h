@@ -18,7 +18,7 @@ evaluation::RankedBy ranked_by(const scenarios::Scenario& scenario);
 
 // The budget is over the first seeds of the results, at most four, as many as take at most some 20
 // million events; none for programs, whose runs are too slow. The same results have the same
-// answer. Throws what evaluation::error_budget() throws.
+// answer. Throws what evaluation::error_budgets() throws.
 reports::Block run_answer(const evaluation::Results& results, const scenarios::Scenario& scenario,
                           const evaluation::Progress& progress);
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/answer.h"
 #include "app/interrupt.h"
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/jobs.h"
@@ -397,6 +398,7 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
   reports::read_seed_details(reported.archive);
   try {
     draw(reported, steps, progress);
+    reported.answer = run_answer(reported.archive.results, scenario_of(reported.archive), nullptr);
     shorten(reported.notes);
     const std::string other = version_note(reported.archive);
     if (!other.empty()) reported.notes.insert(reported.notes.begin(), other);

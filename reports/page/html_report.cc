@@ -8,9 +8,11 @@
 #include "algorithms/ports/assert.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/page/html_page.h"
+#include "reports/page/overview.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
+#include "reports/results/summary_document.h"
 #include "reports/text/html_text.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
@@ -73,6 +75,10 @@ std::string scenario_details(const Archive& archive) {
       html_escaped(Json::parse(archive.scenario_json).dump(2)));
 }
 
+bool is_leaderboard(const Archive& archive) {
+  return scenario_text(archive, "/evaluation/table") == to_text(scenarios::TableKind::kLeaderboard);
+}
+
 // The warnings and tables of a run, a leaderboard or the clocks alone, as their commands print
 // them.
 std::vector<Block> blocks_of(const Archive& archive) {
@@ -83,15 +89,32 @@ std::vector<Block> blocks_of(const Archive& archive) {
   if (!archive.results.warnings.empty()) {
     append({{.heading = "Warnings", .items = archive.results.warnings, .is_warning = true}});
   }
-  if (scenario_text(archive, "/evaluation/table") == to_text(scenarios::TableKind::kLeaderboard)) {
-    append(board_blocks(archive.results));
-  }
+  if (is_leaderboard(archive)) append(board_blocks(archive.results));
   if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
     append(clock_document(clock_results_of(archive), "").blocks);
   } else {
     append(results_document(archive.results, "").blocks);
   }
   return blocks;
+}
+
+// The answer, the figures that explain it, and the summary.
+std::string first_part(const ReportedArchive& reported) {
+  std::string text;
+  for (const std::string& paragraph : reported.answer.prose) {
+    text += html_paragraph("answer", paragraph);
+  }
+  const evaluation::Results& results = reported.archive.results;
+  const bool by_error = is_leaderboard(reported.archive);
+  if (results.kind == evaluation::ResultKind::kCaptures) {
+    text += overview_html(
+        results, by_error ? evaluation::RankedBy::kAbsoluteError : evaluation::RankedBy::kAmd);
+  }
+  text += "<div class=\"figures lead\"></div>\n";
+  if (results.kind != evaluation::ResultKind::kCaptures) return text;
+  std::vector<Block> summary = summary_blocks(results, by_error);
+  summary.front().heading = "Summary";
+  return text + html(summary);
 }
 
 // The part of the page for one archive; `number`: its place among them.
@@ -105,10 +128,10 @@ std::string archive_part(const ReportedArchive& reported, std::size_t number,
     derivation += html_paragraph("provenance", line);
   }
   return fmt::format(
-      "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n{}{}{}{}"
+      "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n{}{}{}{}{}"
       "<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n"
       "<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}{}</section>\n</article>\n",
-      number, html_escaped(archive.path), html_escaped(heading),
+      number, html_escaped(archive.path), html_escaped(heading), first_part(reported),
       html_paragraph("summary", scenario_text(archive, "/summary")) + derivation,
       html_paragraph("provenance", provenance_line(archive)),
       input.archives.size() > 1 ? html_paragraph("provenance", "Archive: " + archive.path) : "",

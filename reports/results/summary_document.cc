@@ -146,18 +146,21 @@ void add_failures(const Results& results, Document& document) {
 
 }  // namespace
 
+std::vector<Block> summary_blocks(const Results& results, bool is_leaderboard) {
+  if (!is_leaderboard) return {rows_block(results)};
+  std::vector<Block> blocks;
+  for (const Board& board : evaluation::leaderboard(results)) {
+    blocks.push_back(board_block(results, board));
+  }
+  return blocks;
+}
+
 Document summary_document(const Results& results, const SummaryOptions& options,
                           const Block& answer) {
   Document document{.title = results_title(results), .head = answer.prose};
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
-  if (options.is_leaderboard) {
-    for (const Board& board : evaluation::leaderboard(results)) {
-      document.blocks.push_back(board_block(results, board));
-    }
-  } else {
-    document.blocks.push_back(rows_block(results));
-  }
+  document.blocks = summary_blocks(results, options.is_leaderboard);
   add_failures(results, document);
   document.blocks.push_back(
       {.prose = {summary_legend(),

@@ -11,6 +11,7 @@
 #define SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
 
 #include <string>
+#include <vector>
 
 #include "evaluation/scoring/results.h"
 #include "reports/text/block.h"
@@ -21,6 +22,9 @@ struct SummaryOptions {
   std::string summary{};  // the scenario's own description
   bool is_leaderboard = false;
 };
+
+// Its tables.
+std::vector<Block> summary_blocks(const evaluation::Results& results, bool is_leaderboard);
 
 // The default output. `answer` becomes its first paragraph.
 Document summary_document(const evaluation::Results& results, const SummaryOptions& options,

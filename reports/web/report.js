@@ -3,6 +3,8 @@
 // The choices are in the fragment of the address, so that a link shows another reader the same:
 //   #archive=0&pipeline=yoon2021_both&seed=1&figure=frame_errors&pulse=312
 
+// What limits the best pipeline: it belongs to the answer.
+const kLeadFigures = ['budget'];
 const kPrintWidth = 680;  // CSS pixels: a page of A4 or Letter less its margins
 
 const controls = Object.fromEntries(
@@ -20,7 +22,9 @@ function makeArchive(root, script) {
   const {figures, columns} = JSON.parse(script.textContent);
   const page = {columns: new Columns(columns), marked: () => state.pulse, chosen: choseFrame};
   const views = groupedById(figures).map((alternatives) => new FigureView(alternatives, page));
-  root.querySelector('.figures').append(...views.map((view) => view.root));
+  const lead = root.querySelector('.figures.lead');
+  const rest = root.querySelector('.figures:not(.lead)');
+  for (const view of views) (lead && kLeadFigures.includes(view.id) ? lead : rest).append(view.root);
   return {root, figures, views};
 }
 
@@ -69,11 +73,23 @@ function showControls() {
   controls.pulse.parentElement.hidden = !hasPulses;
 }
 
+// A button for each heading of the archive.
+function showSections() {
+  const headings = Array.from(current().root.querySelectorAll('h3'));
+  document.getElementById('sections').replaceChildren(...headings.map((heading) => {
+    const made = element('button', '', heading.textContent);
+    made.type = 'button';
+    made.addEventListener('click', () => heading.scrollIntoView({block: 'start'}));
+    return made;
+  }));
+}
+
 function showState() {
   archives.forEach(({root}, i) => root.hidden = i !== state.archive);
   for (const view of allViews) view.choose({pipeline: state.pipeline, seed: state.seed});
   controls.pulse.value = state.pulse ?? '';
   showControls();
+  showSections();
 }
 
 function scrollToFigure() {

@@ -1,0 +1,139 @@
+#include "reports/page/overview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "reports/text/html_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::RankedBy;
+using evaluation::Results;
+using evaluation::Row;
+using evaluation::Series;
+using evaluation::Standing;
+
+constexpr std::size_t kMostOverviewRows = 24;
+
+// Whole decades around all that is drawn.
+struct LogAxis {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void include(double ms) {
+    if (!(ms > 0)) return;
+    low = std::min(low, std::floor(std::log10(ms)));
+    high = std::max(high, std::ceil(std::log10(ms)));
+  }
+  void widen() {
+    if (high == low) high += 1;
+  }
+  // In percent of the axis.
+  double at(double ms) const {
+    return ms > 0 ? std::clamp(100 * (std::log10(ms) - low) / (high - low), 0.0, 100.0) : 0;
+  }
+};
+
+std::vector<const Row*> overview_rows(const Results& results, RankedBy ranked_by) {
+  std::vector<const Row*> rows;
+  for (const Row& row : results.rows) {
+    if (evaluation::ranked_series(row, ranked_by).median > 0) rows.push_back(&row);
+  }
+  std::ranges::stable_sort(rows, {}, [ranked_by](const Row* row) {
+    return evaluation::ranked_series(*row, ranked_by).median;
+  });
+  return rows;
+}
+
+bool has_published(const Row& row, RankedBy ranked_by) {
+  return ranked_by == RankedBy::kAmd && row.published && row.published->amd_ms > 0;
+}
+
+struct RowStyle {
+  const char* style;
+  const char* word;
+};
+
+RowStyle style_of(const Row& row, bool is_best) {
+  if (is_best) return {"best", "best"};
+  switch (evaluation::standing_of(row)) {
+    case Standing::kLimit:
+      return {"limit", "limit"};
+    case Standing::kReference:
+      return {"limit", "reference"};
+    case Standing::kRunnable:
+      break;
+  }
+  return {"", ""};
+}
+
+std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bool is_best) {
+  const Series& series = evaluation::ranked_series(row, ranked_by);
+  const RowStyle style = style_of(row, is_best);
+  const double from = axis.at(series.p05);
+  std::string marks = fmt::format(
+      "<i class=\"band\" style=\"left:{:.2f}%;width:{:.2f}%\"></i>"
+      "<i class=\"dot\" style=\"left:{:.2f}%\"></i>",
+      from, std::max(axis.at(series.p95) - from, 0.2), axis.at(series.median));
+  if (has_published(row, ranked_by)) {
+    marks +=
+        fmt::format("<i class=\"published\" style=\"left:{:.2f}%\" title=\"published: {}\"></i>",
+                    axis.at(row.published->amd_ms), time_text(row.published->amd_ms));
+  }
+  return fmt::format(
+      "<tr class=\"{}\"><th scope=\"row\">{}{}</th><td class=\"track\">{}</td><td>{}</td></tr>\n",
+      style.style, html_escaped(row.pipeline),
+      *style.word == '\0' ? "" : fmt::format(" <small>{}</small>", style.word), marks,
+      time_text(series.median));
+}
+
+std::string axis_html(const LogAxis& axis) {
+  std::string ticks;
+  for (double decade = axis.low; decade <= axis.high; ++decade) {
+    const double ms = std::pow(10.0, decade);
+    // The nearest unit, without zeros: "10 us".
+    const double per_unit = ms >= 1e3 ? 1e-3 : ms >= 0.0999 ? 1 : ms >= 0.99e-4 ? 1e3 : 1e6;
+    const char* unit = ms >= 1e3 ? "s" : ms >= 0.0999 ? "ms" : ms >= 0.99e-4 ? "us" : "ns";
+    ticks += fmt::format("<span style=\"left:{:.2f}%\">{:g} {}</span>", axis.at(ms), ms * per_unit,
+                         unit);
+  }
+  return fmt::format("<tr class=\"axis\"><td></td><td class=\"track\">{}</td><td></td></tr>\n",
+                     ticks);
+}
+
+}  // namespace
+
+std::string overview_html(const Results& results, RankedBy ranked_by) {
+  std::vector<const Row*> rows = overview_rows(results, ranked_by);
+  if (rows.empty()) return "";
+  const std::size_t all = rows.size();
+  rows.resize(std::min(rows.size(), kMostOverviewRows));
+  LogAxis axis;
+  bool any_published = false;
+  for (const Row* row : rows) {
+    const Series& series = evaluation::ranked_series(*row, ranked_by);
+    for (const double ms : {series.p05, series.median, series.p95}) axis.include(ms);
+    if (!has_published(*row, ranked_by)) continue;
+    axis.include(row->published->amd_ms);
+    any_published = true;
+  }
+  axis.widen();
+  const Row* const best = evaluation::answer_of(results, ranked_by).best;
+  std::string body;
+  for (const Row* row : rows) body += row_html(*row, ranked_by, axis, row == best);
+  const char* const what = ranked_by == RankedBy::kAmd ? "AMD" : "Absolute error";
+  return fmt::format(
+      "<figure class=\"figure overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"
+      "{}{}</tbody></table>\n<figcaption>{}: median (dot) and band from 5 to 95 % over the seeds, "
+      "on a logarithmic axis.{}{}</figcaption></figure>\n",
+      what, body, axis_html(axis), what, any_published ? " Diamonds: published values." : "",
+      all > rows.size() ? fmt::format(" The first {} of {}.", rows.size(), all) : "");
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,24 @@
+// The first figure of a report: every pipeline on one logarithmic axis.
+//
+// A line each, in order of the median of what the answer ranks by (evaluation/answer/answer.h):
+// the band from 5 to 95 % over the seeds, the median, the published value where there is one. The
+// best pipeline, limits and references say so in words, not by colour alone. It is HTML and style,
+// without a script, and as wide as the page. Of more than 24 pipelines the first are shown.
+//
+//   page << overview_html(results, RankedBy::kAmd);
+#ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
+#define SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
+
+#include <string>
+
+#include "evaluation/answer/answer.h"
+#include "evaluation/scoring/results.h"
+
+namespace simbench::reports {
+
+// "" if no pipeline has a value above 0.
+std::string overview_html(const evaluation::Results& results, evaluation::RankedBy ranked_by);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
