@@ -29,7 +29,7 @@ bool has_value(const Row& row, RankedBy ranked_by) {
 }
 
 // The rows of a standing that have a value, in order of their medians.
-std::vector<const Row*> rows_of(const Results& results, Standing standing, RankedBy ranked_by) {
+std::vector<const Row*> rows_of(const Results& results, RowStanding standing, RankedBy ranked_by) {
   std::vector<const Row*> rows;
   for (const Row& row : results.rows) {
     if (standing_of(row) == standing && has_value(row, ranked_by)) rows.push_back(&row);
@@ -78,16 +78,16 @@ void find_limit(const std::vector<const Row*>& limits, Answer& answer) {
 
 }  // namespace
 
-Standing standing_of(const Row& row) {
+RowStanding standing_of(const Row& row) {
   const DeviceTimeName device_time = parse_device_time_name(row.device_time);
   const DeviceTimeEntry* const entry = find_device_time(device_time.base);
   if (is_oracle(find_host_sync(row.host_sync)) || needs_truth(entry) ||
       needs_truth(find_gathering(row.gathering))) {
-    return Standing::kLimit;
+    return RowStanding::kLimit;
   }
   const bool is_relative =
       entry != nullptr && entry->make(check_parameters(entry->info.parameters, {}))->relative();
-  return is_relative ? Standing::kReference : Standing::kRunnable;
+  return is_relative ? RowStanding::kReference : RowStanding::kRunnable;
 }
 
 const Series& ranked_series(const Row& row, RankedBy ranked_by) {
@@ -96,16 +96,16 @@ const Series& ranked_series(const Row& row, RankedBy ranked_by) {
 
 Answer answer_of(const Results& results, RankedBy ranked_by) {
   Answer answer{.ranked_by = ranked_by};
-  std::vector<const Row*> rows = rows_of(results, Standing::kRunnable, ranked_by);
+  std::vector<const Row*> rows = rows_of(results, RowStanding::kRunnable, ranked_by);
   if (rows.empty() && ranked_by == RankedBy::kAmd) {
     answer.ranked_by = RankedBy::kAbsoluteError;
-    rows = rows_of(results, Standing::kRunnable, answer.ranked_by);
+    rows = rows_of(results, RowStanding::kRunnable, answer.ranked_by);
   }
   if (rows.empty()) return answer;
   answer.runnable = rows.size();
   answer.best = rows.front();
   compare_with_best(rows, answer);
-  find_limit(rows_of(results, Standing::kLimit, answer.ranked_by), answer);
+  find_limit(rows_of(results, RowStanding::kLimit, answer.ranked_by), answer);
   const std::vector<double>& values = ranked_series(*answer.best, answer.ranked_by).values;
   const double relative =
       median_interval(values, static_cast<std::int64_t>(count_of_existing(values))).relative;

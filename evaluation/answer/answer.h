@@ -35,12 +35,12 @@ namespace simbench::evaluation {
 enum class RankedBy : std::uint8_t { kAmd, kAbsoluteError };
 
 // What a row may be called in an answer.
-enum class Standing : std::uint8_t {
+enum class RowStanding : std::uint8_t {
   kRunnable,   // a rig can run it
   kReference,  // its stamps are on no clock that hosts share
   kLimit,      // it needs the truth
 };
-Standing standing_of(const Row& row);
+RowStanding standing_of(const Row& row);
 
 struct Answer {
   RankedBy ranked_by = RankedBy::kAmd;

@@ -16,8 +16,8 @@ namespace {
 using evaluation::RankedBy;
 using evaluation::Results;
 using evaluation::Row;
+using evaluation::RowStanding;
 using evaluation::Series;
-using evaluation::Standing;
 
 constexpr std::size_t kMostOverviewRows = 24;
 
@@ -63,11 +63,11 @@ struct RowStyle {
 RowStyle style_of(const Row& row, bool is_best) {
   if (is_best) return {"best", "best"};
   switch (evaluation::standing_of(row)) {
-    case Standing::kLimit:
+    case RowStanding::kLimit:
       return {"limit", "limit"};
-    case Standing::kReference:
+    case RowStanding::kReference:
       return {"limit", "reference"};
-    case Standing::kRunnable:
+    case RowStanding::kRunnable:
       break;
   }
   return {"", ""};

@@ -27,7 +27,7 @@ using evaluation::TablePlaces;
 using RowFields = std::vector<Field<Row>>;
 
 // So that all of it stays on a screen of 50 lines.
-constexpr std::size_t kMostRows = 20;
+constexpr std::size_t kMostSummaryRows = 20;
 constexpr std::size_t kMostRowsOfBoard = 7;
 constexpr std::size_t kMostNotes = 3;
 
@@ -58,7 +58,7 @@ void add_band(const Metric& metric, RowFields& fields) {
                     }});
 }
 
-void add_published(const Results& results, RowFields& fields) {
+void add_published_amd(const Results& results, RowFields& fields) {
   if (std::ranges::none_of(results.rows, [](const Row& row) { return row.published.has_value(); }))
     return;
   fields.push_back({{"published\nAMD"}, [](const Row& row) {
@@ -80,7 +80,7 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
     add_metric(*metric, fields);
     if (metric->id != std::string_view("amd_ms")) continue;
     add_band(*metric, fields);
-    add_published(results, fields);
+    add_published_amd(results, fields);
   }
   return fields;
 }
@@ -107,7 +107,7 @@ Block rows_block(const Results& results) {
   std::vector<const Row*> rows;
   for (const Row& row : results.rows) rows.push_back(&row);
   Block block;
-  shorten(rows, kMostRows, block);
+  shorten(rows, kMostSummaryRows, block);
   block.table = table_of_rows(summary_fields(results, rows), rows);
   return block;
 }
@@ -123,11 +123,19 @@ Block board_block(const Results& results, const Board& board) {
   return block;
 }
 
-std::string summary_legend() {
-  return "Medians over the seeds, one world each for all pipelines, with the band from 5 to 95 %. "
-         "AMD: range of the stamps of a pulse over all cameras. Absolute error: against the true "
-         "mid-exposure. Host clock error: slaves against the master. precision: sets of one pulse "
-         "only; recall: pulses found whole.";
+std::vector<std::string> summary_legend(const Results& results) {
+  std::vector<std::string> lines = {
+      "Medians over the seeds, one world each for all pipelines, with the band from 5 to 95 %. "
+      "AMD: range of the stamps of a pulse over all cameras. Absolute error: against the true "
+      "mid-exposure. Host clock error: slaves against the master. precision: sets of one pulse "
+      "only; recall: pulses found whole."};
+  if (std::ranges::any_of(results.rows, evaluation::has_single_camera)) {
+    lines.emplace_back(kSingleCameraLegend);
+  }
+  for (const std::string& line : {unverified_legend(results), asymmetry_line(results)}) {
+    if (!line.empty()) lines.push_back(line);
+  }
+  return lines;
 }
 
 void add_failures(const Results& results, Document& document) {
@@ -162,9 +170,9 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   document.head.insert(document.head.end(), head.begin(), head.end());
   document.blocks = summary_blocks(results, options.is_leaderboard);
   add_failures(results, document);
+  document.blocks.push_back({.prose = summary_legend(results)});
   document.blocks.push_back(
-      {.prose = {summary_legend(),
-                 "More: --verbose has all metrics, their meaning and the paper's claims, --budget "
+      {.prose = {"More: --verbose has all metrics, their meaning and the paper's claims, --budget "
                  "what each stage costs; --output DIR, then simbench report DIR, the figures."}});
   return document;
 }

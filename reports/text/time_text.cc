@@ -18,7 +18,7 @@ struct TimeUnit {
 constexpr TimeUnit kTimeUnits[] = {
     {999.5, 1e-3, "s"}, {0.09995, 1, "ms"}, {0.9995e-4, 1e3, "us"}, {0, 1e6, "ns"}};
 
-const TimeUnit& unit_of(double ms) {
+const TimeUnit& time_unit_of(double ms) {
   return *std::find_if(std::begin(kTimeUnits), std::end(kTimeUnits) - 1,
                        [ms](const TimeUnit& unit) { return std::abs(ms) >= unit.from_ms; });
 }
@@ -28,13 +28,13 @@ const TimeUnit& unit_of(double ms) {
 std::string time_text(double ms) {
   if (!std::isfinite(ms)) return "-";
   if (ms == 0) return "0";
-  const TimeUnit& unit = unit_of(ms);
+  const TimeUnit& unit = time_unit_of(ms);
   return fmt::format("{} {}", significant_text(ms * unit.per_ms), unit.name);
 }
 
 std::string time_band_text(double low_ms, double high_ms) {
   if (!std::isfinite(low_ms) || !std::isfinite(high_ms)) return "-";
-  const TimeUnit& unit = unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
+  const TimeUnit& unit = time_unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
   return fmt::format("[{}, {}] {}", significant_text(low_ms * unit.per_ms),
                      significant_text(high_ms * unit.per_ms), unit.name);
 }

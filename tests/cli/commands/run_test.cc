@@ -40,13 +40,42 @@ class Run : public ProgramTest {
 };
 
 TEST_F(Run, TheTableHasARowPerPipelineAndItsLegend) {
-  const ProgramResult result = run(small());
+  std::vector<std::string> command = small();
+  command.emplace_back("--verbose");
+  const ProgramResult result = run(command);
   EXPECT_EQ(result.status, 0) << result.err;
   for (const char* part :
        {"yoon2021_both", "oracle", "AMD", "RMDV", "How to read it", "claims", "events/s"}) {
     EXPECT_THAT(result.out, HasSubstr(part));
   }
   EXPECT_THAT(result.err, HasSubstr("6 runs in"));
+}
+
+// The number of lines of a text.
+std::ptrdiff_t lines_of(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+TEST_F(Run, TheAnswerIsFirstAndAllFitsOnAScreen) {
+  for (const char* scenario : {"18cam_6host_45fps", "18cam_6host_45fps_lan", "3cam_1host_30fps"}) {
+    const ProgramResult result = run({"run", "--scenario", scenario, "--seeds", "8"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::string first = result.out.substr(0, result.out.find("What limits it"));
+    EXPECT_THAT(first, HasSubstr(" is the best of the ")) << scenario;
+    EXPECT_LE(lines_of(first), 5) << first;
+    EXPECT_LE(lines_of(result.out), 50) << scenario;
+    EXPECT_THAT(result.out, HasSubstr("--verbose"));
+  }
+}
+
+TEST_F(Run, QuietIsTheAnswerAlone) {
+  std::vector<std::string> command = small();
+  command.emplace_back("--quiet");
+  const ProgramResult quiet = run(command);
+  EXPECT_THAT(quiet.out, HasSubstr("yoon2021_both is the only pipeline here that a rig can run"));
+  EXPECT_THAT(quiet.out, testing::Not(HasSubstr("pipeline   ")));
+  command.emplace_back("--verbose");
+  const ProgramResult both = run(command);
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("--verbose"));
 }
 
 TEST_F(Run, OneCameraHasNoAmdAndTheTableSaysWhy) {
@@ -59,7 +88,7 @@ TEST_F(Run, OneCameraHasNoAmdAndTheTableSaysWhy) {
     arguments.insert(arguments.end(), {"--format", format});
     return run(arguments).out;
   };
-  EXPECT_THAT(run(command).out, testing::ContainsRegex("\noracle +- +- +- +-\n"));
+  EXPECT_THAT(run(command).out, testing::ContainsRegex("\noracle +- +- +[0-9.]+ ms +- "));
   EXPECT_THAT(run(command).out, HasSubstr("compare cameras: of a single one there are none"));
   EXPECT_THAT(formatted("markdown"), HasSubstr("| oracle | - | - | - | - |"));
   EXPECT_THAT(formatted("csv"), HasSubstr("\noracle,oracle,regression_30,yoon2021,,,,,,,"));

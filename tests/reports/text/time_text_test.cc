@@ -1,0 +1,33 @@
+#include "reports/text/time_text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace simbench::reports {
+namespace {
+
+TEST(TimeText, TakesTheUnitThatFits) {
+  EXPECT_EQ(time_text(1612), "1.61 s");
+  EXPECT_EQ(time_text(543.2), "543 ms");
+  EXPECT_EQ(time_text(2.924), "2.92 ms");
+  EXPECT_EQ(time_text(0.694), "0.694 ms");
+  EXPECT_EQ(time_text(0.0133), "13.3 us");
+  EXPECT_EQ(time_text(0.00312), "3.12 us");
+  EXPECT_EQ(time_text(0.000035), "35.0 ns");
+  EXPECT_EQ(time_text(-0.0133), "-13.3 us");
+  EXPECT_EQ(time_text(0), "0");
+  EXPECT_EQ(time_text(std::numeric_limits<double>::quiet_NaN()), "-");
+  EXPECT_EQ(time_text(std::numeric_limits<double>::infinity()), "-");
+}
+
+TEST(TimeText, ABandHasOneUnit) {
+  EXPECT_EQ(time_band_text(1.45, 4.86), "[1.45, 4.86] ms");
+  EXPECT_EQ(time_band_text(0.0121, 0.015), "[12.1, 15.0] us");
+  EXPECT_EQ(time_band_text(435.9, 1373), "[0.436, 1.37] s");
+  EXPECT_EQ(time_band_text(-0.002, 0.001), "[-2.00, 1.00] us");
+  EXPECT_EQ(time_band_text(1, std::numeric_limits<double>::quiet_NaN()), "-");
+}
+
+}  // namespace
+}  // namespace simbench::reports
