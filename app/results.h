@@ -22,8 +22,8 @@
 
 namespace simbench::app {
 
-// The results as `simbench run` prints them. `format`: table, markdown, csv or json. `more`: blocks
-// that follow in a table or in Markdown.
+// The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json.
+// `more`: blocks that follow in a table or in Markdown.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, const std::vector<reports::Block>& more = {});
 
