@@ -14,6 +14,8 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,10 +24,33 @@ namespace simbench {
 using ParameterValue = std::variant<bool, double, std::string>;
 using ParameterValues = std::map<std::string, ParameterValue>;
 
+// The value of a parameter that no scenario sets: true, 16, 0.5 or "text".
+class ParameterDefault : public ParameterValue {
+ public:
+  ParameterDefault() = default;
+  template <class Value>
+  requires(!std::is_base_of_v<ParameterValue, std::remove_cvref_t<Value>>)
+      ParameterDefault(Value&& value)  // NOLINT(google-explicit-constructor): `.fallback = 16`
+      : ParameterValue(held(std::forward<Value>(value))) {}
+
+ private:
+  template <class Value>
+  static auto held(Value&& value) {
+    using Plain = std::remove_cvref_t<Value>;
+    if constexpr (std::is_same_v<Plain, bool>) {
+      return value;
+    } else if constexpr (std::is_arithmetic_v<Plain>) {
+      return static_cast<double>(value);
+    } else {
+      return std::string(std::forward<Value>(value));
+    }
+  }
+};
+
 struct ParameterSpec {
-  std::string name;         // with its unit, e.g. "threshold_ms"
-  ParameterValue fallback;  // the value if a scenario sets none; also fixes the type
-  double low = 0;           // allowed range of a number
+  std::string name;           // with its unit, e.g. "threshold_ms"
+  ParameterDefault fallback;  // the value if a scenario sets none; also fixes the type
+  double low = 0;             // allowed range of a number
   double high = 0;
   std::vector<std::string> choices;  // allowed texts
   std::string meaning;

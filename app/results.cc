@@ -108,18 +108,21 @@ std::string results_text(const evaluation::Results& results, const scenarios::Sc
     return leaderboard ? reports::leaderboard_json(results) : reports::json(results);
   }
   if (format == "csv") return reports::csv(results);
-  reports::Document document = document_of(results, scenario, leaderboard, answer,
-                                           format == "markdown" ? Detail::kAll : detail);
+  if (format == "tidy") return reports::tidy_csv(results);
+  // A file has all of it.
+  const Detail shown = format == "table" ? detail : Detail::kAll;
+  reports::Document document = document_of(results, scenario, leaderboard, answer, shown);
   document.blocks.insert(document.blocks.end(), more.begin(), more.end());
-  return format == "markdown" ? markdown(document) : plain(document);
+  return reports::drawn_as(format, document);
 }
 
 std::string clock_text(const evaluation::ClockResults& results, const scenarios::Scenario& scenario,
                        const std::string& format) {
   if (format == "json") return reports::clock_json(results);
   if (format == "csv") return reports::clock_csv(results);
+  if (format == "tidy") return reports::tidy_csv(results.results);
   const reports::Document document = reports::clock_document(results, scenario.summary);
-  return format == "markdown" ? markdown(document) : plain(document);
+  return reports::drawn_as(format, document);
 }
 
 RunArchive::RunArchive(std::vector<std::string> command) {

@@ -26,9 +26,9 @@ namespace simbench::app {
 // How much of the results a reader wants: the answer, a screen, or all of it.
 enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
 
-// The results as `simbench run` prints them. `format`: table, markdown, csv or json; the detail is
-// that of a table, Markdown has all. `answer`: the first paragraph of a table and of Markdown.
-// `more`: blocks that follow.
+// The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json;
+// the detail is that of a table, Markdown and LaTeX have all. `answer`: the first paragraph of
+// these. `more`: blocks that follow.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
                          const std::string& format, Detail detail, const reports::Block& answer,
                          const std::vector<reports::Block>& more = {});

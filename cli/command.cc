@@ -171,8 +171,11 @@ void Command::scenario(std::string& value) {
       .required();
 }
 
-void Command::pipelines(std::vector<std::string>& names) {
-  list("--pipelines", "NAME,NAME", names, "Only these pipelines of the scenario, in this order");
+void Command::pipelines(std::vector<std::string>& names, const std::string& others) {
+  list("--pipelines", "PIPELINE,...", names,
+       "Only these pipelines of the scenario, in this order; others by their\n"
+       "algorithms (`simbench list`): " +
+           others);
 }
 
 void Command::sets(std::vector<std::string>& values) {

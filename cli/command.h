@@ -11,10 +11,10 @@
 //   }
 //
 // Names: "--seed", "-o,--output", or "files" for an argument without a name, which help and
-// messages call by its place holder. The place holder also tells the shells what to offer:
-// SCENARIO, DIR or FOLDER, else a file. Help lists options in the order in which they are added.
-// The variable of an option must live as long as the action; its value is the default, which the
-// text states ("Default: 32").
+// messages call by its place holder. The place holder also tells the shells what to offer
+// (value_kind() in cli/command_table.cc): SCENARIO, DIR, ARCHIVE and others, else a file. Help
+// lists options in the order in which they are added. The variable of an option must live as long
+// as the action; its value is the default, which the text states ("Default: 32").
 #ifndef SIMBENCH_CLI_COMMAND_H_
 #define SIMBENCH_CLI_COMMAND_H_
 
@@ -89,8 +89,9 @@ class Command {
   //
   // --scenario, required.
   void scenario(std::string& value);
-  // --pipelines of the scenario.
-  void pipelines(std::vector<std::string>& names);
+  // --pipelines of the scenario. `others`: how pipelines are stated that it does not have.
+  void pipelines(std::vector<std::string>& names,
+                 const std::string& others = "host_sync+device_time+gathering");
   // --set /json/pointer=value, repeatable; parsed by overrides_of().
   void sets(std::vector<std::string>& values);
   // --first-seed, --seed and the like.

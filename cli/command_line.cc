@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/program_pipelines.h"
 #include "cli/command.h"
+#include "cli/command_table.h"
 #include "cli/commands/commands.h"
 #include "cli/help.h"
 #include "cli/process.h"
@@ -17,6 +19,7 @@
 #include "recording/version.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
+#include "reports/text/program_name.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -27,20 +30,29 @@ using cli::ExitStatus;
 
 constexpr const char* kProgramExamples = R"(
 Start here:
-  simbench --scenario 18cam_6host_45fps     the same as: simbench run --scenario ...
-  simbench list                             scenarios and algorithms
-  simbench run --help                       options, with examples
+  simbench 18cam_6host_45fps      a scenario: `simbench run --scenario ...`
+  simbench list                   scenarios and algorithms
+  simbench help run               options, with examples: `simbench run --help`
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 3 gate failed, 4 baseline missing,
 130 interrupted.)";
 
-// `simbench --scenario S` means `simbench run --scenario S`.
-std::vector<std::string> with_default_command(std::vector<std::string> arguments) {
-  if (arguments.size() < 2) return arguments;
-  const std::string& first = arguments[1];
-  const bool option = first.starts_with("-");
-  const bool about_simbench = first == "-h" || first == "--help" || first == "--version";
-  if (option && !about_simbench) arguments.insert(arguments.begin() + 1, "run");
+bool names_scenario(const std::string& word) {
+  if (word.ends_with(".json")) return true;
+  return std::ranges::count(scenarios::builtin_scenarios(), word,
+                            &scenarios::BuiltinScenario::name) > 0;
+}
+
+// `simbench --scenario S` and `simbench S` mean `simbench run --scenario S`. There is a first word.
+std::vector<std::string> with_default_command(CLI::App& app, std::vector<std::string> arguments) {
+  const std::string first = arguments[1];
+  const auto at = arguments.begin() + 1;
+  if (first.starts_with("-")) {
+    const bool about_simbench = first == "-h" || first == "--help" || first == "--version";
+    if (!about_simbench) arguments.insert(at, cli::kDefaultCommand);
+  } else if (!cli::is_command(app, first) && names_scenario(first)) {
+    arguments.insert(at, {cli::kDefaultCommand, "--scenario"});
+  }
   return arguments;
 }
 
@@ -82,13 +94,14 @@ const std::vector<CommandGroup>& command_groups() {
       {"Scenarios and algorithms",
        {cli::add_list_command, cli::add_describe_command, cli::add_validate_command}},
       // Last: `manual` lists the commands before it.
-      {"The command line itself", {cli::add_completion_command, cli::add_manual_command}}};
+      {"The command line itself",
+       {cli::add_help_command, cli::add_completion_command, cli::add_manual_command}}};
   return groups;
 }
 
 int parse_and_run(const std::vector<std::string>& arguments, const CommandLineExtras& extras) {
-  CLI::App app("How well will these cameras, on these hosts, be synchronised?");
-  app.name("simbench");
+  CLI::App app(cli::kProgramSummary);
+  app.name(reports::program_name());
   app.set_version_flag("--version", fmt::format("simbench {} ({})", version(), commit()));
   app.require_subcommand(1);
   app.footer(kProgramExamples);
@@ -99,13 +112,17 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
     cli::group_commands(app, group.heading);
   }
 
-  const std::vector<std::string> all = with_default_command(arguments);
-  if (const auto problem = cli::unknown_command(app, all)) {
-    cli::print_error(*problem, "simbench --help");
+  if (arguments.size() < 2) {
+    cli::print_result(cli::start_page());
+    return ExitStatus::kOk;
+  }
+  const std::vector<std::string> all = with_default_command(app, arguments);
+  if (!all[1].starts_with("-") && !cli::is_command(app, all[1])) {
+    cli::print_error(cli::unknown_command(app, all[1]), "simbench help");
     return ExitStatus::kBadInput;
   }
   // CLI11 takes the arguments last first, without the program's name.
-  std::vector<std::string> reversed(all.rbegin(), all.rend() - (all.empty() ? 0 : 1));
+  std::vector<std::string> reversed(all.rbegin(), all.rend() - 1);
   try {
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
@@ -126,6 +143,9 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   cli::hold_standard_descriptors();
   cli::choose_message_format(arguments);
   reports::set_page_width(cli::width_of_output());
+  if (argc > 0) {
+    reports::set_program_name(std::filesystem::path(arguments[0]).filename().string());
+  }
   app::use_programs();
   try {
     if (extras.farm == nullptr) cli::become_mpi_program(arguments);

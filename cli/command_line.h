@@ -6,6 +6,8 @@
 //     return simbench::run_command_line(argc, argv);
 //   }
 //
+// Help and messages name the program by argv[0].
+//
 // Standard output carries the result and nothing else; messages go to standard error. Never throws;
 // returns the exit status (cli/messages.h). One call per process: it handles SIGINT while it
 // runs.

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <utility>
 
 #include "cli/command.h"
 
@@ -18,9 +19,13 @@ ValueKind value_kind(CLI::Option& option, const OptionEntry& entry) {
   if (option.get_items_expected_max() == 0) return ValueKind::kNone;
   if (!entry.words.empty()) return ValueKind::kWord;
   if (takes_number(option)) return ValueKind::kNumber;
-  if (entry.value_name.starts_with("SCENARIO")) return ValueKind::kScenario;
-  if (entry.value_name.starts_with("DIR") || entry.value_name.starts_with("FOLDER")) {
-    return ValueKind::kFolder;
+  static constexpr std::pair<const char*, ValueKind> kKinds[] = {
+      {"SCENARIO", ValueKind::kScenario},  {"DIR", ValueKind::kFolder},
+      {"FOLDER", ValueKind::kFolder},      {"ARCHIVE", ValueKind::kArchive},
+      {"PIPELINE", ValueKind::kPipelines}, {"COMMAND", ValueKind::kCommand},
+      {"FIGURE", ValueKind::kFigure},      {"/POINTER", ValueKind::kPointer}};
+  for (const auto& [beginning, kind] : kKinds) {
+    if (entry.value_name.starts_with(beginning)) return kind;
   }
   return ValueKind::kFile;
 }

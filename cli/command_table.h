@@ -14,8 +14,22 @@ class App;
 
 namespace simbench::cli {
 
-// What a value may be; kScenario: a name of one, or a file.
-enum class ValueKind : std::uint8_t { kNone, kWord, kScenario, kNumber, kFolder, kFile };
+// What a value may be. kScenario: a name of one, or a file; kArchive: a folder with results, or
+// their file; kPipelines: names of the line's scenario with commas between them; kPointer: one of
+// that scenario's parameters.
+enum class ValueKind : std::uint8_t {
+  kNone,
+  kWord,
+  kScenario,
+  kNumber,
+  kFolder,
+  kFile,
+  kCommand,
+  kFigure,
+  kArchive,
+  kPipelines,
+  kPointer
+};
 
 struct OptionEntry {
   std::vector<std::string> names;  // "-h", "--help"; an argument's place holder
@@ -42,8 +56,9 @@ struct CommandTable {
   std::vector<CommandEntry> commands;
 };
 
-// The place holder tells the kind of a value that is no word and no number: SCENARIO..., DIR... (or
-// FOLDER...), else a file. `app` is not changed; CLI11 has no const access to its checks.
+// The place holder tells the kind of a value that is no word and no number: it begins with
+// SCENARIO, ARCHIVE, DIR, FOLDER, PIPELINE, COMMAND, FIGURE or /POINTER, else it is a file. `app`
+// is not changed; CLI11 has no const access to its checks.
 CommandTable command_table(CLI::App& app);
 
 // The names of its commands alone.
@@ -54,10 +69,10 @@ inline constexpr const char* kDefaultCommand = "run";
 
 // A script that completes simbench's command lines in a shell.
 //
-// Commands, options and fixed words are in the script. It runs `simbench list scenarios --format
-// names` for the names of scenarios, so that a new scenario needs no new script. Other values get
-// files, folders, or nothing (numbers). `simbench --scenario S` is completed as `simbench run
-// --scenario S`.
+// Commands, options and fixed words are in the script. It runs simbench (`simbench list scenarios
+// --format names`) for the names of scenarios, of the scenario's pipelines and parameters, and of
+// figures, so that a new one needs no new script. Other values get files, folders, or nothing
+// (numbers). `simbench --scenario S` and `simbench S` are completed as `simbench run --scenario S`.
 std::string bash_completion(const CommandTable& table);
 std::string zsh_completion(const CommandTable& table);
 std::string fish_completion(const CommandTable& table);

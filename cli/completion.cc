@@ -39,7 +39,12 @@ const Offer& offer(ValueKind kind) {
       {"scenario", "_simbench_scenarios", " -x -a '(__simbench_scenarios)'"},
       {"number", " ", " -x"},
       {"folder", "_files -/", " -x -a '(__fish_complete_directories (commandline -ct))'"},
-      {"file", "_files", " -r -F"}};
+      {"file", "_files", " -r -F"},
+      {"command", "_simbench_command_names", " -x -a '(__simbench_commands)'"},
+      {"figure", "_simbench_figures", " -x -a '(__simbench_names figures)'"},
+      {"archive", "_simbench_archives", " -x -a '(__simbench_archives)'"},
+      {"pipelines", "_simbench_pipelines", " -x -a '(__simbench_pipelines)'"},
+      {"pointer", "_simbench_pointers", " -x -a '(__simbench_pointers)'"}};
   return kOffers[static_cast<std::size_t>(kind)];
 }
 
@@ -55,13 +60,56 @@ constexpr const char* kBashHead =
 // Uses three functions that are made from the table: the options of a command, the values of an
 // option of a command, the values of an argument. "-" is no value, as for a flag.
 constexpr const char* kBashBody = R"bash(
-# The candidates of a kind of value for the word being typed.
+# Those of the folders that hold results, or hold a folder that does; all if none does.
+_simbench_archives() {
+  local folder
+  local -a all=() found=()
+  while IFS= read -r folder; do
+    all+=("$folder")
+    if [[ -e $folder/results.json ]] || compgen -G "$folder/*/results.json" > /dev/null; then
+      found+=("$folder")
+    fi
+  done
+  (( ${#found[@]} )) || found=("${all[@]}")
+  (( ${#found[@]} == 0 )) || printf '%s\n' "${found[@]}"
+}
+
+# The candidates of a kind of value for the word being typed: KIND WORD PROGRAM SCENARIO.
 _simbench_complete() {
-  local word=$2
+  local word=$2 before=
   case $1 in
     word\ *) mapfile -t COMPREPLY < <(compgen -W "${1#word }" -- "$word") ;;
     folder) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     file) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+    command) mapfile -t COMPREPLY < <(compgen -W "$_simbench_commands" -- "$word") ;;
+    figure)
+      mapfile -t COMPREPLY < <(
+        compgen -W "$("$3" list figures --format names 2> /dev/null)" -- "$word")
+      ;;
+    archive)
+      compopt -o filenames
+      mapfile -t COMPREPLY < <(
+        compgen -d -- "$word" | _simbench_archives
+        compgen -f -X '!*.json' -- "$word"
+      )
+      ;;
+    pipelines)
+      [[ -n $4 ]] || return
+      [[ $word != *,* ]] || before=${word%,*},
+      mapfile -t COMPREPLY < <(
+        compgen -P "$before" -W \
+          "$("$3" list pipelines --scenario "$4" --format names 2> /dev/null)" -- "${word##*,}")
+      ;;
+    pointer)
+      [[ -n $4 ]] || return
+      compopt -o nospace
+      mapfile -t COMPREPLY < <(
+        compgen -S = -W "$("$3" describe "$4" --format names 2> /dev/null)" -- "$word")
+      ;;
+    start)
+      mapfile -t COMPREPLY < <(compgen -W "$_simbench_commands" -- "$word")
+      [[ -z $word || ${#COMPREPLY[@]} -gt 0 ]] || _simbench_complete scenario "$word" "$3"
+      ;;
     scenario)
       compopt -o filenames
       mapfile -t COMPREPLY < <(
@@ -74,6 +122,7 @@ _simbench_complete() {
 
 _simbench() {
   local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} at=1 command option='' place=0 kind
+  local scenario=
   local -a words=()
   COMPREPLY=()
   # bash breaks words at "=": --format=json is three of them.
@@ -83,20 +132,29 @@ _simbench() {
   done
   [[ $word != = ]] || word=
   if (( ${#words[@]} == 0 )); then
-    kind="word $_simbench_commands"
+    kind=start
     [[ $word != -* ]] || kind="word $(_simbench_options '') $(_simbench_options DEFAULT)"
-    _simbench_complete "$kind" "$word"
+    _simbench_complete "$kind" "$word" "$program"
     return
   fi
   command=${words[0]}
-  if [[ $command == -* ]]; then command=DEFAULT; else words=("${words[@]:1}"); fi
+  if [[ $command == -* ]]; then
+    command=DEFAULT
+  else
+    words=("${words[@]:1}")
+    if [[ " $_simbench_commands " != *" $command "* ]]; then
+      scenario=$command command=DEFAULT
+    fi
+  fi
   for at in "${words[@]}"; do
     if [[ -n $option ]]; then
+      [[ $option != --scenario ]] || scenario=$at
       option=
     elif [[ $at == -* ]]; then
       option=$at
       [[ $(_simbench_value "$command" "$option") != - ]] || option=
     else
+      [[ $command != describe || $place != 0 ]] || scenario=$at
       (( place += 1 ))
     fi
   done
@@ -107,7 +165,7 @@ _simbench() {
   else
     kind=$(_simbench_argument "$command" "$place")
   fi
-  _simbench_complete "$kind" "$word" "$program"
+  _simbench_complete "$kind" "$word" "$program" "$scenario"
 }
 
 complete -F _simbench simbench
@@ -185,6 +243,51 @@ _simbench_scenarios() {
   _alternative 'scenarios:scenario:compadd -a names' 'files:scenario file:_files'
 }
 
+_simbench_command_names() {
+  _describe -t commands command _simbench_commands
+}
+
+_simbench_figures() {
+  local -a names
+  names=(${(f)"$(_call_program figures ${(q)_simbench_program} list figures --format names 2> /dev/null)"})
+  compadd -a names
+}
+
+# Folders with results.json, or with a folder that has one.
+_simbench_archives() {
+  _alternative 'archives:archive:_files -/' 'files:results.json:_files -g "*.json"'
+}
+
+# The line's scenario: after --scenario, or what `describe` describes.
+_simbench_scenario() {
+  local -i at=${words[(I)--scenario]}
+  local word
+  REPLY=
+  [[ ${words[1]} != describe ]] || REPLY=${words[2]}
+  (( ! at )) || REPLY=${words[at+1]}
+  for word in $words; do
+    [[ $word != --scenario=* ]] || REPLY=${word#--scenario=}
+  done
+  [[ -n $REPLY ]]
+}
+
+_simbench_pipelines() {
+  local REPLY
+  _simbench_scenario || return 1
+  local -a names
+  names=(${(f)"$(_call_program pipelines ${(q)_simbench_program} list pipelines --scenario ${(q)REPLY} --format names 2> /dev/null)"})
+  compset -P '*,'
+  compadd -S '' -a names
+}
+
+_simbench_pointers() {
+  local REPLY
+  _simbench_scenario || return 1
+  local -a names
+  names=(${(f)"$(_call_program parameters ${(q)_simbench_program} describe ${(q)REPLY} --format names 2> /dev/null)"})
+  compadd -S = -a names
+}
+
 )zsh";
 
 constexpr const char* kZshTail = R"zsh(
@@ -195,13 +298,16 @@ _simbench() {
     if [[ $PREFIX == -* ]]; then
       _arguments -S $_simbench_program_options $_simbench_DEFAULT
     else
-      _describe -t commands command _simbench_commands
+      _describe -t commands command _simbench_commands || _simbench_scenarios
     fi
     return
   fi
   if [[ $words[2] == -* ]]; then
     words=($words[1] DEFAULT "${(@)words[2,-1]}")
     (( CURRENT += 1 ))
+  elif [[ -z ${(M)_simbench_commands:#${words[2]}:*} ]]; then
+    words=($words[1] DEFAULT --scenario "${(@)words[2,-1]}")
+    (( CURRENT += 2 ))
   fi
   local specs=_simbench_${words[2]//-/_}
   (( ${(P)+specs} )) || return 1
@@ -282,11 +388,10 @@ function __simbench_command
     if not set -q words[1]
         return
     end
-    switch $words[1]
-        case '-*'
-            echo DEFAULT
-        case '*'
-            echo $words[1]
+    if contains -- $words[1] (__simbench_commands)
+        echo $words[1]
+    else
+        echo DEFAULT
     end
 end
 
@@ -303,6 +408,46 @@ function __simbench_scenarios
     set -l words (commandline -opc)
     eval (string escape -- $words[1]) list scenarios --format names 2>/dev/null
     __fish_complete_path (commandline -ct)
+end
+
+function __simbench_names
+    set -l words (commandline -opc)
+    eval (string escape -- $words[1]) list $argv --format names 2>/dev/null
+end
+
+# Folders, and files of results.
+function __simbench_archives
+    __fish_complete_directories (commandline -ct)
+    __fish_complete_suffix .json
+end
+
+# The line's scenario: after --scenario, a word in place of the command, or what describe describes.
+function __simbench_scenario
+    set -l words (commandline -opc)
+    set -e words[1]
+    if set -l at (contains -i -- --scenario $words)
+        echo $words[(math $at + 1)]
+    else if test "$words[1]" = describe
+        echo $words[2]
+    else if not contains -- $words[1] (__simbench_commands)
+        echo $words[1]
+    end
+end
+
+function __simbench_pipelines
+    set -l scenario (__simbench_scenario)
+    test -n "$scenario"; or return
+    set -l before (string match -r '.*,' -- (commandline -ct))
+    for name in (__simbench_names pipelines --scenario (string escape -- $scenario))
+        echo $before$name
+    end
+end
+
+function __simbench_pointers
+    set -l words (commandline -opc)
+    set -l scenario (__simbench_scenario)
+    test -n "$scenario"; or return
+    eval (string escape -- $words[1] describe $scenario) --format names 2>/dev/null | string replace -r '$' =
 end
 
 complete -c simbench -f
@@ -337,10 +482,16 @@ std::string argument_line(const std::string& condition, const OptionEntry& argum
                      quoted_for_fish(argument.value_name));
 }
 
+std::string fish_commands(const CommandTable& table) {
+  std::string text = "function __simbench_commands\n    printf '%s\\n'";
+  for (const CommandEntry& command : table.commands) text += " " + command.name;
+  return text + "\nend\n\n";
+}
+
 }  // namespace
 
 std::string fish_completion(const CommandTable& table) {
-  std::string text = named_default_command(kFishHead);
+  std::string text = named_default_command(kFishHead) + fish_commands(table);
   for (const OptionEntry& option : table.program.options) {
     text += option_line("__simbench_starts", option);
   }

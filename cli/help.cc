@@ -6,9 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <string_view>
 
 #include "cli/command_table.h"
 #include "reports/text/plain_text.h"
+#include "reports/text/program_name.h"
 #include "scenarios/loader.h"
 
 namespace simbench::cli {
@@ -19,12 +21,26 @@ constexpr std::size_t kTextColumn = 30;
 constexpr std::size_t kNarrowTextColumn = 8;
 constexpr const char* kUngrouped = "Subcommands";  // CLI11's default
 
+// Words that are no commands but that people try, with what they will mean.
+struct OtherWord {
+  std::string_view word;
+  const char* meant;
+};
+constexpr const char* kPictures =
+    "`simbench figure` draws one figure, `simbench report` makes a page of all";
+constexpr OtherWord kOtherWords[] = {
+    {"plot", kPictures},
+    {"draw", kPictures},
+    {"simulate", "`simbench run` simulates every pipeline of a scenario"},
+    {"diff", "`simbench compare` compares two results seed by seed"},
+    {"test", "`simbench gate` compares a result with a baseline"}};
+
 std::size_t width() { return std::min(kHelpWidth, reports::page_width().value_or(kHelpWidth)); }
 
 // A name with its meaning beside it, or below it on a narrow page or after a long name.
 std::string entry_text(const std::string& name, const std::string& text) {
   const std::size_t column = width() < 2 * kTextColumn ? kNarrowTextColumn : kTextColumn;
-  std::string words = text;
+  std::string words = reports::in_this_program(text);
   std::replace(words.begin(), words.end(), '\n', ' ');
   std::string out = std::string(kIndent, ' ') + name;
   bool beside = out.size() + kIndent <= column;
@@ -108,7 +124,7 @@ std::string HelpFormat::make_description(const CLI::App* app) const {
 
 std::string HelpFormat::make_footer(const CLI::App* app) const {
   const std::string footer = without_first_break(app->get_footer());
-  return footer.empty() ? "" : reports::fitted(footer + "\n");
+  return footer.empty() ? "" : reports::fitted(reports::in_this_program(footer) + "\n");
 }
 
 std::string suggestion(const std::string& found, const std::vector<std::string>& known) {
@@ -134,7 +150,8 @@ CommandEntry used_command(CLI::App& app) {
 }
 
 std::string called(const CommandEntry& command) {
-  return command.name.empty() ? "simbench" : "simbench " + command.name;
+  return command.name.empty() ? reports::program_name()
+                              : fmt::format("{} {}", reports::program_name(), command.name);
 }
 
 std::string unexpected(const CommandEntry& command, const std::string& found) {
@@ -174,17 +191,36 @@ void group_commands(CLI::App& app, const std::string& group) {
   }
 }
 
-std::optional<std::string> unknown_command(CLI::App& app,
-                                           const std::vector<std::string>& arguments) {
+std::string start_page() {
+  return reports::in_this_program(reports::fitted(fmt::format(
+      "{}\n\n{}{}{}\nAll commands: `simbench help`\n", kProgramSummary,
+      entry_text("simbench 18cam_6host_45fps", "run a scenario: a table of all its pipelines"),
+      entry_text("simbench list", "scenarios and algorithms"),
+      entry_text("simbench help run", "what a run can do, by example"))));
+}
+
+std::string help_text(CLI::App& app, const std::string& command) {
+  if (!command.empty()) return app.get_subcommand(command)->help(app.get_name());
+  return app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
+}
+
+bool is_command(CLI::App& app, const std::string& word) {
   const std::vector<std::string> known = command_names(app);
-  if (arguments.size() < 2) {
-    return fmt::format("a command is required, allowed: {}", fmt::join(known, ", "));
+  return std::find(known.begin(), known.end(), word) != known.end();
+}
+
+std::string unknown_command(CLI::App& app, const std::string& word) {
+  const std::vector<std::string> commands = command_names(app);
+  const std::string allowed = fmt::format("allowed: {}, or a scenario", fmt::join(commands, ", "));
+  const auto* other = std::ranges::find(kOtherWords, word, &OtherWord::word);
+  if (other != std::end(kOtherWords)) {
+    return fmt::format("found '{}': {}; {}", word, other->meant, allowed);
   }
-  const std::string& found = arguments[1];
-  if (found.starts_with("-")) return std::nullopt;
-  if (std::find(known.begin(), known.end(), found) != known.end()) return std::nullopt;
-  return fmt::format("found '{}',{} allowed: {}", found, suggestion(found, known),
-                     fmt::join(known, ", "));
+  std::vector<std::string> known = commands;
+  for (const scenarios::BuiltinScenario& each : scenarios::builtin_scenarios()) {
+    known.push_back(each.name);
+  }
+  return fmt::format("found '{}',{} {}", word, suggestion(word, known), allowed);
 }
 
 std::string usage_error(CLI::App& app, const CLI::ParseError& error) {

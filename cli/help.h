@@ -4,9 +4,7 @@
 #define SIMBENCH_CLI_HELP_H_
 
 #include <cstddef>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the parser calls it so
 class App;
@@ -14,6 +12,10 @@ class ParseError;
 }  // namespace CLI
 
 namespace simbench::cli {
+
+// What the program is for, in a line.
+inline constexpr const char* kProgramSummary =
+    "How well will these cameras, on these hosts, be synchronised?";
 
 // The widest help, in columns; it is wrapped to the page where that is narrower.
 inline constexpr std::size_t kHelpWidth = 100;
@@ -24,10 +26,18 @@ void format_help(CLI::App& app);
 // Puts the subcommands without a group into `group`, under which the help lists them.
 void group_commands(CLI::App& app, const std::string& group);
 
-// The message if the first word of the command line is no command: CLI11 would only report a
-// missing one. `arguments` with the program's name.
-std::optional<std::string> unknown_command(CLI::App& app,
-                                           const std::vector<std::string>& arguments);
+// What the program prints without arguments: the three commands that a newcomer needs.
+std::string start_page();
+
+// The help of a command, or of the program if `command` is empty.
+std::string help_text(CLI::App& app, const std::string& command);
+
+// Whether the word is a command.
+bool is_command(CLI::App& app, const std::string& word);
+
+// The message about a word that stands where a command should: CLI11 would only report a missing
+// one.
+std::string unknown_command(CLI::App& app, const std::string& word);
 
 // The message about CLI11's error.
 std::string usage_error(CLI::App& app, const CLI::ParseError& error);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "recording/text_fields.h"
 #include "reports/text/output_file.h"
+#include "reports/text/program_name.h"
 
 namespace simbench::cli {
 namespace {
@@ -22,13 +24,25 @@ using Json = nlohmann::ordered_json;
 
 bool json_messages = false;
 
-void print_line(const char* kind, const std::string& text) {
+void print_line(const char* kind, const std::string& words) {
+  const std::string text = reports::in_this_program(words);
   if (json_messages) {
     std::cerr << event_line({{"event", kind}, {"text", text}}) << std::flush;
   } else {
     // It may name a file or a camera, whose name may hold anything.
     std::cerr << kind << ": " << printable_lines(text) << '\n';
   }
+}
+
+std::optional<std::size_t> terminal_width(int descriptor) {
+  winsize size = {};
+  if (ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
+  return std::max<std::size_t>(size.ws_col, kNarrowest);
+}
+
+bool is_pipe(int descriptor) {
+  struct stat status = {};
+  return fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
 std::string_view variable(const char* name) {
@@ -60,10 +74,11 @@ void print_warnings(const std::vector<std::string>& warnings) {
 
 void print_note(const std::string& text) { print_line("note", text); }
 
-void print_error(const std::string& text, const std::string& next) {
-  if (next.empty()) {
-    print_line("error", text);
-  } else if (json_messages) {
+void print_error(const std::string& words, const std::string& next_command) {
+  if (next_command.empty()) return print_line("error", words);
+  const std::string text = reports::in_this_program(words);
+  const std::string next = reports::in_this_program(next_command);
+  if (json_messages) {
     std::cerr << event_line({{"event", "error"}, {"text", text}, {"next", next}}) << std::flush;
   } else {
     std::cerr << "error: " << printable_lines(text) << "\nSee: " << next << '\n';
@@ -82,9 +97,8 @@ std::optional<std::size_t> width_of_output() {
   const char* end = columns.data() + columns.size();
   const auto [stop, error] = std::from_chars(columns.data(), end, width);
   if (error == std::errc() && stop == end && width >= kNarrowest) return width;
-  winsize size = {};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
-  return std::max<std::size_t>(size.ws_col, kNarrowest);
+  if (const auto own = terminal_width(STDOUT_FILENO)) return own;
+  return is_pipe(STDOUT_FILENO) ? terminal_width(STDERR_FILENO) : std::nullopt;
 }
 
 bool takes_escapes() {

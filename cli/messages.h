@@ -7,6 +7,9 @@
 //
 // Text: "warning: ...", "note: ...", "error: ...\nSee: ...".
 //
+// Commands in texts ("see `simbench list`") name the running program
+// (reports/text/program_name.h).
+//
 // Not thread-safe; one setting for the process.
 #ifndef SIMBENCH_CLI_MESSAGES_H_
 #define SIMBENCH_CLI_MESSAGES_H_
@@ -50,7 +53,9 @@ void print_internal_error(const std::string& text);
 std::string event_line(const nlohmann::ordered_json& event);
 
 // The width of text on standard output, in columns: COLUMNS if it is a number of at least
-// kNarrowest, else the terminal's width; std::nullopt (no limit) for a file or a pipe.
+// kNarrowest, else the terminal's width, also where it goes through a pipe (`simbench run | less`)
+// and standard error is the terminal; std::nullopt (no limit) for a file, and for a pipe of a
+// script whose standard error is none.
 inline constexpr std::size_t kNarrowest = 20;
 std::optional<std::size_t> width_of_output();
 

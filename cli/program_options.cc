@@ -81,9 +81,11 @@ void add_program_options(Command& command, ProgramOptions& options) {
 scenarios::Scenario load_with_programs(const std::string& scenario,
                                        const std::vector<std::string>& sets,
                                        const ProgramOptions& options,
-                                       std::vector<std::string>& pipelines) {
+                                       std::vector<std::string>& pipelines,
+                                       evaluation::AdHoc ad_hoc) {
   if (!options.log_folder.empty()) app::use_programs({.log_folder = options.log_folder});
-  std::vector<scenarios::Override> overrides = overrides_of(sets);
+  std::vector<scenarios::Override> overrides =
+      evaluation::with_ad_hoc_pipelines(scenario, overrides_of(sets), pipelines, ad_hoc);
   scenarios::Scenario loaded = scenarios::load_scenario(scenario, overrides);
   if (options.programs.empty()) return loaded;
   const scenarios::Pipeline first = loaded.pipelines.front();

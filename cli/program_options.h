@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::cli {
@@ -22,13 +23,15 @@ struct ProgramOptions {
 
 void add_program_options(Command& command, ProgramOptions& options);
 
-// The scenario with a pipeline more for each program, which is added to `pipelines` if those are
-// chosen. What a FILE does not state of device_time and gathering is the scenario's first
+// The scenario with a pipeline more for each of `pipelines` that is stated by its algorithms
+// (evaluation/run/ad_hoc_pipelines.h) and for each program, which is added to `pipelines` if those
+// are chosen. What a FILE does not state of device_time and gathering is the scenario's first
 // pipeline's. Throws scenarios::InputError.
 scenarios::Scenario load_with_programs(const std::string& scenario,
                                        const std::vector<std::string>& sets,
                                        const ProgramOptions& options,
-                                       std::vector<std::string>& pipelines);
+                                       std::vector<std::string>& pipelines,
+                                       evaluation::AdHoc ad_hoc = evaluation::AdHoc::kThreeStages);
 
 }  // namespace simbench::cli
 

@@ -26,7 +26,7 @@ void add_backend_options(Command& command, BackendOptions& options) {
                "`simbench node` (hardware). Default: sim");
   command.text("--rig", "FILE", options.rig, "The rig file (with --backend hardware)");
   command.text("--key-file", "FILE", options.key_file,
-               "The key of the rig's nodes (see simbench keygen);\n"
+               "The key of the rig's nodes (see `simbench keygen`);\n"
                "without one only nodes on this machine can be reached");
 }
 

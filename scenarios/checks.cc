@@ -21,14 +21,18 @@ namespace simbench::scenarios {
 namespace {
 
 // Names become file names, table cells and command line arguments.
-void check_name(const Scenario& scenario, const std::string& pointer, const std::string& name) {
-  const auto is_allowed = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+// A pipeline may be named by its parts, as in chrony+hull_300+yoon2021.
+void check_name(const Scenario& scenario, const std::string& pointer, const std::string& name,
+                bool takes_plus = false) {
+  const auto is_allowed = [takes_plus](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || (takes_plus && c == '+');
   };
-  if (std::all_of(name.begin(), name.end(), is_allowed) && name.front() != '-') return;
-  fail_at(scenario, pointer,
-          fmt::format("found \"{}\", allowed letters, digits, '_', '-' and '.', no '-' in front",
-                      shown_text(name)));
+  const bool starts_well = name.front() != '-' && name.front() != '+';
+  if (std::all_of(name.begin(), name.end(), is_allowed) && starts_well) return;
+  fail_at(
+      scenario, pointer,
+      fmt::format("found \"{}\", allowed letters, digits, '_', '-'{} and '.', no '-'{} in front",
+                  shown_text(name), takes_plus ? ", '+'" : "", takes_plus ? " or '+'" : ""));
 }
 
 // `found` values where there may be none or one for each of the `count` things.
@@ -385,7 +389,7 @@ void check_pipelines(const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.pipelines.size(); ++i) {
     const std::string& name = scenario.pipelines[i].name;
     const std::string pointer = fmt::format("/pipelines/{}/name", i);
-    check_name(scenario, pointer, name);
+    check_name(scenario, pointer, name, /*takes_plus=*/true);
     if (std::find(names.begin(), names.end(), name) != names.end()) {
       fail_at(scenario, pointer,
               fmt::format("found a second \"{}\", allowed a name for each pipeline", name));

@@ -14,14 +14,17 @@
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
+#include "scenarios/units.h"
 
 namespace simbench::scenarios {
 namespace {
 
 using nlohmann::ordered_json;
 
-// Units stand last in names; an ending comes before the shorter ones that it ends in.
-std::string unit_of(std::string_view name) {
+}  // namespace
+
+// An ending comes before the shorter ones that it ends in.
+std::string unit_in_name(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 32> kUnits = {{
       {"_rad_per_s", "rad/s"},
       {"_m_per_s", "m/s"},
@@ -61,6 +64,8 @@ std::string unit_of(std::string_view name) {
   }
   return "";
 }
+
+namespace {
 
 // The source of a value below /cameras in the profile of the camera model; "" if none.
 std::string profile_source(const Cameras& cameras, const std::string& pointer) {
@@ -130,7 +135,7 @@ class Walker {
     ParameterLine line;
     line.pointer = pointer;
     line.value = value_text(value);
-    line.unit = unit_of(name);
+    line.unit = unit_in_name(name);
     if (node != nullptr) {
       line.meaning = node->value("description", "");
       line.source = node->value("x-source", "");

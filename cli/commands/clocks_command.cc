@@ -21,7 +21,8 @@ Examples:
   simbench clocks --scenario 6host_star
   simbench clocks --scenario 6host_star --pipelines chrony,ntp --seeds 32 --format json > ntp.json
   simbench clocks --scenario 6host_lan_day --duration-s 86400 --figure day.svg
-  simbench clocks --scenario my_rig.json --output results/clocks
+  simbench clocks --scenario my_rig.json -o results/clocks
+  simbench clocks --scenario 6host_star --pipelines two_way_hull,huygens_software
   simbench clocks --scenario 6host_star --program chronyd --pipelines chrony --seeds 2
 
 There are no cameras and no trigger: only hosts, clocks and network, from a cold start. After
@@ -55,8 +56,9 @@ int clocks(ClocksOptions options) {
     figure.emplace(options.figure);
   }
   app::RunArchive archive(options.command);
-  const scenarios::Scenario scenario = load_with_programs(
-      options.scenario, options.sets, options.programs, options.clocks.pipelines);
+  const scenarios::Scenario scenario =
+      load_with_programs(options.scenario, options.sets, options.programs, options.clocks.pipelines,
+                         evaluation::AdHoc::kHostSyncToo);
   evaluation::check_clock_options(scenario, options.clocks);
   print_warnings(scenarios::warnings(scenario));
   archive.open(options.output);
@@ -94,11 +96,11 @@ void add_clocks_command(CommandLine& line) {
   command.count("--seeds", clocks_options.seeds, "How many seeds. Default: 8");
   command.seed("--first-seed", clocks_options.first_seed, "The first seed. Default: 1");
   command.jobs(clocks_options.jobs);
-  command.pipelines(clocks_options.pipelines);
+  command.pipelines(clocks_options.pipelines, "a host_sync alone");
   command.sets(options->sets);
   add_program_options(command, options->programs);
-  command.format(options->format, {"table", "markdown", "csv", "json"});
-  command.text("--output", "DIR", options->output,
+  command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});
+  command.text("-o,--output", "DIR", options->output,
                "Write a result archive to this folder: manifest.json, results.json, curves.csv,\n"
                "series.csv (time errors of the first seed). Replaces an earlier archive there");
   command.text("--figure", "FILE", options->figure,

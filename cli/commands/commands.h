@@ -55,19 +55,23 @@ void add_validate_model_command(CommandLine& line);
 // The network of a scenario between nodes on this machine.
 void add_relay_command(CommandLine& line);
 
-// Scenarios, algorithms, cameras and studies.
+// Scenarios, algorithms, cameras, studies and figures.
 void add_list_command(CommandLine& line);
-// Every parameter of a scenario, with unit, meaning and source.
+// Every parameter of a scenario or an algorithm, with unit, meaning and source.
 void add_describe_command(CommandLine& line);
 // Scenario files checked without running them.
 void add_validate_command(CommandLine& line);
 
 // Texts about the command line itself. `manual` knows the commands that were added before it.
+void add_help_command(CommandLine& line);
 void add_completion_command(CommandLine& line);
 void add_manual_command(CommandLine& line);
 
 // All studies by name, with the question that each answers: `list studies`, `sweep --study list`.
 std::string study_list();
+
+// All figures, with what they show: `list figures`, `figure --list`.
+std::string figure_list();
 
 }  // namespace simbench::cli
 

@@ -67,7 +67,7 @@ int compare(CompareOptions options) {
     print_result(reports::comparison_csv(comparison));
   } else {
     const reports::Document document = reports::comparison_document(comparison);
-    print_result(options.format == "markdown" ? markdown(document) : plain(document));
+    print_result(reports::drawn_as(options.format, document));
   }
   return kOk;
 }
@@ -79,11 +79,11 @@ void add_compare_command(CommandLine& line) {
   Command command(line, "compare",
                   "Compare two result archives, or pipelines of one, seed by seed");
   command
-      .texts("archives", "DIR...", options->archives,
+      .texts("archives", "ARCHIVE...", options->archives,
              "One or two archives that `simbench run --output` wrote, or results.json files")
       .required()
       .at_most(2);
-  command.list("--pipelines", "NAME,NAME", options->comparison.pipelines,
+  command.list("--pipelines", "PIPELINE,...", options->comparison.pipelines,
                "With one archive: the two to compare. With two: only these");
   command.text("--with-baseline", "PIPELINE", options->baseline,
                "Compare each other pipeline of the archive with this one");
@@ -94,7 +94,7 @@ void add_compare_command(CommandLine& line) {
                "Pair the n-th seed of A with the n-th of B: for archives without common seeds");
   command.flag("--different-scenarios", options->comparison.different_scenarios,
                "Compare the same pipelines in worlds that differ");
-  command.format(options->format, {"table", "markdown", "csv", "json"});
+  command.format(options->format, {"table", "markdown", "latex", "csv", "json"});
   command.footer(kCompareExamples);
   command.runs([options] { return compare(*options); });
 }

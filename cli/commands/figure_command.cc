@@ -11,6 +11,7 @@
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/budget/budget.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
@@ -68,7 +69,9 @@ const char* drawn_for(FigureScope scope) {
   return "a pipeline and seed";
 }
 
-std::string catalogue_text() {
+}  // namespace
+
+std::string figure_list() {
   using reports::Align;
   reports::Table table({{"figure", Align::kLeft},
                         {"of the paper", Align::kLeft},
@@ -79,6 +82,8 @@ std::string catalogue_text() {
   }
   return plain(table) + "\nThe paper's numbers are names too: fig2, fig3, ..., fig13.\n";
 }
+
+namespace {
 
 enum class FileKind : std::uint8_t { kSvg, kPdf, kCsv };
 
@@ -132,8 +137,9 @@ void announce_budget(const FigureEntry& entry, const app::FigureOptions& options
 
 std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command,
                                                     const FigureEntry& entry) {
-  const scenarios::Scenario scenario =
-      scenarios::load_scenario(command.scenario, overrides_of(command.sets));
+  const scenarios::Scenario scenario = scenarios::load_scenario(
+      command.scenario, evaluation::with_ad_hoc_pipelines(
+                            command.scenario, overrides_of(command.sets), command.pipelines));
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   std::vector<std::string> known;
@@ -170,7 +176,7 @@ const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& mad
 
 int draw_figure(const FigureCommand& command) {
   if (command.list) {
-    print_result(catalogue_text());
+    print_result(figure_list());
     return kOk;
   }
   const FigureEntry& entry = reports::figure_named(command.name);
@@ -200,10 +206,10 @@ int draw_figure(const FigureCommand& command) {
 void check(const FigureCommand& command) {
   if (command.list) return;
   if (command.name.empty()) {
-    refuse("NAME", "is missing; `simbench figure --list` names the figures");
+    refuse("FIGURE", "is missing; `simbench figure --list` names the figures");
   }
   if (command.archive.empty() == command.scenario.empty()) {
-    refuse("DIR, --scenario", "one of them is needed, and not both");
+    refuse("ARCHIVE, --scenario", "one of them is needed, and not both");
   }
   if (!command.archive.empty() && !command.sets.empty()) {
     refuse("--set", "allowed only with --scenario: an archive has its own parameters");
@@ -218,18 +224,18 @@ void check(const FigureCommand& command) {
 void add_figure_command(CommandLine& line) {
   auto options = std::make_shared<FigureCommand>();
   Command command(line, "figure", "Draw one figure as SVG, PDF or CSV");
-  command.text("name", "NAME", options->name,
+  command.text("name", "FIGURE", options->name,
                "The figure's name (see --list), or the paper's number as fig8");
-  command.text("archive", "DIR", options->archive, "Folder that `simbench run --output` wrote");
+  command.text("archive", "ARCHIVE", options->archive, "Folder that `simbench run --output` wrote");
   command.flag("--list", options->list, "List the figures");
   command.text("--scenario", "SCENARIO", options->scenario,
-               "Instead of DIR: name of a scenario or path of a scenario file");
+               "Instead of ARCHIVE: name of a scenario or path of a scenario file");
   command.sets(options->sets);
   command.seed("--seed", options->seed,
                "The seed of a figure of one seed. Default: the archive's first; 1 for a scenario");
   command.count("--seeds", options->seeds,
                 "How many seeds, for figures over a scenario's seeds and for budgets. Default: 32");
-  command.list("--pipelines", "NAME,NAME", options->pipelines,
+  command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "Only these. Default: all; for a figure of one pipeline yoon2021_both, else the\n"
                "first");
   command.text("-o,--output", "FILE", options->output,

@@ -81,7 +81,7 @@ void add_gate_command(CommandLine& line) {
   Command command(line, "gate",
                   "Compare a result with a baseline: exit status 3 if it became worse");
   command
-      .text("result", "DIR", options->result,
+      .text("result", "ARCHIVE", options->result,
             "An archive that `simbench run --output` wrote, or a results.json")
       .required();
   command.text("--baseline", "FILE", options->baseline, "The baseline to compare with");

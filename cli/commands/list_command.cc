@@ -3,12 +3,13 @@
 
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "algorithms/registry.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/parameter_text.h"
+#include "reports/figures/figure.h"
 #include "reports/text/block.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
@@ -46,24 +47,6 @@ struct ListOptions {
   std::string format;
 };
 
-std::string value_text(const ParameterValue& value) {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  return std::get<std::string>(value);
-}
-
-std::string range_text(const ParameterSpec& spec) {
-  if (std::holds_alternative<bool>(spec.fallback)) return "true, false";
-  if (!std::holds_alternative<double>(spec.fallback)) {
-    std::string choices;
-    for (const std::string& choice : spec.choices) {
-      choices.append(choices.empty() ? "" : ", ").append(choice);
-    }
-    return choices;
-  }
-  return fmt::format("{} to {}", spec.low, spec.high);
-}
-
 std::string scenarios_text() {
   std::string text = "scenarios\n";
   for (const auto& scenario : scenarios::builtin_scenarios()) {
@@ -100,6 +83,11 @@ std::string bare_names(const ListOptions& options) {
   if (options.what == "studies") {
     for (const scenarios::Study& study : scenarios::studies()) names.push_back(study.name);
   }
+  if (options.what == "figures") {
+    for (const reports::FigureEntry& figure : reports::figure_catalogue()) {
+      names.push_back(figure.id);
+    }
+  }
   return fmt::format("{}\n", fmt::join(names, "\n"));
 }
 
@@ -115,7 +103,7 @@ std::string algorithm_text(const AlgorithmInfo& info) {
   if (info.parameters.empty()) return text;
   text += fmt::format("  parameters, in a scenario below /algorithms/{}:\n", info.family);
   for (const ParameterSpec& spec : info.parameters) {
-    text += fmt::format("    {} = {} ({}): {} [{}]\n", spec.name, value_text(spec.fallback),
+    text += fmt::format("    {} = {} ({}): {} [{}]\n", spec.name, default_text(spec),
                         range_text(spec), spec.meaning, spec.source);
   }
   return text;
@@ -223,6 +211,7 @@ std::string listing(const ListOptions& options) {
   if (options.what == "oscillators") return oscillator_list_text();
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "studies") return study_list();
+  if (options.what == "figures") return figure_list();
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
            details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
@@ -245,12 +234,14 @@ std::string study_list() {
 
 void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
-  Command command(line, "list",
-                  "List scenarios, algorithms, pipelines, cameras, oscillators or studies");
-  command.word("what", "WHAT", options->what,
-               {"scenarios", "pipelines", "algorithms", "cameras", "oscillators", "studies"},
-               "scenarios, pipelines, algorithms (with parameters and sources), cameras, "
-               "oscillators or studies.\nDefault: scenarios and algorithms by name");
+  Command command(
+      line, "list",
+      "List scenarios, algorithms, pipelines, cameras, oscillators, studies or figures");
+  command.word(
+      "what", "WHAT", options->what,
+      {"scenarios", "pipelines", "algorithms", "cameras", "oscillators", "studies", "figures"},
+      "scenarios, pipelines, algorithms (with parameters and sources), cameras, "
+      "oscillators, studies or figures.\nDefault: scenarios and algorithms by name");
   command.text("--scenario", "SCENARIO", options->scenario,
                "The scenario whose pipelines to list. Default: " + options->scenario);
   command.format(options->format, {"text", "names", "json"});

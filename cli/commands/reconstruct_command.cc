@@ -14,6 +14,7 @@
 #include "cli/commands/commands.h"
 #include "cli/process.h"
 #include "cli/progress.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reconstruction/experiment.h"
 #include "reports/reconstruction/reconstruction_document.h"
@@ -122,8 +123,9 @@ int run_reconstruct(const ReconstructOptions& options) {
   reports::Provenance provenance;
   provenance.command = options.command;
   provenance.started = std::chrono::system_clock::now();
-  const scenarios::Scenario scenario =
-      scenarios::load_scenario(options.scenario, all_overrides(options));
+  const scenarios::Scenario scenario = scenarios::load_scenario(
+      options.scenario, evaluation::with_ad_hoc_pipelines(options.scenario, all_overrides(options),
+                                                          options.reconstruction.pipelines));
   evaluation::check_pipelines(scenario);
   evaluation::choose_pipelines(scenario, options.reconstruction.pipelines);
   print_warnings(scenarios::warnings(scenario));

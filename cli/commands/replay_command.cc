@@ -170,10 +170,10 @@ void add_replay_command(CommandLine& line) {
                   "Score a recording folder, or device_time and gathering on CSV of real cameras");
   command.texts("recordings", "FILE.csv...|DIR", options->files, "A recording folder, or CSV files")
       .required();
-  command.list("--pipelines", "NAME,NAME", options->pipelines,
+  command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "With a folder: only these of the recorded pipelines, in this order");
   command.format(options->format, {"table", "markdown", "json", "csv"});
-  command.text("--output", "DIR", options->output,
+  command.text("-o,--output", "DIR", options->output,
                "Write manifest.json, results.json and frames.csv (for a recording folder also\n"
                "hosts.csv) to this folder. Replaces an earlier result there");
   command.footer(kReplayExamples);

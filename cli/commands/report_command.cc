@@ -27,7 +27,7 @@ The file is complete: it opens offline in any browser, and can be mailed and pri
 
 Examples:
   simbench run --scenario 18cam_6host_45fps --output results/monday
-  simbench report results/monday -o monday.html
+  simbench report results/monday                    writes results/monday.html
   simbench report results/monday results/tuesday -o both.html --budget-seeds 0
   simbench report results/monday -o two.html --pipelines yoon2021_both,genlock --seeds-in-detail 10
 
@@ -65,8 +65,23 @@ void check_pipelines(const app::ReportDetail& detail,
   }
 }
 
-int make_report(const ReportOptions& options) {
+// Beside the archive, by its name: a folder is written anew by the next run.
+std::string output_beside(const std::vector<std::string>& archives) {
+  if (archives.size() > 1) {
+    throw scenarios::InputError(
+        fmt::format("--output: found none for {} archives, allowed: a name such as both.html",
+                    archives.size()));
+  }
+  fs::path path = fs::path(archives.front()).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // results/monday/
+  if (path == "." || path.filename() == "..") path = fs::canonical(path);
+  if (fs::is_directory(path)) return path.string() + ".html";
+  return path.replace_extension(".html").string();
+}
+
+int make_report(ReportOptions options) {
   check_named_once(options.archives);
+  if (options.output.empty()) options.output = output_beside(options.archives);
   std::vector<reports::Archive> archives;
   for (const std::string& path : options.archives) archives.push_back(reports::read_archive(path));
   check_pipelines(options.detail, archives);
@@ -99,11 +114,12 @@ void add_report_command(CommandLine& line) {
   options->command = line.arguments;
   Command command(line, "report", "Make one HTML file of result archives: tables and figures");
   command
-      .texts("archives", "DIR...", options->archives,
+      .texts("archives", "ARCHIVE...", options->archives,
              "Folders that `simbench run --output` wrote, or a results.json alone")
       .required();
-  command.text("-o,--output", "FILE.html", options->output, "The file. Replaces an earlier one")
-      .required();
+  command.text("-o,--output", "FILE.html", options->output,
+               "The file. Replaces an earlier one. Default for one archive: beside it,\n"
+               "results/monday.html of results/monday");
   command.whole_number("--seeds-in-detail", "N", options->detail.seeds, 1, kMostSeedsInDetail,
                        "How many seeds to show with stamps, clocks and single pulses.\n"
                        "Default: 4, fewer with more than 8 pipelines");
@@ -111,7 +127,7 @@ void add_report_command(CommandLine& line) {
       "--budget-seeds", "N", options->detail.budget_seeds, 0, kMostSeedsInDetail,
       "Seeds of the error budgets (128 runs for each seed and pipeline); 0: none.\n"
       "Default: 4, fewer with more than 8 pipelines");
-  command.list("--pipelines", "NAME,NAME", options->detail.pipelines,
+  command.list("--pipelines", "PIPELINE,...", options->detail.pipelines,
                "Show only these pipelines in detail; the tables have all");
   command.json_messages();
   command.footer(kReportExamples);

@@ -29,8 +29,10 @@ Examples:
   simbench run --scenario 18cam_6host_45fps --seeds 1000 --pipelines yoon2021_both,genlock
   simbench run --scenario my_rig.json --set /network/latency_fixed_ms=0.2 --format markdown
   simbench run --scenario 3cam_1host_30fps --format json > results.json
+  simbench run --scenario 3cam_1host_30fps --format tidy > seeds.csv
   simbench run --scenario 18cam_6host_45fps_lan --pipelines yoon2021_both --budget
-  simbench run --scenario 3cam_1host_30fps --output results/monday
+  simbench run --scenario 3cam_1host_30fps -o results/monday
+  simbench run --scenario 18cam_6host_45fps --pipelines chrony+hull_300+yoon2021,yoon2021_both
   simbench run --scenario 18cam_6host_45fps_lan --program mine=my_daemon.json --seeds 4
   simbench run --scenario 18cam_6host_45fps --backend hardware --rig rig.json --key-file rig.key
 
@@ -111,7 +113,7 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
     print_result(reports::budget_json(report));
   } else {
     const reports::Document document = reports::budget_document(report);
-    print_result(options.format == "markdown" ? markdown(document) : plain(document));
+    print_result(reports::drawn_as(options.format, document));
   }
   return kOk;
 }
@@ -119,9 +121,10 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
 // Refuses options that cannot be combined with --budget.
 void check_budget_options(const RunOptions& options) {
   if (!options.budget) return;
-  if (options.format == "csv") {
+  if (options.format == "csv" || options.format == "tidy") {
     throw scenarios::InputError(
-        "--format: found 'csv', allowed with --budget: table, markdown, json");
+        fmt::format("--format: found '{}', allowed with --budget: table, markdown, latex, json",
+                    options.format));
   }
   if (!options.output.empty()) {
     throw scenarios::InputError("--output: a result archive holds no budget; use --format json");
@@ -174,7 +177,9 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
 std::optional<reports::Block> answer_for_people(const evaluation::Results& results,
                                                 const scenarios::Scenario& scenario,
                                                 const RunOptions& options) {
-  if (options.format == "csv" || options.format == "json") return reports::Block{};
+  if (options.format == "csv" || options.format == "tidy" || options.format == "json") {
+    return reports::Block{};
+  }
   return watched<reports::Block>([&](const evaluation::Progress& progress) {
     return app::run_answer(results, scenario, progress);
   });
@@ -220,8 +225,8 @@ void add_run_command(CommandLine& line) {
   command.sets(options->sets);
   add_program_options(command, options->programs);
   add_backend_options(command, options->backend);
-  command.format(options->format, {"table", "markdown", "csv", "json"});
-  command.text("--output", "DIR", options->output,
+  command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});
+  command.text("-o,--output", "DIR", options->output,
                "Write a result archive to this folder: manifest.json, results.json,\n"
                "frames.csv, hosts.csv. Replaces an earlier archive there");
   const Option quiet =

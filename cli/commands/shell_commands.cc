@@ -8,9 +8,15 @@
 #include "cli/command.h"
 #include "cli/command_table.h"
 #include "cli/commands/commands.h"
+#include "cli/help.h"
 
 namespace simbench::cli {
 namespace {
+
+constexpr const char* kHelpExamples = R"(
+Examples:
+  simbench help
+  simbench help run                                                   as simbench run --help)";
 
 constexpr const char* kCompletionExamples = R"(
 `cmake --install` puts the scripts where the shells look for them. Without it:
@@ -48,6 +54,21 @@ struct ManualOptions {
 };
 
 }  // namespace
+
+void add_help_command(CommandLine& line) {
+  auto name = std::make_shared<std::string>();
+  Command command(line, "help", "Print the help of simbench or of a command");
+  command.text("command", "COMMAND", *name, "The command. Default: simbench itself");
+  command.footer(kHelpExamples);
+  command.runs([name, &app = line.parser]() -> int {
+    if (!name->empty() && !is_command(app, *name)) {
+      print_error(unknown_command(app, *name), "simbench help");
+      return kBadInput;
+    }
+    print_result(help_text(app, *name));
+    return kOk;
+  });
+}
 
 void add_completion_command(CommandLine& line) {
   auto shell = std::make_shared<std::string>();

@@ -13,6 +13,7 @@
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/clock_run/clock_evaluation.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/sweep/sweep_plan.h"
 #include "evaluation/sweep/task_farm.h"
 #include "recording/counted.h"
@@ -163,7 +164,9 @@ int sweep(SweepOptions options, evaluation::TaskFarm* farm) {
   if (options.output.empty()) {
     throw scenarios::InputError("sweep: found no --output; name a folder for its results");
   }
-  options.request.overrides = overrides_of(options.sets);
+  options.request.overrides = evaluation::with_ad_hoc_pipelines(
+      options.request.scenario, overrides_of(options.sets), options.request.pipelines,
+      options.clocks ? evaluation::AdHoc::kHostSyncToo : evaluation::AdHoc::kThreeStages);
   if (options.seeds) options.request.seeds = *options.seeds;
   set_kind(options, study, options.request);
   const SweepPlan plan = evaluation::make_plan(options.request);

@@ -114,9 +114,10 @@ class Output {
 
 int run_trace(const TraceCommandOptions& options) {
   const reports::TraceOptions wanted = trace_options(options);
-  std::vector<std::string> programs;
+  std::vector<std::string> pipelines;
+  if (!options.pipeline.empty()) pipelines.push_back(options.pipeline);
   const scenarios::Scenario scenario =
-      load_with_programs(options.scenario, options.sets, options.programs, programs);
+      load_with_programs(options.scenario, options.sets, options.programs, pipelines);
   const bool is_of_program = options.pipeline.empty() && !options.programs.programs.empty();
   const evaluation::PipelineChoice choice =
       choose(scenario, is_of_program ? scenario.pipelines.back().name : options.pipeline);
@@ -154,7 +155,7 @@ void add_trace_command(CommandLine& line) {
   Command command(line, "trace", "Write one run as a timeline, for the Perfetto UI or PlotJuggler");
   command.scenario(options->scenario);
   command.seed("--seed", options->seed, "The seed of the run. Default: 1");
-  command.text("--pipeline", "NAME", options->pipeline,
+  command.text("--pipeline", "PIPELINE", options->pipeline,
                "The pipeline to run. Default: yoon2021_both, else the scenario's first");
   add_program_options(command, options->programs);
   command.sets(options->sets);

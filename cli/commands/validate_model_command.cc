@@ -263,7 +263,7 @@ void add_validate_model_command(CommandLine& line) {
                   "Measure a scenario with real processes and compare the simulation with it");
   command.scenario(options->scenario);
   command.sets(options->sets);
-  command.list("--pipelines", "NAME,NAME", options->pipelines,
+  command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "Only these pipelines of the scenario");
   add_program_options(command, options->programs);
   add_measurement_options(command, *options);

@@ -123,7 +123,7 @@ std::vector<Series> host_series(std::span<const SweepScore> seeds) {
 
 PooledValues pooled_values(std::span<const SweepScore> seeds, const ResponseRow& row) {
   const double pure = sum_of(seeds, "pure_sets");
-  return {.precision = pure / sum_of(seeds, "emitted_sets"),
+  return {.precision = pure / sum_of(seeds, "sets"),
           .recall = pure / sum_of(seeds, "complete_pulses"),
           .margin_ms = row.of("margin_ms").median};
 }

@@ -28,7 +28,7 @@ struct SweepScore {
   SweepScore() : SweepScore(ResultKind::kCaptures) {}
   explicit SweepScore(ResultKind of);
 
-  // The value of a column, which must exist: "amd_ms", "emitted_sets".
+  // The value of a column, which must exist: "amd_ms", "sets".
   double& at(std::string_view column);
 };
 

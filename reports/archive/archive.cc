@@ -18,6 +18,7 @@
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/json.h"
 #include "reports/text/json_node.h"
+#include "reports/text/program_name.h"
 #include "scenarios/document.h"
 #include "scenarios/loader.h"
 
@@ -61,7 +62,7 @@ std::string shell_line(const std::vector<std::string>& words) {
 }
 
 std::string simbench_line(std::vector<std::string> command) {
-  command.front() = "simbench";
+  command.front() = program_name();
   return shell_line(command);
 }
 
@@ -318,11 +319,14 @@ LineReader lines_of_archive(const std::string& path) {
 // One of the archive's CSV files, line by line. The first cell may be quoted (RFC 4180).
 class CsvFile {
  public:
-  CsvFile(const Archive& archive, const char* name, std::string_view header)
+  // `old_header`: of archives before simbench 0.2.
+  CsvFile(const Archive& archive, const char* name, std::string_view header,
+          std::string_view old_header)
       : lines_(lines_of_archive((std::filesystem::path(archive.path) / name).string())) {
     const bool found = next();
-    changed_ = found && line_ == std::string(header) + ",changed";
-    if (!found || (line_ != header && !changed_)) {
+    const std::string_view stated = line_.starts_with(old_header) ? old_header : header;
+    changed_ = found && line_ == std::string(stated) + ",changed";
+    if (!found || (line_ != stated && !changed_)) {
       fail(fmt::format("line 1 has to be '{}', of a changed world with ',changed'", header));
     }
   }
@@ -439,7 +443,8 @@ void read_seed_details(Archive& archive) {
     each.seeds.assign(results.seed_count, SeedScore{});
     for (std::size_t i = 0; i < each.seeds.size(); ++i) each.seeds[i].seed = results.first_seed + i;
   }
-  CsvFile frames(archive, "frames.csv", "pipeline,seed,pulse,spread_ms,deviation_ms");
+  CsvFile frames(archive, "frames.csv", "pipeline,seed,pulse,amd_ms,rmdv_ms",
+                 "pipeline,seed,pulse,spread_ms,deviation_ms");
   Row* row = nullptr;
   while (frames.next_row()) {
     score_of(frames, results, row)
@@ -447,7 +452,8 @@ void read_seed_details(Archive& archive) {
                            .spread_ms = frames.value(3),
                            .deviation_ms = frames.value(4)});
   }
-  CsvFile hosts(archive, "hosts.csv", "pipeline,seed,host,error_ms,synchronised");
+  CsvFile hosts(archive, "hosts.csv", "pipeline,seed,host,host_error_ms,synchronised",
+                "pipeline,seed,host,error_ms,synchronised");
   while (hosts.next_row()) {
     SeedScore& score = score_of(hosts, results, row);
     if (hosts.number<std::size_t>(2) != score.host_errors_ms.size()) {

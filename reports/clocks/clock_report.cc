@@ -166,7 +166,7 @@ Json clock_row_json(const Row& row, const evaluation::StabilityCurves& curves) {
               {"host_sync", row.host_sync},
               {"device_time", row.device_time},
               {"gathering", row.gathering},
-              {"spread_ms",
+              {"clock_spread_ms",
                {{"mean", evaluation::mean_of_existing(row.clock_spread_ms.values)},
                 {"median", evaluation::mean_of_existing(row.clock_spread_median_ms.values)},
                 {"p95", evaluation::mean_of_existing(row.clock_spread_p95_ms.values)},
@@ -238,7 +238,7 @@ std::string clock_csv(const ClockResults& results) {
 }
 
 void write_series_csv(const ClockResults& results, std::ostream& out) {
-  out << "pipeline,seed,time_s,host,error_s\n";
+  out << "pipeline,seed,time_s,host,te_s\n";
   for (std::size_t row = 0; row < results.results.rows.size(); ++row) {
     const evaluation::ClockReadings& readings = results.readings[row];
     const std::string start = fmt::format("{},{}", csv_cell(results.results.rows[row].pipeline),

@@ -6,7 +6,8 @@
 //    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
 //    "seeds": {"first", "count"}, "duration_s", "from_s", "interval_s": of the readings,
 //    "rows": [{"pipeline", "host_sync", "device_time", "gathering",
-//              "spread_ms": {"mean", "median", "p95", "max": in time, of that the mean over the
+//              "clock_spread_ms": {"mean", "median", "p95", "max": in time, of that the mean over
+//              the
 //                seeds and of "max" the largest; "values": the mean in time of each seed},
 //              "adev", "mdev", "hdev": [{"tau_s", "value", "terms"}], RMS over slaves and seeds,
 //              "tdev_ms" likewise, "mtie_ms": the largest of any slave and seed,
@@ -47,7 +48,7 @@ std::string clock_json(const evaluation::ClockResults& results);
 // curves.
 std::string clock_csv(const evaluation::ClockResults& results);
 
-// pipeline,seed,time_s,host,error_s: the time errors of the first seed's slaves.
+// pipeline,seed,time_s,host,te_s: the time errors of the first seed's slaves.
 void write_series_csv(const evaluation::ClockResults& results, std::ostream& out);
 
 // ADEV, TDEV and MTIE of all pipelines over tau, with masks of ITU-T as lines for reference.

@@ -8,6 +8,7 @@
 #include "evaluation/statistics/paired.h"
 #include "reports/comparison/comparison_scenarios.h"
 #include "reports/text/number_text.h"
+#include "reports/text/program_name.h"
 #include "scenarios/loader.h"
 
 namespace simbench::reports {
@@ -213,7 +214,7 @@ void note_more(const Archive& result, const Baseline& baseline, GateReport& repo
   }
   if (report.passed() && report.count(GateOutcome::kSame) < report.checks.size() &&
       report.mode == GateMode::kExact) {
-    report.notes.emplace_back(kAnew);
+    report.notes.push_back(in_this_program(kAnew));
   }
 }
 
@@ -224,7 +225,7 @@ std::string run_command(const Archive& result) {
   std::vector<std::string> names;
   for (const evaluation::Row& row : result.results.rows) names.push_back(row.pipeline);
   const bool is_of_clocks = result.results.kind == evaluation::ResultKind::kClockRuns;
-  return shell_line({"simbench", is_of_clocks ? "clocks" : "run", "--scenario",
+  return shell_line({program_name(), is_of_clocks ? "clocks" : "run", "--scenario",
                      result.results.scenario, "--first-seed",
                      fmt::format("{}", result.results.first_seed), "--seeds",
                      fmt::format("{}", result.results.seed_count), "--pipelines",
@@ -234,7 +235,7 @@ std::string run_command(const Archive& result) {
 std::vector<std::string> gate_commands(const Archive& result, const Baseline& baseline,
                                        GateMode mode) {
   const std::string archive = result.command.empty() ? "results" : result.path;
-  std::vector<std::string> judge = {"simbench", "gate", archive, "--baseline", baseline.path};
+  std::vector<std::string> judge = {program_name(), "gate", archive, "--baseline", baseline.path};
   if (mode == GateMode::kStatistical) judge.insert(judge.end(), {"--mode", "statistical"});
   return {run_command(result), shell_line(judge)};
 }

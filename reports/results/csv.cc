@@ -132,9 +132,28 @@ std::string csv(const evaluation::Results& results) {
   return out;
 }
 
+std::string tidy_csv(const evaluation::Results& results) {
+  const LineEnds ends(results.derivation);
+  std::string out = "scenario,pipeline,seed,metric,unit,value" + ends.header;
+  for (const Row& row : results.rows) {
+    const std::string start =
+        fmt::format("{},{}", csv_cell(results.scenario), csv_cell(row.pipeline));
+    for (const Metric& metric : evaluation::metrics(results.kind)) {
+      if (!metric.is_series()) continue;
+      const std::vector<double>& values = metric.series(row).values;
+      for (std::size_t seed = 0; seed < values.size(); ++seed) {
+        if (!std::isfinite(values[seed])) continue;
+        out += fmt::format("{},{},{},{},{}{}", start, results.first_seed + seed, metric.id,
+                           metric.unit, csv_cell(values[seed]), ends.line);
+      }
+    }
+  }
+  return out;
+}
+
 void write_frames_csv(const evaluation::Results& results, std::ostream& out) {
   const LineEnds ends(results.derivation);
-  out << "pipeline,seed,pulse,spread_ms,deviation_ms" << ends.header;
+  out << "pipeline,seed,pulse,amd_ms,rmdv_ms" << ends.header;
   fmt::memory_buffer text;
   for (const Row& row : results.rows) {
     const std::string name = csv_cell(row.pipeline);
@@ -151,7 +170,7 @@ void write_frames_csv(const evaluation::Results& results, std::ostream& out) {
 
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out) {
   const LineEnds ends(results.derivation);
-  out << "pipeline,seed,host,error_ms,synchronised" << ends.header;
+  out << "pipeline,seed,host,host_error_ms,synchronised" << ends.header;
   for (const Row& row : results.rows) {
     for (const SeedScore& seed : row.seeds) {
       for (std::size_t host = 0; host < seed.host_errors_ms.size(); ++host) {

@@ -19,11 +19,15 @@ namespace simbench::reports {
 // changed, the same text in each line ("changed: /trigger/rate_hz 45 → 30").
 std::string csv(const evaluation::Results& results);
 
-// frames.csv: pipeline,seed,pulse,spread_ms,deviation_ms, and changed as above; needs
-// EvaluationOptions::keep_pulses.
+// scenario,pipeline,seed,metric,unit,value, and changed as above: a line for each metric that each
+// seed has a value of, of captures or of clock runs.
+std::string tidy_csv(const evaluation::Results& results);
+
+// frames.csv: pipeline,seed,pulse,amd_ms,rmdv_ms, and changed as above: the pulse's terms of AMD
+// and RMDV; needs EvaluationOptions::keep_pulses.
 void write_frames_csv(const evaluation::Results& results, std::ostream& out);
 
-// hosts.csv: pipeline,seed,host,error_ms,synchronised (1 or 0), and changed as above.
+// hosts.csv: pipeline,seed,host,host_error_ms,synchronised (1 or 0), and changed as above.
 void write_hosts_csv(const evaluation::Results& results, std::ostream& out);
 
 // A cell, quoted where necessary (RFC 4180); what is not finite is empty.

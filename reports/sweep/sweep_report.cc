@@ -237,7 +237,7 @@ std::string sweep_csv(const SweepPlan& plan, const std::vector<SweepScore>& scor
 }
 
 std::string sweep_hosts_csv(const SweepPlan& plan, const std::vector<SweepScore>& scores) {
-  std::string csv = run_header(plan) + ",host,error_ms" + changed_header(plan);
+  std::string csv = run_header(plan) + ",host,host_error_ms" + changed_header(plan);
   const std::string changed = changed_cell(plan);
   for (std::size_t index = 0; index < scores.size(); ++index) {
     const std::string cells = run_cells(plan, plan.run(index));

@@ -1,12 +1,15 @@
 #include "reports/text/block.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/split.hpp>
 
 #include "algorithms/ports/assert.h"
 #include "recording/text_fields.h"
 #include "reports/text/html_text.h"
+#include "reports/text/latex_text.h"
 #include "reports/text/plain_text.h"
 
 namespace simbench::reports {
@@ -74,6 +77,74 @@ std::string markdown_block(const Block& block, const char* level) {
   return out;
 }
 
+// With a minus where a number has one.
+std::string latex_cell(const std::string& text) {
+  const bool is_negative = text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9';
+  return is_negative ? "$-$" + latex_escaped(text.substr(1)) : latex_escaped(text);
+}
+
+// After the end of a row a bracket would be its optional argument, and a star a part of it.
+std::string latex_row(const std::vector<std::string>& cells) {
+  const bool is_argument = cells.front().starts_with('[') || cells.front().starts_with('*');
+  return fmt::format("    {}{} \\\\\n", is_argument ? "{}" : "", fmt::join(cells, " & "));
+}
+
+// The rows of the header, whose last lines stand in one row.
+std::string latex_header(const Table& table) {
+  std::vector<std::vector<std::string>> lines;
+  std::size_t rows = 1;
+  for (const Column& column : table.columns) {
+    lines.push_back({});
+    boost::split(lines.back(), column.header, [](char c) { return c == '\n'; });
+    rows = std::max(rows, lines.back().size());
+  }
+  std::string out;
+  for (std::size_t row = 0; row < rows; ++row) {
+    std::vector<std::string> cells;
+    for (const std::vector<std::string>& of_column : lines) {
+      const std::size_t missing = rows - of_column.size();
+      cells.push_back(row < missing ? "" : latex_cell(of_column[row - missing]));
+    }
+    out += latex_row(cells);
+  }
+  return out;
+}
+
+std::string latex_table(const Table& raw, const std::string& caption) {
+  const Table table = printable(raw);
+  std::string columns;
+  for (const Column& column : table.columns) columns += column.align == Align::kLeft ? 'l' : 'r';
+  std::string rows;
+  for (const std::vector<std::string>& row : table.rows) {
+    std::vector<std::string> cells;
+    for (const std::string& cell : row) cells.push_back(latex_cell(cell));
+    rows += latex_row(cells);
+  }
+  const std::string stated =
+      caption.empty() ? "" : fmt::format("  \\caption{{{}}}\n", latex_escaped(caption));
+  return fmt::format(
+      "\\begin{{table}}\n  \\centering\n  \\footnotesize\n{}  \\begin{{tabular}}{{{}}}\n"
+      "    \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n\\end{{table}}\n",
+      stated, columns, latex_header(table), rows);
+}
+
+std::string latex_block(const Block& block) {
+  std::string out;
+  if (block.table) {
+    out += "\n" + latex_table(*block.table, block.heading);
+  } else if (!block.heading.empty()) {
+    out += fmt::format("\n\\paragraph{{{}}}\n", latex_escaped(block.heading));
+  }
+  for (const std::string& text : block.prose) out += "\n" + latex_escaped(text) + "\n";
+  if (block.items.empty()) return out;
+  out += "\n\\begin{itemize}\n";
+  // The braces keep an item that begins with '[' from being a label.
+  for (const std::string& item : block.items) {
+    out += fmt::format("  \\item {{}}{}\n", latex_escaped(item));
+  }
+  return out + "\\end{itemize}\n";
+}
+
 // Attributes of a header's cell.
 std::string attributes(const Column& column) {
   std::string out = column.align == Align::kLeft ? " class=\"text\"" : "";
@@ -137,6 +208,22 @@ std::string markdown(const Document& raw) {
   const char* const level = document.title.empty() ? "##" : "###";
   for (const Block& block : document.blocks) out += markdown_block(block, level);
   return without_first_break(std::move(out));
+}
+
+std::string latex(const Document& raw) {
+  const Document document = printable(raw);
+  std::string out = "% Needs \\usepackage{booktabs}.\n";
+  if (!document.title.empty()) {
+    out += fmt::format("\\subsection*{{{}}}\n", latex_escaped(document.title));
+  }
+  for (const std::string& text : document.head) out += "\n" + latex_escaped(text) + "\n";
+  for (const Block& block : document.blocks) out += latex_block(block);
+  return out;
+}
+
+std::string drawn_as(const std::string& format, const Document& document) {
+  if (format == "markdown") return markdown(document);
+  return format == "latex" ? latex(document) : plain(document);
 }
 
 std::string html(const Table& table, const std::string& caption) {

@@ -1,6 +1,6 @@
-// The content of a report as plain data, and its three renderings: text for a terminal, Markdown,
-// HTML. A report builds blocks once; no renderer chooses columns, cells or sentences, so terminal
-// and page cannot differ.
+// The content of a report as plain data, and its four renderings: text for a terminal, Markdown,
+// LaTeX, HTML. A report builds blocks once; no renderer chooses columns, cells or sentences, so
+// terminal and page cannot differ.
 //
 //   Document document{.title = "sample: 2 seeds"};
 //   Block block{.heading = "The paper's metrics", .table = Table({{"pipeline", Align::kLeft},
@@ -11,12 +11,12 @@
 //
 // A header may have several lines ('\n'); Markdown and HTML join them by blanks. Headers and cells
 // are text, which renderers escape: what a terminal would obey, plain text and Markdown show as
-// \xHH. Plain cells count as ASCII: their width is their length. Every line ends with '\n', none
-// with a blank.
+// \xHH, and so does LaTeX. Plain cells count as ASCII: their width is their length. Every line ends
+// with '\n', none with a blank.
 //
 // Plain text is laid out for the page of reports/text/plain_text.h. A table wider than the page is
 // divided into parts, each with the key columns first; long prose in cells wraps. Only a word wider
-// than the page exceeds it. Markdown and HTML have no page.
+// than the page exceeds it. The others have no page.
 #ifndef SIMBENCH_REPORTS_TEXT_BLOCK_H_
 #define SIMBENCH_REPORTS_TEXT_BLOCK_H_
 
@@ -99,6 +99,13 @@ std::string plain(const Document& document);
 
 std::string markdown(const Table& table);
 std::string markdown(const Document& document);
+
+// Text of a document of the reader's own, which loads booktabs: a table environment for each table,
+// with the block's heading as its caption. Lines of a header are rows.
+std::string latex(const Document& document);
+
+// The document as `--format` says: "markdown", "latex", else plain.
+std::string drawn_as(const std::string& format, const Document& document);
 
 // `caption`: for screen readers.
 std::string html(const Table& table, const std::string& caption);

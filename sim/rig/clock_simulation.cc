@@ -90,7 +90,7 @@ class ClockRun {
     if (request_.host_sync != nullptr) synchronisation_.start(*request_.host_sync, [] {});
     run_world(engine_);
     if (request_.cancel != nullptr && *request_.cancel) throw RecordingCancelled();
-    synchronisation_.check();
+    synchronisation_.check(scenario_, request_.pipeline);
     return {.events = engine_.events(),
             .messages = messages_.count(),
             .trace_hash = engine_.trace_hash()};

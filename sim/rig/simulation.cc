@@ -102,6 +102,7 @@ class Run {
       const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
+        pipeline_(request.pipeline),
         start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
         cancel_(request.cancel),
         engine_({.max_events = limits.max_events,
@@ -142,7 +143,7 @@ class Run {
     if (service_time()) start_capture_at(TrueTime{} + wait_before_capture());
     run_world(engine_);
     if (cancel_ != nullptr && *cancel_) throw RecordingCancelled();
-    synchronisation_.check();
+    synchronisation_.check(scenario_, pipeline_);
     if (!captured_) throw SimulationError(standstill());
     if (sampling_) sampling_->finish();
     const std::uint64_t trace_hash = engine_.trace_hash() ^ camera_world_->trace_hash();
@@ -230,6 +231,7 @@ class Run {
 
   const scenarios::Scenario& scenario_;
   HostSync* host_sync_;
+  std::string pipeline_;
   TrueTime start_;
   const std::atomic<bool>* cancel_;
   Engine engine_;

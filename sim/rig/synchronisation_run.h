@@ -3,22 +3,26 @@
 //   SynchronisationRun synchronisation(hosts, context);
 //   synchronisation.start(host_sync, [&] { start_capture(); });
 //   run_world(engine);
-//   synchronisation.check();
+//   synchronisation.check(scenario, "chrony");
 #ifndef SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
 #define SIMBENCH_SIM_RIG_SYNCHRONISATION_RUN_H_
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "algorithms/ports/host_sync.h"
+#include "clocks/disciplined_clock.h"
 #include "scenarios/loader.h"
+#include "scenarios/scenario.h"
 #include "sim/engine/engine.h"
 #include "sim/engine/virtual_executor.h"
 #include "sim/host/host_group.h"
@@ -57,25 +61,38 @@ class SynchronisationRun {
     std::vector<PeerId> slaves;
     for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
     for (const PeerId slave : slaves) {
-      boost::asio::co_spawn(context_, host_sync.run_slave(hosts_.host(slave), 0),
-                            [this](const std::exception_ptr& failure) { ended(failure); });
+      boost::asio::co_spawn(
+          context_, host_sync.run_slave(hosts_.host(slave), 0),
+          [this, slave](const std::exception_ptr& failure) { ended(slave, failure); });
     }
     boost::asio::co_spawn(context_, host_sync.run_master(hosts_.host(0), slaves),
                           [this](const std::exception_ptr& failure) {
-                            ended(failure);
+                            ended(0, failure);
                             if (!failure) on_end_();
                           });
   }
 
-  // Throws what a coroutine has thrown.
-  void check() const {
-    if (failure_) std::rethrow_exception(failure_);
+  // Throws what a coroutine has thrown; for an adjustment that a clock refuses an InputError, which
+  // names the host and the host_sync of the scenario's pipeline of that name.
+  void check(const scenarios::Scenario& scenario, const std::string& pipeline) const {
+    if (!failure_) return;
+    try {
+      std::rethrow_exception(failure_);
+    } catch (const clocks::ClockError& error) {
+      const auto found =
+          std::ranges::find(scenario.pipelines, pipeline, &scenarios::Pipeline::name);
+      throw scenarios::InputError(
+          fmt::format("host_sync {} on host {}: {}",
+                      found == scenario.pipelines.end() ? pipeline : found->host_sync, failed_host_,
+                      error.what()));
+    }
   }
 
  private:
-  void ended(const std::exception_ptr& failure) {
+  void ended(PeerId host, const std::exception_ptr& failure) {
     if (!failure) return;
     failure_ = failure;
+    failed_host_ = host;
     context_.engine().stop();
   }
 
@@ -83,6 +100,7 @@ class SynchronisationRun {
   VirtualContext& context_;
   std::function<void()> on_end_;
   std::exception_ptr failure_;
+  PeerId failed_host_ = 0;  // whose coroutine that was
 };
 
 }  // namespace simbench::sim

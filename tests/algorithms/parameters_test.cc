@@ -27,6 +27,36 @@ const std::vector<ParameterSpec> kSpecs = {
     {.name = "quiet", .fallback = false, .choices = {}, .meaning = "", .source = "test"},
 };
 
+// Any number is a number, whatever its type; what is neither true nor false nor a number is a text.
+TEST(ParameterSpecs, DefaultsAreWrittenAsTheyAreMeant) {
+  const std::vector<ParameterSpec> specs = {
+      {.name = "points",
+       .fallback = 16,
+       .low = 1,
+       .high = 100,
+       .choices = {},
+       .meaning = "",
+       .source = ""},
+      {.name = "ratio",
+       .fallback = 0.5F,
+       .low = 0,
+       .high = 1,
+       .choices = {},
+       .meaning = "",
+       .source = ""},
+      {.name = "mode",
+       .fallback = "slow",
+       .choices = {"slow", "fast"},
+       .meaning = "",
+       .source = ""},
+      {.name = "quiet", .fallback = true, .choices = {}, .meaning = "", .source = ""}};
+  const Parameters parameters = check_parameters(specs, {});
+  EXPECT_EQ(parameters.number("points"), 16);
+  EXPECT_EQ(parameters.number("ratio"), 0.5);
+  EXPECT_EQ(parameters.text("mode"), "slow");
+  EXPECT_TRUE(parameters.flag("quiet"));
+}
+
 // The message of the refusal; checks which parameter it names.
 std::string refusal(const std::string& name, const ParameterValue& value) {
   try {

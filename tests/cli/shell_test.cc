@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -100,7 +101,8 @@ TEST_F(Bash, OffersEveryCommandAndEveryOption) {
 }
 
 TEST_F(Bash, OffersWhatAValueMayBe) {
-  EXPECT_THAT(offers({"run", "--format", ""}), ElementsAre("table", "markdown", "csv", "json"));
+  EXPECT_THAT(offers({"run", "--format", ""}),
+              ElementsAre("table", "markdown", "latex", "csv", "tidy", "json"));
   EXPECT_THAT(offers({"run", "--format", "=", "j"}), ElementsAre("json"));
   EXPECT_THAT(offers({"run", "--format", "="}), IsSupersetOf({"csv", "json"}));
   EXPECT_THAT(offers({"run", "--budget", "--format", "c"}), ElementsAre("csv"));
@@ -118,6 +120,46 @@ TEST_F(Bash, OffersScenariosAndFiles) {
   EXPECT_THAT(offers({"validate", "18"}), ElementsAre("18my rig.json"));
   std::filesystem::create_directory(folder() / "18results");
   EXPECT_THAT(offers({"run", "--output", "18"}), ElementsAre("18results"));
+}
+
+TEST_F(Bash, OffersThePipelinesOfTheScenario) {
+  EXPECT_THAT(offers({"run", "--scenario", "3cam_1host_30fps", "--pipelines", "oracle_"}),
+              ElementsAre("oracle_device_time"));
+  EXPECT_THAT(offers({"3cam_1host_30fps", "--pipelines", "genlock,oracle_"}),
+              ElementsAre("genlock,oracle_device_time"));
+  EXPECT_THAT(offers({"trace", "--scenario", "3cam_1host_30fps", "--pipeline", "oracle_"}),
+              ElementsAre("oracle_device_time"));
+  EXPECT_THAT(offers({"run", "--pipelines", ""}), IsEmpty());
+}
+
+TEST_F(Bash, OffersFiguresParametersCommandsAndArchives) {
+  EXPECT_THAT(offers({"figure", "frame"}), ElementsAre("frame_errors"));
+  EXPECT_THAT(offers({"run", "--scenario", "3cam_1host_30fps", "--set", "/trigger/ra"}),
+              IsSupersetOf({"/trigger/rate_hz=", "/trigger/rate_error_ppm="}));
+  EXPECT_THAT(offers({"describe", "3cam_1host_30fps", "/trigger/rate_h"}),
+              ElementsAre("/trigger/rate_hz="));
+  EXPECT_THAT(offers({"help", "desc"}), ElementsAre("describe"));
+  std::filesystem::create_directories(folder() / "results/monday");
+  std::filesystem::create_directories(folder() / "resources");
+  EXPECT_THAT(offers({"report", "res"}), testing::UnorderedElementsAre("results", "resources"));
+  file("results/monday/results.json", "{}");
+  EXPECT_THAT(offers({"report", "res"}), ElementsAre("results"));
+  EXPECT_THAT(offers({"compare", "results/"}), ElementsAre("results/monday"));
+  EXPECT_THAT(offers({"18cam_6host_45fps_l"}), Contains("18cam_6host_45fps_lan"));
+}
+
+TEST_F(Shell, TablesKeepTheTerminalsWidthInAPipeToAPager) {
+  if (!has("script")) GTEST_SKIP() << "not run: no script(1)";
+  const auto widest = [this](const std::string& command) {
+    std::size_t width = 0;
+    for (const std::string& line : lines(shell("script -qec '" + command + "' /dev/null").out)) {
+      width = std::max(width, line.size());
+    }
+    return width;
+  };
+  const std::string described = SIMBENCH_PROGRAM " describe 3cam_1host_30fps /trigger";
+  EXPECT_LE(widest("stty cols 90; " + described + " | cat"), 91U);
+  EXPECT_GT(widest("stty cols 90; " + described + " 2> /dev/null | cat"), 91U);
 }
 
 TEST_F(Bash, CompletesTheDefaultCommand) {
@@ -138,7 +180,7 @@ TEST_F(Shell, ZshTakesTheScript) {
   EXPECT_EQ(result.status, 0);
   EXPECT_THAT(result.out, HasSubstr("_simbench\n"));
   EXPECT_THAT(result.out, HasSubstr("--format=["));
-  EXPECT_THAT(result.out, HasSubstr(":FORMAT:(table markdown csv json)"));
+  EXPECT_THAT(result.out, HasSubstr(":FORMAT:(table markdown latex csv tidy json)"));
 }
 
 TEST_F(Shell, FishCompletes) {
@@ -152,7 +194,8 @@ TEST_F(Shell, FishCompletes) {
     return found;
   };
   EXPECT_THAT(offers("simbench "), IsSupersetOf(names()));
-  EXPECT_THAT(offers("simbench run --format "), ElementsAre("csv", "json", "markdown", "table"));
+  EXPECT_THAT(offers("simbench run --format "),
+              ElementsAre("csv", "json", "latex", "markdown", "table", "tidy"));
   EXPECT_THAT(offers("simbench --form"), Contains("--format"));
   EXPECT_THAT(offers("simbench completion z"), ElementsAre("zsh"));
   EXPECT_THAT(offers("simbench run --seeds "), IsEmpty());

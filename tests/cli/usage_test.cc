@@ -1,6 +1,7 @@
 // Help, lists and mistakes in the use of the command.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "recording/version.h"
@@ -41,7 +42,8 @@ TEST_F(Usage, EveryCommandHasHelpWithAnExample) {
     EXPECT_THAT(result.out, HasSubstr("Example")) << command;
     EXPECT_THAT(result.out, HasSubstr(std::string("simbench ") + command)) << command;
   }
-  EXPECT_THAT(all.out, AllOf(HasSubstr("simbench --scenario"), HasSubstr("Exit status: 0 ok")));
+  EXPECT_THAT(all.out,
+              AllOf(HasSubstr("simbench 18cam_6host_45fps"), HasSubstr("Exit status: 0 ok")));
 }
 
 TEST_F(Usage, HelpNamesEveryOptionOfRun) {
@@ -78,7 +80,8 @@ TEST_F(Usage, ListsWhatThereIs) {
   for (const auto& [what, name] :
        {std::pair{"scenarios", "18cam_6host_45fps"}, std::pair{"pipelines", "genlock"},
         std::pair{"algorithms", "regression_30"}, std::pair{"cameras", "d455"},
-        std::pair{"oscillators", "ocxo"}, std::pair{"studies", "scalability"}}) {
+        std::pair{"oscillators", "ocxo"}, std::pair{"studies", "scalability"},
+        std::pair{"figures", "frame_errors"}}) {
     EXPECT_THAT(
         run({"list", what, "--format", "names"}).out,
         AllOf(HasSubstr(std::string(name) + "\n"), Not(StartsWith("\n")), Not(HasSubstr(" "))))
@@ -106,7 +109,6 @@ TEST_F(Usage, WhatDescribePrintsAsJsonIsAScenario) {
 }
 
 TEST_F(Usage, WrongCommandsAreRefused) {
-  refuses({}, {"a command is required", "allowed: run, ", "See: simbench --help"});
   refuses({"fly"}, {"found 'fly'", "allowed: run, ", "list, describe, validate"});
   refuses({"run"}, {"--scenario is required", "See: simbench run --help"});
   refuses({"--seeds", "3"}, {"--scenario is required"});
@@ -114,6 +116,76 @@ TEST_F(Usage, WrongCommandsAreRefused) {
   refuses({"validate"}, {"files is required"});
   refuses({"replay"}, {"recordings is required"});
   refuses({"run", "--scenario", "18cam_6host_45fps", "--colour"}, {"--colour"});
+}
+
+TEST_F(Usage, WithoutArgumentsItSaysWhereToStart) {
+  const ProgramResult result = run({});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char* part : {"simbench 18cam_6host_45fps", "simbench list", "simbench help run"}) {
+    EXPECT_THAT(result.out, HasSubstr(part));
+  }
+  EXPECT_LT(std::count(result.out.begin(), result.out.end(), '\n'), 10);
+}
+
+TEST_F(Usage, HelpIsACommandToo) {
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
+  EXPECT_EQ(run({"help", "run"}).out, run({"run", "--help"}).out);
+  EXPECT_EQ(run({"help", "help"}).status, 0);
+  refuses({"help", "fly"}, {"found 'fly'", "allowed: run, "});
+}
+
+TEST_F(Usage, AScenarioAloneIsRun) {
+  const std::vector<std::string> more = {"--seeds", "1",        "--pipelines",
+                                         "oracle",  "--format", "csv"};
+  std::vector<std::string> named = {"3cam_1host_30fps"};
+  named.insert(named.end(), more.begin(), more.end());
+  std::vector<std::string> stated = {"run", "--scenario", "3cam_1host_30fps"};
+  stated.insert(stated.end(), more.begin(), more.end());
+  const ProgramResult result = run(named);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, run(stated).out);
+  file("mine.json", run({"describe", "3cam_1host_30fps", "--format", "json"}).out);
+  named.front() = "mine.json";
+  EXPECT_EQ(run(named).status, 0);
+  refuses({"missing.json"}, {"missing.json"});
+  refuses({"3cam_1host_30fp"}, {"did you mean 3cam_1host_30fps?", "or a scenario"});
+}
+
+TEST_F(Usage, OtherWordsLeadToTheCommandsThatAreMeant) {
+  refuses({"plot"}, {"found 'plot'", "`simbench figure`", "`simbench report`"});
+  refuses({"help", "plot"}, {"`simbench figure`"});
+}
+
+TEST_F(Usage, DescribesAnAlgorithm) {
+  const ProgramResult result = run({"describe", "two_way_hull"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"A host_sync, of the family two_way", "window_s", "1 to 100000",
+                           "span of the hulls", "MOOSSkewFilter"}) {
+    EXPECT_THAT(result.out, HasSubstr(part));
+  }
+  EXPECT_THAT(
+      run({"describe", "oracle"}).out,
+      AllOf(HasSubstr("A host_sync"), HasSubstr("A device_time"), HasSubstr("A gathering")));
+  EXPECT_THAT(run({"describe", "hull_300_steady"}).out, HasSubstr("A device_time"));
+  EXPECT_THAT(run({"describe", "yoon2021", "--format", "json"}).out,
+              HasSubstr("\"stage\": \"gathering\""));
+  refuses({"describe", "two_way_hul"}, {"found \"two_way_hul\", did you mean two_way_hull?"});
+  refuses({"describe", "two_way_hull", "/trigger"}, {"/trigger", "is an algorithm"});
+}
+
+TEST_F(Usage, DescribesAPartOfAScenario) {
+  const ProgramResult result =
+      run({"describe", "18cam_6host_45fps", "/trigger", "--format", "names"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, testing::StartsWith("/trigger/rate_hz\n"));
+  EXPECT_THAT(result.out, Not(HasSubstr("/timeline")));
+  EXPECT_THAT(run({"describe", "18cam_6host_45fps", "/hosts/clock"}).out,
+              AllOf(HasSubstr("/hosts/clock/set_cost_ms"), Not(HasSubstr("/hosts/count"))));
+  EXPECT_THAT(run({"describe", "18cam_6host_45fps", "/trigger", "--format", "json"}).out,
+              StartsWith("{\n  \"rate_hz\": 45"));
+  refuses({"describe", "18cam_6host_45fps", "/hosts/clok"}, {"did you mean /hosts/clock;"});
+  refuses({"describe", "18cam_6host_45fps", "/trig", "--format", "json"}, {"the whole pointer"});
 }
 
 TEST_F(Usage, MistypedNamesGetASuggestion) {
@@ -135,7 +207,7 @@ TEST_F(Usage, NumbersAreChecked) {
   refuses({"--scenario", "18cam_6host_45fps", "--first-seed", "-3"}, {"--first-seed"});
   refuses({"--scenario", "18cam_6host_45fps", "--jobs", "0"}, {"--jobs", "from 1 to"});
   refuses({"--scenario", "18cam_6host_45fps", "--format", "xml"},
-          {"found 'xml'", "table, markdown, csv, json"});
+          {"found 'xml'", "table, markdown, latex, csv, tidy, json"});
   refuses({"--scenario", "18cam_6host_45fps", "--set", "seeds=3"},
           {"--set", "found 'seeds=3'", "/json/pointer=value"});
   refuses({"--scenario", "18cam_6host_45fps", "--set", "/timeline/frames"}, {"--set"});

@@ -1,5 +1,5 @@
-# Installs simbench under WORK_DIR, builds the outside project against it and runs it: its algorithm
-# must be a row of the table.
+# Installs simbench under WORK_DIR, builds the outside project against it and runs it: its algorithms
+# must be rows of the table, and its messages must name it.
 function(run what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err)
   if(NOT status EQUAL 0)
@@ -15,13 +15,27 @@ run("configure" ${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G Ninj
     -D "CMAKE_PREFIX_PATH=${WORK_DIR}/prefix\;${DEPS_DIR}/usr")
 run("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run("list" ${WORK_DIR}/build/my_bench list)
-if(NOT output MATCHES "constant_delay")
-  message(FATAL_ERROR "the registered algorithm is not listed:\n${output}")
-endif()
+foreach(algorithm constant_delay cristian)
+  if(NOT output MATCHES "${algorithm}")
+    message(FATAL_ERROR "the registered algorithm ${algorithm} is not listed:\n${output}")
+  endif()
+endforeach()
 run("run" ${WORK_DIR}/build/my_bench --scenario ${CONSUMER_DIR}/my_rig.json --seeds 2 --format json)
 string(JSON rows LENGTH "${output}" rows)
 string(JSON device_time GET "${output}" rows 0 device_time)
-if(NOT rows EQUAL 1 OR NOT device_time STREQUAL "constant_delay")
-  message(FATAL_ERROR "expected one row with device_time constant_delay, got ${rows}, ${device_time}")
+if(NOT rows EQUAL 2 OR NOT device_time STREQUAL "constant_delay")
+  message(FATAL_ERROR "expected two rows, one with device_time constant_delay, got ${rows}, ${device_time}")
+endif()
+string(JSON host_sync GET "${output}" rows 1 host_sync)
+string(JSON host_error_ms GET "${output}" rows 1 host_error_ms median)
+if(NOT host_sync STREQUAL "cristian" OR NOT host_error_ms LESS 20)
+  message(FATAL_ERROR "expected host_sync cristian within 20 ms, got ${host_sync}, ${host_error_ms}")
+endif()
+run("ad hoc" ${WORK_DIR}/build/my_bench 18cam_6host_45fps --seeds 1
+    --pipelines cristian+constant_delay+yoon2021)
+execute_process(COMMAND ${WORK_DIR}/build/my_bench gate none --baseline none.json
+                RESULT_VARIABLE status ERROR_VARIABLE err)
+if(NOT status EQUAL 4 OR NOT err MATCHES "See: my_bench gate")
+  message(FATAL_ERROR "expected status 4 and the name of the program, got ${status}:\n${err}")
 endif()
 run("installed command" ${WORK_DIR}/prefix/bin/simbench --version)

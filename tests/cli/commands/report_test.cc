@@ -155,10 +155,20 @@ TEST_F(Report, WrongWordsAreRefused) {
   make_archive("monday");
   expect_refused(report({"monday", "--pipelines", "yoon2021_bth"}),
                  "--pipelines: found 'yoon2021_bth', allowed for monday: yoon2021_both, oracle");
-  expect_refused(run({"report", "monday"}), "--output");
+  expect_refused(run({"report", "monday", "monday/results.json"}),
+                 "--output: found none for 2 archives");
   expect_refused(run({"report", "-o", "report.html"}), "archives");
   expect_refused(run({"report", "monday", "-o", "missing/report.html"}), "missing; make it first");
   expect_refused(run({"report", "monday", "-o", "monday"}), "is a folder; name a file");
+}
+
+TEST_F(Report, LiesBesideItsArchiveUnlessNamed) {
+  std::filesystem::create_directory(folder() / "results");
+  make_archive("results/monday");
+  const ProgramResult result = run({"report", "results/monday/", "--budget-seeds", "0"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("report written to results/monday.html"));
+  EXPECT_THAT(names_in("results"), ElementsAre("monday", "monday.html"));
 }
 
 TEST_F(Report, AFullDiskLeavesTheEarlierReport) {

@@ -150,6 +150,44 @@ TEST_F(Run, MarkdownAndCsv) {
   EXPECT_EQ(lines(run(small({"--format", "csv"})).out), 3U);
 }
 
+TEST_F(Run, TidyHasALineForEachPipelineSeedAndMetric) {
+  const std::string text = run(small({"--format", "tidy"})).out;
+  EXPECT_THAT(text, testing::StartsWith("scenario,pipeline,seed,metric,unit,value,changed\n"));
+  for (const char* start : {"yoon2021_both,1,amd_ms,ms,", "yoon2021_both,3,amd_ms,ms,",
+                            "oracle,2,rmdv_ms,ms,", "oracle,2,max_te_ms,ms,"}) {
+    EXPECT_THAT(text, HasSubstr(std::string("\n18cam_6host_45fps,") + start));
+  }
+  const ProgramResult refused = run(small({"--format", "tidy", "--budget"}));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err,
+              HasSubstr("found 'tidy', allowed with --budget: table, markdown, latex"));
+}
+
+// Environments are closed, and no special character stands for itself.
+TEST_F(Run, LatexIsBalancedAndEscaped) {
+  const std::string text = run(small({"--format", "latex"})).out;
+  const auto count = [&text](const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_GE(count("\\begin{tabular}"), 2U);
+  for (const std::string name : {"table", "tabular", "itemize"}) {
+    EXPECT_EQ(count("\\begin{" + name + "}"), count("\\end{" + name + "}")) << name;
+  }
+  EXPECT_EQ(count("\\toprule"), count("\\bottomrule"));
+  EXPECT_THAT(text, HasSubstr("yoon2021\\_both & "));
+  EXPECT_THAT(text, HasSubstr("480 $\\rightarrow$ 60"));
+  for (const char special : {'_', '%', '#'}) {
+    for (std::size_t at = text.find(special, text.find('\n')); at != std::string::npos;
+         at = text.find(special, at + 1)) {
+      EXPECT_EQ(text[at - 1], '\\') << text.substr(at, 20);
+    }
+  }
+}
+
 TEST_F(Run, TheArchiveHoldsEverything) {
   const ProgramResult result = run(small({"--output", "results", "--format", "json"}));
   ASSERT_EQ(result.status, 0) << result.err;
@@ -164,7 +202,7 @@ TEST_F(Run, TheArchiveHoldsEverything) {
   EXPECT_TRUE(manifest.contains("version") && manifest.contains("commit"));
   EXPECT_LE(manifest["started"], manifest["finished"]);
   const std::string frames = content("results/frames.csv");
-  EXPECT_THAT(frames, testing::StartsWith("pipeline,seed,pulse,spread_ms,deviation_ms,changed\n"));
+  EXPECT_THAT(frames, testing::StartsWith("pipeline,seed,pulse,amd_ms,rmdv_ms,changed\n"));
   EXPECT_EQ(lines(frames), 1U + 2 * 3 * 60);
   EXPECT_EQ(lines(content("results/hosts.csv")), 1U + 2 * 3 * 6);
 }

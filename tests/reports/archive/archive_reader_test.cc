@@ -85,6 +85,15 @@ TEST_F(ArchiveReader, SeedsOfAChangedWorldAreRead) {
   EXPECT_THAT(problem(), HasSubstr("hosts.csv:3: found"));
 }
 
+TEST_F(ArchiveReader, OlderNamesOfColumnsAreRead) {
+  edit("frames.csv", "amd_ms,rmdv_ms", "spread_ms,deviation_ms");
+  edit("hosts.csv", "host_error_ms", "error_ms");
+  Archive archive = read_archive(folder_.path().string());
+  read_seed_details(archive);
+  EXPECT_EQ(archive.results.rows[0].seeds[1].pulses[1].deviation_ms, 0.5);
+  EXPECT_EQ(archive.results.rows[0].seeds[1].host_errors_ms, (std::vector<double>{0, -0.125}));
+}
+
 TEST_F(ArchiveReader, WhatIsWrittenIsRead) {
   const Archive archive = read_archive(folder_.path().string());
   EXPECT_EQ(archive.version, version());

@@ -98,8 +98,8 @@ TEST_F(ClockArchive, SaysWhereACurveIsDamaged) {
 }
 
 TEST_F(ClockArchive, SaysWhereAMetricIsDamaged) {
-  EXPECT_THAT(problem_after("\"clock_spread_ms\"", "\"clock_sprat_ms\""),
-              HasSubstr("'clock_spread_ms' is missing"));
+  EXPECT_THAT(problem_after("\"clock_spread_median_ms\"", "\"clock_sprat_median_ms\""),
+              HasSubstr("'clock_spread_median_ms' is missing"));
   EXPECT_THAT(problem_after("\"count\": 3", "\"count\": 4"),
               HasSubstr("found 3 values, allowed: 4, one for each seed"));
   EXPECT_THAT(problem_after("\"kind\": \"clocks\"", "\"kind\": \"cuckoos\""),

@@ -74,14 +74,14 @@ TEST(ResultsCsv, PulsesOfASingleCameraHaveEmptyCells) {
   results.rows[0].seeds[0].pulses = {{.pulse = 225}};
   std::ostringstream out;
   write_frames_csv(results, out);
-  EXPECT_EQ(out.str(), "pipeline,seed,pulse,spread_ms,deviation_ms\nyoon2021_both,1,225,,\n");
+  EXPECT_EQ(out.str(), "pipeline,seed,pulse,amd_ms,rmdv_ms\nyoon2021_both,1,225,,\n");
 }
 
 TEST(ResultsCsv, FramesHaveALinePerPulse) {
   std::ostringstream out;
   write_frames_csv(sample_results(), out);
   EXPECT_EQ(out.str(),
-            "pipeline,seed,pulse,spread_ms,deviation_ms\n"
+            "pipeline,seed,pulse,amd_ms,rmdv_ms\n"
             "yoon2021_both,1,225,1.5,0.25\n"
             "yoon2021_both,1,226,2,0.5\n"
             "yoon2021_both,2,225,1.5,0.25\n"
@@ -92,11 +92,25 @@ TEST(ResultsCsv, HostsSayWhetherTheyWereSynchronised) {
   std::ostringstream out;
   write_hosts_csv(sample_results(), out);
   EXPECT_EQ(out.str(),
-            "pipeline,seed,host,error_ms,synchronised\n"
+            "pipeline,seed,host,host_error_ms,synchronised\n"
             "yoon2021_both,1,0,0,1\n"
             "yoon2021_both,1,1,-0.125,1\n"
             "yoon2021_both,2,0,0,1\n"
             "yoon2021_both,2,1,-0.125,0\n");
+}
+
+TEST(ResultsCsv, TidyHasALineForEachSeedPipelineAndMetric) {
+  evaluation::Results results = sample_results();
+  const std::string text = tidy_csv(results);
+  EXPECT_TRUE(text.starts_with("scenario,pipeline,seed,metric,unit,value\n")) << text;
+  const std::string start = "\n" + results.scenario + ",yoon2021_both,";
+  EXPECT_NE(text.find(start + "1,amd_ms,ms,1.5" + start + "2,amd_ms,ms,2.5\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find(start + "1,seed_recall,share,0.5\n"), std::string::npos);
+  EXPECT_EQ(text.find("free_running,1,host_error_ms"), std::string::npos) << "it has none";
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  results.derivation = {.base = "sample", .changes = {{"/a", "1", "2"}}};
+  EXPECT_TRUE(tidy_csv(results).starts_with("scenario,pipeline,seed,metric,unit,value,changed\n"));
 }
 
 TEST(ResultsCsv, CellsAreQuotedWhereTheyMustBe) {

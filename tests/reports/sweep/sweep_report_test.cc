@@ -37,7 +37,7 @@ std::vector<SweepScore> scores() {
     SweepScore score;
     score.at("amd_ms") = static_cast<double>(run);
     score.at("absolute_error_ms") = std::numeric_limits<double>::quiet_NaN();
-    score.at("emitted_sets") = 3;
+    score.at("sets") = 3;
     score.at("pure_sets") = 3;
     score.at("complete_pulses") = 4;
     score.host_errors_ms = {0, 1, -2};

@@ -43,6 +43,43 @@ TEST(Table, MarkdownJoinsHeadersAndEscapesBars) {
             "| longer | 12345.25 |  |\n");
 }
 
+TEST(Document, LatexHasBooktabsTablesAndEscapes) {
+  Table table({{"name_1", Align::kLeft}, {"AMD\n5-95 %"}});
+  table.add({"a&b", "-1.5"});
+  table.add({"\\", "-"});
+  const Document document{.title = "a_b",
+                          .head = {"changed: 45 → 30"},
+                          .blocks = {{.heading = "50 % #1", .table = table, .prose = {"{x}"}},
+                                     {.heading = "Notes", .items = {"[y]", "$z"}}}};
+  EXPECT_EQ(latex(document),
+            "% Needs \\usepackage{booktabs}.\n"
+            "\\subsection*{a\\_b}\n"
+            "\nchanged: 45 $\\rightarrow$ 30\n"
+            "\n\\begin{table}\n"
+            "  \\centering\n"
+            "  \\footnotesize\n"
+            "  \\caption{50 \\% \\#1}\n"
+            "  \\begin{tabular}{lr}\n"
+            "    \\toprule\n"
+            "     & AMD \\\\\n"
+            "    name\\_1 & 5-95 \\% \\\\\n"
+            "    \\midrule\n"
+            "    a\\&b & $-$1.5 \\\\\n"
+            "    \\textbackslash{} & - \\\\\n"
+            "    \\bottomrule\n"
+            "  \\end{tabular}\n"
+            "\\end{table}\n"
+            "\n\\{x\\}\n"
+            "\n\\paragraph{Notes}\n"
+            "\n\\begin{itemize}\n"
+            "  \\item {}[y]\n"
+            "  \\item {}\\$z\n"
+            "\\end{itemize}\n");
+  EXPECT_EQ(drawn_as("latex", document), latex(document));
+  EXPECT_EQ(drawn_as("markdown", document), markdown(document));
+  EXPECT_EQ(drawn_as("table", document), plain(document));
+}
+
 // Names of scenarios and pipelines come from files that anyone may have written.
 TEST(Document, TerminalEscapesAreShownAndNotObeyed) {
   const std::string name = "\x1b[2J\x1b]0;mine\x07\u009b31m\r";

@@ -1,5 +1,6 @@
 #include "sim/rig/clock_simulation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,6 +84,39 @@ TEST(ClockSimulation, FreeClocksDriftApartByTheirSkews) {
     t += 1;
   }
   EXPECT_EQ(kept.cost.messages, 0U);
+}
+
+// What a clock refuses is the algorithm's mistake, and the message says whose.
+TEST(ClockSimulation, AnAdjustmentBeyondTheLimitNamesHostAndAlgorithm) {
+  scenarios::Scenario scenario = three_hosts();
+  scenario.pipelines = {{.name = "mine",
+                         .host_sync = "too_fast",
+                         .device_time = "raw_arrival",
+                         .gathering = "genlock"}};
+  const auto refusal = [&scenario](Service::Program program) -> std::string {
+    Service service(std::move(program));
+    try {
+      read_clocks(scenario, {.pipeline = "mine",
+                             .host_sync = &service,
+                             .duration = seconds(10),
+                             .interval = seconds(1)});
+    } catch (const scenarios::InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(refusal([](Host& host) -> Task<void> {
+              if (host.id() == 2) co_await host.clock().slew(from_ms(1), 6e8);
+            }),
+            "host_sync too_fast on host 2: clock: found a rate of 600000000 ppb, allowed less than "
+            "500000000 ppb in either direction");
+  EXPECT_EQ(refusal([](Host& host) -> Task<void> {
+              if (host.id() == 0) co_await host.clock().slew(from_ms(1), -5);
+            }),
+            "host_sync too_fast on host 0: clock: found a slew at -5 ppb, allowed a rate above 0");
+  EXPECT_THAT(
+      refusal([](Host& host) -> Task<void> { co_await host.clock().adjust_frequency(1e12); }),
+      testing::HasSubstr("on host 1: clock: found a rate of 1"));
 }
 
 TEST(ClockSimulation, AnExactMasterIsTrueTime) {

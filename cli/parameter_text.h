@@ -1,0 +1,22 @@
+// What an algorithm declares of a parameter, in the words of `list algorithms` and `describe`.
+//
+//   const ParameterSpec spec = number_parameter("points", 16, 1, 100, "of the fit", "assumption");
+//   default_text(spec);  // "16"
+//   range_text(spec);    // "1 to 100"
+#ifndef SIMBENCH_CLI_PARAMETER_TEXT_H_
+#define SIMBENCH_CLI_PARAMETER_TEXT_H_
+
+#include <string>
+
+#include "algorithms/parameters.h"
+
+namespace simbench::cli {
+
+std::string default_text(const ParameterSpec& spec);
+
+// What is allowed: "1 to 100", "true, false", or the choices.
+std::string range_text(const ParameterSpec& spec);
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_PARAMETER_TEXT_H_
