@@ -437,7 +437,7 @@ end
 function __simbench_pipelines
     set -l scenario (__simbench_scenario)
     test -n "$scenario"; or return
-    set -l before (string match -r '.*,' -- (commandline -ct))
+    set -l before (commandline -ct | string replace -r '[^,]*$' '')
     for name in (__simbench_names pipelines --scenario (string escape -- $scenario))
         echo $before$name
     end
@@ -492,6 +492,9 @@ std::string fish_commands(const CommandTable& table) {
 
 std::string fish_completion(const CommandTable& table) {
   std::string text = named_default_command(kFishHead) + fish_commands(table);
+  text +=
+      "complete -c simbench -n '__simbench_starts; and test -n (commandline -ct)' "
+      "-a '(__simbench_scenarios)' -d SCENARIO\n";
   for (const OptionEntry& option : table.program.options) {
     text += option_line("__simbench_starts", option);
   }

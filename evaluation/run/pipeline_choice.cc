@@ -285,7 +285,9 @@ std::vector<PipelineChoice> choose_pipelines(const Scenario& scenario,
     const auto found = std::find(known.begin(), known.end(), *name);
     if (found == known.end()) {
       throw scenarios::InputError(
-          fmt::format("pipelines of {}: {}", scenario.name, unknown(*name, known)));
+          fmt::format("pipelines of {}: {}; others by their algorithms, as "
+                      "host_sync+device_time+gathering",
+                      scenario.name, unknown(*name, known)));
     }
     if (std::find(names.begin(), name, *name) != name) {
       throw scenarios::InputError(fmt::format("pipelines: \"{}\" is named twice", *name));

@@ -200,6 +200,14 @@ TEST_F(Shell, FishCompletes) {
   EXPECT_THAT(offers("simbench completion z"), ElementsAre("zsh"));
   EXPECT_THAT(offers("simbench run --seeds "), IsEmpty());
   EXPECT_THAT(offers(SIMBENCH_PROGRAM " describe 3cam"), Contains("3cam_1host_30fps"));
+  const std::string of_scenario = SIMBENCH_PROGRAM " run --scenario 3cam_1host_30fps --pipelines ";
+  EXPECT_THAT(offers(SIMBENCH_PROGRAM " 3cam"), Contains("3cam_1host_30fps"));
+  EXPECT_THAT(offers(of_scenario + "oracle_"), ElementsAre("oracle_device_time"));
+  EXPECT_THAT(offers(of_scenario + "genlock,oracle_"), ElementsAre("genlock,oracle_device_time"));
+  EXPECT_THAT(offers(SIMBENCH_PROGRAM " figure frame"), ElementsAre("frame_errors"));
+  EXPECT_THAT(offers(SIMBENCH_PROGRAM " describe 3cam_1host_30fps /trigger/rate_h"),
+              ElementsAre("/trigger/rate_hz="));
+  EXPECT_THAT(offers("simbench help desc"), ElementsAre("describe"));
 }
 
 TEST_F(Shell, ManPagesAreWholeAndWithoutWarnings) {
