@@ -92,6 +92,10 @@ class ComponentKey {
 };
 
 class RandomStream;
+class SeedField;
+
+// Replaces the roots of the streams that this thread makes (sim/engine/seed_field.h); null: none.
+inline thread_local constinit const SeedField* active_seed_field = nullptr;
 
 // The streams of a component's events, as far as their keys are known already.
 class KeyedStreams {
@@ -161,7 +165,10 @@ class RandomStream {
  private:
   friend class KeyedStreams;
   explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
+  static std::uint64_t replaced(std::uint64_t root);
   static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
+    if (active_seed_field != nullptr) [[unlikely]]
+      root = replaced(root);
     SplitMix64 words(root);
     Xoshiro256PlusPlus::State state{};
     for (std::uint64_t& word : state) word = words();

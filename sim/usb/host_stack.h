@@ -48,6 +48,7 @@ class HostJitter {
   std::int64_t cell_ = -1;
   double value_ = 0;
   RandomStream stream_;
+  KeyedStreams cells_;  // in its place under a seed field
 };
 
 // One stream's own delays. Draws are made for every exposed frame, in order of exposure.
@@ -75,6 +76,8 @@ class FrameDelays {
   double variate_ = 0;
   bool has_variate_ = false;  // the first one has no predecessor
   RandomStream stream_;
+  KeyedStreams frames_;  // in its place under a seed field
+  std::uint64_t frame_ = 0;
 };
 
 }  // namespace simbench::sim
