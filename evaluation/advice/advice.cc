@@ -15,21 +15,6 @@ namespace {
 using scenarios::Pipeline;
 using scenarios::Scenario;
 
-std::vector<Pipeline> candidate_pipelines(const RigOption& option, const AdviceRequest& request) {
-  std::vector<Pipeline> pipelines;
-  for (const std::string& host_sync : option.host_sync()) {
-    for (const std::string& device_time : advice_device_times()) {
-      for (const std::string& gathering : advice_gatherings(request.requirements)) {
-        pipelines.push_back({.name = fmt::format("{}.{}.{}", host_sync, device_time, gathering),
-                             .host_sync = host_sync,
-                             .device_time = device_time,
-                             .gathering = gathering});
-      }
-    }
-  }
-  return pipelines;
-}
-
 bool meets_all(const std::vector<Requirement>& requirements, const SeedScore& seed) {
   return seed.recorded && std::ranges::all_of(requirements, [&](const Requirement& requirement) {
            return requirement.is_met_by(requirement.metric->of_seed(seed));
@@ -189,6 +174,21 @@ void check_request(const AdviceRequest& request) {
 }
 
 }  // namespace
+
+std::vector<Pipeline> candidate_pipelines(const RigOption& option, const AdviceRequest& request) {
+  std::vector<Pipeline> pipelines;
+  for (const std::string& host_sync : option.host_sync()) {
+    for (const std::string& device_time : advice_device_times()) {
+      for (const std::string& gathering : advice_gatherings(request.requirements)) {
+        pipelines.push_back({.name = fmt::format("{}.{}.{}", host_sync, device_time, gathering),
+                             .host_sync = host_sync,
+                             .device_time = device_time,
+                             .gathering = gathering});
+      }
+    }
+  }
+  return pipelines;
+}
 
 std::vector<std::string> advice_device_times() {
   return {"librealsense_global", "regression_30", "hull_switch_10s_calibrated",

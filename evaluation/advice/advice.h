@@ -95,6 +95,10 @@ struct Advice {
   std::optional<FailsFirst> fails_first{};   // of that one
 };
 
+// The pipelines of an option, the most usual first.
+std::vector<scenarios::Pipeline> candidate_pipelines(const RigOption& option,
+                                                     const AdviceRequest& request);
+
 // The device times to choose from, the most usual first.
 std::vector<std::string> advice_device_times();
 // Likewise; one unless a requirement is about sets.

@@ -24,7 +24,7 @@ std::string requirements_text(const Advice& advice) {
   return fmt::format("{}", fmt::join(texts, " and "));
 }
 
-std::string cameras_text(const Advice& advice) {
+std::string asked_rig_text(const Advice& advice) {
   return fmt::format("{} at {:g} Hz",
                      counted(static_cast<std::uint64_t>(advice.request.rig.cameras), "camera"),
                      advice.request.rig.rate_hz);
@@ -147,7 +147,7 @@ std::string nothing_meets(const Advice& advice) {
   return fmt::format(
       "None of {} meets {} for {} with 95 % probability. {} comes nearest, with {}: {} of {} "
       "simulated rigs do, at a margin of {}.",
-      counted(advice.options.size(), "rig"), requirements_text(advice), cameras_text(advice),
+      counted(advice.options.size(), "rig"), requirements_text(advice), asked_rig_text(advice),
       nearest->option.name(), nearest->best().pipeline.name, nearest->best().met,
       nearest->best().seeds, margin_text(nearest->best().margin));
 }
@@ -205,7 +205,7 @@ std::string advice_answer(const Advice& advice) {
       "{} meets {} for {} in {} of {} simulated rigs (a probability of {:.0f} to {:.0f} %), with "
       "{}. It is the cheapest that does with 95 %: price class {}, without cameras and trigger. "
       "Margin {}.",
-      option.option.name(), requirements_text(advice), cameras_text(advice), best.met, best.seeds,
+      option.option.name(), requirements_text(advice), asked_rig_text(advice), best.met, best.seeds,
       100 * best.interval().low, 100 * best.interval().high, best.pipeline.name,
       price_class(option.option.price), margin_text(best.margin));
   if (advice.fails_first) {
@@ -217,7 +217,7 @@ std::string advice_answer(const Advice& advice) {
 }
 
 Document advice_document(const Advice& advice) {
-  return {.title = fmt::format("{}: {}", cameras_text(advice), requirements_text(advice)),
+  return {.title = fmt::format("{}: {}", asked_rig_text(advice), requirements_text(advice)),
           .head = {advice_answer(advice)},
           .blocks = {options_block(advice), assumptions_block(advice)}};
 }

@@ -3,10 +3,10 @@
 //
 // JSON: {"schema_version", "version", "commit", "answer", "cameras", "rate_hz", "requirements":
 // [text], "seeds", "recommended": a place in options or null, "fails_first": {"metric", "stage",
-// "share"} or null, "rare": null or {"event", "pipeline", "probability", "low", "high", "per_day",
-// "runs"}, "options": [{"rig", "hosts", "cameras_per_host", "parts": [name], "price_low_eur",
-// "price_high_eur", "settled", "pipelines": [{"pipeline", "met", "seeds", "probability", "low",
-// "high", "margin", "frames_dropped", "medians": {id: value}}]}]}; the pipelines from the best on.
+// "share"} or null, "rare": null or as in rare_report.h, "options": [{"rig", "hosts",
+// "cameras_per_host", "parts": [name], "price_low_eur", "price_high_eur", "settled", "pipelines":
+// [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
+// "medians": {id: value}}]}]}; the pipelines from the best on.
 #ifndef SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
 #define SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
 

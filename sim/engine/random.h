@@ -165,15 +165,19 @@ class RandomStream {
  private:
   friend class KeyedStreams;
   explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
-  static std::uint64_t replaced(std::uint64_t root);
   static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
     if (active_seed_field != nullptr) [[unlikely]]
-      root = replaced(root);
+      return expand_in_field(root);
+    return plain_state(root);
+  }
+  static Xoshiro256PlusPlus::State plain_state(std::uint64_t root) {
     SplitMix64 words(root);
     Xoshiro256PlusPlus::State state{};
     for (std::uint64_t& word : state) word = words();
     return state;
   }
+  static Xoshiro256PlusPlus::State expand_in_field(std::uint64_t root);
+  friend class SeedField;
 
   Xoshiro256PlusPlus generator_;
 };

@@ -11,6 +11,13 @@ namespace {
 constexpr ComponentKey kHostJitter("usb/host_jitter");
 constexpr ComponentKey kFrameDelays("usb/frame_delays");
 
+// Under a seed field by inversion, so that a late draw can be moved to a later one.
+double exponential(RandomStream& stream, double mean) {
+  if (active_seed_field != nullptr) [[unlikely]]
+    return -mean * std::log1p(-stream.uniform());
+  return stream.exponential(mean);
+}
+
 }  // namespace
 
 HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
@@ -27,10 +34,10 @@ double HostJitter::at(TrueTime t) {
   const auto cell =
       static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
   for (; cell_ < cell; ++cell_) {
-    if (active_seed_field != nullptr) {
+    if (active_seed_field != nullptr) [[unlikely]] {
       stream_ = cells_.stream(static_cast<std::uint64_t>(cell_) + 2);  // 0 is the component's own
     }
-    value_ = correlation_ * value_ + (1 - correlation_) * stream_.exponential(mean_);
+    value_ = correlation_ * value_ + (1 - correlation_) * exponential(stream_, mean_);
   }
   return value_;
 }
@@ -47,14 +54,24 @@ FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std
       frames_(KeyedStreams(seed, kFrameDelays).of(stream)) {}
 
 FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
-  if (active_seed_field != nullptr) stream_ = frames_.stream(++frame_);
+  ++frame_;
+  renew_in_field(0);
   if (!table_ms_.empty()) return {.kernel_copy_ns = 0, .delivery_ns = draw_from_table_ms() * 1e6};
-  Draw draw{stream_.exponential(kernel_copy_mean_ns_),
-            stream_.exponential(jitter_transfers_ * transfer_ns)};
+  Draw draw{.kernel_copy_ns = exponential(stream_, kernel_copy_mean_ns_), .delivery_ns = 0};
+  renew_in_field(1);
+  draw.delivery_ns = exponential(stream_, jitter_transfers_ * transfer_ns);
+  renew_in_field(2);
   if (spike_probability_ > 0 && stream_.chance(spike_probability_)) {
+    renew_in_field(3);
     draw.delivery_ns += stream_.uniform(0, spike_max_transfers_ * transfer_ns);
   }
   return draw;
+}
+
+// A stream for each number, so that each can be moved (sim/engine/seed_field.h).
+void FrameDelays::renew_in_field(std::uint64_t number) {
+  if (active_seed_field != nullptr) [[unlikely]]
+    stream_ = frames_.stream(4 * frame_ + number);
 }
 
 double FrameDelays::draw_from_table_ms() {

@@ -65,6 +65,7 @@ class FrameDelays {
 
  private:
   double draw_from_table_ms();
+  void renew_in_field(std::uint64_t number);
 
   double kernel_copy_mean_ns_;
   double jitter_transfers_;
