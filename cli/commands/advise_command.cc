@@ -37,6 +37,12 @@ Exit status: 0 ok (also if no rig meets it), 1 internal error, 2 bad usage or in
 
 constexpr std::int64_t kMostHosts = 24;
 
+// Some thousand runs, a minute or a few.
+constexpr std::size_t kRareRuns = 32;
+constexpr std::size_t kRareMoves = 3;
+constexpr std::size_t kRareRepeats = 6;
+constexpr double kLeastProbability = 1e-8;
+
 struct AdviseOptions {
   std::vector<std::string> require;
   evaluation::AdviceRequest request;

@@ -52,7 +52,7 @@ TEST(RigOptions, AWorldHasWhatItsPartsSet) {
     EXPECT_EQ(world.cameras.count, 12U);
     EXPECT_EQ(world.hosts.nic.hardware_stamps, option.clock.part == "ptp_cards");
     EXPECT_EQ(world.hosts.pulse_lines.trigger, option.clock.part == "trigger_wires");
-    EXPECT_EQ(world.network.switch_clock == scenarios::SwitchClock::kTransparent,
+    EXPECT_EQ(world.network.switch_clock == scenarios::SwitchClockKind::kTransparent,
               option.network_switch.part == "ptp_switch");
     ++seen;
   }
