@@ -54,7 +54,10 @@ class Adviser {
           const AdviceOptions& options, const Progress& progress)
       : make_world_(make_world),
         progress_(progress),
-        advice_{.request = request, .options_of_run = options} {}
+        advice_{.request = request, .options_of_run = options} {
+    AdviceOptions& run = advice_.options_of_run;
+    run.screening_seeds = std::min(run.screening_seeds, run.seeds);
+  }
 
   Advice run() {
     std::vector<RigOption> options = rig_options(advice_.request.rig);

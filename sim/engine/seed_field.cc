@@ -1,6 +1,7 @@
 #include "sim/engine/seed_field.h"
 
 #include <algorithm>
+#include <boost/math/policies/policy.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
@@ -18,6 +19,9 @@ namespace {
 constexpr int kLowBits = 11;
 constexpr std::uint64_t kLowMask = (std::uint64_t{1} << kLowBits) - 1;
 constexpr double kUpperValues = 0x1p53;
+
+// Boost would compute in long double, which takes several times as long.
+using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 // A generator for Boost's distributions that is no RandomStream: those ask the field.
 class MutationWords {
@@ -40,7 +44,7 @@ double standard_normal(std::uint64_t state) {
 // The normal quantile of the upper bits of a word, and back.
 double quantile_of_word(std::uint64_t word) {
   const double share = (static_cast<double>(word >> kLowBits) + 0.5) / kUpperValues;
-  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * share);
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * share, InDouble());
 }
 
 std::uint64_t word_of_quantile(double quantile, std::uint64_t low_bits) {
@@ -58,13 +62,11 @@ void SeedField::add(const Mutation& mutation) {
   const std::uint64_t most = mutation.share == 1
                                  ? std::numeric_limits<std::uint64_t>::max()
                                  : static_cast<std::uint64_t>(std::ldexp(mutation.share, 64));
-  steps_.push_back({mutation.key, most, mutation.step});
+  steps_.push_back({mutation.key, SplitMix64(mutation.key)(), most, mutation.step});
 }
 
 StreamOrigin SeedField::origin(std::uint64_t root) const {
-  const auto hash_in = [root](const Step& step) {
-    return SplitMix64::mix(root ^ SplitMix64(step.key)());
-  };
+  const auto hash_in = [root](const Step& step) { return SplitMix64::mix(root ^ step.salt); };
   const auto fresh = [root](const Step& step, std::uint64_t hash) {
     return SplitMix64::mix(SplitMix64(hash ^ step.key)() + root);
   };

@@ -58,6 +58,7 @@ class SeedField {
  private:
   struct Step {
     std::uint64_t key;
+    std::uint64_t salt;  // of the streams' hashes
     std::uint64_t most;  // a stream takes part whose hash is not above this
     double step;
   };

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::vector<scenarios::Pipeline> kPipelines = {
+const std::vector<scenarios::Pipeline> kOraclePipeline = {
     {.name = "mine", .host_sync = "oracle", .device_time = "oracle", .gathering = "yoon2021"}};
 
 std::string refused(const RigRequest& request) {
@@ -47,7 +47,7 @@ TEST(RigOptions, AWorldHasWhatItsPartsSet) {
   const RigRequest request{.cameras = 12, .rate_hz = 60, .fewest_hosts = 4, .most_hosts = 4};
   int seen = 0;
   for (const RigOption& option : nonempty(rig_options(request))) {
-    const scenarios::Scenario world = scenario_of(option, request, kPipelines);
+    const scenarios::Scenario world = scenario_of(option, request, kOraclePipeline);
     EXPECT_EQ(world.hosts.count, 4U);
     EXPECT_EQ(world.cameras.count, 12U);
     EXPECT_EQ(world.hosts.nic.hardware_stamps, option.clock.part == "ptp_cards");
@@ -81,7 +81,7 @@ TEST(RigOptions, TheRateDecidesTheSyncMode) {
   EXPECT_THAT(supported_rates_hz(), ElementsAre(7.5, 15, 30, 45, 60, 90));
   const auto mode = [](double rate_hz) {
     const RigRequest request{.cameras = 3, .rate_hz = rate_hz, .most_hosts = 1};
-    return scenario_of(rig_options(request).front(), request, kPipelines).cameras.sync_mode;
+    return scenario_of(rig_options(request).front(), request, kOraclePipeline).cameras.sync_mode;
   };
   EXPECT_EQ(mode(45), scenarios::SyncMode::kGenlock);
   EXPECT_EQ(mode(60), scenarios::SyncMode::kSlave);

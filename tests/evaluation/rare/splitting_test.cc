@@ -18,7 +18,7 @@ constexpr double kNormal6 = 4.75342;
 constexpr double kLargest4 = 12.3883;
 constexpr double kLargest6 = 16.9936;
 
-RareFunction sums(double bound) {
+RareFunction normal_sums(double bound) {
   return world_of(bound, [](std::uint64_t seed) { return normal_sum(seed, 20); });
 }
 RareFunction largest(double bound) {
@@ -40,7 +40,7 @@ TEST(Splitting, TestsKnowTheirProbabilities) {
 }
 
 TEST(Splitting, IsNearBruteForceWhereThatIsAffordable) {
-  const RareFunction run = sums(kNormal4);
+  const RareFunction run = normal_sums(kNormal4);
   const SplittingOptions options{.bound = kNormal4, .runs = 200};
   const RareEstimate split = estimate_rare(run, options, nullptr);
   const RareEstimate counted = count_rare(run, 400000, options, nullptr);
@@ -66,8 +66,8 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
   std::vector<double> estimates;
   int inside = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const RareEstimate split = estimate_rare(
-        largest(kLargest4), {.bound = kLargest4, .seed = seed, .runs = 32}, nullptr);
+    const RareEstimate split =
+        estimate_rare(largest(kLargest4), {.bound = kLargest4, .seed = seed, .runs = 32}, nullptr);
     ASSERT_FALSE(split.is_below) << "seed " << seed;
     estimates.push_back(split.probability);
     if (split.low <= 1e-4 && 1e-4 <= split.high) ++inside;
@@ -80,7 +80,8 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
 
 TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   const auto estimate = [](unsigned jobs) {
-    return estimate_rare(sums(3), {.bound = 3, .runs = 32, .repeats = 4, .jobs = jobs}, nullptr);
+    return estimate_rare(normal_sums(3), {.bound = 3, .runs = 32, .repeats = 4, .jobs = jobs},
+                         nullptr);
   };
   const RareEstimate one = estimate(1);
   const RareEstimate four = estimate(4);
@@ -89,22 +90,21 @@ TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(one.levels, four.levels);
   EXPECT_EQ(one.runs, four.runs);
   const RareEstimate other = estimate_rare(
-      sums(3), {.bound = 3, .seed = 2, .runs = 32, .repeats = 4, .jobs = 1}, nullptr);
+      normal_sums(3), {.bound = 3, .seed = 2, .runs = 32, .repeats = 4, .jobs = 1}, nullptr);
   EXPECT_NE(one.probability, other.probability);
 }
 
 // Nothing to split: the part of all started runs.
 TEST(Splitting, OfTheOrdinaryIsCounting) {
-  const RareEstimate split = estimate_rare(sums(0), {.bound = 0}, nullptr);
+  const RareEstimate split = estimate_rare(normal_sums(0), {.bound = 0}, nullptr);
   EXPECT_TRUE(split.levels.empty());
   EXPECT_NEAR(split.probability, 0.5, 0.1);
   EXPECT_EQ(split.runs, 9 * 64U);
 }
 
 TEST(Splitting, SaysWhatIsTooRare) {
-  const RareFunction never = world_of(2, [](std::uint64_t seed) {
-    return sim::RandomStream(seed, "level").uniform();
-  });
+  const RareFunction never =
+      world_of(2, [](std::uint64_t seed) { return sim::RandomStream(seed, "level").uniform(); });
   const RareEstimate split = estimate_rare(never, {.bound = 2, .least_probability = 1e-5}, nullptr);
   EXPECT_TRUE(split.is_below);
   EXPECT_TRUE(std::isnan(split.probability));
@@ -123,7 +123,7 @@ TEST(Splitting, OfWhatAlwaysHappensIsOne) {
 
 TEST(Splitting, CountsPartsOfRuns) {
   // A quarter of the sets of the runs above the bound.
-  const RareFunction part = [run = sums(0)](const RareRun& each) {
+  const RareFunction part = [run = normal_sums(0)](const RareRun& each) {
     RareScore score = run(each);
     score.share /= 4;
     return score;
@@ -132,7 +132,7 @@ TEST(Splitting, CountsPartsOfRuns) {
   EXPECT_NEAR(counted.probability, 0.125, 0.01);
   EXPECT_LT(counted.low, 0.125);
   EXPECT_GT(counted.high, 0.125);
-  const RareEstimate none = count_rare(sums(9), 100, {.bound = 9}, nullptr);
+  const RareEstimate none = count_rare(normal_sums(9), 100, {.bound = 9}, nullptr);
   EXPECT_EQ(none.probability, 0);
   EXPECT_EQ(none.high, binomial_interval(0, 100).high);
 }
