@@ -1,5 +1,5 @@
-// The files of scenarios/*.json and of its folders cameras, oscillators and studies, built into the
-// program by embed.cmake.
+// The files of scenarios/*.json and of its folders cameras, oscillators, parts and studies, built
+// into the program by embed.cmake.
 #ifndef SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 #define SIMBENCH_SCENARIOS_BUILTIN_FILES_H_
 
@@ -30,6 +30,12 @@ const std::vector<BuiltinFile>& oscillator_files();
 
 // scenarios/oscillators/schema.json.
 std::string_view oscillator_schema_text();
+
+// The parts of rigs in alphabetical order; their schema is not among them.
+const std::vector<BuiltinFile>& part_files();
+
+// scenarios/parts/schema.json.
+std::string_view part_schema_text();
 
 // The studies in alphabetical order; their schema is not among them.
 const std::vector<BuiltinFile>& study_files();

@@ -1,4 +1,4 @@
-# Writes OUTPUT: the schemas, scenarios, profiles and studies of FOLDER as the C++ source behind
+# Writes OUTPUT: the schemas, scenarios, profiles, parts and studies of FOLDER as the C++ source behind
 # scenarios/builtin_files.h. Run by the build whenever one of the files has changed.
 
 # Sets `result` to the initializers of the files of a folder, and `schema` to the text of its schema.
@@ -22,6 +22,7 @@ endfunction()
 read_folder(${FOLDER} scenarios schema)
 read_folder(${FOLDER}/cameras cameras camera_schema)
 read_folder(${FOLDER}/oscillators oscillators oscillator_schema)
+read_folder(${FOLDER}/parts parts part_schema)
 read_folder(${FOLDER}/studies studies study_schema)
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
@@ -52,6 +53,14 @@ const std::vector<BuiltinFile>& oscillator_files() {
 }
 
 std::string_view oscillator_schema_text() { return R"json(@oscillator_schema@)json"; }
+
+const std::vector<BuiltinFile>& part_files() {
+  static const std::vector<BuiltinFile> files = {
+@parts@  };
+  return files;
+}
+
+std::string_view part_schema_text() { return R"json(@part_schema@)json"; }
 
 const std::vector<BuiltinFile>& study_files() {
   static const std::vector<BuiltinFile> files = {

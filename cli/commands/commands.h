@@ -21,6 +21,9 @@ void add_clocks_command(CommandLine& line);
 // simbench-reconstruct if this program lacks the libraries.
 void add_reconstruct_command(CommandLine& line);
 
+// Which rigs of real parts meet a requirement, the cheapest first.
+void add_advise_command(CommandLine& line);
+
 // Result archives as one HTML file.
 void add_report_command(CommandLine& line);
 // One run of one pipeline as a timeline, for the Perfetto UI or PlotJuggler.

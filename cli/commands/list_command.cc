@@ -14,6 +14,7 @@
 #include "reports/text/plain_text.h"
 #include "scenarios/camera_profile.h"
 #include "scenarios/oscillator_class.h"
+#include "scenarios/part.h"
 #include "scenarios/study.h"
 
 namespace simbench::cli {
@@ -28,6 +29,7 @@ Examples:
   simbench list algorithms                            with parameters and sources
   simbench list cameras                               what each camera model can do
   simbench list oscillators                           classes of oscillators and their sources
+  simbench list parts                                 parts of rigs, for simbench advise
   simbench list scenarios --format names              for scripts: one name a line
   simbench list pipelines --scenario 18cam_6host_45fps)";
 
@@ -79,6 +81,9 @@ std::string bare_names(const ListOptions& options) {
   }
   if (options.what == "oscillators") {
     for (const auto& each : scenarios::oscillator_classes()) names.push_back(each.class_name);
+  }
+  if (options.what == "parts") {
+    for (const scenarios::Part& part : scenarios::parts()) names.push_back(part.part);
   }
   if (options.what == "studies") {
     for (const scenarios::Study& study : scenarios::studies()) names.push_back(study.name);
@@ -202,6 +207,39 @@ std::string oscillator_list_text() {
   return text;
 }
 
+std::string price_text(const scenarios::PartPrice& price) {
+  return fmt::format("{:g} to {:g} EUR a {}", price.range.low_eur, price.range.high_eur,
+                     to_text(price.per));
+}
+
+// The parts of rigs, with their prices, what they set and make possible.
+std::string part_list_text() {
+  std::string text;
+  const auto add = [&text](const std::string& line) {
+    text += reports::wrapped(line, kListIndent);
+  };
+  for (const scenarios::Part& part : scenarios::parts()) {
+    text += fmt::format("{}{} ({}): {}\n", text.empty() ? "" : "\n", part.part, to_text(part.kind),
+                        part.name);
+    std::vector<std::string> prices;
+    for (const scenarios::PartPrice& price : part.prices) prices.push_back(price_text(price));
+    if (prices.empty()) prices = {"nothing"};
+    add(fmt::format("price: {} [{}]", fmt::join(prices, " and "), part.price_source));
+    if (part.cameras > 0) add(fmt::format("cameras = {}", part.cameras));
+    if (part.slots > 0) add(fmt::format("slots = {}", part.slots));
+    if (part.hosts > 0) add(fmt::format("hosts = {}", part.hosts));
+    for (const scenarios::Override& set : part.sets) {
+      add(fmt::format("{} = {}", set.pointer, set.value));
+    }
+    if (!part.host_sync.empty()) {
+      add(fmt::format("host_sync: {}", fmt::join(part.host_sync, ", ")));
+    }
+    if (!part.with.empty()) add(fmt::format("only with: {}", fmt::join(part.with, ", ")));
+    add(fmt::format("source: {}", part.source));
+  }
+  return text;
+}
+
 std::string listing(const ListOptions& options) {
   if (options.format == "names") return bare_names(options);
   if (options.what == "scenarios") return scenarios_text();
@@ -209,6 +247,7 @@ std::string listing(const ListOptions& options) {
     return options.format == "json" ? scenarios::camera_profiles_json() : camera_list_text();
   }
   if (options.what == "oscillators") return oscillator_list_text();
+  if (options.what == "parts") return part_list_text();
   if (options.what == "pipelines") return pipelines_text(options.scenario);
   if (options.what == "studies") return study_list();
   if (options.what == "figures") return figure_list();
@@ -236,12 +275,13 @@ void add_list_command(CommandLine& line) {
   auto options = std::make_shared<ListOptions>();
   Command command(
       line, "list",
-      "List scenarios, algorithms, pipelines, cameras, oscillators, studies or figures");
-  command.word(
-      "what", "WHAT", options->what,
-      {"scenarios", "pipelines", "algorithms", "cameras", "oscillators", "studies", "figures"},
-      "scenarios, pipelines, algorithms (with parameters and sources), cameras, "
-      "oscillators, studies or figures.\nDefault: scenarios and algorithms by name");
+      "List scenarios, algorithms, pipelines, cameras, oscillators, parts, studies or figures");
+  command.word("what", "WHAT", options->what,
+               {"scenarios", "pipelines", "algorithms", "cameras", "oscillators", "parts",
+                "studies", "figures"},
+               "scenarios, pipelines, algorithms (with parameters and sources), cameras, "
+               "oscillators, parts of rigs, studies or figures.\nDefault: scenarios and algorithms "
+               "by name");
   command.text("--scenario", "SCENARIO", options->scenario,
                "The scenario whose pipelines to list. Default: " + options->scenario);
   command.format(options->format, {"text", "names", "json"});

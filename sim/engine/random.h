@@ -92,6 +92,10 @@ class ComponentKey {
 };
 
 class RandomStream;
+class SeedField;
+
+// Replaces the roots of the streams that this thread makes (sim/engine/seed_field.h); null: none.
+inline thread_local constinit const SeedField* active_seed_field = nullptr;
 
 // The streams of a component's events, as far as their keys are known already.
 class KeyedStreams {
@@ -162,11 +166,18 @@ class RandomStream {
   friend class KeyedStreams;
   explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
   static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
+    if (active_seed_field != nullptr) [[unlikely]]
+      return expand_in_field(root);
+    return plain_state(root);
+  }
+  static Xoshiro256PlusPlus::State plain_state(std::uint64_t root) {
     SplitMix64 words(root);
     Xoshiro256PlusPlus::State state{};
     for (std::uint64_t& word : state) word = words();
     return state;
   }
+  static Xoshiro256PlusPlus::State expand_in_field(std::uint64_t root);
+  friend class SeedField;
 
   Xoshiro256PlusPlus generator_;
 };

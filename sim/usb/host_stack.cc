@@ -6,6 +6,19 @@
 #include "sim/engine/normal_process.h"
 
 namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kHostJitter("usb/host_jitter");
+constexpr ComponentKey kFrameDelays("usb/frame_delays");
+
+// Under a seed field by inversion, so that a late draw can be moved to a later one.
+double exponential(RandomStream& stream, double mean) {
+  if (active_seed_field != nullptr) [[unlikely]]
+    return -mean * std::log1p(-stream.uniform());
+  return stream.exponential(mean);
+}
+
+}  // namespace
 
 HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::size_t host,
                        TrueTime capture_start, double period_ns)
@@ -13,14 +26,18 @@ HostJitter::HostJitter(const scenarios::Usb& settings, std::uint64_t seed, std::
       correlation_(settings.host_jitter_correlation),
       period_ns_(period_ns),
       start_(capture_start),
-      stream_(seed, "usb/host_jitter", host) {}
+      stream_(seed, kHostJitter, host),
+      cells_(KeyedStreams(seed, kHostJitter).of(host)) {}
 
 double HostJitter::at(TrueTime t) {
   if (mean_ <= 0) return 0;
   const auto cell =
       static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
   for (; cell_ < cell; ++cell_) {
-    value_ = correlation_ * value_ + (1 - correlation_) * stream_.exponential(mean_);
+    if (active_seed_field != nullptr) [[unlikely]] {
+      stream_ = cells_.stream(static_cast<std::uint64_t>(cell_) + 2);  // 0 is the component's own
+    }
+    value_ = correlation_ * value_ + (1 - correlation_) * exponential(stream_, mean_);
   }
   return value_;
 }
@@ -33,16 +50,28 @@ FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std
       table_ms_(settings.delivery_quantiles_ms),
       correlation_(settings.delivery_correlation),
       innovation_(std::sqrt(1 - correlation_ * correlation_)),
-      stream_(seed, "usb/frame_delays", stream) {}
+      stream_(seed, kFrameDelays, stream),
+      frames_(KeyedStreams(seed, kFrameDelays).of(stream)) {}
 
 FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
+  ++frame_;
+  renew_in_field(0);
   if (!table_ms_.empty()) return {.kernel_copy_ns = 0, .delivery_ns = draw_from_table_ms() * 1e6};
-  Draw draw{stream_.exponential(kernel_copy_mean_ns_),
-            stream_.exponential(jitter_transfers_ * transfer_ns)};
+  Draw draw{.kernel_copy_ns = exponential(stream_, kernel_copy_mean_ns_), .delivery_ns = 0};
+  renew_in_field(1);
+  draw.delivery_ns = exponential(stream_, jitter_transfers_ * transfer_ns);
+  renew_in_field(2);
   if (spike_probability_ > 0 && stream_.chance(spike_probability_)) {
+    renew_in_field(3);
     draw.delivery_ns += stream_.uniform(0, spike_max_transfers_ * transfer_ns);
   }
   return draw;
+}
+
+// A stream for each number, so that each can be moved (sim/engine/seed_field.h).
+void FrameDelays::renew_in_field(std::uint64_t number) {
+  if (active_seed_field != nullptr) [[unlikely]]
+    stream_ = frames_.stream(4 * frame_ + number);
 }
 
 double FrameDelays::draw_from_table_ms() {

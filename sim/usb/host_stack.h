@@ -48,6 +48,7 @@ class HostJitter {
   std::int64_t cell_ = -1;
   double value_ = 0;
   RandomStream stream_;
+  KeyedStreams cells_;  // in its place under a seed field
 };
 
 // One stream's own delays. Draws are made for every exposed frame, in order of exposure.
@@ -64,6 +65,7 @@ class FrameDelays {
 
  private:
   double draw_from_table_ms();
+  void renew_in_field(std::uint64_t number);
 
   double kernel_copy_mean_ns_;
   double jitter_transfers_;
@@ -75,6 +77,8 @@ class FrameDelays {
   double variate_ = 0;
   bool has_variate_ = false;  // the first one has no predecessor
   RandomStream stream_;
+  KeyedStreams frames_;  // in its place under a seed field
+  std::uint64_t frame_ = 0;
 };
 
 }  // namespace simbench::sim

@@ -76,12 +76,14 @@ TEST_F(Usage, ListsWhatThereIs) {
   EXPECT_THAT(run({"list", "cameras", "--format", "json"}).out, HasSubstr("\"model\": \"d435\""));
   EXPECT_THAT(run({"list", "oscillators"}).out,
               AllOf(HasSubstr("tcxo: Temperature-compensated"), HasSubstr("Vig, Introduction")));
+  EXPECT_THAT(run({"list", "parts"}).out,
+              AllOf(HasSubstr("ptp_cards (clock): Network cards"), HasSubstr("EUR a host")));
   refuses({"list", "--format", "json"}, {"found 'json'", "with cameras only"});
   for (const auto& [what, name] :
        {std::pair{"scenarios", "18cam_6host_45fps"}, std::pair{"pipelines", "genlock"},
         std::pair{"algorithms", "regression_30"}, std::pair{"cameras", "d455"},
-        std::pair{"oscillators", "ocxo"}, std::pair{"studies", "scalability"},
-        std::pair{"figures", "frame_errors"}}) {
+        std::pair{"oscillators", "ocxo"}, std::pair{"parts", "ptp_cards"},
+        std::pair{"studies", "scalability"}, std::pair{"figures", "frame_errors"}}) {
     EXPECT_THAT(
         run({"list", what, "--format", "names"}).out,
         AllOf(HasSubstr(std::string(name) + "\n"), Not(StartsWith("\n")), Not(HasSubstr(" "))))

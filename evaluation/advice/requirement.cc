@@ -1,0 +1,157 @@
+#include "evaluation/advice/requirement.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "scenarios/document.h"
+#include "scenarios/loader.h"
+
+namespace simbench::evaluation {
+namespace {
+
+// What stands for a metric of another name.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+    {"error", "absolute_error"}, {"recall", "seed_recall"}, {"precision", "seed_precision"}};
+
+std::string without_unit(std::string_view id) {
+  for (const std::string_view unit : {"_per_s", "_ms", "_s"}) {
+    if (id.ends_with(unit)) return std::string(id.substr(0, id.size() - unit.size()));
+  }
+  return std::string(id);
+}
+
+[[noreturn]] void refuse(const std::string& found, const std::string& allowed) {
+  throw scenarios::InputError(
+      fmt::format("--require: found '{}', allowed {}", scenarios::shown_text(found), allowed));
+}
+
+const Metric& metric_named(const std::string& name) {
+  std::string_view wanted = name;
+  for (const auto& [other, id] : kOtherNames) {
+    if (name == other) wanted = id;
+  }
+  for (const Metric& metric : metrics()) {
+    if (metric.is_series() && (wanted == metric.id || wanted == without_unit(metric.id))) {
+      return metric;
+    }
+  }
+  refuse(name, fmt::format("a metric: {}", fmt::join(requirement_names(), ", ")));
+}
+
+// What a unit of the bound is in the metric's.
+double factor_of(const Metric& metric, const std::string& unit, const std::string& text) {
+  const std::map<std::string, double> times = {{"s", 1e3}, {"ms", 1}, {"us", 1e-3}, {"ns", 1e-6}};
+  const std::map<std::string, double> shares = {{"%", 0.01}, {"", 1}};
+  const std::map<std::string, double> plain = {{"", 1}};
+  const bool is_time = std::string_view(metric.unit) == "ms";
+  const auto& units = is_time ? times : metric.is_share() ? shares : plain;
+  if (const auto found = units.find(unit); found != units.end()) return found->second;
+  refuse(text, fmt::format("{} with {}", metric.title,
+                           is_time             ? "the unit s, ms, us or ns"
+                           : metric.is_share() ? "% or as a share without unit"
+                                               : "no unit"));
+}
+
+void check_bound(const Requirement& requirement) {
+  const Metric& metric = *requirement.metric;
+  const bool wants_least = metric.better == Better::kHigher;
+  if (metric.better != Better::kNeither && wants_least != requirement.is_least) {
+    refuse(requirement.text, fmt::format("a bound that says something: {} {} is what one asks for",
+                                         metric.title, wants_least ? ">" : "<"));
+  }
+  if (metric.is_share() && requirement.limit > 1) {
+    refuse(requirement.text, "what a rig can meet: a share is at most 100 %");
+  }
+  const bool at_end =
+      requirement.is_least ? metric.is_share() && requirement.limit == 1 : requirement.limit == 0;
+  if (at_end && !requirement.takes_limit) {
+    refuse(requirement.text, requirement.is_least ? "what a rig can meet: nothing is above 100 %"
+                                                  : "what a rig can meet: nothing is below 0");
+  }
+}
+
+std::string trimmed(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
+}
+
+}  // namespace
+
+double Requirement::size_of(double value) const {
+  return metric->better == Better::kNearestZero ? std::abs(value) : value;
+}
+
+bool Requirement::is_met_by(double value) const {
+  const double size = size_of(value);
+  if (std::isnan(size)) return false;
+  if (size == limit) return takes_limit;
+  return is_least ? size > limit : size < limit;
+}
+
+double Requirement::bad_quantile(const std::vector<double>& values, double p) const {
+  std::vector<double> sizes(values.size());
+  std::ranges::transform(values, sizes.begin(), [this](double value) { return size_of(value); });
+  return quantile(std::move(sizes), is_least ? 1 - p : p);
+}
+
+double Requirement::margin_of(double value) const {
+  const double size = size_of(value);
+  if (!is_least) return limit / size;
+  return metric->is_share() ? (1 - limit) / (1 - size) : size / limit;
+}
+
+std::vector<std::string> requirement_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, id] : kOtherNames) names.emplace_back(name);
+  for (const Metric& metric : metrics()) {
+    const std::string name = without_unit(metric.id);
+    const auto is_other = [&name](const auto& pair) { return pair.second == name; };
+    if (metric.is_series() && std::ranges::none_of(kOtherNames, is_other)) names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+Requirement parse_requirement(const std::string& text) {
+  const std::string whole = trimmed(text);
+  const std::size_t sign = whole.find_first_of("<>");
+  if (sign == std::string::npos) {
+    refuse(text, "METRIC<VALUE or METRIC>VALUE with a unit, as in 'amd<0.1ms'");
+  }
+  Requirement requirement{.metric = &metric_named(trimmed(whole.substr(0, sign))),
+                          .is_least = whole[sign] == '>',
+                          .text = whole};
+  std::string bound = whole.substr(sign + 1);
+  if (bound.starts_with('=')) {
+    requirement.takes_limit = true;
+    bound.erase(0, 1);
+  }
+  bound = trimmed(bound);
+  const std::size_t end = bound.find_first_not_of("0123456789.");
+  const std::string number = bound.substr(0, end);
+  const std::string unit = end == std::string::npos ? "" : trimmed(bound.substr(end));
+  constexpr std::size_t kLongest = 30;
+  if (number.empty() || number.size() > kLongest || std::ranges::count(number, '.') > 1 ||
+      number == ".") {
+    refuse(text, "a number from 0 after the sign, as in 'amd<0.1ms'");
+  }
+  requirement.limit = std::stod(number) * factor_of(*requirement.metric, unit, text);
+  check_bound(requirement);
+  return requirement;
+}
+
+std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts) {
+  std::vector<Requirement> requirements;
+  requirements.reserve(texts.size());
+  for (const std::string& text : texts) requirements.push_back(parse_requirement(text));
+  if (requirements.empty()) refuse("", "at least one, as in 'amd<0.1ms'");
+  return requirements;
+}
+
+}  // namespace simbench::evaluation

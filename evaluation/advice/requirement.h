@@ -1,0 +1,52 @@
+// What a buyer asks of a rig: a bound on a metric, "amd<0.1ms", "recall>=99%", "error<50us".
+//
+// The metric is one with a value for each seed (evaluation/scoring/metrics.h), by its id or without
+// the unit at its end; "error" is absolute_error_ms, "recall" and "precision" those of a seed. A
+// bound has a unit: s, ms, us or ns of times, % or none of shares, none of others. Metrics with a
+// sign (bias) are bounded by their size. A metric that no direction improves takes either bound.
+//
+// Refused are bounds that say nothing ("recall>0") and those that nothing can meet ("amd<0",
+// "recall>100%").
+//
+//   const Requirement requirement = parse_requirement("amd<0.1ms");
+//   requirement.limit;            // 0.1
+//   requirement.is_met_by(0.05);  // true
+#ifndef SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_
+#define SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/scoring/metrics.h"
+
+namespace simbench::evaluation {
+
+struct Requirement {
+  const Metric* metric = nullptr;
+  bool is_least = false;     // values above the limit meet it; else those below
+  bool takes_limit = false;  // the limit itself does
+  double limit = 0;          // in the metric's unit
+  std::string text{};        // as it was asked
+
+  // NaN meets nothing.
+  bool is_met_by(double value) const;
+  // The value at the bad end of a quantile `p` of the seeds, e.g. 0.95.
+  double bad_quantile(const std::vector<double>& values, double p) const;
+  // How many times better than asked a value is: limit / value, of a share the ratio of what is
+  // missing. Infinite for a perfect value, NaN for none.
+  double margin_of(double value) const;
+  // The size of a value with a sign.
+  double size_of(double value) const;
+};
+
+// Throws scenarios::InputError, whose message begins with "--require".
+Requirement parse_requirement(const std::string& text);
+// The same of several, separated by commas or given in turn; at least one.
+std::vector<Requirement> parse_requirements(const std::vector<std::string>& texts);
+
+// The names that a requirement may have, without unit.
+std::vector<std::string> requirement_names();
+
+}  // namespace simbench::evaluation
+
+#endif  // SIMBENCH_EVALUATION_ADVICE_REQUIREMENT_H_

@@ -1,0 +1,300 @@
+#include "evaluation/rare/splitting.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "evaluation/run/jobs.h"
+#include "evaluation/statistics/in_double.h"
+
+namespace simbench::evaluation {
+namespace {
+
+// A hash of numbers in turn: splitmix64's finaliser over each.
+std::uint64_t hash_of(std::initializer_list<std::uint64_t> numbers) {
+  std::uint64_t hash = 0x9E3779B97F4A7C15;
+  for (const std::uint64_t number : numbers) {
+    hash += number + 0x9E3779B97F4A7C15;
+    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9;
+    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EB;
+    hash ^= hash >> 31;
+  }
+  return hash;
+}
+
+// What a number is hashed for.
+enum Purpose : std::uint8_t { kStart, kOrder, kKey, kKind };
+
+// A run with its score.
+struct Particle {
+  RareRun run;
+  RareScore score;
+};
+
+// Kinds of changes: of some numbers, which are drawn anew; of some, which are moved; of all, which
+// are moved. The size of a change is the share of the first two, the step of the third.
+constexpr std::size_t kKinds = 3;
+constexpr double kMoveStep = 0.5;
+
+RareChange change_of(std::size_t kind, double size, std::uint64_t key) {
+  if (kind == 0) return {.key = key, .share = size, .step = 1};
+  if (kind == 1) return {.key = key, .share = size, .step = kMoveStep};
+  return {.key = key, .share = 1, .step = std::min(size, 0.99)};
+}
+
+// How large changes are at a level, and how many were accepted.
+struct Moves {
+  std::array<double, kKinds> sizes = {0.5, 0.5, 0.5};
+  std::array<std::uint64_t, kKinds> tried{};
+  std::array<std::uint64_t, kKinds> accepted{};
+};
+
+constexpr std::uint64_t kPilot = 0;                // the repeats count from 1
+constexpr std::uint64_t kLevelsApart = 1'000'000;  // more than there are levels
+
+class Splitting {
+ public:
+  Splitting(const RareFunction& run, const SplittingOptions& options, const Progress& progress)
+      : run_(run), options_(options), progress_(progress) {}
+
+  RareEstimate estimate() {
+    RareEstimate estimate;
+    estimate.is_below = !find_levels();
+    estimate.levels = levels_;
+    if (estimate.is_below) {
+      estimate.high = std::pow(options_.kept, static_cast<double>(levels_.size()));
+    } else {
+      const double one = static_cast<double>(options_.runs * (1 + options_.moves * levels_.size()));
+      expected_runs_ = done_ + static_cast<std::uint64_t>(one) * options_.repeats;
+      estimate.repeats.resize(options_.repeats);
+      run_all(options_.repeats, options_.jobs,
+              [&](std::size_t repeat) { estimate.repeats[repeat] = repeat_of(repeat + 1); });
+      set_interval(estimate);
+    }
+    estimate.runs = done_;
+    return estimate;
+  }
+
+  RareEstimate count(std::uint64_t runs) {
+    expected_runs_ = runs;
+    std::vector<double> shares(runs);
+    run_all(runs, options_.jobs, [&](std::size_t i) {
+      shares[i] = scored({.seed = hash_of({options_.seed, kStart, kPilot, i})}).share;
+    });
+    RareEstimate estimate{.runs = runs};
+    estimate.probability = mean_of(shares);
+    const auto events = std::ranges::count_if(shares, [](double share) { return share > 0; });
+    if (events == 0) {
+      estimate.low = 0;
+      estimate.high = binomial_interval(0, static_cast<std::int64_t>(runs)).high;
+      return estimate;
+    }
+    const double half = half_width(shares) / estimate.probability;
+    estimate.low = estimate.probability * std::exp(-half);
+    estimate.high = estimate.probability * std::exp(half);
+    return estimate;
+  }
+
+ private:
+  void run_all(std::size_t count, unsigned jobs, const Job& job) {
+    if (!run_jobs(count, {.threads = jobs, .cancel = options_.cancel}, job)) {
+      throw EvaluationCancelled("cancelled", {});
+    }
+  }
+
+  RareScore scored(const RareRun& run) {
+    const RareScore score = run_(run);
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    expected_runs_ = std::max(expected_runs_, done_);
+    if (progress_) progress_(done_, expected_runs_);
+    return score;
+  }
+
+  std::vector<Particle> started(std::uint64_t repeat, unsigned jobs) {
+    std::vector<Particle> particles(options_.runs);
+    run_all(particles.size(), jobs, [&](std::size_t i) {
+      particles[i].run.seed = hash_of({options_.seed, kStart, repeat, i});
+      particles[i].score = scored(particles[i].run);
+    });
+    return particles;
+  }
+
+  // Copies the particles above the level in equal numbers, chance deciding about the rest. Returns
+  // their part, 0 without any.
+  double keep(std::vector<Particle>& particles, double level, std::uint64_t repeat,
+              std::size_t stage) const {
+    const std::size_t all = particles.size();
+    std::erase_if(particles, [level](const Particle& each) { return !(each.score.level > level); });
+    const std::size_t kept = particles.size();
+    if (kept == 0) return 0;
+    // A random order, of which the first get a copy more.
+    std::vector<std::pair<std::uint64_t, std::size_t>> order;
+    for (std::size_t i = 0; i < kept; ++i) {
+      order.emplace_back(hash_of({options_.seed, kOrder, repeat, stage, i}), i);
+    }
+    std::ranges::sort(order);
+    particles.reserve(all);
+    for (std::size_t i = kept; i < all; ++i) {
+      particles.push_back(Particle(particles[order[i % kept].second]));
+    }
+    return static_cast<double>(kept) / static_cast<double>(all);
+  }
+
+  // Moves every particle `moves` times within the level.
+  void move(std::vector<Particle>& particles, double level, Moves& moves, std::uint64_t repeat,
+            std::size_t stage, unsigned jobs) {
+    const std::array<double, kKinds> sizes = moves.sizes;
+    std::vector<Moves> of_particle(particles.size());
+    run_all(particles.size(), jobs, [&](std::size_t i) {
+      for (std::size_t step = 0; step < options_.moves; ++step) {
+        // The number of a move alone decides its kind: each is reversible by itself.
+        const std::size_t kind = (i + step) % kKinds;
+        RareRun changed = particles[i].run;
+        changed.changes.push_back(
+            change_of(kind, sizes[kind], hash_of({options_.seed, kKey, repeat, stage, i, step})));
+        const RareScore score = scored(changed);
+        ++of_particle[i].tried[kind];
+        if (!(score.level > level)) continue;
+        ++of_particle[i].accepted[kind];
+        particles[i] = {.run = std::move(changed), .score = score};
+      }
+    });
+    for (const Moves& each : of_particle) {
+      for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        moves.tried[kind] += each.tried[kind];
+        moves.accepted[kind] += each.accepted[kind];
+      }
+    }
+  }
+
+  // For the next level: smaller changes where too few were accepted, larger ones where many were.
+  static std::array<double, kKinds> adapted(const Moves& moves) {
+    constexpr double kFew = 0.2;
+    constexpr double kMany = 0.4;
+    constexpr double kLeast = 1e-5;
+    std::array<double, kKinds> sizes = moves.sizes;
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+      if (moves.tried[kind] == 0) continue;
+      const double part =
+          static_cast<double>(moves.accepted[kind]) / static_cast<double>(moves.tried[kind]);
+      if (part < kFew) sizes[kind] = std::max(kLeast, sizes[kind] * std::max(part / kFew, 0.25));
+      if (part > kMany) sizes[kind] = std::min(1.0, sizes[kind] * 1.6);
+    }
+    return sizes;
+  }
+
+  // The level that the wanted part of the particles is above, or the next lower one that any is;
+  // nothing if all are at one.
+  std::optional<double> next_level(const std::vector<Particle>& particles) const {
+    std::vector<double> levels(particles.size());
+    std::ranges::transform(particles, levels.begin(),
+                           [](const Particle& each) { return each.score.level; });
+    std::ranges::sort(levels, std::greater<>());
+    const double highest = levels.front();
+    const auto above = static_cast<std::size_t>(options_.kept * static_cast<double>(levels.size()));
+    for (std::size_t i = std::max<std::size_t>(above, 1); i < levels.size(); ++i) {
+      if (levels[i] < highest) return levels[i];
+    }
+    return std::nullopt;
+  }
+
+  // The pilot. False if the bound is too far.
+  bool find_levels() {
+    std::vector<Particle> particles = started(kPilot, options_.jobs);
+    Moves moves;
+    double probability = 1;
+    while (probability > options_.least_probability) {
+      const std::optional<double> level = next_level(particles);
+      if (!level) return particles.front().score.level > options_.bound;
+      if (*level >= options_.bound) return true;
+      probability *= keep(particles, *level, kPilot, levels_.size());
+      levels_.push_back(*level);
+      // Twice, so that the sizes of the changes are those of this level.
+      for (std::size_t round = 0; round < 2; ++round) {
+        move(particles, *level, moves, kPilot, kLevelsApart * round + levels_.size(),
+             options_.jobs);
+        moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
+      }
+      moves_.push_back(moves.sizes);
+      expected_runs_ = done_ * (options_.repeats + 1);
+    }
+    return false;
+  }
+
+  double repeat_of(std::uint64_t repeat) {
+    std::vector<Particle> particles = started(repeat, 1);
+    double product = 1;
+    for (std::size_t stage = 0; stage < levels_.size(); ++stage) {
+      product *= keep(particles, levels_[stage], repeat, stage);
+      if (product == 0) return 0;
+      Moves moves{.sizes = moves_[stage], .tried = {}, .accepted = {}};
+      move(particles, levels_[stage], moves, repeat, stage, 1);
+    }
+    double shares = 0;
+    for (const Particle& each : particles) shares += each.score.share;
+    return product * shares / static_cast<double>(particles.size());
+  }
+
+  // Of the 95 % interval of their mean.
+  static double half_width(const std::vector<double>& values) {
+    const auto n = static_cast<double>(values.size());
+    return student_quantile(n) * standard_deviation(values) / std::sqrt(n);
+  }
+  static double student_quantile(double n) {
+    const boost::math::students_t_distribution<double, InDouble> student(n - 1);
+    return boost::math::quantile(student, 0.975);
+  }
+
+  // The repeats are products, so their logarithms are nearly normal: Cox's interval for the mean of
+  // such numbers, with Student's quantile. Where some are 0, that of their mean.
+  static void set_interval(RareEstimate& estimate) {
+    estimate.probability = mean_of(estimate.repeats);
+    if (estimate.probability == 0) {
+      estimate.is_below = true;
+      return;
+    }
+    const auto n = static_cast<double>(estimate.repeats.size());
+    double centre = std::log(estimate.probability);
+    double half = half_width(estimate.repeats) / estimate.probability;
+    if (std::ranges::count(estimate.repeats, 0.0) == 0) {
+      std::vector<double> logs(estimate.repeats.size());
+      std::ranges::transform(estimate.repeats, logs.begin(), [](double p) { return std::log(p); });
+      const double variance = std::pow(standard_deviation(logs), 2);
+      centre = mean_of(logs) + variance / 2;
+      half = student_quantile(n) * std::sqrt(variance / n + variance * variance / (2 * (n - 1)));
+    }
+    estimate.low = std::min(estimate.probability, std::exp(centre - half));
+    estimate.high = std::clamp(std::exp(centre + half), estimate.probability, 1.0);
+  }
+
+  const RareFunction& run_;
+  const SplittingOptions& options_;
+  const Progress& progress_;
+  std::vector<double> levels_;
+  std::vector<std::array<double, kKinds>> moves_;  // sizes of the changes at each level
+  std::mutex mutex_;                               // guards what follows
+  std::uint64_t done_ = 0;
+  std::uint64_t expected_runs_ = 1;
+};
+
+}  // namespace
+
+RareEstimate estimate_rare(const RareFunction& run, const SplittingOptions& options,
+                           const Progress& progress) {
+  return Splitting(run, options, progress).estimate();
+}
+
+RareEstimate count_rare(const RareFunction& run, std::uint64_t runs,
+                        const SplittingOptions& options, const Progress& progress) {
+  return Splitting(run, options, progress).count(runs);
+}
+
+}  // namespace simbench::evaluation

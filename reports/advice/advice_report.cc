@@ -1,0 +1,255 @@
+#include "reports/advice/advice_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "recording/counted.h"
+#include "recording/version.h"
+#include "reports/text/number_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Advice;
+using evaluation::OptionAdvice;
+using evaluation::PipelineAdvice;
+using evaluation::Requirement;
+using evaluation::RigOption;
+
+std::string requirements_text(const Advice& advice) {
+  std::vector<std::string> texts;
+  for (const Requirement& each : advice.request.requirements) texts.push_back(each.text);
+  return fmt::format("{}", fmt::join(texts, " and "));
+}
+
+std::string asked_rig_text(const Advice& advice) {
+  return fmt::format("{} at {:g} Hz",
+                     counted(static_cast<std::uint64_t>(advice.request.rig.cameras), "camera"),
+                     advice.request.rig.rate_hz);
+}
+
+// "100 % [95-100]".
+std::string probability_text(const PipelineAdvice& pipeline) {
+  const evaluation::Interval interval = pipeline.interval();
+  return fmt::format("{} [{:.0f}-{:.0f}]", share_text(pipeline.share()), 100 * interval.low,
+                     100 * interval.high);
+}
+
+std::string margin_text(double margin) {
+  return std::isinf(margin) ? "all" : fmt::format("{:.2g}", margin);
+}
+
+std::string euro_text(double eur) { return fmt::format("{:.0f}", eur); }
+
+std::string verdict(const OptionAdvice& option) {
+  const PipelineAdvice& best = option.best();
+  if (best.frames_dropped > 0) return "no: USB drops frames";
+  if (best.is_fit()) return option.is_settled ? "yes" : "perhaps";
+  return "no";
+}
+
+std::vector<std::string> part_names(const RigOption& option) {
+  std::vector<std::string> names = {option.host.part};
+  if (option.cards > 0) names.push_back(option.usb_card.part);
+  if (option.hosts > 1) {
+    names.push_back(option.network_switch.part);
+    names.push_back(option.clock.part);
+  }
+  return names;
+}
+
+Table options_table(const Advice& advice) {
+  std::vector<Field<OptionAdvice>> fields = {
+      {{"hosts"}, [](const auto& each) { return fmt::format("{}", each.option.hosts); }},
+      {{"parts", Align::kLeft},
+       [](const auto& each) {
+         return fmt::format("{}", fmt::join(part_names(each.option), ", "));
+       }},
+      {{"price\nEUR"},
+       [](const auto& each) {
+         return fmt::format("{}-{}", euro_text(each.option.price.low_eur),
+                            euro_text(each.option.price.high_eur));
+       }},
+      {{"meets it", Align::kLeft}, verdict},
+      {{"probability\n% [95 %]"}, [](const auto& each) { return probability_text(each.best()); }},
+      {{"rigs"}, [](const auto& each) { return fmt::format("{}", each.best().seeds); }}};
+  for (std::size_t i = 0; i < advice.request.requirements.size(); ++i) {
+    const evaluation::Metric& metric = *advice.request.requirements[i].metric;
+    const std::string unit = metric.is_share() ? "%" : metric.unit;
+    fields.push_back({{fmt::format("{}\nmedian {}", metric.title, unit)},
+                      [i, &metric](const OptionAdvice& each) {
+                        return number_text(shown_value(metric, each.best().median[i]));
+                      }});
+  }
+  fields.push_back({{"margin"}, [](const auto& each) { return margin_text(each.best().margin); }});
+  fields.push_back({{"best pipeline", Align::kLeft}, [](const auto& each) {
+                      const scenarios::Pipeline& best = each.best().pipeline;
+                      return fmt::format("{} + {} + {}", best.host_sync, best.device_time,
+                                         best.gathering);
+                    }});
+  return table_of(fields, advice.options, 2);
+}
+
+Block options_block(const Advice& advice) {
+  return {.heading = "Rigs, the cheapest first",
+          .table = options_table(advice),
+          .prose = {
+              "Probability: the share of simulated rigs (seeds) that meet all that is required, "
+              "with its 95 % interval (Clopper-Pearson). Yes: at least 95 % of all rigs do; "
+              "perhaps: of the few with which dearer rigs were tried. Margin: what is required "
+              "divided by the 95 % quantile over the rigs, of shares the ratio of what is missing "
+              "to 100 %. Best pipeline: the most usual one that meets it, else the nearest."}};
+}
+
+std::string part_line(const scenarios::Part& part) {
+  std::vector<std::string> prices;
+  for (const scenarios::PartPrice& price : part.prices) {
+    prices.push_back(fmt::format("{:g}-{:g} EUR a {}", price.range.low_eur, price.range.high_eur,
+                                 to_text(price.per)));
+  }
+  if (prices.empty()) prices = {"nothing"};
+  return fmt::format("{}: {}; {} [{}]", part.part, part.name, fmt::join(prices, " and "),
+                     part.price_source);
+}
+
+Block assumptions_block(const Advice& advice) {
+  Block block{.heading = "What is assumed"};
+  block.prose = {fmt::format(
+      "The world is {}: physically nominal, fitted to no rig. Prices are rough classes of parts, "
+      "without cameras, trigger, cables and work; availability, your cables and your building are "
+      "not known. A host synchronisation that is installed badly is worse than here. Device times "
+      "by polls need a program that reads the cameras' clocks; calibrated ones need the delays of "
+      "the camera model, measured as a careful laboratory does.",
+      evaluation::kAdviceScenario)};
+  std::vector<std::string> seen;
+  for (const OptionAdvice& each : advice.options) {
+    const RigOption& option = each.option;
+    for (const scenarios::Part* part :
+         {&option.host, &option.usb_card, &option.network_switch, &option.clock}) {
+      if (part->part.empty() || std::ranges::count(seen, part->part) > 0) continue;
+      seen.push_back(part->part);
+      block.items.push_back(part_line(*part));
+    }
+  }
+  return block;
+}
+
+std::string nothing_meets(const Advice& advice) {
+  const OptionAdvice* nearest = &advice.options.front();
+  for (const OptionAdvice& each : advice.options) {
+    const PipelineAdvice& a = each.best();
+    const PipelineAdvice& b = nearest->best();
+    if (a.frames_dropped > 0) continue;
+    if (a.share() > b.share() || (a.share() == b.share() && a.margin > b.margin)) nearest = &each;
+  }
+  return fmt::format(
+      "None of {} meets {} for {} with 95 % probability. {} comes nearest, with {}: {} of {} "
+      "simulated rigs do, at a margin of {}.",
+      counted(advice.options.size(), "rig"), requirements_text(advice), asked_rig_text(advice),
+      nearest->option.name(), nearest->best().pipeline.name, nearest->best().met,
+      nearest->best().seeds, margin_text(nearest->best().margin));
+}
+
+Json pipeline_json(const PipelineAdvice& pipeline, const Advice& advice) {
+  const evaluation::Interval interval = pipeline.interval();
+  Json medians = Json::object();
+  for (std::size_t i = 0; i < pipeline.median.size(); ++i) {
+    medians[advice.request.requirements[i].metric->id] = pipeline.median[i];
+  }
+  return {{"pipeline", pipeline.pipeline.name},
+          {"met", pipeline.met},
+          {"seeds", pipeline.seeds},
+          {"probability", pipeline.share()},
+          {"low", interval.low},
+          {"high", interval.high},
+          {"margin", pipeline.margin},
+          {"frames_dropped", pipeline.frames_dropped},
+          {"medians", std::move(medians)}};
+}
+
+Json option_json(const OptionAdvice& each, const Advice& advice) {
+  Json pipelines = Json::array();
+  for (const PipelineAdvice& pipeline : each.pipelines) {
+    pipelines.push_back(pipeline_json(pipeline, advice));
+  }
+  return {{"rig", each.option.name()},
+          {"hosts", each.option.hosts},
+          {"cameras_per_host", each.option.cameras_per_host},
+          {"parts", part_names(each.option)},
+          {"price_low_eur", each.option.price.low_eur},
+          {"price_high_eur", each.option.price.high_eur},
+          {"settled", each.is_settled},
+          {"pipelines", std::move(pipelines)}};
+}
+
+}  // namespace
+
+std::string price_class(const scenarios::PriceRange& price) {
+  constexpr double kMiddleFromEur = 1000;
+  constexpr double kHighFromEur = 10000;
+  const double eur = price.middle_eur();
+  return fmt::format("{} ({}-{} EUR)",
+                     eur < kMiddleFromEur ? "low"
+                     : eur < kHighFromEur ? "middle"
+                                          : "high",
+                     euro_text(price.low_eur), euro_text(price.high_eur));
+}
+
+std::string advice_answer(const Advice& advice) {
+  if (!advice.recommended) return nothing_meets(advice);
+  const OptionAdvice& option = advice.options[*advice.recommended];
+  const PipelineAdvice& best = option.best();
+  std::string text = fmt::format(
+      "{} meets {} for {} in {} of {} simulated rigs (a probability of {:.0f} to {:.0f} %), with "
+      "{}. It is the cheapest that does with 95 %: price class {}, without cameras and trigger. "
+      "Margin {}.",
+      option.option.name(), requirements_text(advice), asked_rig_text(advice), best.met, best.seeds,
+      100 * best.interval().low, 100 * best.interval().high, best.pipeline.name,
+      price_class(option.option.price), margin_text(best.margin));
+  if (advice.fails_first) {
+    text += fmt::format(" What fails first is the stage {}, which makes {} of the {}.",
+                        advice.fails_first->stage, share_text(advice.fails_first->share),
+                        advice.fails_first->metric);
+  }
+  return text;
+}
+
+Document advice_document(const Advice& advice) {
+  return {.title = fmt::format("{}: {}", asked_rig_text(advice), requirements_text(advice)),
+          .head = {advice_answer(advice)},
+          .blocks = {options_block(advice), assumptions_block(advice)}};
+}
+
+Json advice_json(const Advice& advice) {
+  Json root = {
+      {"schema_version", 1},
+      {"version", version()},
+      {"commit", commit()},
+      {"answer", advice_answer(advice)},
+      {"cameras", advice.request.rig.cameras},
+      {"rate_hz", advice.request.rig.rate_hz},
+      {"requirements", Json::array()},
+      {"seeds",
+       {{"first", advice.options_of_run.first_seed}, {"count", advice.options_of_run.seeds}}},
+      {"recommended", nullptr},
+      {"fails_first", nullptr},
+      {"rare", nullptr},
+      {"options", Json::array()}};
+  for (const Requirement& each : advice.request.requirements) {
+    root["requirements"].push_back(each.text);
+  }
+  if (advice.recommended) root["recommended"] = *advice.recommended;
+  if (advice.fails_first) {
+    root["fails_first"] = {{"metric", advice.fails_first->metric},
+                           {"stage", advice.fails_first->stage},
+                           {"share", advice.fails_first->share}};
+  }
+  for (const OptionAdvice& each : advice.options) {
+    root["options"].push_back(option_json(each, advice));
+  }
+  return root;
+}
+
+}  // namespace simbench::reports

@@ -1,0 +1,34 @@
+// Advice for a buyer (evaluation/advice) as text, Markdown or JSON: first a sentence that answers,
+// then the rigs from the cheapest on, then what was assumed.
+//
+// JSON: {"schema_version", "version", "commit", "answer", "cameras", "rate_hz", "requirements":
+// [text], "seeds", "recommended": a place in options or null, "fails_first": {"metric", "stage",
+// "share"} or null, "rare": null or as in rare_report.h, "options": [{"rig", "hosts",
+// "cameras_per_host", "parts": [name], "price_low_eur", "price_high_eur", "settled", "pipelines":
+// [{"pipeline", "met", "seeds", "probability", "low", "high", "margin", "frames_dropped",
+// "medians": {id: value}}]}]}; the pipelines from the best on.
+#ifndef SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
+#define SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "evaluation/advice/advice.h"
+#include "reports/text/block.h"
+#include "reports/text/json_node.h"
+
+namespace simbench::reports {
+
+// The answer in a sentence or two.
+std::string advice_answer(const evaluation::Advice& advice);
+
+Document advice_document(const evaluation::Advice& advice);
+// To which file_text() may be applied.
+Json advice_json(const evaluation::Advice& advice);
+
+// "EUR" with a number for the size of a price: "low (60-180 EUR)".
+std::string price_class(const scenarios::PriceRange& price);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_ADVICE_ADVICE_REPORT_H_
