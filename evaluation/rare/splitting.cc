@@ -62,7 +62,10 @@ constexpr std::uint64_t kLevelsApart = 1'000'000;  // more than there are levels
 class Splitting {
  public:
   Splitting(const RareFunction& run, const SplittingOptions& options, const Progress& progress)
-      : run_(run), options_(options), progress_(progress) {}
+      : run_(run), options_(options), progress_(progress) {
+    constexpr std::uint64_t kGuessedLevels = 8;
+    expected_runs_ = options.runs * (1 + options.moves * kGuessedLevels) * (options.repeats + 1);
+  }
 
   RareEstimate estimate() {
     RareEstimate estimate;
@@ -224,7 +227,7 @@ class Splitting {
         moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
       }
       moves_.push_back(moves.sizes);
-      expected_runs_ = done_ * (options_.repeats + 1);
+      expected_runs_ = std::max(expected_runs_, done_ * (options_.repeats + 1));
     }
     return false;
   }
@@ -282,7 +285,7 @@ class Splitting {
   std::vector<std::array<double, kKinds>> moves_;  // sizes of the changes at each level
   std::mutex mutex_;                               // guards what follows
   std::uint64_t done_ = 0;
-  std::uint64_t expected_runs_ = 1;
+  std::uint64_t expected_runs_ = 0;
 };
 
 }  // namespace

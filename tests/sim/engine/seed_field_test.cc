@@ -41,7 +41,7 @@ double distance_from_uniform(std::vector<double> values) {
   return distance;
 }
 
-double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+double uniform_correlation(const std::vector<double>& a, const std::vector<double>& b) {
   double product = 0;
   for (int i = 0; i < kStreams; ++i) product += (a[i] - 0.5) * (b[i] - 0.5) * 12 / kStreams;
   return product;
@@ -74,12 +74,12 @@ TEST(SeedField, MovesFirstNumbersAndKeepsTheirLaw) {
   EXPECT_LT(distance_from_uniform(numbers), 2.69 / std::sqrt(kStreams));
   // The rank correlation of two normal numbers with correlation r is 6 / pi asin(r / 2).
   const double expected = 6 / std::numbers::pi * std::asin(std::sqrt(1 - 0.09) / 2);
-  EXPECT_NEAR(rank_correlation(numbers, first_numbers({})), expected, 0.02);
+  EXPECT_NEAR(uniform_correlation(numbers, first_numbers({})), expected, 0.02);
   // Many moves forget where they began.
   for (std::uint64_t key = 4; key < 200; ++key) field.add({.key = key, .share = 1, .step = 0.3});
   const auto later = first_numbers(field);
   EXPECT_LT(distance_from_uniform(later), 2.69 / std::sqrt(kStreams));
-  EXPECT_NEAR(rank_correlation(later, first_numbers({})), 0, 5 / std::sqrt(kStreams));
+  EXPECT_NEAR(uniform_correlation(later, first_numbers({})), 0, 5 / std::sqrt(kStreams));
 }
 
 // A later mutation of the same stream counts, whatever the order of the streams.
@@ -117,7 +117,7 @@ TEST(SeedField, MovedStreamsAreIndependentAfterTheirFirstNumber) {
     second.push_back(stream.uniform());
   }
   EXPECT_LT(distance_from_uniform(second), 2.69 / std::sqrt(kStreams));
-  EXPECT_NEAR(rank_correlation(first, second), 0, 5 / std::sqrt(kStreams));
+  EXPECT_NEAR(uniform_correlation(first, second), 0, 5 / std::sqrt(kStreams));
 }
 
 }  // namespace
