@@ -19,7 +19,7 @@ using scenarios::Pipeline;
 
 constexpr char kBetween = '+';
 
-std::vector<std::string> parts_of(const std::string& name) {
+std::vector<std::string> stages_of(const std::string& name) {
   std::vector<std::string> parts;
   boost::split(parts, name, [](char c) { return c == kBetween; });
   return parts;
@@ -32,7 +32,7 @@ bool is_ad_hoc(const std::string& name, AdHoc allowed) {
 
 Override appended(const std::string& name, const Pipeline& first, AdHoc allowed) {
   const std::string label = "--pipelines " + scenarios::shown_text(name);
-  std::vector<std::string> parts = parts_of(name);
+  std::vector<std::string> parts = stages_of(name);
   if (parts.size() == 1) parts.insert(parts.end(), {first.device_time, first.gathering});
   const bool has_empty = std::ranges::count(parts, "") > 0;
   if (parts.size() != 3 || has_empty) {
