@@ -11,11 +11,9 @@ namespace {
 constexpr ComponentKey kHostJitter("usb/host_jitter");
 constexpr ComponentKey kFrameDelays("usb/frame_delays");
 
-// Under a seed field by inversion, so that a late draw can be moved to a later one.
-double exponential(RandomStream& stream, double mean) {
-  if (active_seed_field != nullptr) [[unlikely]]
-    return -mean * std::log1p(-stream.uniform());
-  return stream.exponential(mean);
+// By inversion, so that a seed field can move a late draw to a later one.
+double movable_exponential(RandomStream& stream, double mean) {
+  return -mean * std::log1p(-stream.uniform());
 }
 
 }  // namespace
@@ -34,12 +32,15 @@ double HostJitter::at(TrueTime t) {
   const auto cell =
       static_cast<std::int64_t>(static_cast<double>((t - start_).count()) / period_ns_);
   for (; cell_ < cell; ++cell_) {
-    if (active_seed_field != nullptr) [[unlikely]] {
-      stream_ = cells_.stream(static_cast<std::uint64_t>(cell_) + 2);  // 0 is the component's own
-    }
-    value_ = correlation_ * value_ + (1 - correlation_) * exponential(stream_, mean_);
+    value_ = correlation_ * value_ + (1 - correlation_) * draw();
   }
   return value_;
+}
+
+double HostJitter::draw() {
+  if (active_seed_field == nullptr) return stream_.exponential(mean_);
+  stream_ = cells_.stream(static_cast<std::uint64_t>(cell_) + 2);  // 0 is the component's own
+  return movable_exponential(stream_, mean_);
 }
 
 FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std::size_t stream)
@@ -53,25 +54,33 @@ FrameDelays::FrameDelays(const scenarios::Usb& settings, std::uint64_t seed, std
       stream_(seed, kFrameDelays, stream),
       frames_(KeyedStreams(seed, kFrameDelays).of(stream)) {}
 
-FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
-  ++frame_;
-  renew_in_field(0);
+// Flattened: two ziggurats a frame.
+[[gnu::flatten]] FrameDelays::Draw FrameDelays::draw(double transfer_ns) {
+  if (active_seed_field != nullptr) [[unlikely]]
+    return draw_in_field(transfer_ns);
   if (!table_ms_.empty()) return {.kernel_copy_ns = 0, .delivery_ns = draw_from_table_ms() * 1e6};
-  Draw draw{.kernel_copy_ns = exponential(stream_, kernel_copy_mean_ns_), .delivery_ns = 0};
-  renew_in_field(1);
-  draw.delivery_ns = exponential(stream_, jitter_transfers_ * transfer_ns);
-  renew_in_field(2);
+  Draw draw{stream_.exponential(kernel_copy_mean_ns_),
+            stream_.exponential(jitter_transfers_ * transfer_ns)};
   if (spike_probability_ > 0 && stream_.chance(spike_probability_)) {
-    renew_in_field(3);
     draw.delivery_ns += stream_.uniform(0, spike_max_transfers_ * transfer_ns);
   }
   return draw;
 }
 
 // A stream for each number, so that each can be moved (sim/engine/seed_field.h).
-void FrameDelays::renew_in_field(std::uint64_t number) {
-  if (active_seed_field != nullptr) [[unlikely]]
-    stream_ = frames_.stream(4 * frame_ + number);
+[[gnu::noinline]] FrameDelays::Draw FrameDelays::draw_in_field(double transfer_ns) {
+  const auto renewed = [this](std::uint64_t number) -> RandomStream& {
+    return stream_ = frames_.stream(4 * frame_ + number);
+  };
+  ++frame_;
+  RandomStream& first = renewed(0);
+  if (!table_ms_.empty()) return {.kernel_copy_ns = 0, .delivery_ns = draw_from_table_ms() * 1e6};
+  Draw draw{.kernel_copy_ns = movable_exponential(first, kernel_copy_mean_ns_), .delivery_ns = 0};
+  draw.delivery_ns = movable_exponential(renewed(1), jitter_transfers_ * transfer_ns);
+  if (spike_probability_ > 0 && renewed(2).chance(spike_probability_)) {
+    draw.delivery_ns += renewed(3).uniform(0, spike_max_transfers_ * transfer_ns);
+  }
+  return draw;
 }
 
 double FrameDelays::draw_from_table_ms() {

@@ -41,6 +41,8 @@ class HostJitter {
   double at(TrueTime t);
 
  private:
+  double draw();
+
   double mean_;
   double correlation_;
   double period_ns_;
@@ -65,7 +67,7 @@ class FrameDelays {
 
  private:
   double draw_from_table_ms();
-  void renew_in_field(std::uint64_t number);
+  Draw draw_in_field(double transfer_ns);
 
   double kernel_copy_mean_ns_;
   double jitter_transfers_;
