@@ -1,7 +1,7 @@
 // The answer of a simulated run: its first paragraph, with an error budget of the best pipeline
 // where that is affordable.
 //
-//   const reports::Block first = run_answer(results, scenario, progress);
+//   const reports::Block first = run_answer(results, scenario, nullptr);
 #ifndef SIMBENCH_APP_ANSWER_H_
 #define SIMBENCH_APP_ANSWER_H_
 

@@ -21,8 +21,9 @@
 // constants of devices, first draws of messages and polls. Others are drawn anew, so that tails of
 // these alone are found as by brute force. The interval shows what that costs.
 //
-//   const RareFunction run = rare_sets(scenario, "chrony_lan", RareEvent::kSpread, 0.1);
-//   const RareEstimate estimate = evaluation::estimate_rare(run, {.bound = 0.1}, progress);
+//   const evaluation::RareFunction run =
+//       rare_sets(scenario, "chrony_lan", RareEvent::kSpread, 0.1);
+//   const auto estimate = evaluation::estimate_rare(run, {.bound = 0.1}, nullptr);
 #ifndef SIMBENCH_APP_RARE_SETS_H_
 #define SIMBENCH_APP_RARE_SETS_H_
 

@@ -26,7 +26,7 @@ Examples:
   simbench advise --require 'error<0.2ms' --require 'recall>99%' --cameras 12 --rate 30 --hosts 2..4
   simbench advise --require 'amd<1ms' --cameras 18 --rate 45 --parts my_switch.json --format json
   simbench advise --require 'amd<0.1ms' --cameras 24 --rate 60 --per-day --bound-ms 0.06
-  simbench advise --require 'amd<0.1ms' --cameras 24 --rate 60 --set /network/cross_traffic_share=0.3
+  simbench advise --require 'amd<1ms' --cameras 24 --rate 60 --set /network/cross_traffic_share=0.3
 
 A requirement is a metric, < or >, and a value with its unit. Rigs are put together from the parts
 of `simbench list parts` in a nominal world, and simulated; prices are rough classes. The answer

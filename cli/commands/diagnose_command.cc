@@ -1,9 +1,17 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "evaluation/diagnosis/diagnose.h"
+#include "recording/camera_streams.h"
+#include "recording/recording_folder.h"
 #include "reports/rigs/diagnose_report.h"
 
 namespace simbench::cli {
@@ -13,12 +21,13 @@ constexpr double kLowestRateHz = 0.01;
 constexpr double kHighestRateHz = 10'000;
 
 constexpr const char* kDiagnoseExamples = R"(
-Takes the recordings that `simbench replay` takes: the CSV of librealsense's rs-data-collect, one
-file per camera, or one of several cameras with two more columns, `camera` and `host`. A minute is
-enough to tell cameras that run free from cameras that follow a trigger.
+Takes the recordings that `simbench replay` takes: a recording folder, of which it diagnoses the
+first capture; or the CSV of librealsense's rs-data-collect, one file per camera, or one of several
+cameras with two more columns, `camera` and `host`. A minute is enough to tell cameras that run free from cameras that follow a trigger.
 
 Examples:
   simbench diagnose rig.csv
+  simbench diagnose results/monday                     a folder of `simbench record`
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
@@ -31,11 +40,39 @@ struct DiagnoseOptions {
   bool one_host = false;
 };
 
-int run_diagnose(const DiagnoseOptions& options) {
-  const CsvRecordings recordings = read_recordings(options.files);
+// Of the first capture.
+std::vector<CameraStream> streams_of_folder(const std::string& path) {
+  const RecordingFolder folder(path);
+  if (folder.captures().empty()) {
+    throw scenarios::InputError(fmt::format("{}: found no capture", path));
+  }
+  const RecordedCapture& capture = folder.captures().front();
+  if (folder.captures().size() > 1) {
+    print_note(fmt::format("{}: of {} captures that of {}, seed {}", path, folder.captures().size(),
+                           capture.pipeline, capture.seed));
+  }
+  CameraStreamSink sink(folder.description());
+  folder.play(0, sink);
+  return sink.take();
+}
+
+std::vector<CameraStream> streams_of(const std::vector<std::string>& inputs) {
+  const auto folder = std::ranges::find_if(
+      inputs, [](const std::string& path) { return std::filesystem::is_directory(path); });
+  if (folder != inputs.end()) {
+    if (inputs.size() == 1) return streams_of_folder(*folder);
+    throw scenarios::InputError(
+        fmt::format("{}: found among {} inputs, allowed one recording folder or CSV files", *folder,
+                    inputs.size()));
+  }
+  CsvRecordings recordings = read_recordings(inputs);
   for (const std::string& note : recordings.notes) print_note(note);
+  return std::move(recordings.streams);
+}
+
+int run_diagnose(const DiagnoseOptions& options) {
   const evaluation::Diagnosis diagnosis = evaluation::diagnose(
-      recordings.streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
+      streams_of(options.files), {.rate_hz = options.rate_hz, .one_host = options.one_host});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : reports::diagnose_table(diagnosis));
   return kOk;
@@ -46,7 +83,8 @@ int run_diagnose(const DiagnoseOptions& options) {
 void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
   Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
-  command.texts("files", "FILE.csv...", options->files, "CSV recordings").required();
+  command.texts("inputs", "INPUT...", options->files, "A recording folder, or CSV files")
+      .required();
   command.format(options->format, {"table", "json"});
   command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
                  "The trigger's rate. Default: the rate of most cameras");

@@ -19,7 +19,8 @@
 // What fails first is the stage with the largest part of the error (evaluation/budget), asked of
 // the recommended option only.
 //
-//   const Advice advice = advise({.rig = request, .requirements = {parse_requirement("amd<1ms")}},
+//   const Advice advice = advise({.rig = {.cameras = 24, .rate_hz = 60},
+//                                 .requirements = {parse_requirement("amd<1ms")}},
 //                                make_world, {}, nullptr);
 //   if (advice.recommended) advice.options[*advice.recommended].best().pipeline;
 #ifndef SIMBENCH_EVALUATION_ADVICE_ADVICE_H_

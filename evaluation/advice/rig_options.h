@@ -12,8 +12,9 @@
 // (which it halves), else slave in a mode of the rate itself, with a trigger that runs 500 ppm fast
 // as slaves need it (docs/reference/d455.md). Any other rate is refused.
 //
-//   const std::vector<RigOption> options = rig_options({.cameras = 24, .rate_hz = 60});
-//   const scenarios::Scenario world = scenario_of(options.front(), request, pipelines);
+//   const RigRequest rig = {.cameras = 24, .rate_hz = 60};
+//   const std::vector<RigOption> options = rig_options(rig);
+//   const scenarios::Scenario world = scenario_of(options.front(), rig, scenario.pipelines);
 #ifndef SIMBENCH_EVALUATION_ADVICE_RIG_OPTIONS_H_
 #define SIMBENCH_EVALUATION_ADVICE_RIG_OPTIONS_H_
 

@@ -40,7 +40,7 @@
 // + moves * levels) runs; the relative error grows with the root of the number of levels, thus with
 // the logarithm of the probability.
 //
-//   const RareEstimate estimate = estimate_rare(run, {.bound = 0.1}, nullptr);
+//   const RareEstimate estimate = estimate_rare(rare_function, {.bound = 0.1}, nullptr);
 //   estimate.probability;  // in [estimate.low, estimate.high]
 #ifndef SIMBENCH_EVALUATION_RARE_SPLITTING_H_
 #define SIMBENCH_EVALUATION_RARE_SPLITTING_H_

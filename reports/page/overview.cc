@@ -129,7 +129,7 @@ std::string overview_html(const Results& results, RankedBy ranked_by) {
   for (const Row* row : rows) body += row_html(*row, ranked_by, axis, row == best);
   const char* const what = ranked_by == RankedBy::kAmd ? "AMD" : "Absolute error";
   return fmt::format(
-      "<figure class=\"figure overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"
+      "<figure class=\"overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"
       "{}{}</tbody></table>\n<figcaption>{}: median (dot) and band from 5 to 95 % over the seeds, "
       "on a logarithmic axis.{}{}</figcaption></figure>\n",
       what, body, axis_html(axis), what, any_published ? " Diamonds: published values." : "",

@@ -5,7 +5,7 @@
 // best pipeline, limits and references say so in words, not by colour alone. It is HTML and style,
 // without a script, and as wide as the page. Of more than 24 pipelines the first are shown.
 //
-//   page << overview_html(results, RankedBy::kAmd);
+//   const std::string figure = overview_html(all_results, evaluation::RankedBy::kAmd);
 #ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
 #define SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
 

@@ -3,7 +3,7 @@
 // would improve it most, and what is uncertain. Every sentence is computed from the results; what
 // they do not hold has none.
 //
-//   const Block first = answer_block(results, RankedBy::kAmd, &budget);
+//   const Block first = answer_block(all_results, evaluation::RankedBy::kAmd, nullptr);
 #ifndef SIMBENCH_REPORTS_RESULTS_ANSWER_BLOCK_H_
 #define SIMBENCH_REPORTS_RESULTS_ANSWER_BLOCK_H_
 

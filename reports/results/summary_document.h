@@ -6,7 +6,8 @@
 // where the rest is. Of many pipelines the first are shown, in order of the answer's metric for
 // leaderboards, else in the scenario's order.
 //
-//   std::cout << plain(summary_document(results, {.summary = scenario.summary}, answer));
+//   const Block answer = answer_block(all_results, evaluation::RankedBy::kAmd, nullptr);
+//   std::cout << plain(summary_document(all_results, {.summary = scenario.summary}, answer));
 #ifndef SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
 #define SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
 

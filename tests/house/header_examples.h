@@ -108,6 +108,7 @@ extern const hardware::ExperimentRig rig;
 extern RecordingSource& rig_source;
 inline constexpr int kInterrupted = 130;
 extern const evaluation::SourceFactory make_source;
+extern const evaluation::Results results;
 }  // namespace app
 
 namespace cli {
@@ -144,6 +145,7 @@ extern SeedScore seed_score;
 extern std::int64_t tag;
 extern const Series with, without;
 extern const Row row;
+extern const RareFunction rare_function;
 extern const SweepPlan plan;
 extern const std::vector<std::size_t> missing;
 extern std::vector<std::optional<SweepScore>> scores;
@@ -202,6 +204,7 @@ extern const Whatever law, simulated, path, manifest, identity, begin, end, work
 extern const Archive a, b;
 extern const SeedRange seeds_of_a, seeds_of_b;
 extern const evaluation::Row row_a, row_b;
+extern const evaluation::Results all_results;
 extern Figure figure;
 extern FigureSeries dense;
 extern const evaluation::SweepPlan plan;

@@ -66,5 +66,22 @@ TEST_F(DiagnoseCommand, BadInputIsNamed) {
   EXPECT_THAT(empty.err, HasSubstr("the file is empty"));
 }
 
+TEST_F(DiagnoseCommand, TakesARecordingFolder) {
+  ASSERT_EQ(run({"record", "--scenario", "3cam_1host_30fps", "--pipelines", "free_running", "--set",
+                 "/timeline/frames=300", "-o", "rig"})
+                .status,
+            0);
+  const ProgramResult result = run({"diagnose", "rig"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("3 cameras"));
+  std::filesystem::create_directory(folder() / "empty");
+  const ProgramResult empty = run({"diagnose", "empty"});
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("empty"));
+  const ProgramResult both = run({"diagnose", "rig", file("rig.csv", recording(0))});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("allowed one recording folder or CSV files"));
+}
+
 }  // namespace
 }  // namespace simbench
