@@ -23,7 +23,8 @@ constexpr double kHighestRateHz = 10'000;
 constexpr const char* kDiagnoseExamples = R"(
 Takes the recordings that `simbench replay` takes: a recording folder, of which it diagnoses the
 first capture; or the CSV of librealsense's rs-data-collect, one file per camera, or one of several
-cameras with two more columns, `camera` and `host`. A minute is enough to tell cameras that run free from cameras that follow a trigger.
+cameras with two more columns, `camera` and `host`. A minute is enough to tell cameras that run free
+from cameras that follow a trigger.
 
 Examples:
   simbench diagnose rig.csv

@@ -68,7 +68,7 @@ TEST_F(DiagnoseCommand, BadInputIsNamed) {
 
 TEST_F(DiagnoseCommand, TakesARecordingFolder) {
   ASSERT_EQ(run({"record", "--scenario", "3cam_1host_30fps", "--pipelines", "free_running", "--set",
-                 "/timeline/frames=300", "-o", "rig"})
+                 "/timeline/frames=1500", "-o", "rig"})
                 .status,
             0);
   const ProgramResult result = run({"diagnose", "rig"});
