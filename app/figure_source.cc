@@ -186,6 +186,7 @@ class FigureMaker {
     source.first_seed = seeds.first_seed;
     source.seeds = seeds.seeds;
     std::vector<scenarios::Pipeline> pipelines;
+    pipelines.reserve(choices.size());
     for (const PipelineChoice& choice : choices) pipelines.push_back(choice.pipeline);
     for (const evaluation::Budget& budget :
          evaluation::error_budgets(scenario, pipelines, simulated_world, seeds, progress_)) {

@@ -68,9 +68,9 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
 void set_hosts(const std::string& text, evaluation::RigRequest& rig) {
   if (text.empty()) return;
   const std::size_t dots = text.find("..");
-  const auto low = whole_number(std::string_view(text).substr(0, dots));
+  const auto low = whole_number(std::string_view{text}.substr(0, dots));
   const auto high =
-      dots == std::string::npos ? low : whole_number(std::string_view(text).substr(dots + 2));
+      dots == std::string::npos ? low : whole_number(std::string_view{text}.substr(dots + 2));
   if (!low || !high || *low > *high) {
     throw scenarios::InputError(
         fmt::format("--hosts: found '{}', allowed: a number or a range FEWEST..MOST from 1 to {}, "

@@ -234,6 +234,7 @@ int describe(const DescribeOptions& options) {
   const std::vector<Described> described = algorithms_called(options.what);
   if (!described.empty()) return describe_algorithms(options, described);
   std::vector<std::string> known;
+  known.reserve(builtin.size());
   for (const scenarios::BuiltinScenario& each : builtin) known.push_back(each.name);
   for (const auto& entry : host_sync_algorithms()) known.push_back(entry.info.name);
   for (const auto& entry : device_time_algorithms()) known.push_back(entry.info.name);

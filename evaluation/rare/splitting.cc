@@ -146,7 +146,7 @@ class Splitting {
     std::ranges::sort(order);
     particles.reserve(all);
     for (std::size_t i = kept; i < all; ++i) {
-      particles.push_back(Particle(particles[order[i % kept].second]));
+      particles.emplace_back(particles[order[i % kept].second]);
     }
     return static_cast<double>(kept) / static_cast<double>(all);
   }

@@ -55,6 +55,7 @@ std::vector<Override> with_ad_hoc_pipelines(const std::string& scenario,
   if (std::ranges::none_of(names, stated)) return overrides;
   const std::vector<Pipeline> pipelines = scenarios::load_scenario(scenario, overrides).pipelines;
   std::vector<std::string> known;
+  known.reserve(pipelines.size() + names.size());
   for (const Pipeline& pipeline : pipelines) known.push_back(pipeline.name);
   for (const std::string& name : names) {
     if (!stated(name) || std::ranges::find(known, name) != known.end()) continue;

@@ -87,6 +87,7 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
 
 Table table_of_rows(const RowFields& fields, const std::vector<const Row*>& rows) {
   std::vector<std::reference_wrapper<const Row>> subjects;
+  subjects.reserve(rows.size());
   for (const Row* row : rows) subjects.emplace_back(*row);
   return table_of(fields, subjects);
 }

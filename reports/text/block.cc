@@ -94,13 +94,14 @@ std::string latex_header(const Table& table) {
   std::vector<std::vector<std::string>> lines;
   std::size_t rows = 1;
   for (const Column& column : table.columns) {
-    lines.push_back({});
+    lines.emplace_back();
     boost::split(lines.back(), column.header, [](char c) { return c == '\n'; });
     rows = std::max(rows, lines.back().size());
   }
   std::string out;
   for (std::size_t row = 0; row < rows; ++row) {
     std::vector<std::string> cells;
+    cells.reserve(lines.size());
     for (const std::vector<std::string>& of_column : lines) {
       const std::size_t missing = rows - of_column.size();
       cells.push_back(row < missing ? "" : latex_cell(of_column[row - missing]));
@@ -117,6 +118,7 @@ std::string latex_table(const Table& raw, const std::string& caption) {
   std::string rows;
   for (const std::vector<std::string>& row : table.rows) {
     std::vector<std::string> cells;
+    cells.reserve(row.size());
     for (const std::string& cell : row) cells.push_back(latex_cell(cell));
     rows += latex_row(cells);
   }

@@ -29,7 +29,7 @@ std::string in_this_program(const std::string& text) {
   std::size_t done = 0;
   for (std::size_t at = text.find(kCited); at != std::string::npos;
        at = text.find(kCited, at + kCited.size())) {
-    if (!begins_command(std::string_view(text).substr(0, at))) continue;
+    if (!begins_command(std::string_view{text}.substr(0, at))) continue;
     named.append(text, done, at - done).append(program_name()).append(" ");
     done = at + kCited.size();
   }

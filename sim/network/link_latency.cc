@@ -52,8 +52,8 @@ LinkLatency::LinkLatency(const scenarios::Network& network, std::uint64_t run_se
   }
   const bool is_table = !table_ms_.empty();
   const scenarios::Link* const stated = stated_link(network, from, to);
-  static const scenarios::Link kUnstated;
-  const scenarios::Link& link = stated == nullptr ? kUnstated : *stated;
+  static const scenarios::Link unstated;
+  const scenarios::Link& link = stated == nullptr ? unstated : *stated;
   const double asymmetry = asymmetry_ms(network, link, run_seed, from, to) / 2;
   const double stated_ms = link.latency_fixed_ms.value_or(network.latency_fixed_ms);
   exponential_ms_ = link.latency_exponential_ms.value_or(network.latency_exponential_ms);

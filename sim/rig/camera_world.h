@@ -140,9 +140,9 @@ class CameraWorld {
   struct Step {
     TrueTime at;
     TrueTime transferred;
-    std::uint64_t order;  // among all steps
-    std::uint32_t frame;  // in flight
-    std::uint32_t place;  // of its stream on the controller
+    std::uint64_t order = 0;  // among all steps
+    std::uint32_t frame = 0;  // in flight
+    std::uint32_t place = 0;  // of its stream on the controller
   };
   struct Bus {
     UsbController controller;
@@ -152,10 +152,10 @@ class CameraWorld {
     HostJitter jitter;  // of all of its frames
     HostLoad load;
     // From here to before there.
-    std::uint32_t first_stream;
-    std::uint32_t end_stream;
-    std::uint32_t first_bus;
-    std::uint32_t end_bus;
+    std::uint32_t first_stream = 0;
+    std::uint32_t end_stream = 0;
+    std::uint32_t first_bus = 0;
+    std::uint32_t end_bus = 0;
     TrueTime next_timer;  // not later than the earliest of its shutters'
   };
 
