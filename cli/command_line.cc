@@ -143,6 +143,7 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   cli::hold_standard_descriptors();
   cli::choose_message_format(arguments);
   reports::set_page_width(cli::width_of_output());
+  reports::set_page_colour(cli::colours_output());
   if (argc > 0) {
     reports::set_program_name(std::filesystem::path(arguments[0]).filename().string());
   }

@@ -106,6 +106,8 @@ bool takes_escapes() {
   return !term.empty() && term != "dumb";
 }
 
+bool colours_output() { return isatty(STDOUT_FILENO) != 0 && takes_escapes() && wants_colour(); }
+
 bool wants_colour() { return variable("NO_COLOR").empty() && variable("CLICOLOR") != "0"; }
 
 }  // namespace simbench::cli

@@ -65,6 +65,9 @@ bool takes_escapes();
 // Whether colour is wanted: neither NO_COLOR (no-color.org) nor CLICOLOR=0 (bixense.com/clicolors).
 bool wants_colour();
 
+// Whether standard output is a terminal that is to show colour.
+bool colours_output();
+
 }  // namespace simbench::cli
 
 #endif  // SIMBENCH_CLI_MESSAGES_H_

@@ -29,10 +29,11 @@ bool has_value(const Row& row, RankedBy ranked_by) {
 }
 
 // The rows of a standing that have a value, in order of their medians.
-std::vector<const Row*> rows_of(const Results& results, RowStanding standing, RankedBy ranked_by) {
+std::vector<const Row*> rows_of(const std::vector<const Row*>& all, RowStanding standing,
+                                RankedBy ranked_by) {
   std::vector<const Row*> rows;
-  for (const Row& row : results.rows) {
-    if (standing_of(row) == standing && has_value(row, ranked_by)) rows.push_back(&row);
+  for (const Row* row : all) {
+    if (standing_of(*row) == standing && has_value(*row, ranked_by)) rows.push_back(row);
   }
   std::ranges::stable_sort(
       rows, {}, [ranked_by](const Row* row) { return ranked_series(*row, ranked_by).median; });
@@ -90,22 +91,42 @@ RowStanding standing_of(const Row& row) {
   return is_relative ? RowStanding::kReference : RowStanding::kRunnable;
 }
 
+const char* standing_name(RowStanding standing) {
+  switch (standing) {
+    case RowStanding::kRunnable:
+      return "";
+    case RowStanding::kReference:
+      return "reference";
+    case RowStanding::kLimit:
+      return "limit";
+  }
+  return "";
+}
+
+const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by) {
+  const std::vector<const Row*> runnable = rows_of(rows, RowStanding::kRunnable, ranked_by);
+  return runnable.empty() ? nullptr : runnable.front();
+}
+
 const Series& ranked_series(const Row& row, RankedBy ranked_by) {
   return ranked_by == RankedBy::kAmd ? row.amd_ms : row.absolute_error_ms;
 }
 
 Answer answer_of(const Results& results, RankedBy ranked_by) {
   Answer answer{.ranked_by = ranked_by};
-  std::vector<const Row*> rows = rows_of(results, RowStanding::kRunnable, ranked_by);
+  std::vector<const Row*> all;
+  all.reserve(results.rows.size());
+  for (const Row& row : results.rows) all.push_back(&row);
+  std::vector<const Row*> rows = rows_of(all, RowStanding::kRunnable, ranked_by);
   if (rows.empty() && ranked_by == RankedBy::kAmd) {
     answer.ranked_by = RankedBy::kAbsoluteError;
-    rows = rows_of(results, RowStanding::kRunnable, answer.ranked_by);
+    rows = rows_of(all, RowStanding::kRunnable, answer.ranked_by);
   }
   if (rows.empty()) return answer;
   answer.runnable = rows.size();
   answer.best = rows.front();
   compare_with_best(rows, answer);
-  find_limit(rows_of(results, RowStanding::kLimit, answer.ranked_by), answer);
+  find_limit(rows_of(all, RowStanding::kLimit, answer.ranked_by), answer);
   const std::vector<double>& values = ranked_series(*answer.best, answer.ranked_by).values;
   const double relative =
       median_interval(values, static_cast<std::int64_t>(count_of_existing(values))).relative;

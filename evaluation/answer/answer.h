@@ -41,6 +41,8 @@ enum class RowStanding : std::uint8_t {
   kLimit,      // it needs the truth
 };
 RowStanding standing_of(const Row& row);
+// In tables: "", "reference" or "limit".
+const char* standing_name(RowStanding standing);
 
 struct Answer {
   RankedBy ranked_by = RankedBy::kAmd;
@@ -57,6 +59,9 @@ struct Answer {
 
 // `results` must outlive the answer.
 Answer answer_of(const Results& results, RankedBy ranked_by);
+
+// The one of these that a rig can run and that has the smallest median; null: there is none.
+const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by);
 
 // The series of a row that the answer ranks by.
 const Series& ranked_series(const Row& row, RankedBy ranked_by);

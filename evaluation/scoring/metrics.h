@@ -275,19 +275,19 @@ constexpr Metric time_error(const char* id, const char* title, SeriesPlace kept,
 }
 inline constexpr Metric kMaxTe =
     time_error("max_te_ms", "largest time error",
-               {&MetricValues<double>::max_te_ms, &MetricValues<Series>::max_te_ms}, 1,
-               "max |TE|\nms", "TE: a host's clock minus the master's, over all slaves;");
+               {&MetricValues<double>::max_te_ms, &MetricValues<Series>::max_te_ms}, 1, "max |TE|",
+               "TE: a host's clock minus the master's, over all slaves;");
 inline constexpr Metric kRmsTe = time_error(
     "rms_te_ms", "RMS time error",
-    {&MetricValues<double>::rms_te_ms, &MetricValues<Series>::rms_te_ms}, 2, "RMS TE\nms", "");
+    {&MetricValues<double>::rms_te_ms, &MetricValues<Series>::rms_te_ms}, 2, "RMS TE", "");
 inline constexpr Metric kConstantTe =
     time_error("constant_te_ms", "constant time error",
                {&MetricValues<double>::constant_te_ms, &MetricValues<Series>::constant_te_ms}, 3,
-               "constant\nTE ms", "constant: largest mean of a host;");
+               "constant\nTE", "constant: largest mean of a host;");
 inline constexpr Metric kDynamicTe =
     time_error("dynamic_te_ms", "dynamic time error",
                {&MetricValues<double>::dynamic_te_ms, &MetricValues<Series>::dynamic_te_ms}, 4,
-               "dynamic\nTE ms", "dynamic: largest range of a host.");
+               "dynamic\nTE", "dynamic: largest range of a host.");
 // Of both kinds of runs; in tables of captures beside the hosts' time errors.
 constexpr Metric packets_metric() {
   Metric metric;
@@ -317,7 +317,7 @@ inline constexpr Metric kMetricTable[] = {
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::amd_ms, &MetricValues<Series>::amd_ms},
      .tables = {.summary = 1, .paper = 1, .response = 1, .response_panel = 1},
-     .heading = "AMD\nmedian ms",
+     .heading = "AMD\nmedian",
      .band_heading = "AMD\n5-95 %",
      .legend = "AMD: mean range of the global stamps of a pulse over all cameras;",
      .csv = CsvColumns::kBand,
@@ -328,7 +328,7 @@ inline constexpr Metric kMetricTable[] = {
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::rmdv_ms, &MetricValues<Series>::rmdv_ms},
      .tables = {.paper = 2},
-     .heading = "RMDV\nmedian ms",
+     .heading = "RMDV\nmedian",
      .band_heading = "RMDV\n5-95 %",
      .legend = "RMDV: mean RMS deviation of these from their median.",
      .legend_continues = true,
@@ -342,7 +342,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::absolute_error_ms,
                           &MetricValues<Series>::absolute_error_ms},
      .tables = {.summary = 2, .truth = 1, .response = 2, .response_panel = 2},
-     .heading = "absolute error\nmedian ms",
+     .heading = "absolute error\nmedian",
      .band_heading = "absolute error\n5-95 %",
      .legend = "absolute error: mean |global stamp - true mid-exposure on the master's clock|;",
      .csv = CsvColumns::kBand,
@@ -355,7 +355,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kTruth,
      .place = SeriesPlace{&MetricValues<double>::bias_ms, &MetricValues<Series>::bias_ms},
      .tables = {.truth = 2},
-     .heading = "bias\nms",
+     .heading = "bias",
      .legend = "bias: the signed mean, which AMD cannot show.",
      .legend_continues = true,
      .csv = CsvColumns::kBand,
@@ -367,7 +367,7 @@ inline constexpr Metric kMetricTable[] = {
      .place =
          SeriesPlace{&MetricValues<double>::host_error_ms, &MetricValues<Series>::host_error_ms},
      .tables = {.summary = 3, .truth = 3, .response = 3},
-     .heading = "host clock error\nmedian ms",
+     .heading = "host clock error\nmedian",
      .band_heading = "host clock error\n5-95 %",
      .legend = "host clock error: mean |slave - master|.",
      .csv = CsvColumns::kBand,
@@ -385,7 +385,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::exposure_spread_ms,
                           &MetricValues<Series>::exposure_spread_ms},
      .tables = {.truth = 4},
-     .heading = "exposure\nspread ms",
+     .heading = "exposure\nspread",
      .legend = "exposure spread: how far apart the exposures really were, a limit for AMD.",
      .legend_continues = true,
      .csv = CsvColumns::kBand,
@@ -422,7 +422,7 @@ inline constexpr Metric kMetricTable[] = {
      .needs = Needs::kVerifiedSets,
      .place = &PooledValues::margin_ms,
      .tables = {.truth = 7, .response = 6, .response_panel = 4},
-     .heading = "margin\nms",
+     .heading = "margin",
      .legend = "margin: limit less 99.9 % quantile of the range.",
      .legend_continues = true,
      .json_in = kInGathering,
@@ -496,7 +496,7 @@ inline constexpr Metric kMetricTable[] = {
      .unit = "ms",
      .place = SeriesPlace{&MetricValues<double>::set_amd_ms, &MetricValues<Series>::set_amd_ms},
      .tables = {.sets = 7},
-     .heading = "AMD of\nsets ms",
+     .heading = "AMD of\nsets",
      .json_in = kInGathering,
      .csv = CsvColumns::kValueAtEnd,
      .sweep = "set_amd_ms"},
@@ -507,7 +507,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::set_absolute_error_ms,
                           &MetricValues<Series>::set_absolute_error_ms},
      .tables = {.sets = 8},
-     .heading = "abs. error\nof sets ms",
+     .heading = "abs. error\nof sets",
      .json_in = kInGathering,
      .csv = CsvColumns::kValueAtEnd,
      .sweep = "set_absolute_error_ms"},
@@ -517,7 +517,7 @@ inline constexpr Metric kMetricTable[] = {
      .place = SeriesPlace{&MetricValues<double>::emission_latency_ms,
                           &MetricValues<Series>::emission_latency_ms},
      .tables = {.sets = 9},
-     .heading = "emitted after\nmean ms",
+     .heading = "emitted after\nmean",
      .legend = "emitted after: since the last member's arrival. AMD of sets is small where "
                "gathering gave sets up: see recall.",
      .legend_continues = true,
@@ -529,7 +529,7 @@ inline constexpr Metric kMetricTable[] = {
      .unit = "ms",
      .place = &PooledValues::emission_latency_max_ms,
      .tables = {.sets = 10},
-     .heading = "emitted after\nlargest ms",
+     .heading = "emitted after\nlargest",
      .json_in = kInGathering,
      .csv = CsvColumns::kValueAtEnd},
     {.id = "frames_expected",

@@ -7,6 +7,7 @@
 
 #include "recording/counted.h"
 #include "recording/version.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -72,16 +73,15 @@ Table options_table(const Advice& advice) {
          return fmt::format("{}-{}", euro_text(each.option.price.low_eur),
                             euro_text(each.option.price.high_eur));
        }},
-      {{"meets it", Align::kLeft}, verdict},
+      {{.header = "meets it", .align = Align::kLeft, .is_verdict = true}, verdict},
       {{"probability\n% [95 %]"}, [](const auto& each) { return probability_text(each.best()); }},
       {{"rigs"}, [](const auto& each) { return fmt::format("{}", each.best().seeds); }}};
   for (std::size_t i = 0; i < advice.request.requirements.size(); ++i) {
     const evaluation::Metric& metric = *advice.request.requirements[i].metric;
-    const std::string unit = metric.is_share() ? "%" : metric.unit;
-    fields.push_back({{fmt::format("{}\nmedian {}", metric.title, unit)},
-                      [i, &metric](const OptionAdvice& each) {
-                        return number_text(shown_value(metric, each.best().median[i]));
-                      }});
+    fields.push_back(
+        {{fmt::format("{}\nmedian", metric.title)}, [i, &metric](const OptionAdvice& each) {
+           return metric_text(metric, each.best().median[i]);
+         }});
   }
   fields.push_back({{"margin"}, [](const auto& each) { return margin_text(each.best().margin); }});
   fields.push_back({{"best pipeline", Align::kLeft}, [](const auto& each) {

@@ -12,15 +12,15 @@ namespace {
 std::string bounds_text(const RareResult& result, double times) {
   const evaluation::RareEstimate& estimate = result.estimate;
   if (estimate.is_below) return "-";
-  return fmt::format("[{}, {}]", significant_text(times * estimate.low),
-                     significant_text(times * estimate.high));
+  return fmt::format("[{}, {}]", number_text(times * estimate.low),
+                     number_text(times * estimate.high));
 }
 
 std::string value_or_below(const RareResult& result, double times) {
   const evaluation::RareEstimate& estimate = result.estimate;
-  if (!estimate.is_below) return significant_text(times * estimate.probability);
+  if (!estimate.is_below) return number_text(times * estimate.probability);
   return std::isfinite(estimate.high) && estimate.high > 0
-             ? fmt::format("below about {}", significant_text(times * estimate.high))
+             ? fmt::format("below about {}", number_text(times * estimate.high))
              : "too rare";
 }
 

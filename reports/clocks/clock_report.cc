@@ -17,6 +17,7 @@
 #include "reports/results/program_gap.h"
 #include "reports/results/results_document.h"
 #include "reports/text/json_node.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -69,7 +70,7 @@ double median_of(const Metric& metric, const Row& row) {
 
 Field<Row> clock_field(const Metric& metric) {
   return {{metric.heading, Align::kRight, metric.legend},
-          [metric](const Row& row) { return significant_text(median_of(metric, row)); }};
+          [metric](const Row& row) { return metric_text(metric, median_of(metric, row)); }};
 }
 
 Table metrics_table(const ClockResults& results) {
@@ -92,10 +93,10 @@ Table over_tau_table(const ClockResults& results, const evaluation::ClockCurve& 
   }
   Table table(std::move(columns));
   for (std::size_t i = 0; longest != nullptr && i < longest->size(); ++i) {
-    std::vector<std::string> cells = {significant_text((*longest)[i].tau_s)};
+    std::vector<std::string> cells = {number_text((*longest)[i].tau_s)};
     for (const evaluation::StabilityCurves& curves : results.curves) {
       const auto& points = curves.*curve.points;
-      cells.push_back(i < points.size() ? significant_text(points[i].value) : "-");
+      cells.push_back(i < points.size() ? number_text(points[i].value) : "-");
     }
     table.add(std::move(cells));
   }

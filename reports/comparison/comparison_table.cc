@@ -6,6 +6,7 @@
 
 #include "reports/comparison/comparison.h"
 #include "reports/comparison/comparison_scenarios.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -20,18 +21,6 @@ bool is_sure(const PairedComparison& comparison) {
   return comparison.verdict == Verdict::kBetter || comparison.verdict == Verdict::kWorse;
 }
 
-// Three digits, whatever the size: "0.00528", "1.45", "201", "1234"; "-" for NaN.
-std::string factor_text(double factor) {
-  constexpr double kWhole = 999.5;  // rounds to four digits
-  if (std::isnan(factor)) return "-";
-  return std::abs(factor) < kWhole ? fmt::format("{:.3g}", factor) : fmt::format("{:.0f}", factor);
-}
-
-// "AMD ms", "recall %".
-std::string shown_title(const Metric& metric) {
-  return fmt::format("{} {}", metric.title, metric.is_share() ? "%" : metric.unit);
-}
-
 bool has_interval(const Estimate& estimate) { return !std::isnan(estimate.low); }
 
 // "times" from a factor of two on, else percent; with the interval, if there is one.
@@ -40,9 +29,9 @@ std::string factor_words(const Estimate& ratio) {
   const auto worded = [&](const char* what, double value, double near, double far,
                           const char* unit) {
     std::string text =
-        fmt::format("{}{} {}", factor_text(value), *unit == 0 ? " times" : unit, what);
+        fmt::format("{}{} {}", number_text(value), *unit == 0 ? " times" : unit, what);
     if (!has_interval(ratio)) return text;
-    return fmt::format("{} [{}{}, {}{}]", text, factor_text(near), unit, factor_text(far), unit);
+    return fmt::format("{} [{}{}, {}{}]", text, number_text(near), unit, number_text(far), unit);
   };
   if (ratio.value >= kTimes) return worded("larger", ratio.value, ratio.low, ratio.high, "");
   if (ratio.value * kTimes <= 1 && !(ratio.low <= 0)) {
@@ -115,20 +104,13 @@ std::string effect_words(const Metric& metric, const PairedComparison& compariso
                        share_text(comparison.mean_a));
   }
   if (std::isnan(comparison.ratio.low)) {
-    return fmt::format("{} {} {} in place of {} {}", metric.title,
-                       judged_text(metric, comparison.mean_b), metric.unit,
-                       judged_text(metric, comparison.mean_a), metric.unit);
+    return fmt::format("{} {} in place of {}", metric.title, metric_text(metric, comparison.mean_b),
+                       metric_text(metric, comparison.mean_a));
   }
   return fmt::format("{} {}", metric.title, factor_words(comparison.ratio));
 }
 
 namespace {
-
-// Like other numbers, but a small ratio keeps its digits.
-std::string ratio_cell(double ratio) {
-  constexpr double kSmall = 0.1;
-  return ratio > 0 && ratio < kSmall ? factor_text(ratio) : number_text(ratio);
-}
 
 std::string interval_cell(const std::string& low, const std::string& high) {
   return low == "-" || high == "-" ? "-" : fmt::format("[{}, {}]", low, high);
@@ -136,15 +118,14 @@ std::string interval_cell(const std::string& low, const std::string& high) {
 
 std::vector<std::string> cells(const std::string& pipeline, const Metric& metric,
                                const PairedComparison& c, double smallest_effect) {
-  const auto shown = [&](double value) { return judged_text(metric, value); };
   return {pipeline,
-          shown_title(metric),
-          shown(c.median_a),
-          shown(c.median_b),
-          shown(c.difference.value),
-          interval_cell(shown(c.difference.low), shown(c.difference.high)),
-          ratio_cell(c.ratio.value),
-          interval_cell(ratio_cell(c.ratio.low), ratio_cell(c.ratio.high)),
+          metric.title,
+          metric_text(metric, c.median_a),
+          metric_text(metric, c.median_b),
+          difference_text(metric, c.difference.value),
+          interval_text(metric, c.difference.low, c.difference.high),
+          number_text(c.ratio.value),
+          interval_cell(number_text(c.ratio.low), number_text(c.ratio.high)),
           verdict_text(c, smallest_effect)};
 }
 
@@ -157,7 +138,7 @@ Table comparison_table(const Comparison& comparison) {
                {"B - A\ninterval"},
                {"B / A\nof means"},
                {"B / A\ninterval"},
-               {"B is", Align::kLeft}},
+               {.header = "B is", .align = Align::kLeft, .is_verdict = true}},
               2);
   const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {

@@ -9,6 +9,7 @@
 #include "reports/results/derivation_json.h"
 #include "reports/text/block.h"
 #include "reports/text/json_node.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 #include "reports/text/plain_text.h"
 #include "scenarios/document.h"
@@ -16,13 +17,9 @@
 namespace simbench::reports {
 namespace {
 
-const char* unit_of(const GateCheck& check) {
-  return check.metric->is_share() ? "%" : check.metric->unit;
-}
-
 std::string gate_value(const GateCheck& check, double value) {
   if (!std::isfinite(value)) return "none";
-  return fmt::format("{} {}", judged_text(*check.metric, value), unit_of(check));
+  return difference_text(*check.metric, value);
 }
 
 const char* statistic_name(const GateReport& report, const GateCheck& check) {
@@ -62,9 +59,10 @@ std::string evidence_text(const GateReport& report, const GateCheck& check) {
                               counted(report.seeds.count, "seed"));
   }
   return text +
-         fmt::format("; {:.4g} % interval of the change [{}, {}], p {:.2g} after Holm's correction",
-                     100 * check.confidence, judged_text(*check.metric, check.difference.low),
-                     judged_text(*check.metric, check.difference.high), check.adjusted_p);
+         fmt::format("; {:.4g} % interval of the change {}, p {:.2g} after Holm's correction",
+                     100 * check.confidence,
+                     interval_text(*check.metric, check.difference.low, check.difference.high),
+                     check.adjusted_p);
 }
 
 std::string outcome_text(GateOutcome outcome) {
@@ -116,7 +114,7 @@ std::string changes(const GateReport& report) {
                {"change"},
                {"allowed"},
                {"seeds\nchanged"},
-               {"outcome", Align::kLeft}},
+               {.header = "outcome", .align = Align::kLeft, .is_verdict = true}},
               2);
   bool is_empty = true;
   for (const GateCheck& check : report.checks) {

@@ -15,7 +15,7 @@
 #include "reports/results/summary_document.h"
 #include "reports/text/html_text.h"
 #include "reports/text/json_node.h"
-#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 #include "scenarios/choices.h"
 
 namespace simbench::reports {
@@ -151,7 +151,8 @@ std::string title_of(const ReportInput& input) {
 std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
   const Row* const row = evaluation::find_row(archive.results.rows, pipeline);
   if (row == nullptr || std::isnan(((*row).*series).median)) return "-";
-  return fmt::format("{} {}{}", number_text(((*row).*series).median), band_text((*row).*series),
+  const Series& values = (*row).*series;
+  return fmt::format("{} {}{}", time_text(values.median), time_band_text(values.p05, values.p95),
                      is_unverified(*row) ? " (unverified)" : "");
 }
 
@@ -180,8 +181,8 @@ std::vector<Block> archive_blocks(const std::vector<ReportedArchive>& archives) 
                       }});
   };
   for (const ReportedArchive& reported : archives) {
-    add(reported.archive, "AMD, ms", &Row::amd_ms);
-    add(reported.archive, "absolute error, ms", &Row::absolute_error_ms);
+    add(reported.archive, "AMD", &Row::amd_ms);
+    add(reported.archive, "absolute error", &Row::absolute_error_ms);
   }
   return {{.heading = "The archives side by side",
            .table = table_of(fields, pipelines_of(archives)),

@@ -75,9 +75,9 @@ std::string distance_sentences(const Results& results, const Answer& answer) {
     const std::string range =
         std::isnan(ratio.low)
             ? ""
-            : fmt::format(" [{}, {}]", significant_text(ratio.low), significant_text(ratio.high));
+            : fmt::format(" [{}, {}]", number_text(ratio.low), number_text(ratio.high));
     text += fmt::format(" The next, {}, has {}{} times as much.", answer.next->pipeline,
-                        significant_text(ratio.value), range);
+                        number_text(ratio.value), range);
   }
   const Row* const paper = evaluation::find_row(results.rows, evaluation::kPaperPipeline);
   if (paper == nullptr || paper == answer.best || paper == answer.next) return text;
@@ -87,7 +87,7 @@ std::string distance_sentences(const Results& results, const Answer& answer) {
           .median;
   if (std::isnan(times)) return text;
   return text + fmt::format(" The paper's method, {}, has {} times as much.", paper->pipeline,
-                            significant_text(times));
+                            number_text(times));
 }
 
 std::string limit_sentence(const Answer& answer) {
@@ -97,7 +97,7 @@ std::string limit_sentence(const Answer& answer) {
                                                      : fmt::format("{}, which knows the truth, has",
                                                                    answer.limit->pipeline);
   return fmt::format(" {} {}; it has {} times that limit.", what, time_text(median),
-                     significant_text(answer.times_limit));
+                     number_text(answer.times_limit));
 }
 
 // What limits it, and what would improve it most.

@@ -7,6 +7,7 @@
 
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/scoring/metrics.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -33,7 +34,7 @@ std::vector<Compared> compared_metrics(evaluation::ResultKind kind) {
 std::string ratio_text(const Metric& metric, const Row& program, const Row& model) {
   const double ratio =
       evaluation::paired_ratio(metric.series(program), metric.series(model)).median;
-  return significant_text(ratio);
+  return number_text(ratio);
 }
 
 }  // namespace
@@ -42,8 +43,8 @@ std::optional<Block> program_gap_block(const Results& results) {
   const std::vector<Compared> compared = compared_metrics(results.kind);
   std::vector<Column> columns = {{"program", Align::kLeft}, {"model", Align::kLeft}};
   for (const Compared& each : compared) {
-    columns.push_back({fmt::format("{}\nprogram ms", each.heading)});
-    columns.push_back({fmt::format("{}\nmodel ms", each.heading)});
+    columns.push_back({fmt::format("{}\nprogram", each.heading)});
+    columns.push_back({fmt::format("{}\nmodel", each.heading)});
     columns.push_back({fmt::format("{}\nratio", each.heading)});
   }
   Table table(std::move(columns), 2);
@@ -52,8 +53,8 @@ std::optional<Block> program_gap_block(const Results& results) {
     if (model == nullptr) continue;
     std::vector<std::string> cells = {row.pipeline, model->pipeline};
     for (const Compared& each : compared) {
-      cells.push_back(significant_text(each.metric->series(row).median));
-      cells.push_back(significant_text(each.metric->series(*model).median));
+      cells.push_back(metric_text(*each.metric, each.metric->series(row).median));
+      cells.push_back(metric_text(*each.metric, each.metric->series(*model).median));
       cells.push_back(ratio_text(*each.metric, row, *model));
     }
     table.add(std::move(cells));

@@ -9,7 +9,9 @@
 #include "evaluation/scoring/rows.h"
 #include "reports/results/ground_truth_text.h"
 #include "reports/results/program_gap.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -30,7 +32,7 @@ bool any_published(const Results& results) {
 
 std::string cell_text(const Metric& metric, const Row& row) {
   if (metric.is_count()) return metric.is_known(row) ? count_text(metric.count(row)) : "-";
-  return metric.is_share() ? share_text(metric.value(row)) : number_text(metric.value(row));
+  return metric_text(metric, metric.value(row));
 }
 
 Field<Row> published_field(Column column, std::string (*cell)(const PublishedComparison&)) {
@@ -52,20 +54,24 @@ void append(RowFields& fields, const RowFields& more) {
 }
 
 RowFields published_amd_fields() {
-  return {published_field({"published\nAMD ms"},
-                          [](const auto& known) { return number_text(known.amd_ms); }),
-          published_field({"published\nAMD is", Align::kLeft},
-                          [](const auto& known) { return placement_text(known.amd_percentile); }),
-          published_field({"at percentile\n[95 % interval]"},
-                          [](const auto& known) { return percentile_text(known.amd_percentile); })};
+  return {
+      published_field({"published\nAMD"},
+                      [](const auto& known) { return time_text(known.amd_ms); }),
+      published_field({.header = "published\nAMD is", .align = Align::kLeft, .is_verdict = true},
+                      [](const auto& known) { return placement_text(known.amd_percentile); }),
+      published_field({"at percentile\n[95 % interval]"},
+                      [](const auto& known) { return percentile_text(known.amd_percentile); })};
 }
 
 RowFields published_rmdv_fields() {
-  return {published_field({"published\nRMDV ms"},
-                          [](const auto& known) { return number_text(known.rmdv_ms); }),
-          published_field({"published\nRMDV is", Align::kLeft}, [](const auto& known) {
-            return known.rmdv_attainable ? placement_text(known.rmdv_percentile) : "not attainable";
-          })};
+  return {
+      published_field({"published\nRMDV"},
+                      [](const auto& known) { return time_text(known.rmdv_ms); }),
+      published_field({.header = "published\nRMDV is", .align = Align::kLeft, .is_verdict = true},
+                      [](const auto& known) {
+                        return known.rmdv_attainable ? placement_text(known.rmdv_percentile)
+                                                     : "not attainable";
+                      })};
 }
 
 std::vector<const Row*> pointers_to(const std::vector<Row>& rows) {
@@ -236,8 +242,11 @@ std::vector<Field<Row>> metric_fields(const Metric& metric) {
   RowFields fields = {{{metric.heading, Align::kRight, metric.legend},
                        [metric](const Row& row) { return cell_text(metric, row); }}};
   if (metric.band_heading != nullptr) {
-    fields.push_back({{metric.band_heading, Align::kRight, metric.legend},
-                      [metric](const Row& row) { return band_text(metric.series(row)); }});
+    fields.push_back(
+        {{metric.band_heading, Align::kRight, metric.legend}, [metric](const Row& row) {
+           const evaluation::Series& series = metric.series(row);
+           return interval_text(metric, series.p05, series.p95);
+         }});
   }
   return fields;
 }
@@ -291,10 +300,10 @@ std::string asymmetry_line(const Results& results) {
   if (!results.asymmetry_floor) return "";
   const evaluation::AsymmetryFloor& floor = *results.asymmetry_floor;
   return fmt::format(
-      "Floor: unequal links (sigma {} ms) alone put any host synchronisation that measures over "
-      "them at an AMD of {} ms and a host clock error of {} ms on average; only methods that do "
+      "Floor: unequal links (sigma {}) alone put any host synchronisation that measures over "
+      "them at an AMD of {} and a host clock error of {} on average; only methods that do "
       "not measure over the links can be below.",
-      number_text(floor.sigma_ms), number_text(floor.amd_ms), number_text(floor.host_error_ms));
+      time_text(floor.sigma_ms), time_text(floor.amd_ms), time_text(floor.host_error_ms));
 }
 
 Document results_document(const Results& results, const std::string& summary) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/answer/answer.h"
 #include "evaluation/run/leaderboard.h"
 #include "evaluation/scoring/metrics.h"
 #include "evaluation/scoring/rows.h"
@@ -21,6 +22,7 @@ namespace {
 using evaluation::Board;
 using evaluation::Metric;
 using evaluation::Rank;
+using evaluation::RankedBy;
 using evaluation::Results;
 using evaluation::Row;
 using evaluation::TablePlaces;
@@ -35,27 +37,12 @@ std::vector<const Metric*> summary_metrics() {
   return evaluation::table_metrics(&TablePlaces::summary);
 }
 
-std::string short_cell_text(const Metric& metric, const Row& row) {
-  const double value = metric.value(row);
-  if (std::string_view(metric.unit) == "ms") return time_text(value);
-  return metric.is_share() ? share_text(value) : significant_text(value);
-}
-
-// The median; with a band, both.
+// The median; of AMD its band too.
 void add_metric(const Metric& metric, RowFields& fields) {
-  const bool is_time = std::string_view(metric.unit) == "ms";
-  const std::string heading = is_time ? fmt::format("{}\nmedian", metric.title) : metric.heading;
-  // Copied, since the address of a metric may not last.
-  fields.push_back({{heading, Align::kRight, metric.legend},
-                    [metric](const Row& row) { return short_cell_text(metric, row); }});
-}
-
-void add_band(const Metric& metric, RowFields& fields) {
-  fields.push_back({{fmt::format("{}\n5-95 %", metric.title), Align::kRight, metric.legend},
-                    [metric](const Row& row) {
-                      const evaluation::Series& series = metric.series(row);
-                      return time_band_text(series.p05, series.p95);
-                    }});
+  RowFields both = metric_fields(metric);
+  const bool with_band = metric.id == std::string_view("amd_ms");
+  if (!with_band) both.resize(1);
+  fields.insert(fields.end(), both.begin(), both.end());
 }
 
 void add_published_amd(const Results& results, RowFields& fields) {
@@ -64,13 +51,23 @@ void add_published_amd(const Results& results, RowFields& fields) {
   fields.push_back({{"published\nAMD"}, [](const Row& row) {
                       return row.published ? time_text(row.published->amd_ms) : "-";
                     }});
-  fields.push_back({{"it is", Align::kLeft}, [](const Row& row) {
-                      return row.published ? placement_text(row.published->amd_percentile) : "-";
-                    }});
+  fields.push_back(
+      {{.header = "published\nis", .align = Align::kLeft, .is_verdict = true}, [](const Row& row) {
+         return row.published ? placement_text(row.published->amd_percentile) : "-";
+       }});
 }
 
-RowFields summary_fields(const Results& results, const std::vector<const Row*>& rows) {
-  RowFields fields = {pipeline_field<Row>()};
+// What a row is among those of its table: the best that a rig can run, a limit, a reference.
+Field<Row> standing_field(const std::vector<const Row*>& rows, RankedBy ranked_by) {
+  const Row* const best = evaluation::best_of(rows, ranked_by);
+  return {{.header = "is", .align = Align::kLeft, .is_verdict = true}, [best](const Row& row) {
+            return &row == best ? "best" : evaluation::standing_name(evaluation::standing_of(row));
+          }};
+}
+
+RowFields summary_fields(const Results& results, const std::vector<const Row*>& rows,
+                         RankedBy ranked_by) {
+  RowFields fields = {pipeline_field<Row>(), standing_field(rows, ranked_by)};
   if (has_real_rows(results)) {
     fields.push_back({{"ground\ntruth", Align::kLeft}, ground_truth_label});
   }
@@ -79,7 +76,6 @@ RowFields summary_fields(const Results& results, const std::vector<const Row*>& 
   for (const Metric* metric : summary_metrics()) {
     add_metric(*metric, fields);
     if (metric->id != std::string_view("amd_ms")) continue;
-    add_band(*metric, fields);
     add_published_amd(results, fields);
   }
   return fields;
@@ -109,7 +105,7 @@ Block rows_block(const Results& results) {
   for (const Row& row : results.rows) rows.push_back(&row);
   Block block;
   shorten(rows, kMostSummaryRows, block);
-  block.table = table_of_rows(summary_fields(results, rows), rows);
+  block.table = table_of_rows(summary_fields(results, rows, RankedBy::kAmd), rows);
   return block;
 }
 
@@ -120,7 +116,8 @@ Block board_block(const Results& results, const Board& board) {
   }
   Block block;
   shorten(rows, kMostRowsOfBoard, block);
-  block.table = table_of_rows(summary_fields(results, rows), rows);
+  const RankedBy ranked_by = RankedBy::kAbsoluteError;
+  block.table = table_of_rows(summary_fields(results, rows, ranked_by), rows);
   return block;
 }
 

@@ -102,7 +102,7 @@ std::string cameras_text(const Diagnosis& diagnosis) {
     const evaluation::StreamFacts& facts = camera.facts;
     const evaluation::Standing& standing = camera.standing;
     table.add({camera.camera, camera.host, camera.stream, count_text(facts.frames),
-               number_text(1000 / facts.host_period_ms), follows_text(standing.follows),
+               decimals_text(1000 / facts.host_period_ms, 3), follows_text(standing.follows),
                number_text(standing.rate_ppm), number_text(standing.moves_ms_per_minute),
                number_text(standing.phase_ms), number_text(facts.interval_jitter_ms),
                count_text(facts.lost_frames), count_text(facts.skipped_pulses),
@@ -118,7 +118,7 @@ std::string pairs_text(const Diagnosis& diagnosis) {
                {"offset\nms"},
                {"spread\nms"},
                {"moves ms\na minute"},
-               {"is", Align::kLeft}},
+               {.header = "is", .align = Align::kLeft, .is_verdict = true}},
               2);
   for (const PairDiagnosis& pair : diagnosis.pairs) {
     const char* const is = std::isnan(pair.offset_ms) ? "unknown"

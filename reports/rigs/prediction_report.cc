@@ -64,7 +64,7 @@ Table prediction_table(const std::vector<Prediction>& rows) {
                {"measured\n5-95 %"},
                {"simulated\nmedian ms"},
                {"simulated\n5-95 %"},
-               {"measured\nmedian is", Align::kLeft}},
+               {.header = "measured\nmedian is", .align = Align::kLeft, .is_verdict = true}},
               2);
   for (const Prediction& row : rows) {
     table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),

@@ -40,10 +40,6 @@ std::string camera_name(const Replay& replay, const CameraReplay& camera) {
 }
 
 // With so many decimals; "-" for NaN.
-std::string decimals_text(double value, int decimals) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
-}
-
 std::string clocks_text(const Replay& replay) {
   Table table({{"camera", Align::kLeft},
                {"host", Align::kLeft},
@@ -64,8 +60,8 @@ std::string clocks_text(const Replay& replay) {
     const CameraStatistics& s = camera.statistics;
     table.add({camera_name(replay, camera), camera.host, count_text(s.frames),
                count_text(s.missing_frames), number_text(s.span_s),
-               number_text(s.sensor_period.mean_ms), decimals_text(s.sensor_period.sd_ms, 4),
-               number_text(s.arrival_period.mean_ms), number_text(s.arrival_period.sd_ms),
+               decimals_text(s.sensor_period.mean_ms, 4), decimals_text(s.sensor_period.sd_ms, 4),
+               decimals_text(s.arrival_period.mean_ms, 4), number_text(s.arrival_period.sd_ms),
                decimals_text(s.drift_ppm, 3), decimals_text(s.envelope_drift_ppm, 3),
                number_text(s.excess.p50_ms), number_text(s.excess.p95_ms),
                number_text(s.excess.p99_ms), number_text(s.excess.max_ms)});
@@ -100,8 +96,8 @@ std::string rig_text(const RigReplay& rig) {
       "\n{} of {} cameras, unverified (a recording has no ground truth)\n"
       "  GenLock order finds {} complete pulses, period {} ms. It counts from the first frames, "
       "which arrived within {} ms:\n  {}\n\n",
-      rig.stream, rig.cameras.size(), count_text(rig.complete_pulses), number_text(rig.period_ms),
-      number_text(rig.first_arrival_range_ms),
+      rig.stream, rig.cameras.size(), count_text(rig.complete_pulses),
+      decimals_text(rig.period_ms, 4), number_text(rig.first_arrival_range_ms),
       rig.common_start_plausible
           ? "less than half a period, as after a common start."
           : "half a period or more, so without a common start; its AMD and RMDV are meaningless.");

@@ -17,11 +17,6 @@ inline bool of_clocks(const evaluation::SweepPlan& plan) {
   return plan.kind == evaluation::ResultKind::kClockRuns;
 }
 
-// How numbers are written: clock runs have values of nanoseconds.
-inline auto number_style(const evaluation::SweepPlan& plan) {
-  return of_clocks(plan) ? significant_text : number_text;
-}
-
 // The scenario, and how many points, pipelines and seeds.
 std::string sweep_heading(const evaluation::SweepPlan& plan);
 

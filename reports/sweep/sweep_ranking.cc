@@ -11,6 +11,7 @@
 #include "evaluation/sweep/ranking.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/sweep/sweep_parts.h"
+#include "reports/text/metric_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -102,8 +103,8 @@ Block packets_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows)
     for (const ResponseRow* row : by_packets(rows, pipeline)) {
       const auto& series = row->of(metric.sweep);
       std::vector<std::string> cells = {
-          plan.pipelines[pipeline], significant_text(row->of("packets_per_s").median),
-          significant_text(series.median), band_text(series, significant_text)};
+          plan.pipelines[pipeline], number_text(row->of("packets_per_s").median),
+          metric_text(metric, series.median), interval_text(metric, series.p05, series.p95)};
       // Where a method cannot ask more often, further points repeat it.
       const std::string text = fmt::format("{}", fmt::join(cells, " "));
       if (text != last) table.add(std::move(cells));

@@ -21,7 +21,9 @@
 #include "reports/results/derivation_json.h"
 #include "reports/sweep/sweep_parts.h"
 #include "reports/text/json_node.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -263,14 +265,14 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
     if (metric == metrics.front()) columns.push_back({metric->band_heading});
   }
   Table table(std::move(columns), keys);
-  const auto number = number_style(plan);
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     if (lack_seeds) cells.push_back(scored_seeds_text(scored_seeds_at(row, metrics)));
     for (const Metric* metric : metrics) {
-      const double value = row.value(*metric);
-      cells.push_back(metric->is_share() ? share_text(value) : number(value));
-      if (metric == metrics.front()) cells.push_back(band_text(row.of(metric->sweep), number));
+      cells.push_back(metric_text(*metric, row.value(*metric)));
+      if (metric != metrics.front()) continue;
+      const evaluation::Series& series = row.of(metric->sweep);
+      cells.push_back(interval_text(*metric, series.p05, series.p95));
     }
     table.add(std::move(cells));
   }
@@ -294,20 +296,20 @@ Block host_order_block(const SweepPlan& plan, const std::vector<ResponseRow>& ro
   for (const ResponseRow& row : rows) {
     std::vector<std::string> cells = point_cells(plan, row);
     for (std::size_t host = 1; host < hosts; ++host) {
-      cells.push_back(host < row.hosts.size() ? number_text(row.hosts[host].median) : "");
+      cells.push_back(host < row.hosts.size() ? time_text(row.hosts[host].median) : "");
     }
     table.add(std::move(cells));
   }
   return {.heading = "Clock error of each slave, in the order of their sessions",
           .table = std::move(table),
-          .prose = {"Milliseconds: the median over the seeds of a host's |mean clock error| during "
+          .prose = {"The median over the seeds of a host's |mean clock error| during "
                     "the capture. Host 1 is synchronised first and has run free the longest."}};
 }
 
 Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   std::vector<Column> columns = point_columns(plan);
   const std::size_t keys = columns.size();
-  columns.push_back({"AMD\nms"});
+  columns.push_back({"AMD"});
   std::vector<std::int64_t> counts;
   for (const std::int64_t count : kSeedCounts) {
     if (count <= static_cast<std::int64_t>(plan.seeds)) counts.push_back(count);
@@ -322,7 +324,7 @@ Block seeds_needed_block(const SweepPlan& plan, const std::vector<ResponseRow>& 
   for (const ResponseRow& row : rows) {
     const std::vector<double>& values = row.of("amd_ms").values;
     std::vector<std::string> cells = point_cells(plan, row);
-    cells.push_back(number_text(row.of("amd_ms").median));
+    cells.push_back(time_text(row.of("amd_ms").median));
     for (const std::int64_t count : counts) {
       cells.push_back(percent_text(evaluation::median_interval(values, count).relative));
     }

@@ -35,7 +35,8 @@ enum class Align : std::uint8_t { kLeft, kRight };
 struct Column {
   std::string header;
   Align align = Align::kRight;
-  std::string legend{};  // its meaning; a tooltip in HTML
+  std::string legend{};     // its meaning; a tooltip in HTML
+  bool is_verdict = false;  // better, worse, a limit: coloured by its words where colour is wanted
 };
 
 struct Table {

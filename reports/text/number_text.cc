@@ -10,27 +10,21 @@ namespace simbench::reports {
 
 std::string number_text(double value) {
   if (!std::isfinite(value)) return "-";
+  if (value == 0) return "0";
   const double size = std::abs(value);
-  if (size >= 1e6) return fmt::format("{:.1e}", value);
-  constexpr double kNanosecondMs = 1e-6;
-  if (size < kNanosecondMs) return "0.000";  // never "-0.000"
-  if (size < 0.0005) {
-    return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(size))));
-  }
-  return fmt::format("{:.{}f}", value, size < 100 ? 3 : 1);
-}
-
-std::string significant_text(double value) {
-  if (!std::isfinite(value)) return "-";
-  const double size = std::abs(value);
-  if (size != 0 && (size < 1e-4 || size >= 1e9)) return fmt::format("{:.2e}", value);
-  const int exponent = size == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
+  if (size < 1e-4 || size >= 1e9) return fmt::format("{:.2e}", value);
+  const double rounded = std::stod(fmt::format("{:.2e}", size));
+  const int exponent = static_cast<int>(std::floor(std::log10(rounded)));
   return fmt::format("{:.{}f}", value, std::max(0, 2 - exponent));
 }
 
-std::string band_text(const evaluation::Series& series, std::string (*value)(double)) {
+std::string decimals_text(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
+std::string band_text(const evaluation::Series& series) {
   if (!std::isfinite(series.p05) || !std::isfinite(series.p95)) return "-";
-  return fmt::format("[{}, {}]", value(series.p05), value(series.p95));
+  return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
 }
 
 std::string share_text(double share) {
@@ -108,16 +102,6 @@ void ScoredSeeds::add(std::size_t seeds) {
 std::string scored_seeds_text(const ScoredSeeds& seeds) {
   if (seeds.fewest == seeds.most) return fmt::format("{} of {}", seeds.most, seeds.all);
   return fmt::format("{}-{} of {}", seeds.fewest, seeds.most, seeds.all);
-}
-
-double shown_value(const evaluation::Metric& metric, double value) {
-  return metric.is_share() ? 100 * value : value;
-}
-
-std::string judged_text(const evaluation::Metric& metric, double value) {
-  const double shown = shown_value(metric, value);
-  const bool is_fine = metric.judged && metric.judged->smallest_step < 0.001;
-  return is_fine ? significant_text(shown) : number_text(shown);
 }
 
 std::string capitalised(std::string text) {

@@ -11,17 +11,15 @@
 
 namespace simbench::reports {
 
-// Three decimals (a microsecond, where the unit is a millisecond), of smaller numbers two
-// significant digits down to 1e-6 (a nanosecond), fewer for numbers of 100 and more, scientific
-// from a million on: "0.00023", "0.004", "12.345", "547.5", "1.6e+09"; "-" for what is not finite,
-// here and below.
+// Three significant digits, whatever the size: "0", "0.00123", "12.3", "36000", "1.23e-05"; "-" for
+// what is not finite, here and below.
 std::string number_text(double value);
 
-// Three significant digits, whatever the size: "0.00123", "36000", "1.23e-05".
-std::string significant_text(double value);
+// With so many decimals: periods and rates, whose last digits are compared.
+std::string decimals_text(double value, int decimals);
 
-// The 5-95 % band: "[1.802, 3.511]".
-std::string band_text(const evaluation::Series& series, std::string (*value)(double) = number_text);
+// The 5-95 % band: "[1.80, 3.51]".
+std::string band_text(const evaluation::Series& series);
 
 // A share in percent: "97.3 %". Only exactly 0 and 1 are written as 0 % and 100 %.
 std::string share_text(double share);
@@ -63,12 +61,6 @@ inline constexpr const char* kScoredSeedsLegend =
 // Why such a row has no AMD.
 inline constexpr const char* kSingleCameraLegend =
     "AMD, RMDV, spreads and margin compare cameras: of a single one there are none.";
-
-// A metric's value in the units of reports: milliseconds unchanged, shares in percent.
-double shown_value(const evaluation::Metric& metric, double value);
-
-// The same of a judged metric as text, with the digits that its smallest step needs.
-std::string judged_text(const evaluation::Metric& metric, double value);
 
 // "absolute error" as a title: "Absolute error".
 std::string capitalised(std::string text);

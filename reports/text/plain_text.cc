@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
+#include <string_view>
 #include <utility>
 
 #include "reports/text/block.h"
@@ -14,6 +16,7 @@ using Lines = std::vector<std::string>;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::optional<std::size_t> the_page_width;
+bool the_page_colour = false;
 
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kNarrowest = 12;
@@ -39,6 +42,32 @@ std::size_t widest(const Lines& lines) {
   std::size_t width = 0;
   for (const std::string& line : lines) width = std::max(width, line.size());
   return width;
+}
+
+// The escape of what a verdict's first word says; "" for none.
+const char* colour_of(std::string_view verdict) {
+  struct Words {
+    const char* escape;
+    std::initializer_list<std::string_view> words;
+  };
+  static const Words words[] = {
+      {"\x1b[32m", {"better", "best", "inside", "yes", "passed"}},
+      {"\x1b[31m", {"worse", "possibly worse", "outside", "no", "FAILED"}},
+      {"\x1b[36m", {"limit", "reference"}}};
+  const std::string_view said = verdict.substr(0, verdict.find_first_of(",:("));
+  for (const Words& each : words) {
+    if (std::ranges::find(each.words, said) != each.words.end()) return each.escape;
+  }
+  return "";
+}
+
+// The cell, coloured where it is a verdict and colour is wanted, between its blanks.
+std::string coloured(std::string padded, const std::string& text, const Column& column) {
+  const char* const escape = the_page_colour && column.is_verdict ? colour_of(text) : "";
+  if (*escape == '\0') return padded;
+  const std::size_t at = padded.find(text);
+  padded.insert(at + text.size(), "\x1b[0m");
+  return padded.insert(at, escape);
 }
 
 std::string pad(const std::string& text, std::size_t width, Align align) {
@@ -143,7 +172,9 @@ std::string side_by_side(const std::vector<Lines>& cells, const Part& part,
       const std::size_t missing = fill_top ? height - cells[s].size() : 0;
       const bool there = i >= missing && i - missing < cells[s].size();
       if (s > 0) line.append(kGap, ' ');
-      line += pad(there ? cells[s][i - missing] : "", part[s].width, columns[part[s].column].align);
+      const Column& column = columns[part[s].column];
+      const std::string text = there ? cells[s][i - missing] : "";
+      line += coloured(pad(text, part[s].width, column.align), text, column);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     out.append(line).append("\n");
@@ -175,7 +206,9 @@ void append_broken(std::string& out, std::string_view line, std::size_t width) {
   constexpr std::size_t kDeeper = 2;
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   std::size_t margin = 0;
-  while (margin + line.size() > width) {
+  // A line of a table, which fits already; its escapes have no width.
+  const bool is_coloured = line.find('\x1b') != std::string_view::npos;
+  while (!is_coloured && margin + line.size() > width) {
     const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
     const std::size_t room = width - std::min(width, margin);
     std::size_t at = line.rfind(' ', room);
@@ -194,6 +227,10 @@ void append_broken(std::string& out, std::string_view line, std::size_t width) {
 void set_page_width(std::optional<std::size_t> columns) { the_page_width = columns; }
 
 std::optional<std::size_t> page_width() { return the_page_width; }
+
+void set_page_colour(bool wanted) { the_page_colour = wanted; }
+
+bool page_colour() { return the_page_colour; }
 
 std::vector<std::string> words_in_lines(std::string_view text, std::size_t width) {
   Lines lines;

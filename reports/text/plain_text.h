@@ -1,5 +1,8 @@
 // The page of plain text, and prose on it. Tables: plain() of reports/text/block.h.
 //
+// Colour only repeats what a word says: green what is good ("better", "best", "inside", "yes"), red
+// what is not ("worse", "outside", "no", "FAILED"), cyan a limit or a reference.
+//
 // The page has no limit until set_page_width(), which the command calls once at its start, for its
 // terminal.
 //
@@ -26,16 +29,28 @@ struct Table;
 void set_page_width(std::optional<std::size_t> columns);
 std::optional<std::size_t> page_width();
 
-// A page without limit during its lifetime, for text in a file.
+// Whether cells of verdicts are coloured by ECMA-48's escapes; not until this. Not while another
+// thread prints.
+void set_page_colour(bool wanted);
+bool page_colour();
+
+// A page without limit or colour during its lifetime, for text in a file.
 class FilePage {
  public:
-  FilePage() : width_(page_width()) { set_page_width(std::nullopt); }
-  ~FilePage() { set_page_width(width_); }
+  FilePage() : width_(page_width()), colour_(page_colour()) {
+    set_page_width(std::nullopt);
+    set_page_colour(false);
+  }
+  ~FilePage() {
+    set_page_width(width_);
+    set_page_colour(colour_);
+  }
   FilePage(const FilePage&) = delete;
   FilePage& operator=(const FilePage&) = delete;
 
  private:
   std::optional<std::size_t> width_;
+  bool colour_;
 };
 
 inline constexpr std::size_t kTextWidth = 140;

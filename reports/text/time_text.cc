@@ -29,14 +29,15 @@ std::string time_text(double ms) {
   if (!std::isfinite(ms)) return "-";
   if (ms == 0) return "0";
   const TimeUnit& unit = time_unit_of(ms);
-  return fmt::format("{} {}", significant_text(ms * unit.per_ms), unit.name);
+  return fmt::format("{} {}", number_text(ms * unit.per_ms), unit.name);
 }
 
 std::string time_band_text(double low_ms, double high_ms) {
   if (!std::isfinite(low_ms) || !std::isfinite(high_ms)) return "-";
+  if (low_ms == 0 && high_ms == 0) return "[0, 0]";
   const TimeUnit& unit = time_unit_of(std::max(std::abs(low_ms), std::abs(high_ms)));
-  return fmt::format("[{}, {}] {}", significant_text(low_ms * unit.per_ms),
-                     significant_text(high_ms * unit.per_ms), unit.name);
+  return fmt::format("[{}, {}] {}", number_text(low_ms * unit.per_ms),
+                     number_text(high_ms * unit.per_ms), unit.name);
 }
 
 }  // namespace simbench::reports

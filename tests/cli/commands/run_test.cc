@@ -88,7 +88,7 @@ TEST_F(Run, OneCameraHasNoAmdAndTheTableSaysWhy) {
     arguments.insert(arguments.end(), {"--format", format});
     return run(arguments).out;
   };
-  EXPECT_THAT(run(command).out, testing::ContainsRegex("\noracle +- +- +[0-9.]+ ms +- "));
+  EXPECT_THAT(run(command).out, testing::ContainsRegex("\noracle +limit +- +- +[0-9.]+ ms +- "));
   EXPECT_THAT(run(command).out, HasSubstr("compare cameras: of a single one there are none"));
   EXPECT_THAT(formatted("markdown"), HasSubstr("| oracle | - | - | - | - |"));
   EXPECT_THAT(formatted("csv"), HasSubstr("\noracle,oracle,regression_30,yoon2021,,,,,,,"));

@@ -135,7 +135,7 @@ TEST(ExactGate, OfRecallTheMeanCountsAndLessIsWorse) {
   const GateReport report = exact(now);
   EXPECT_FALSE(report.passed());
   EXPECT_THAT(check_text(report, report.checks.at(3)),
-              HasSubstr("recall of plain in sample, seeds 1-32: mean 96.5"));
+              HasSubstr("recall of plain in sample, seeds 1-32: mean 96.6 %"));
 }
 
 TEST(ExactGate, AValueThatVanishedFails) {

@@ -60,9 +60,10 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST(HtmlReport, HasTheNumbersOfTheTable) {
   const std::string page = page_of({monday_archive()});
   for (const char* part :
-       {"<th scope=\"row\" class=\"text\">yoon2021_both</th><td>2.000</td><td>[1.500, 2.500]</td>",
-        "<td>2.438</td><td class=\"text\">inside</td><td>50 % [32-68]</td>",
-        "<td class=\"text\">not attainable</td>", "<td>29.000</td>", "<td>75.0 %</td>",
+       {"<th scope=\"row\" class=\"text\">yoon2021_both</th><td>2.00 ms</td><td>[1.50, 2.50] "
+        "ms</td>",
+        "<td>2.44 ms</td><td class=\"text\">inside</td><td>50 % [32-68]</td>",
+        "<td class=\"text\">not attainable</td>", "<td>29.0 ms</td>", "<td>75.0 %</td>",
         "none is worst", "(needs 18cam_6host_15fps)", "a host was not synchronised",
         "1.23 M events", "2 seeds (1-2)", "0.1.0 (abc)", "A rig.", "a note"}) {
     EXPECT_TRUE(has(page, part)) << part;
@@ -218,8 +219,8 @@ TEST(HtmlReport, SeveralArchivesAreComparedAndKeptApart) {
   const std::string page = page_of({monday_archive(), tuesday});
   EXPECT_TRUE(has(page, "The archives side by side"));
   EXPECT_TRUE(has(page,
-                  "<td>2.000 [1.500, 2.500]</td><td>29.000 [28.000, 30.000]</td>"
-                  "<td>4.000 [3.000, 5.000]</td>"));
+                  "<td>2.00 ms [1.50, 2.50] ms</td><td>29.0 ms [28.0, 30.0] ms</td>"
+                  "<td>4.00 ms [3.00, 5.00] ms</td>"));
   EXPECT_EQ(count(page, "<article class=\"archive\""), 2U);
   EXPECT_EQ(count(page, "class=\"data\">"), 2U);
   EXPECT_FALSE(has(page_of({tuesday}), "The archives side by side"));

@@ -51,8 +51,8 @@ TEST(GroundTruthText, SimulatedResultsLookAsTheyAlwaysDid) {
 
 TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
   const std::string text = table_of(sample_rig_results());
-  EXPECT_THAT(text, HasSubstr("yoon2021_both  unverified      2.000"));
-  EXPECT_THAT(text, HasSubstr("free_running   -                   -"));
+  EXPECT_THAT(text, HasSubstr("yoon2021_both  unverified  2.00 ms"));
+  EXPECT_THAT(text, HasSubstr("free_running   -                 -"));
   EXPECT_THAT(text, HasSubstr("What went wrong\n"
                               "  yoon2021_both, repetition 2: camera 7 was unplugged\n"
                               "  free_running, repetition 1: host2 could not be reached\n"));
@@ -60,7 +60,7 @@ TEST(GroundTruthText, TheTableLabelsUnverifiedRowsAndListsNotes) {
   EXPECT_THAT(text, HasSubstr("Every repetition of a pipeline is a capture of its own."));
   EXPECT_THAT(text, Not(HasSubstr("events/s")));
   EXPECT_THAT(markdown(results_document(sample_rig_results(), "")),
-              HasSubstr("| yoon2021_both | unverified | 2.000 |"));
+              HasSubstr("| yoon2021_both | unverified | 2.00 ms |"));
 }
 
 TEST(GroundTruthText, GenlockCapturesAreVerified) {

@@ -27,27 +27,27 @@ A fit, stated as such.
 
 The paper's metrics
 
-                     AMD               AMD  published  published    at percentile       RMDV            RMDV  published  published
-pipeline       median ms            5-95 %     AMD ms  AMD is     [95 % interval]  median ms          5-95 %    RMDV ms  RMDV is
--------------  ---------  ----------------  ---------  ---------  ---------------  ---------  --------------  ---------  --------------
-yoon2021_both      2.000    [1.500, 2.500]      2.438  inside        50 % [32-68]      0.750  [0.500, 1.000]      1.804  not attainable
-free_running    750250.0  [500.0, 1.5e+06]          -  -                        -      250.0  [200.0, 300.0]          -  -
+                   AMD              AMD  published  published    at percentile      RMDV              RMDV  published  published
+pipeline        median           5-95 %        AMD  AMD is     [95 % interval]    median            5-95 %       RMDV  RMDV is
+-------------  -------  ---------------  ---------  ---------  ---------------  --------  ----------------  ---------  --------------
+yoon2021_both  2.00 ms  [1.50, 2.50] ms    2.44 ms  inside        50 % [32-68]  0.750 ms  [0.500, 1.00] ms    1.80 ms  not attainable
+free_running     750 s  [0.500, 1500] s          -  -                        -    250 ms     [200, 300] ms          -  -
 
 Metrics that need true time
 
-               absolute error    absolute error     bias  host clock error  host clock error   exposure      sets:   sets:  margin   frames  pulses
-pipeline            median ms            5-95 %       ms         median ms            5-95 %  spread ms  precision  recall      ms  dropped  scored
--------------  --------------  ----------------  -------  ----------------  ----------------  ---------  ---------  ------  ------  -------  ------
-yoon2021_both          29.000  [28.000, 30.000]  -29.000             0.500    [0.250, 0.750]      0.062      100 %  75.0 %   8.500        3     960
-free_running                -                 -        -                 -                 -          -          -     0 %       -        0       0
+               absolute error   absolute error            host clock error   host clock error  exposure      sets:   sets:            frames  pulses
+pipeline               median           5-95 %      bias            median             5-95 %    spread  precision  recall   margin  dropped  scored
+-------------  --------------  ---------------  --------  ----------------  -----------------  --------  ---------  ------  -------  -------  ------
+yoon2021_both         29.0 ms  [28.0, 30.0] ms  -29.0 ms          0.500 ms  [0.250, 0.750] ms   62.5 us      100 %  75.0 %  8.50 ms        3     960
+free_running                -                -         -                 -                  -         -          -     0 %        -        0       0
 
 Time error of the hosts
 
-               max |TE|  RMS TE  constant  dynamic  packets
-pipeline             ms      ms     TE ms    TE ms    per s
--------------  --------  ------  --------  -------  -------
-yoon2021_both     1.500   0.625     0.375    2.000   30.000
-free_running          -       -         -        -        -
+                                   constant  dynamic  packets
+pipeline       max |TE|    RMS TE        TE       TE    per s
+-------------  --------  --------  --------  -------  -------
+yoon2021_both   1.50 ms  0.625 ms  0.375 ms  2.00 ms     30.0
+free_running          -         -         -        -        -
 
 yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
 
@@ -93,9 +93,9 @@ TEST(Table, GatheringHasABlockOnlyIfThePipelinesDiffer) {
                                       R"(Gathered sets, over all seeds
 
                           complete      sets:   sets:   index  partial     frames   AMD of  abs. error  emitted after  emitted after
-pipeline       gathering      sets  precision  recall  errors     sets  discarded  sets ms  of sets ms        mean ms     largest ms
+pipeline       gathering      sets  precision  recall  errors     sets  discarded     sets     of sets           mean        largest
 -------------  ---------  --------  ---------  ------  ------  -------  ---------  -------  ----------  -------------  -------------
-yoon2021_both  yoon2021        720      100 %  75.0 %       0        4         21    1.750      28.000          0.250          6.000
+yoon2021_both  yoon2021        720      100 %  75.0 %       0        4         21  1.75 ms     28.0 ms       0.250 ms        6.00 ms
 free_running   epsilon           0          -     0 %       0        0          0        -           -              -              -
 )"));
 }
@@ -108,23 +108,23 @@ A fit, stated as such.
 
 ### The paper's metrics
 
-| pipeline | AMD median ms | AMD 5-95 % | published AMD ms | published AMD is | at percentile [95 % interval] | RMDV median ms | RMDV 5-95 % | published RMDV ms | published RMDV is |
+| pipeline | AMD median | AMD 5-95 % | published AMD | published AMD is | at percentile [95 % interval] | RMDV median | RMDV 5-95 % | published RMDV | published RMDV is |
 |---|---:|---:|---:|---|---:|---:|---:|---:|---|
-| yoon2021_both | 2.000 | [1.500, 2.500] | 2.438 | inside | 50 % [32-68] | 0.750 | [0.500, 1.000] | 1.804 | not attainable |
-| free_running | 750250.0 | [500.0, 1.5e+06] | - | - | - | 250.0 | [200.0, 300.0] | - | - |
+| yoon2021_both | 2.00 ms | [1.50, 2.50] ms | 2.44 ms | inside | 50 % [32-68] | 0.750 ms | [0.500, 1.00] ms | 1.80 ms | not attainable |
+| free_running | 750 s | [0.500, 1500] s | - | - | - | 250 ms | [200, 300] ms | - | - |
 
 ### Metrics that need true time
 
-| pipeline | absolute error median ms | absolute error 5-95 % | bias ms | host clock error median ms | host clock error 5-95 % | exposure spread ms | sets: precision | sets: recall | margin ms | frames dropped | pulses scored |
+| pipeline | absolute error median | absolute error 5-95 % | bias | host clock error median | host clock error 5-95 % | exposure spread | sets: precision | sets: recall | margin | frames dropped | pulses scored |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
-| yoon2021_both | 29.000 | [28.000, 30.000] | -29.000 | 0.500 | [0.250, 0.750] | 0.062 | 100 % | 75.0 % | 8.500 | 3 | 960 |
+| yoon2021_both | 29.0 ms | [28.0, 30.0] ms | -29.0 ms | 0.500 ms | [0.250, 0.750] ms | 62.5 us | 100 % | 75.0 % | 8.50 ms | 3 | 960 |
 | free_running | - | - | - | - | - | - | - | 0 % | - | 0 | 0 |
 
 ### Time error of the hosts
 
-| pipeline | max \|TE\| ms | RMS TE ms | constant TE ms | dynamic TE ms | packets per s |
+| pipeline | max \|TE\| | RMS TE | constant TE | dynamic TE | packets per s |
 |---|---:|---:|---:|---:|---:|
-| yoon2021_both | 1.500 | 0.625 | 0.375 | 2.000 | 30.000 |
+| yoon2021_both | 1.50 ms | 0.625 ms | 0.375 ms | 2.00 ms | 30.0 |
 | free_running | - | - | - | - | - |
 
 yoon2021_both: host synchronisation failed once over all seeds. Seed 2: timeout.
@@ -160,15 +160,15 @@ TEST(ResultsDocument, AMetricThatNamesItsTableStandsInIt) {
   evaluation::Metric mine = evaluation::metric("bias_ms");
   mine.id = "mine_ms";
   mine.tables = {.truth = 10};
-  mine.heading = "mine\nms";
+  mine.heading = "mine";
   mine.legend = "mine: of this test.";
   mine.legend_continues = false;
   const evaluation::ScopedMetric scoped(mine);
   const Document document = results_document(sample_results(), "");
-  EXPECT_THAT(plain(document), HasSubstr("  -29.000\n"));  // in the last column
+  EXPECT_THAT(plain(document), HasSubstr("  -29.0 ms\n"));  // in the last column
   EXPECT_THAT(plain(document), HasSubstr("\n  mine: of this test.\n"));
-  EXPECT_THAT(markdown(document), HasSubstr("| pulses scored | mine ms |\n"));
-  EXPECT_THAT(html(document.blocks), HasSubstr("title=\"mine: of this test.\">mine ms</th></tr>"));
+  EXPECT_THAT(markdown(document), HasSubstr("| pulses scored | mine |\n"));
+  EXPECT_THAT(html(document.blocks), HasSubstr("title=\"mine: of this test.\">mine</th></tr>"));
 }
 
 TEST(Table, SaysOverHowManySeedsAMedianIs) {
@@ -179,13 +179,13 @@ TEST(Table, SaysOverHowManySeedsAMedianIs) {
   results.rows[0].absolute_error_ms.values = {28, kNaN};
   const std::string text = table(results, "");
   EXPECT_THAT(text, testing::ContainsRegex("pipeline +seeds "));
-  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1 of 2 +2.000"));
-  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1-2 of 2 +29.000"));
+  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1 of 2 +2.00 ms"));
+  EXPECT_THAT(text, testing::ContainsRegex("yoon2021_both +1-2 of 2 +29.0 ms"));
   EXPECT_THAT(text, testing::ContainsRegex("free_running +2 of 2 "));
   EXPECT_THAT(text, HasSubstr(kScoredSeedsLegend));
   const Document document = results_document(results, "");
-  EXPECT_THAT(markdown(document), HasSubstr("| yoon2021_both | 1 of 2 | 2.000 |"));
-  EXPECT_THAT(html(document.blocks), HasSubstr("<td>1 of 2</td><td>2.000</td>"));
+  EXPECT_THAT(markdown(document), HasSubstr("| yoon2021_both | 1 of 2 | 2.00 ms |"));
+  EXPECT_THAT(html(document.blocks), HasSubstr("<td>1 of 2</td><td>2.00 ms</td>"));
 }
 
 TEST(Table, APipelineWithoutAnySeedSaysSo) {
@@ -230,13 +230,13 @@ TEST(Table, AVerdictForEveryPublishedValue) {
   evaluation::Results results = sample_results();
   results.rows[0].published->amd_percentile = {0, 0, 4.75};
   results.rows[0].published->rmdv_attainable = true;
-  EXPECT_THAT(table(results, ""), Not(HasSubstr("2.438  inside")));
-  EXPECT_THAT(table(results, ""), HasSubstr("2.438  outside"));
-  EXPECT_THAT(table(results, ""), HasSubstr("1.804  outside"));
+  EXPECT_THAT(table(results, ""), Not(HasSubstr("2.44 ms  inside")));
+  EXPECT_THAT(table(results, ""), HasSubstr("2.44 ms  outside"));
+  EXPECT_THAT(table(results, ""), HasSubstr("1.80 ms  outside"));
   results.rows[0].published->rmdv_percentile = {50, 32.25, 67.75};
-  EXPECT_THAT(table(results, ""), HasSubstr("1.804  inside"));
+  EXPECT_THAT(table(results, ""), HasSubstr("1.80 ms  inside"));
   results.rows[0].published->rmdv_percentile = {50, 1.25, 98.75};
-  EXPECT_THAT(table(results, ""), HasSubstr("1.804  too few seeds"));
+  EXPECT_THAT(table(results, ""), HasSubstr("1.80 ms  too few seeds"));
 }
 
 TEST(Table, FitsAWideTerminal) {

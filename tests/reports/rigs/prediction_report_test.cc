@@ -97,8 +97,7 @@ TEST(Prediction, UnverifiedRowsAreComparedBySets) {
 TEST(Prediction, OneRepetitionHasAValueAndNoBand) {
   const std::string text = plain({.blocks = {prediction_block(measured({2}), simulated())}});
   EXPECT_THAT(
-      text,
-      HasSubstr("both      AMD         2.000         -      2.000  [1.100, 2.900]  inside\n"));
+      text, HasSubstr("both      AMD          2.00         -       2.00   [1.10, 2.90]  inside\n"));
   EXPECT_THAT(text, HasSubstr("One repetition has a\nvalue and no band."));
   EXPECT_THAT(plain({.blocks = {prediction_block(measured({2, 2}), simulated())}}),
               Not(HasSubstr("One repetition")));
@@ -138,9 +137,8 @@ TEST(Prediction, IsAMemberOfTheResultsJson) {
 }
 
 TEST(Prediction, Markdown) {
-  EXPECT_THAT(
-      markdown({.blocks = {prediction_block(measured({2.5, 2.7}), simulated())}}),
-      HasSubstr("| both | AMD | 2.600 | [2.510, 2.690] | 2.000 | [1.100, 2.900] | inside |"));
+  EXPECT_THAT(markdown({.blocks = {prediction_block(measured({2.5, 2.7}), simulated())}}),
+              HasSubstr("| both | AMD | 2.60 | [2.51, 2.69] | 2.00 | [1.10, 2.90] | inside |"));
 }
 
 }  // namespace

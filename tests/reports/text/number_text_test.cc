@@ -9,20 +9,25 @@
 namespace simbench::reports {
 namespace {
 
-TEST(NumberText, HasAsManyDigitsAsMakeSense) {
-  EXPECT_EQ(number_text(0.0042), "0.004");
-  EXPECT_EQ(number_text(2.438), "2.438");
-  EXPECT_EQ(number_text(-29.5), "-29.500");
-  EXPECT_EQ(number_text(547.5033), "547.5");
-  EXPECT_EQ(number_text(1.6e9), "1.6e+09");
+TEST(NumberText, HasThreeSignificantDigits) {
+  EXPECT_EQ(number_text(0.0042), "0.00420");
+  EXPECT_EQ(number_text(2.438), "2.44");
+  EXPECT_EQ(number_text(-29.5), "-29.5");
+  EXPECT_EQ(number_text(547.5033), "548");
+  EXPECT_EQ(number_text(36000), "36000");
+  EXPECT_EQ(number_text(0.000042), "4.20e-05");
+  EXPECT_EQ(number_text(1.6e9), "1.60e+09");
+}
+
+TEST(NumberText, HasThreeDigitsWhereItIsRoundedUp) {
+  EXPECT_EQ(number_text(9.997), "10.0");
+  EXPECT_EQ(number_text(0.09997), "0.100");
+  EXPECT_EQ(number_text(99.97), "100");
 }
 
 TEST(NumberText, ZeroHasNoSign) {
-  EXPECT_EQ(number_text(0), "0.000");
-  EXPECT_EQ(number_text(-0.0), "0.000");
-  EXPECT_EQ(number_text(-0.0000004), "0.000");
-  EXPECT_EQ(number_text(-0.0004), "-0.00040");
-  EXPECT_EQ(number_text(0.000042), "0.000042");
+  EXPECT_EQ(number_text(0), "0");
+  EXPECT_EQ(number_text(-0.0), "0");
 }
 
 TEST(NumberText, WhatIsNotFiniteIsADash) {
@@ -50,7 +55,7 @@ TEST(NumberText, ASharePretendsNothing) {
 }
 
 TEST(NumberText, BandsAndPercentiles) {
-  EXPECT_EQ(band_text(series(1.5, 2.25)), "[1.500, 2.250]");
+  EXPECT_EQ(band_text(series(1.5, 2.25)), "[1.50, 2.25]");
   EXPECT_EQ(percentile_text({33.3, 18, 51.2}), "33 % [18-51]");
 }
 

@@ -161,5 +161,46 @@ TEST(Fitted, BreaksLongLinesAtBlanksAndLeavesTheOthers) {
   EXPECT_EQ(fitted(""), "");
 }
 
+// Colour for one test.
+struct ColourGuard {
+  ColourGuard() { set_page_colour(true); }
+  ~ColourGuard() { set_page_colour(false); }
+  ColourGuard(const ColourGuard&) = delete;
+  ColourGuard& operator=(const ColourGuard&) = delete;
+};
+
+Table verdicts() {
+  Table table({{"name", Align::kLeft},
+               {.header = "is", .align = Align::kLeft, .is_verdict = true},
+               {"value"}});
+  table.add({"better", "better, by less than 1 %", "better"});
+  table.add({"b", "no difference seen", "1"});
+  table.add({"c", "no", "2"});
+  table.add({"d", "limit", "3"});
+  return table;
+}
+
+TEST(PlainTable, ColoursVerdictsAloneAndByTheirWords) {
+  const std::string without = plain(verdicts());
+  const ColourGuard colour;
+  EXPECT_EQ(plain(verdicts()),
+            "name    is                         value\n"
+            "------  ------------------------  ------\n"
+            "better  \x1b[32mbetter, by less than 1 %\x1b[0m  better\n"
+            "b       no difference seen             1\n"
+            "c       \x1b[31mno\x1b[0m                             2\n"
+            "d       \x1b[36mlimit\x1b[0m                          3\n");
+  const FilePage file;
+  EXPECT_EQ(plain(verdicts()), without);
+}
+
+TEST(PlainTable, ColourHasNoWidth) {
+  const Document document{.blocks = {{.table = verdicts()}}};
+  const PageGuard page(40);
+  const std::string without = plain(document);
+  const ColourGuard colour;
+  EXPECT_EQ(lines(plain(document)).size(), lines(without).size());
+}
+
 }  // namespace
 }  // namespace simbench::reports

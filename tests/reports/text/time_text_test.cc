@@ -26,6 +26,7 @@ TEST(TimeText, ABandHasOneUnit) {
   EXPECT_EQ(time_band_text(0.0121, 0.015), "[12.1, 15.0] us");
   EXPECT_EQ(time_band_text(435.9, 1373), "[0.436, 1.37] s");
   EXPECT_EQ(time_band_text(-0.002, 0.001), "[-2.00, 1.00] us");
+  EXPECT_EQ(time_band_text(0, 0), "[0, 0]");
   EXPECT_EQ(time_band_text(1, std::numeric_limits<double>::quiet_NaN()), "-");
 }
 
