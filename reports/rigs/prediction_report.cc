@@ -10,6 +10,7 @@
 #include "evaluation/statistics/statistics.h"
 #include "reports/results/json.h"
 #include "reports/text/json_node.h"
+#include "reports/text/metric_text.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -43,15 +44,19 @@ bool is_predicted(std::string_view metric, std::size_t measured) {
   return measured > 0 || metric == "amd_ms" || metric == "set_amd_ms";
 }
 
+std::string band_in_its_unit(const Prediction& prediction, const evaluation::Series& series) {
+  return interval_text(evaluation::metric(prediction.metric), series.p05, series.p95);
+}
+
 std::string measured_band(const Prediction& prediction) {
-  return prediction.measured_count > 1 ? band_text(prediction.measured) : "-";
+  return prediction.measured_count > 1 ? band_in_its_unit(prediction, prediction.measured) : "-";
 }
 
 std::string place_text(const Prediction& prediction) {
   return prediction.percentile ? placement_text(*prediction.percentile) : "-";
 }
 
-std::string metric_text(const Prediction& prediction) {
+std::string predicted_metric(const Prediction& prediction) {
   const bool unverified = !prediction.verified && prediction.measured_count > 0;
   return fmt::format("{}{}", evaluation::metric(prediction.metric).title,
                      unverified ? " (unverified)" : "");
@@ -60,15 +65,17 @@ std::string metric_text(const Prediction& prediction) {
 Table prediction_table(const std::vector<Prediction>& rows) {
   Table table({{"pipeline", Align::kLeft},
                {"metric", Align::kLeft},
-               {"measured\nmedian ms"},
+               {"measured\nmedian"},
                {"measured\n5-95 %"},
-               {"simulated\nmedian ms"},
+               {"simulated\nmedian"},
                {"simulated\n5-95 %"},
                {.header = "measured\nmedian is", .align = Align::kLeft, .is_verdict = true}},
               2);
   for (const Prediction& row : rows) {
-    table.add({row.pipeline, metric_text(row), number_text(row.measured.median), measured_band(row),
-               number_text(row.simulated.median), band_text(row.simulated), place_text(row)});
+    const evaluation::Metric& metric = evaluation::metric(row.metric);
+    table.add({row.pipeline, predicted_metric(row), metric_text(metric, row.measured.median),
+               measured_band(row), metric_text(metric, row.simulated.median),
+               band_in_its_unit(row, row.simulated), place_text(row)});
   }
   return table;
 }

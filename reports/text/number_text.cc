@@ -22,11 +22,6 @@ std::string decimals_text(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
 
-std::string band_text(const evaluation::Series& series) {
-  if (!std::isfinite(series.p05) || !std::isfinite(series.p95)) return "-";
-  return fmt::format("[{}, {}]", number_text(series.p05), number_text(series.p95));
-}
-
 std::string share_text(double share) {
   if (!std::isfinite(share)) return "-";
   if (share == 0) return "0 %";

@@ -18,9 +18,6 @@ std::string number_text(double value);
 // With so many decimals: periods and rates, whose last digits are compared.
 std::string decimals_text(double value, int decimals);
 
-// The 5-95 % band: "[1.80, 3.51]".
-std::string band_text(const evaluation::Series& series);
-
 // A share in percent: "97.3 %". Only exactly 0 and 1 are written as 0 % and 100 %.
 std::string share_text(double share);
 

@@ -45,7 +45,7 @@ std::size_t widest(const Lines& lines) {
 }
 
 // The escape of what a verdict's first word says; "" for none.
-const char* colour_of(std::string_view verdict) {
+const char* verdict_colour(std::string_view verdict) {
   struct Words {
     const char* escape;
     std::initializer_list<std::string_view> words;
@@ -63,7 +63,7 @@ const char* colour_of(std::string_view verdict) {
 
 // The cell, coloured where it is a verdict and colour is wanted, between its blanks.
 std::string coloured(std::string padded, const std::string& text, const Column& column) {
-  const char* const escape = the_page_colour && column.is_verdict ? colour_of(text) : "";
+  const char* const escape = the_page_colour && column.is_verdict ? verdict_colour(text) : "";
   if (*escape == '\0') return padded;
   const std::size_t at = padded.find(text);
   padded.insert(at + text.size(), "\x1b[0m");

@@ -97,7 +97,8 @@ TEST(Prediction, UnverifiedRowsAreComparedBySets) {
 TEST(Prediction, OneRepetitionHasAValueAndNoBand) {
   const std::string text = plain({.blocks = {prediction_block(measured({2}), simulated())}});
   EXPECT_THAT(
-      text, HasSubstr("both      AMD          2.00         -       2.00   [1.10, 2.90]  inside\n"));
+      text,
+      HasSubstr("both      AMD       2.00 ms         -    2.00 ms    [1.10, 2.90] ms  inside\n"));
   EXPECT_THAT(text, HasSubstr("One repetition has a\nvalue and no band."));
   EXPECT_THAT(plain({.blocks = {prediction_block(measured({2, 2}), simulated())}}),
               Not(HasSubstr("One repetition")));
@@ -137,8 +138,9 @@ TEST(Prediction, IsAMemberOfTheResultsJson) {
 }
 
 TEST(Prediction, Markdown) {
-  EXPECT_THAT(markdown({.blocks = {prediction_block(measured({2.5, 2.7}), simulated())}}),
-              HasSubstr("| both | AMD | 2.60 | [2.51, 2.69] | 2.00 | [1.10, 2.90] | inside |"));
+  EXPECT_THAT(
+      markdown({.blocks = {prediction_block(measured({2.5, 2.7}), simulated())}}),
+      HasSubstr("| both | AMD | 2.60 ms | [2.51, 2.69] ms | 2.00 ms | [1.10, 2.90] ms | inside |"));
 }
 
 }  // namespace

@@ -41,7 +41,6 @@ TEST(NumberText, WhatIsNotFiniteIsADash) {
 
 TEST(NumberText, WhatDoesNotExistIsADash) {
   EXPECT_EQ(number_text(kNaN), "-");
-  EXPECT_EQ(band_text(no_series()), "-");
   EXPECT_EQ(share_text(kNaN), "-");
   EXPECT_EQ(percentile_text({kNaN, 0, 100}), "-");
 }
@@ -54,8 +53,7 @@ TEST(NumberText, ASharePretendsNothing) {
   EXPECT_EQ(share_text(0.00001), "< 0.1 %");
 }
 
-TEST(NumberText, BandsAndPercentiles) {
-  EXPECT_EQ(band_text(series(1.5, 2.25)), "[1.50, 2.25]");
+TEST(NumberText, Percentiles) {
   EXPECT_EQ(percentile_text({33.3, 18, 51.2}), "33 % [18-51]");
 }
 
