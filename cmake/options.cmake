@@ -28,6 +28,10 @@ function(simbench_build_options)
   endforeach()
 endfunction()
 
+# g++ collects its garbage from a GB on, not from 128 MB: a tenth of the time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  simbench_build_options(--param=ggc-min-heapsize=1000000)
+endif()
 simbench_build_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_definitions(simbench_flags INTERFACE $<BUILD_INTERFACE:_GLIBCXX_ASSERTIONS>)
