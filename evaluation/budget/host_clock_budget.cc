@@ -25,9 +25,8 @@ constexpr bool is_ideal(std::size_t ideal, HostClockCause cause) {
 
 template <class... Kinds>
 void remove_faults(std::vector<Fault>& faults) {
-  std::erase_if(faults, [](const Fault& fault) {
-    return (std::holds_alternative<Kinds>(fault) || ...);
-  });
+  std::erase_if(faults,
+                [](const Fault& fault) { return (std::holds_alternative<Kinds>(fault) || ...); });
 }
 
 // The fixed latency, the residence in switches and what has no effect then stay.

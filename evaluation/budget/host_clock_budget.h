@@ -2,7 +2,8 @@
 // host synchronisation's own.
 //
 // An algorithm does not report what it estimates, so each part is a counterfactual: the same
-// algorithm runs with the same seeds in worlds of which some causes are taken away. There are three:
+// algorithm runs with the same seeds in worlds of which some causes are taken away. There are
+// three:
 //
 //   messages     the network and the hosts pass each message in a constant time that is the same in
 //                both directions, lose none and stamp it exactly; so do network cards and pulse
@@ -18,8 +19,8 @@
 //
 // A part is a Shapley value (shapley.h) over the 2^3 worlds, divided is the host clock error
 // (host_error_ms, docs/design.md section 8). The remainder is the error without all three: the
-// algorithm's own, from convergence that has not ended, a correction it does not make, a wrong model
-// (a one-way method does not know even a constant latency), its rounding.
+// algorithm's own, from convergence that has not ended, a correction it does not make, a wrong
+// model (a one-way method does not know even a constant latency), its rounding.
 //
 // Not divided, but given a note: a host_sync that sends nothing (the limits), one that looks at
 // frames, whose way over USB is no message's, one host, and programs that cannot run here. A real

@@ -1,7 +1,8 @@
-// All that is known of what causes a pipeline's errors: the budget of its stages and that of its host
-// clocks.
+// All that is known of what causes a pipeline's errors: the budget of its stages and that of its
+// host clocks.
 //
-// Cost and errors: as of error_budgets() and host_clock_budgets(). Progress counts the runs of both.
+// Cost and errors: as of error_budgets() and host_clock_budgets(). Progress counts the runs of
+// both.
 //
 //   for (const PipelineBudget& budget :
 //        pipeline_budgets(scenario, scenario.pipelines, make_world, {.seeds = 32}, nullptr)) {

@@ -41,7 +41,8 @@ BudgetPart budget_part(std::vector<double> values) {
 
 DividedError divide_error(const std::vector<std::vector<double>>& by_world) {
   const std::size_t seeds = by_world.front().size();
-  std::vector<std::vector<double>> players(static_cast<std::size_t>(std::countr_zero(by_world.size())));
+  std::vector<std::vector<double>> players(
+      static_cast<std::size_t>(std::countr_zero(by_world.size())));
   std::vector<double> worth(by_world.size());
   for (std::size_t seed = 0; seed < seeds; ++seed) {
     for (std::size_t world = 0; world < worth.size(); ++world) worth[world] = by_world[world][seed];

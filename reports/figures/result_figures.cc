@@ -271,7 +271,8 @@ NamedParts named_parts(const HostClockBudget& budget) {
 
 std::string host_clock_caption(const HostClockBudget& budget) {
   if (!budget.is_divided) return fmt::format(" Host clock error: not divided: {}.", budget.note);
-  return " The host clock error (slaves against the master) loses its estimation where messages are "
+  return " The host clock error (slaves against the master) loses its estimation where messages "
+         "are "
          "ideal, its staleness where oscillators are, its steering where clock calls are; the rest "
          "is the algorithm's own.";
 }

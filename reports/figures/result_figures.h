@@ -30,9 +30,9 @@ std::vector<Figure> distributions(const Archive& archive);
 // one after another. The same figures as above. Needs read_seed_details().
 std::vector<Figure> host_order(const Archive& archive);
 
-// The error budget of a pipeline, with a panel each for AMD, the absolute error, the physical spread
-// and, where it is divided, the host clock error: the mean parts and the remainder as bars, the ends
-// of the 5-95 % band as points.
+// The error budget of a pipeline, with a panel each for AMD, the absolute error, the physical
+// spread and, where it is divided, the host clock error: the mean parts and the remainder as bars,
+// the ends of the 5-95 % band as points.
 Figure budget_figure(const evaluation::PipelineBudget& budget);
 
 }  // namespace simbench::reports

@@ -61,9 +61,9 @@ Table budget_table(const Budget& budget) {
 Table host_clock_table(const HostClockBudget& budget) {
   Table table({{"part", Align::kLeft},
                {"gone with ideal", Align::kLeft},
-               {"host clock error\nmean ms"},
-               {"host clock error\n5-95 %"},
-               {"host clock error\nshare"}});
+               {"mean ms"},
+               {"5-95 %"},
+               {"share"}});
   const auto add = [&](std::string_view name, std::string_view cause, const BudgetPart& part) {
     table.add({std::string(name), std::string(cause), number_text(part.mean), band(part),
                share_of(part, budget.total)});
@@ -96,10 +96,10 @@ std::string budget_legend(const Budget& budget) {
 }
 
 constexpr const char* kHostClockLegend =
-    "Slaves against the master, by Shapley values over 8 worlds. Estimation is lost where the "
-    "messages are ideal (constant and equal ways, exact stamps), staleness where the oscillators "
-    "are, steering where clocks are read and set exactly and at once; what is left with all three "
-    "is the algorithm's own. The worlds differ, and the algorithm reports nothing.";
+    "Slaves against the master. The parts are not what the algorithm reports, but what is lost in "
+    "other worlds (Shapley values over 8): estimation where messages are ideal (constant and equal "
+    "ways, exact stamps), staleness where oscillators are, steering where clocks are read and set "
+    "exactly and at once; what is left with all three ideal is the algorithm's own.";
 
 Block host_clock_block(const BudgetReport& report, const HostClockBudget& budget) {
   Block block{.heading = budget_heading("Host clock error", report, budget.pipeline)};

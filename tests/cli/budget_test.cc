@@ -47,17 +47,17 @@ TEST_F(BudgetCommand, PartsAndRemainderAddUpToTheTotal) {
 TEST_F(BudgetCommand, TheTableNamesEveryStage) {
   const ProgramResult result = run(small());
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"trigger", "exposure", "stamp quantisation", "device clock",
-                           "USB delivery", "host clock", "gathering", "remainder", "Shapley",
-                           "estimation", "staleness", "steering", "algorithm"}) {
+  for (const char* part :
+       {"trigger", "exposure", "stamp quantisation", "device clock", "USB delivery", "host clock",
+        "gathering", "remainder", "Shapley", "estimation", "staleness", "steering", "algorithm"}) {
     EXPECT_THAT(result.out, HasSubstr(part));
   }
 }
 
 TEST_F(BudgetCommand, SaysWhyHostClocksAreNotDivided) {
-  const ProgramResult result = run({"run", "--budget", "--scenario", "18cam_6host_45fps_lan",
-                                    "--seeds", "1", "--set", "/timeline/frames=20", "--pipelines",
-                                    "oracle", "--format", "markdown"});
+  const ProgramResult result =
+      run({"run", "--budget", "--scenario", "18cam_6host_45fps_lan", "--seeds", "1", "--set",
+           "/timeline/frames=20", "--pipelines", "oracle", "--format", "markdown"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("Not divided: oracle sends nothing and sets no clock."));
   EXPECT_THAT(result.err, HasSubstr("128 runs in"));

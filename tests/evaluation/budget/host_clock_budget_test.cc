@@ -59,13 +59,12 @@ class StepOnce final : public HostSync {
 
 void register_once(const std::string& name, bool one_way) {
   if (find_host_sync(name) != nullptr) return;
-  register_host_sync({.info = {.name = name,
-                               .family = name,
-                               .summary = "one exchange, one step",
-                               .source = "this test"},
-                      .make = [one_way](const Parameters&) {
-                        return std::make_unique<StepOnce>(one_way);
-                      }});
+  register_host_sync(
+      {.info = {.name = name,
+                .family = name,
+                .summary = "one exchange, one step",
+                .source = "this test"},
+       .make = [one_way](const Parameters&) { return std::make_unique<StepOnce>(one_way); }});
 }
 
 scenarios::Pipeline step_once() {
@@ -178,8 +177,9 @@ TEST(HostClockBudget, AStepAfterASymmetricExchangeHasNoErrorOfItsOwn) {
 // Slaves 10 and 20 ppm fast of an exact master, set once: between the step and the pulses the clock
 // drifts, and nothing else is wrong.
 TEST(HostClockBudget, DriftSinceTheStepIsStaleness) {
-  scenarios::Scenario scenario = without_causes(
-      small_rig("18cam_6host_45fps"), bit(HostClockCause::kMessages) | bit(HostClockCause::kClockCalls));
+  scenarios::Scenario scenario =
+      without_causes(small_rig("18cam_6host_45fps"),
+                     bit(HostClockCause::kMessages) | bit(HostClockCause::kClockCalls));
   scenario.hosts.clock.skew_of_host_ppm = {0, 10, 20};
   const HostClockBudget budget = divided(scenario, step_once());
   const BudgetPart& staleness = part_of(budget, HostClockCause::kOscillators);
@@ -223,8 +223,8 @@ TEST(HostClockBudget, SaysWhatItCannotDivide) {
   EXPECT_THAT(note_of("oracle"), HasSubstr("oracle sends nothing"));
   EXPECT_THAT(note_of("free_running"), HasSubstr("free_running sends nothing"));
   EXPECT_THAT(note_of("common_view"), HasSubstr("looks at frames"));
-  const scenarios::Scenario one_host = small_rig(
-      "18cam_6host_45fps", {{"/hosts/count", "1"}, {"/cameras/cameras_per_host", "3"}});
+  const scenarios::Scenario one_host =
+      small_rig("18cam_6host_45fps", {{"/hosts/count", "1"}, {"/cameras/cameras_per_host", "3"}});
   EXPECT_THAT(divided(one_host, kPaper).note, HasSubstr("one host"));
 }
 
@@ -235,15 +235,16 @@ TEST(HostClockBudget, PipelinesTogetherHaveTheBudgetsOfEachAlone) {
   std::uint64_t last = 0;
   const std::vector<HostClockBudget> together = host_clock_budgets(
       scenario, {step_once(), oracle, kPaper},
-      [](const scenarios::Scenario& world) { return sim::make_simulation(world); },
-      {.seeds = 3}, [&](std::uint64_t done, std::uint64_t total) {
+      [](const scenarios::Scenario& world) { return sim::make_simulation(world); }, {.seeds = 3},
+      [&](std::uint64_t done, std::uint64_t total) {
         EXPECT_EQ(total, 2 * 3 * kHostClockWorlds);
         last = done;
       });
   EXPECT_EQ(last, 2 * 3 * kHostClockWorlds);
   ASSERT_EQ(together.size(), 3U);
   EXPECT_FALSE(together[1].is_divided);
-  const std::vector<HostClockBudget> alone = {divided(scenario, step_once()), {}, divided(scenario, kPaper)};
+  const std::vector<HostClockBudget> alone = {
+      divided(scenario, step_once()), {}, divided(scenario, kPaper)};
   for (const std::size_t i : {0U, 2U}) {
     EXPECT_EQ(together[i].total.values, alone[i].total.values);
     EXPECT_EQ(together[i].algorithm.values, alone[i].algorithm.values);

@@ -43,7 +43,10 @@ BudgetReport sample_report() {
   budget.amd_ms = parts();
   budget.absolute_error_ms = parts();
   budget.physical_ms = parts();
-  return {.scenario = "sample", .first_seed = 1, .seeds = 1, .budgets = {{budget, host_clock_sample()}}};
+  return {.scenario = "sample",
+          .first_seed = 1,
+          .seeds = 1,
+          .budgets = {{budget, host_clock_sample()}}};
 }
 
 TEST(BudgetReport, ALineForEveryStageItsShareAndTheTotal) {
