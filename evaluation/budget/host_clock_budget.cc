@@ -115,41 +115,54 @@ Pipeline with_cheap_stages(Pipeline pipeline) {
   return pipeline;
 }
 
-// The errors by world, then by seed.
-using ErrorsByWorld = std::vector<std::vector<double>>;
+// Of one pipeline.
+struct ErrorsByWorld {
+  std::vector<std::vector<double>> by_world;  // then by seed, ms
+  std::string first_note;                     // of any world
+};
 
-std::vector<double> errors_by_seed(const Row& row, const EvaluationOptions& options) {
-  std::vector<double> errors_ms(options.seeds, kNan);
-  for (const SeedScore& seed : row.seeds) {
-    errors_ms[seed.seed - options.first_seed] = seed.host_error_ms;
+void add_world(const Scenario& world, const WorldFactory& make_world,
+               const EvaluationOptions& options, const Progress& progress,
+               std::vector<ErrorsByWorld>& errors) {
+  EvaluationOptions of_world = options;
+  of_world.pipelines.clear();
+  of_world.keep_pulses = false;
+  of_world.share_captures = true;
+  const Results results = evaluate(
+      world, [&] { return make_world(world); }, of_world, progress);
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    const Row& row = results.rows[i];
+    errors[i].by_world.push_back(row.host_error_ms.values);
+    if (errors[i].first_note.empty() && !row.notes.empty()) {
+      errors[i].first_note = row.notes.front();
+    }
   }
-  return errors_ms;
 }
 
 // A seed without an error in one world has none in all. Returns how many those are.
-std::size_t drop_incomplete_seeds(ErrorsByWorld& errors_ms) {
+std::size_t drop_incomplete_seeds(std::vector<std::vector<double>>& by_world) {
   std::size_t dropped = 0;
-  for (std::size_t seed = 0; seed < errors_ms.front().size(); ++seed) {
+  for (std::size_t seed = 0; seed < by_world.front().size(); ++seed) {
     const bool is_complete = std::ranges::none_of(
-        errors_ms, [seed](const std::vector<double>& world) { return std::isnan(world[seed]); });
+        by_world, [seed](const std::vector<double>& world) { return std::isnan(world[seed]); });
     if (is_complete) continue;
-    for (std::vector<double>& world : errors_ms) world[seed] = kNan;
+    for (std::vector<double>& world : by_world) world[seed] = kNan;
     ++dropped;
   }
   return dropped;
 }
 
-void divide_host_clock(ErrorsByWorld errors_ms, const std::string& first_note,
-                       HostClockBudget& budget) {
-  const std::size_t seeds = errors_ms.front().size();
-  const std::size_t dropped = drop_incomplete_seeds(errors_ms);
+void divide_host_clock(ErrorsByWorld& errors, HostClockBudget& budget) {
+  const std::size_t seeds = errors.by_world.front().size();
+  const std::size_t dropped = drop_incomplete_seeds(errors.by_world);
   if (dropped > 0) {
-    budget.note = fmt::format("{} of {} seeds have no host clock error in one of the worlds{}{}",
-                              dropped, seeds, first_note.empty() ? "" : ": ", first_note);
+    budget.note =
+        fmt::format("{} of {} seeds have no host clock error in one of the worlds{}{}", dropped,
+                    seeds, errors.first_note.empty() ? "" : ": ", errors.first_note);
   }
   budget.is_divided = dropped < seeds;
   if (!budget.is_divided) return;
-  DividedError divided = divide_error(errors_ms);
+  DividedError divided = divide_error(errors.by_world);
   budget.total = std::move(divided.total);
   std::ranges::move(divided.players, budget.parts.begin());
   budget.algorithm = std::move(divided.remainder);
@@ -173,40 +186,29 @@ std::vector<HostClockBudget> host_clock_budgets(const Scenario& scenario,
                                                 const Progress& progress) {
   Scenario divided = scenario;
   divided.pipelines = pipelines;
+  const std::vector<PipelineChoice> choices = choose_pipelines(divided, {});
   std::vector<HostClockBudget> budgets;
-  std::vector<Pipeline> to_run;
-  std::vector<std::size_t> places;
-  for (const PipelineChoice& choice : choose_pipelines(divided, {})) {
+  budgets.reserve(choices.size());
+  std::vector<std::size_t> places;  // of those to divide
+  divided.pipelines.clear();
+  for (const PipelineChoice& choice : choices) {
     budgets.push_back({.pipeline = choice.pipeline.name, .note = undivided(scenario, choice)});
     if (!budgets.back().note.empty()) continue;
     places.push_back(budgets.size() - 1);
-    to_run.push_back(with_cheap_stages(choice.pipeline));
+    divided.pipelines.push_back(with_cheap_stages(choice.pipeline));
   }
-  if (to_run.empty()) return budgets;
-  divided.pipelines = std::move(to_run);
-  EvaluationOptions of_worlds = options;
-  of_worlds.pipelines.clear();
-  of_worlds.keep_pulses = false;
-  of_worlds.share_captures = true;
+  if (places.empty()) return budgets;
   const std::uint64_t runs = places.size() * options.seeds;
-  std::vector<ErrorsByWorld> errors_ms(places.size());
-  std::vector<std::string> first_notes(places.size());
+  std::vector<ErrorsByWorld> errors(places.size());
   for (std::size_t ideal = 0; ideal < kHostClockWorlds; ++ideal) {
-    const Scenario world = without_causes(divided, ideal);
-    const Results results = evaluate(
-        world, [&] { return make_world(world); }, of_worlds,
+    add_world(
+        without_causes(divided, ideal), make_world, options,
         [&](std::uint64_t done, std::uint64_t) {
           if (progress) progress(ideal * runs + done, kHostClockWorlds * runs);
-        });
-    for (std::size_t i = 0; i < results.rows.size(); ++i) {
-      const Row& row = results.rows[i];
-      errors_ms[i].push_back(errors_by_seed(row, options));
-      if (first_notes[i].empty() && !row.notes.empty()) first_notes[i] = row.notes.front();
-    }
+        },
+        errors);
   }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    divide_host_clock(std::move(errors_ms[i]), first_notes[i], budgets[places[i]]);
-  }
+  for (std::size_t i = 0; i < places.size(); ++i) divide_host_clock(errors[i], budgets[places[i]]);
   return budgets;
 }
 

@@ -52,6 +52,7 @@ DividedError divide_error(const std::vector<std::vector<double>>& by_world) {
   DividedError divided{.total = budget_part(by_world.front()),
                        .players = {},
                        .remainder = budget_part(by_world.back())};
+  divided.players.reserve(players.size());
   for (std::vector<double>& values : players) {
     divided.players.push_back(budget_part(std::move(values)));
   }

@@ -253,6 +253,7 @@ FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
 
 NamedParts named_parts(const ErrorParts& error) {
   NamedParts parts;
+  parts.reserve(error.stages.size() + 1);
   for (std::size_t stage = 0; stage < error.stages.size(); ++stage) {
     parts.emplace_back(evaluation::kStageNames[stage], &error.stages[stage]);
   }
@@ -262,6 +263,7 @@ NamedParts named_parts(const ErrorParts& error) {
 
 NamedParts named_parts(const HostClockBudget& budget) {
   NamedParts parts;
+  parts.reserve(budget.parts.size() + 1);
   for (std::size_t i = 0; i < budget.parts.size(); ++i) {
     parts.emplace_back(evaluation::kHostClockParts[i].name, &budget.parts[i]);
   }
