@@ -27,7 +27,7 @@
 // program is divided like an algorithm. A seed that has no error in one of the worlds is NaN in all
 // parts.
 //
-// The world's cameras stay real. The latency that stays is the scenario's fixed one, or the least
+// Cameras and trigger stay real. The latency that stays is the scenario's fixed one, or the least
 // of its table. Streams of random numbers belong to components, so what is real draws the same.
 //
 // Cost: 8 captures per seed and host_sync; the stages behind it are replaced by cheap ones.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "algorithms/registry.h"
+#include "recording/recording.h"
 #include "scenarios/loader.h"
 #include "sim/rig/simulation.h"
 #include "tests/nonempty.h"
@@ -226,6 +227,41 @@ TEST(HostClockBudget, SaysWhatItCannotDivide) {
   const scenarios::Scenario one_host =
       small_rig("18cam_6host_45fps", {{"/hosts/count", "1"}, {"/cameras/cameras_per_host", "3"}});
   EXPECT_THAT(divided(one_host, kPaper).note, HasSubstr("one host"));
+}
+
+// A simulation that fails at seed 2 where messages are ideal.
+class FailsOnce final : public RecordingSource {
+ public:
+  explicit FailsOnce(const scenarios::Scenario& world)
+      : has_ideal_messages_(world.network.spike_probability == 0),
+        simulation_(sim::make_simulation(world)) {}
+  RecordingCost record(const RecordingRequest& request, RecordingSink& sink) override {
+    if (has_ideal_messages_ && request.seed == 2) throw RecordingFailed("the daemon ended");
+    return simulation_->record(request, sink);
+  }
+
+ private:
+  bool has_ideal_messages_;
+  std::unique_ptr<RecordingSource> simulation_;
+};
+
+TEST(HostClockBudget, ASeedThatFailsInOneWorldIsLeftOutOfAll) {
+  const HostClockBudget budget =
+      host_clock_budgets(
+          small_rig("18cam_6host_45fps"), {kPaper},
+          [](const scenarios::Scenario& world) { return std::make_unique<FailsOnce>(world); },
+          {.seeds = 3, .jobs = 1}, nullptr)
+          .front();
+  ASSERT_TRUE(budget.is_divided);
+  EXPECT_THAT(budget.note, HasSubstr("1 of 3 seeds have no host clock error"));
+  EXPECT_THAT(budget.note, HasSubstr("the daemon ended"));
+  double sum = budget.algorithm.mean;
+  for (const BudgetPart& part : budget.parts) {
+    sum += part.mean;
+    EXPECT_TRUE(std::isnan(part.values[1]));
+  }
+  EXPECT_TRUE(std::isnan(budget.total.values[1]));
+  EXPECT_NEAR(sum, budget.total.mean, 1e-12);
 }
 
 TEST(HostClockBudget, PipelinesTogetherHaveTheBudgetsOfEachAlone) {
