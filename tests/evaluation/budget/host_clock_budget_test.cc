@@ -62,7 +62,7 @@ void register_once(const std::string& name, bool one_way) {
   if (find_host_sync(name) != nullptr) return;
   register_host_sync(
       {.info = {.name = name,
-                .family = name,
+                .family = "test_" + name,
                 .summary = "one exchange, one step",
                 .source = "this test"},
        .make = [one_way](const Parameters&) { return std::make_unique<StepOnce>(one_way); }});
