@@ -13,7 +13,7 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
@@ -188,8 +188,8 @@ class FigureMaker {
     std::vector<scenarios::Pipeline> pipelines;
     pipelines.reserve(choices.size());
     for (const PipelineChoice& choice : choices) pipelines.push_back(choice.pipeline);
-    for (const evaluation::Budget& budget :
-         evaluation::error_budgets(scenario, pipelines, simulated_world, seeds, progress_)) {
+    for (const evaluation::PipelineBudget& budget :
+         evaluation::pipeline_budgets(scenario, pipelines, simulated_world, seeds, progress_)) {
       add({reports::budget_figure(budget)}, source);
     }
   }
@@ -322,7 +322,7 @@ std::vector<Step> steps_of(const Archive& archive, const ReportDetail& detail) {
   budgets.options.pipelines = detail.pipelines;
   budgets.options.budget_seeds = budget_seeds;
   budgets.options.figures = {kBudget};
-  budgets.runs = budget_seeds * detail.pipelines.size() * evaluation::StageSet::kSets;
+  budgets.runs = budget_seeds * detail.pipelines.size() * evaluation::kBudgetRuns;
   steps.push_back(budgets);
   return steps;
 }

@@ -11,7 +11,7 @@
 //   const ArchiveFigures made = archive_figures(archive, {.seeds = {1, 2}});
 //
 // Cost: a run of each pipeline for every seed shown, some 10 ms each for 18 cameras; an error
-// budget is 128 runs a seed. Progress counts runs.
+// budget is 136 runs a seed. Progress counts runs.
 //
 // Errors: scenarios::InputError (an unknown seed, pipeline or figure; a scenario that this version
 // does not take), RecordingCancelled, what the simulator throws.
@@ -35,7 +35,7 @@ namespace simbench::app {
 struct FigureOptions {
   std::vector<std::uint64_t> seeds{};    // to show in detail; empty: the first of the archive
   std::vector<std::string> pipelines{};  // to show in detail; empty: all
-  std::uint64_t budget_seeds = 0;        // for error budgets (128 runs each); 0: no budgets
+  std::uint64_t budget_seeds = 0;        // for error budgets (136 runs each); 0: no budgets
   std::vector<std::string> figures{};    // by id or alias; empty: all
 };
 

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"
@@ -130,9 +130,9 @@ app::FigureOptions options_of(const FigureCommand& command, const FigureEntry& e
 void announce_budget(const FigureEntry& entry, const app::FigureOptions& options,
                      std::uint64_t first_seed) {
   if (entry.scope != FigureScope::kPipeline) return;
-  print_note(fmt::format("{} runs {}, each of them {} times with other stages ideal (--seeds)",
+  print_note(fmt::format("{} runs {}, each of them {} times with other parts ideal (--seeds)",
                          entry.id, reports::counted_seeds(first_seed, options.budget_seeds),
-                         evaluation::StageSet::kSets));
+                         evaluation::kBudgetRuns));
 }
 
 std::optional<app::ArchiveFigures> make_of_scenario(const FigureCommand& command,

@@ -125,7 +125,7 @@ void add_report_command(CommandLine& line) {
                        "Default: 4, fewer with more than 8 pipelines");
   command.whole_number(
       "--budget-seeds", "N", options->detail.budget_seeds, 0, kMostSeedsInDetail,
-      "Seeds of the error budgets (128 runs for each seed and pipeline); 0: none.\n"
+      "Seeds of the error budgets (136 runs for each seed and pipeline); 0: none.\n"
       "Default: 4, fewer with more than 8 pipelines");
   command.list("--pipelines", "PIPELINE,...", options->detail.pipelines,
                "Show only these pipelines in detail; the tables have all");

@@ -12,7 +12,7 @@
 #include "cli/program_options.h"
 #include "cli/progress.h"
 #include "cli/rig_backend.h"
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
 #include "reports/results/answer_block.h"
@@ -102,11 +102,11 @@ int run_budgets(const RunOptions& options, const scenarios::Scenario& scenario) 
        evaluation::choose_pipelines(scenario, options.evaluation.pipelines)) {
     pipelines.push_back(choice.pipeline);
   }
-  std::optional<std::vector<evaluation::Budget>> budgets =
-      watched<std::vector<evaluation::Budget>>([&](const evaluation::Progress& progress) {
-        return evaluation::error_budgets(scenario, pipelines, app::simulated_world,
-                                         options.evaluation, progress);
-      });
+  using Budgets = std::vector<evaluation::PipelineBudget>;
+  std::optional<Budgets> budgets = watched<Budgets>([&](const evaluation::Progress& progress) {
+    return evaluation::pipeline_budgets(scenario, pipelines, app::simulated_world,
+                                        options.evaluation, progress);
+  });
   if (!budgets) return kInterrupted;
   report.budgets = std::move(*budgets);
   if (options.format == "json") {
@@ -237,7 +237,8 @@ void add_run_command(CommandLine& line) {
       .excludes(quiet);
   command.flag("--budget", options->budget,
                "Instead of the table, divide each pipeline's error among the stages that\n"
-               "cause it (128 runs for every seed)");
+               "cause it, and that of its host clocks between world and algorithm (136 runs for\n"
+               "every seed)");
   command.footer(kRunExamples);
   command.runs([options] { return run(*options); },
                [options, seeds] {

@@ -1,15 +1,12 @@
 #include "evaluation/budget/budget.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "algorithms/ports/assert.h"
-#include "evaluation/statistics/statistics.h"
 #include "recording/forwarding_sink.h"
 
 namespace simbench::evaluation {
@@ -29,14 +26,6 @@ void idealise_exposure(scenarios::Cameras& cameras) {
   cameras.exposure_host_periods = 0;
   cameras.unstable_start_jitter_sigma_ms = 0;
   cameras.auto_exposure.step_interval_exponential_ms = 0;
-}
-
-void idealise_device_clock(scenarios::Oscillator& oscillator) {
-  const double grid_ms = oscillator.wander_step_ms;
-  const double time_constant_s = oscillator.self_heating_time_constant_s;
-  oscillator = {};
-  oscillator.wander_step_ms = grid_ms;
-  oscillator.self_heating_time_constant_s = time_constant_s;
 }
 
 // IdealDelivery moves the frames; polls take no time, and there is no delay to calibrate.
@@ -176,30 +165,18 @@ bool all_exist(const std::vector<std::vector<double>>& values) {
   });
 }
 
-void finish(BudgetPart& part) {
-  part.mean = mean_of_existing(part.values);
-  part.p05 = quantile(part.values, 0.05);
-  part.p95 = quantile(part.values, 0.95);
-}
-
 ErrorParts divide(const std::vector<std::vector<double>>& by_world) {
+  DividedError divided = divide_error(by_world);
   ErrorParts parts;
-  const std::size_t seeds = by_world.front().size();
-  std::vector<double> worth(by_world.size());
-  for (std::size_t seed = 0; seed < seeds; ++seed) {
-    for (std::size_t world = 0; world < worth.size(); ++world) worth[world] = by_world[world][seed];
-    const std::vector<double> values = shapley_values(worth);
-    for (std::size_t stage = 0; stage < kStageCount; ++stage) {
-      parts.stages[stage].values.push_back(values[stage]);
-      parts.alone[stage].values.push_back(worth.front() - worth[std::size_t{1} << stage]);
-    }
-    parts.total.values.push_back(worth.front());
-    parts.remainder.values.push_back(worth.back());
+  parts.total = std::move(divided.total);
+  parts.remainder = std::move(divided.remainder);
+  std::ranges::move(divided.players, parts.stages.begin());
+  for (std::size_t stage = 0; stage < kStageCount; ++stage) {
+    std::vector<double> won = by_world.front();
+    const std::vector<double>& without = by_world[std::size_t{1} << stage];
+    for (std::size_t seed = 0; seed < won.size(); ++seed) won[seed] -= without[seed];
+    parts.alone[stage] = budget_part(std::move(won));
   }
-  for (BudgetPart& part : parts.stages) finish(part);
-  for (BudgetPart& part : parts.alone) finish(part);
-  finish(parts.total);
-  finish(parts.remainder);
   return parts;
 }
 
@@ -216,6 +193,11 @@ Budget budget_of(const scenarios::Pipeline& pipeline, const WorldScores& scores)
 
 }  // namespace
 
+scenarios::Oscillator perfect_oscillator(const scenarios::Oscillator& oscillator) {
+  return {.wander_step_ms = oscillator.wander_step_ms,
+          .self_heating_time_constant_s = oscillator.self_heating_time_constant_s};
+}
+
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal) {
   scenarios::Scenario world = scenario;
@@ -228,33 +210,11 @@ scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
     world.hosts.clock.arrival_quantum_ms = 0;
   }
   if (ideal.has(Stage::kDeviceClock)) {
-    idealise_device_clock(world.cameras.oscillator);
+    world.cameras.oscillator = perfect_oscillator(world.cameras.oscillator);
     world.cameras.skew_of_camera_ppm.clear();
   }
   if (ideal.has(Stage::kUsbDelivery)) idealise_delivery(world.cameras);
   return world;
-}
-
-std::vector<double> shapley_values(std::span<const double> worth) {
-  SIMBENCH_ASSERT(std::has_single_bit(worth.size()), "a worth for each of 2^n coalitions");
-  const auto players = static_cast<std::size_t>(std::countr_zero(worth.size()));
-  // The share of orders in which exactly these k players come before a given one: k!(n-k-1)!/n!.
-  std::vector<double> share(players);
-  double choices = 1;  // of k players among the other n - 1
-  for (std::size_t before = 0; before < players; ++before) {
-    share[before] = 1 / (static_cast<double>(players) * choices);
-    choices *= static_cast<double>(players - 1 - before) / static_cast<double>(before + 1);
-  }
-  std::vector<double> values(players, 0.0);
-  for (std::size_t coalition = 0; coalition < worth.size(); ++coalition) {
-    for (std::size_t player = 0; player < players; ++player) {
-      const std::size_t joined = coalition | (std::size_t{1} << player);
-      if (joined == coalition) continue;
-      const auto before = static_cast<std::size_t>(std::popcount(coalition));
-      values[player] += share[before] * (worth[coalition] - worth[joined]);
-    }
-  }
-  return values;
 }
 
 std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,

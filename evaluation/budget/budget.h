@@ -46,11 +46,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "evaluation/budget/shapley.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
 #include "scenarios/scenario.h"
@@ -95,14 +95,6 @@ class StageSet {
 scenarios::Scenario ideal_scenario(const scenarios::Scenario& scenario,
                                    const scenarios::Pipeline& pipeline, StageSet ideal);
 
-// The mean over the seeds, which unlike a median adds up, with the band from 5 to 95 %.
-struct BudgetPart {
-  std::vector<double> values;  // by seed
-  double mean = 0;
-  double p05 = 0;
-  double p95 = 0;
-};
-
 // One error, divided.
 struct ErrorParts {
   BudgetPart total;
@@ -127,9 +119,8 @@ std::vector<Budget> error_budgets(const scenarios::Scenario& scenario,
                                   const WorldFactory& make_world, const EvaluationOptions& options,
                                   const Progress& progress);
 
-// Returns the Shapley values of n players: by how much each lowers the worth. `worth[s]` belongs to
-// the coalition whose members are the bits of s, 2^n values in all. O(n 2^n).
-std::vector<double> shapley_values(std::span<const double> worth);
+// Returns an oscillator without any error. What has no effect then stays as it was.
+scenarios::Oscillator perfect_oscillator(const scenarios::Oscillator& oscillator);
 
 }  // namespace simbench::evaluation
 

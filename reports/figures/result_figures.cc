@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/scoring/rows.h"
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
@@ -23,6 +23,8 @@ namespace {
 using evaluation::Budget;
 using evaluation::BudgetPart;
 using evaluation::ErrorParts;
+using evaluation::HostClockBudget;
+using evaluation::PipelineBudget;
 using evaluation::PulseScore;
 using Published = evaluation::PublishedComparison;
 using evaluation::Results;
@@ -227,26 +229,54 @@ std::vector<Figure> together_and_each(const Results& results, const Make& make) 
   return figures;
 }
 
-FigurePanel parts_panel(const std::string& title, const ErrorParts& parts) {
+// The parts of an error, named.
+using NamedParts = std::vector<std::pair<std::string_view, const BudgetPart*>>;
+
+FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
+                        const NamedParts& parts) {
   FigurePanel made =
-      panel(fmt::format("{}: {} ms in all", title, number_text(parts.total.mean)), "", "part (ms)");
+      panel(fmt::format("{}: {} ms in all", title, number_text(total.mean)), "", "part (ms)");
   FigureSeries bars = series("mean over seeds", Mark::kBars, 0);
   FigureSeries low = series("5 %", Mark::kPoints, 1);
   FigureSeries high = series("95 %", Mark::kPoints, 2);
-  const auto add = [&](const std::string& name, const BudgetPart& part) {
+  for (const auto& [name, part] : parts) {
     const auto x = static_cast<double>(made.categories.size());
-    made.categories.push_back(name);
+    made.categories.emplace_back(name);
     for (FigureSeries* each : {&bars, &low, &high}) each->x.push_back(x);
-    bars.y.push_back(part.mean);
-    low.y.push_back(part.p05);
-    high.y.push_back(part.p95);
-  };
-  for (std::size_t stage = 0; stage < parts.stages.size(); ++stage) {
-    add(std::string(evaluation::kStageNames[stage]), parts.stages[stage]);
+    bars.y.push_back(part->mean);
+    low.y.push_back(part->p05);
+    high.y.push_back(part->p95);
   }
-  add("remainder", parts.remainder);
   made.series = {std::move(bars), std::move(low), std::move(high)};
   return made;
+}
+
+NamedParts named_parts(const ErrorParts& error) {
+  NamedParts parts;
+  parts.reserve(error.stages.size() + 1);
+  for (std::size_t stage = 0; stage < error.stages.size(); ++stage) {
+    parts.emplace_back(evaluation::kStageNames[stage], &error.stages[stage]);
+  }
+  parts.emplace_back("remainder", &error.remainder);
+  return parts;
+}
+
+NamedParts named_parts(const HostClockBudget& budget) {
+  NamedParts parts;
+  parts.reserve(budget.parts.size() + 1);
+  for (std::size_t i = 0; i < budget.parts.size(); ++i) {
+    parts.emplace_back(evaluation::kHostClockParts[i].name, &budget.parts[i]);
+  }
+  parts.emplace_back("algorithm", &budget.algorithm);
+  return parts;
+}
+
+std::string host_clock_caption(const HostClockBudget& budget) {
+  if (!budget.is_divided) return fmt::format(" Host clock error: not divided: {}.", budget.note);
+  return " The host clock error (slaves against the master) loses its estimation where messages "
+         "are "
+         "ideal, its staleness where oscillators are, its steering where clock calls are; the rest "
+         "is the algorithm's own.";
 }
 
 }  // namespace
@@ -291,7 +321,9 @@ std::vector<Figure> host_order(const Archive& archive) {
   return together_and_each(archive.results, order_figure);
 }
 
-Figure budget_figure(const Budget& budget) {
+Figure budget_figure(const PipelineBudget& pipeline) {
+  const Budget& budget = pipeline.stages;
+  const HostClockBudget& host_clock = pipeline.host_clock;
   Figure figure = catalogued("budget");
   figure.pipeline = budget.pipeline;
   const char* over = budget.amd_of_sets ? "gathered sets" : "true pulses";
@@ -304,14 +336,19 @@ Figure budget_figure(const Budget& budget) {
         Named{fmt::format("Absolute error of {}", over), &budget.absolute_error_ms},
         Named{"Physical spread of the exposures", &budget.physical_ms}}) {
     if (std::isnan(error.parts->total.mean)) continue;
-    figure.panels.push_back(parts_panel(error.title, *error.parts));
+    figure.panels.push_back(
+        parts_panel(error.title, error.parts->total, named_parts(*error.parts)));
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
+  if (host_clock.is_divided) {
+    figure.panels.push_back(
+        parts_panel("Host clock error", host_clock.total, named_parts(host_clock)));
+  }
   figure.caption = fmt::format(
       "The reduction of the error by an ideal stage, averaged over all orders in which the stages "
       "can be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
-      "zero cancels another.",
-      counted(budget.amd_ms.total.values.size(), "seed"));
+      "zero cancels another.{}",
+      counted(budget.amd_ms.total.values.size(), "seed"), host_clock_caption(host_clock));
   return figure;
 }
 

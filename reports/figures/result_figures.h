@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 
@@ -30,10 +30,10 @@ std::vector<Figure> distributions(const Archive& archive);
 // one after another. The same figures as above. Needs read_seed_details().
 std::vector<Figure> host_order(const Archive& archive);
 
-// The error budget of a pipeline, with a panel each for AMD, the absolute error and the physical
-// spread: the mean part of each stage and the remainder as bars, the ends of the 5-95 % band as
-// points.
-Figure budget_figure(const evaluation::Budget& budget);
+// The error budget of a pipeline, with a panel each for AMD, the absolute error, the physical
+// spread and, where it is divided, the host clock error: the mean parts and the remainder as bars,
+// the ends of the 5-95 % band as points.
+Figure budget_figure(const evaluation::PipelineBudget& budget);
 
 }  // namespace simbench::reports
 

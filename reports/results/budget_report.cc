@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "recording/version.h"
 #include "reports/results/derivation_json.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -15,33 +18,34 @@ namespace {
 using evaluation::Budget;
 using evaluation::BudgetPart;
 using evaluation::ErrorParts;
+using evaluation::HostClockBudget;
+using evaluation::PipelineBudget;
 
 std::string band(const BudgetPart& part) {
-  if (std::isnan(part.p05)) return "-";
-  return fmt::format("[{}, {}]", number_text(part.p05), number_text(part.p95));
+  return time_band_text(part.p05, part.p95);
 }
 
-std::string share_of(const BudgetPart& part, const ErrorParts& error) {
-  const double share = part.mean / error.total.mean;
+std::string share_of(const BudgetPart& part, const BudgetPart& total) {
+  const double share = part.mean / total.mean;
   return share_text(std::abs(share) < 5e-4 ? std::abs(share) : share);  // of either sign
 }
 
 void add_line(Table& table, const std::string& name, const Budget& budget, const BudgetPart& amd,
               const BudgetPart& absolute, const BudgetPart& physical) {
-  table.add({name, number_text(amd.mean), band(amd), share_of(amd, budget.amd_ms),
-             number_text(absolute.mean), band(absolute),
-             share_of(absolute, budget.absolute_error_ms), number_text(physical.mean)});
+  table.add({name, time_text(amd.mean), band(amd), share_of(amd, budget.amd_ms.total),
+             time_text(absolute.mean), band(absolute),
+             share_of(absolute, budget.absolute_error_ms.total), time_text(physical.mean)});
 }
 
 Table budget_table(const Budget& budget) {
   Table table({{"stage", Align::kLeft},
-               {"AMD\nmean ms"},
+               {"AMD\nmean"},
                {"AMD\n5-95 %"},
                {"AMD\nshare"},
-               {"absolute error\nmean ms"},
+               {"absolute error\nmean"},
                {"absolute error\n5-95 %"},
                {"absolute error\nshare"},
-               {"of AMD physical\nmean ms"}});
+               {"of AMD physical\nmean"}});
   for (std::size_t stage = 0; stage < evaluation::kStageCount; ++stage) {
     add_line(table, std::string(evaluation::kStageNames[stage]), budget,
              budget.amd_ms.stages[stage], budget.absolute_error_ms.stages[stage],
@@ -54,8 +58,27 @@ Table budget_table(const Budget& budget) {
   return table;
 }
 
-std::string budget_heading(const BudgetReport& report, const Budget& budget) {
-  return fmt::format("Error budget of {} in {}, {}", budget.pipeline,
+Table host_clock_table(const HostClockBudget& budget) {
+  Table table({{"part", Align::kLeft},
+               {"gone with ideal", Align::kLeft},
+               {"mean"},
+               {"5-95 %"},
+               {"share"}});
+  const auto add = [&](std::string_view name, std::string_view cause, const BudgetPart& part) {
+    table.add({std::string(name), std::string(cause), time_text(part.mean), band(part),
+               share_of(part, budget.total)});
+  };
+  for (std::size_t i = 0; i < evaluation::kHostClockCauseCount; ++i) {
+    add(evaluation::kHostClockParts[i].name, evaluation::kHostClockParts[i].cause, budget.parts[i]);
+  }
+  add("algorithm", "-", budget.algorithm);
+  add("total", "", budget.total);
+  return table;
+}
+
+std::string budget_heading(std::string_view what, const BudgetReport& report,
+                           const std::string& pipeline) {
+  return fmt::format("{} of {} in {}, {}", what, pipeline,
                      scenarios::named(report.scenario, report.derivation),
                      counted_seeds(report.first_seed, report.seeds));
 }
@@ -70,6 +93,24 @@ std::string budget_legend(const Budget& budget) {
          " A stage's part is its Shapley value over all 128 worlds with some stages ideal. Parts "
          "and remainder add up to the total; a part below zero cancels others. Physical: how far "
          "apart the exposures of a pulse really were, which no clock can remove.";
+}
+
+constexpr const char* kHostClockLegend =
+    "Slaves against the master. The parts are not what the algorithm reports, but what is lost in "
+    "other worlds (Shapley values over 8): estimation where messages are ideal (constant and equal "
+    "ways, exact stamps), staleness where oscillators are, steering where clocks are read and set "
+    "exactly and at once; what is left with all three ideal is the algorithm's own.";
+
+Block host_clock_block(const BudgetReport& report, const HostClockBudget& budget) {
+  Block block{.heading = budget_heading("Host clock error", report, budget.pipeline)};
+  if (budget.is_divided) {
+    block.table = host_clock_table(budget);
+    block.prose = {kHostClockLegend};
+  }
+  if (!budget.note.empty()) {
+    block.prose.push_back((budget.is_divided ? "" : "Not divided: ") + budget.note + ".");
+  }
+  return block;
 }
 
 Json part_json(const BudgetPart& part) {
@@ -88,14 +129,31 @@ Json error_json(const ErrorParts& error) {
           {"stages", std::move(stages)}};
 }
 
+Json host_clock_json(const HostClockBudget& budget) {
+  if (!budget.is_divided) return {{"note", budget.note}};
+  Json parts = Json::array();
+  for (std::size_t i = 0; i < evaluation::kHostClockCauseCount; ++i) {
+    Json entry = {{"part", evaluation::kHostClockParts[i].name},
+                  {"cause", evaluation::kHostClockParts[i].cause}};
+    entry.update(part_json(budget.parts[i]));
+    parts.push_back(std::move(entry));
+  }
+  return {{"note", budget.note.empty() ? Json(nullptr) : Json(budget.note)},
+          {"total", part_json(budget.total)},
+          {"algorithm", part_json(budget.algorithm)},
+          {"parts", std::move(parts)}};
+}
+
 }  // namespace
 
 Document budget_document(const BudgetReport& report) {
   Document document{.head = scenarios::derivation_lines(report.derivation)};
-  for (const Budget& budget : report.budgets) {
-    document.blocks.push_back({.heading = budget_heading(report, budget),
-                               .table = budget_table(budget),
-                               .prose = {budget_legend(budget)}});
+  for (const PipelineBudget& budget : report.budgets) {
+    const Budget& stages = budget.stages;
+    document.blocks.push_back({.heading = budget_heading("Error budget", report, stages.pipeline),
+                               .table = budget_table(stages),
+                               .prose = {budget_legend(stages)}});
+    document.blocks.push_back(host_clock_block(report, budget.host_clock));
   }
   return document;
 }
@@ -108,12 +166,13 @@ std::string budget_json(const BudgetReport& report) {
   state_derivation(report.derivation, root);
   root["seeds"] = {{"first", report.first_seed}, {"count", report.seeds}};
   root["budgets"] = Json::array();
-  for (const Budget& budget : report.budgets) {
-    root["budgets"].push_back({{"pipeline", budget.pipeline},
-                               {"amd_of_sets", budget.amd_of_sets},
-                               {"amd_ms", error_json(budget.amd_ms)},
-                               {"absolute_error_ms", error_json(budget.absolute_error_ms)},
-                               {"physical_ms", error_json(budget.physical_ms)}});
+  for (const auto& [stages, host_clock] : report.budgets) {
+    root["budgets"].push_back({{"pipeline", stages.pipeline},
+                               {"amd_of_sets", stages.amd_of_sets},
+                               {"amd_ms", error_json(stages.amd_ms)},
+                               {"absolute_error_ms", error_json(stages.absolute_error_ms)},
+                               {"physical_ms", error_json(stages.physical_ms)},
+                               {"host_error_ms", host_clock_json(host_clock)}});
   }
   return file_text(root);
 }

@@ -1,9 +1,12 @@
-// Error budgets as text, Markdown or JSON: the part of each stage in a pipeline's error.
+// Error budgets as text, Markdown or JSON: the part of each stage in a pipeline's error, and what
+// the error of its host clocks comes from.
 //
 // JSON: {"schema_version", "version", "commit", "scenario" and what it rests on
 // (reports/results/derivation_json.h), "seeds", "budgets": [{"pipeline",
 // "amd_of_sets", "amd_ms": {"total", "remainder", "stages": [{"stage", "mean", "p05", "p95",
-// "values"}]}, "absolute_error_ms", "physical_ms"}]}; what does not exist is null.
+// "values"}]}, "absolute_error_ms", "physical_ms", "host_error_ms": {"note", "total", "algorithm",
+// "parts": [{"part", "cause", "mean", ...}]}}]}; "host_error_ms" has the note alone where it is not
+// divided, and what does not exist is null.
 #ifndef SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
 #define SIMBENCH_REPORTS_RESULTS_BUDGET_REPORT_H_
 
@@ -11,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/budget/budget.h"
+#include "evaluation/budget/pipeline_budget.h"
 #include "reports/text/block.h"
 #include "scenarios/derivation.h"
 
@@ -22,7 +25,7 @@ struct BudgetReport {
   scenarios::Derivation derivation{};  // of that scenario
   std::uint64_t first_seed = 1;
   std::uint64_t seeds = 0;
-  std::vector<evaluation::Budget> budgets;
+  std::vector<evaluation::PipelineBudget> budgets;
 };
 
 Document budget_document(const BudgetReport& report);

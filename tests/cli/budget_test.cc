@@ -36,16 +36,31 @@ TEST_F(BudgetCommand, PartsAndRemainderAddUpToTheTotal) {
     for (const Json& stage : parts["stages"]) sum += stage["mean"].get<double>();
     EXPECT_NEAR(sum, parts["total"]["mean"].get<double>(), 1e-9) << error;
   }
-  EXPECT_THAT(result.err, HasSubstr("256 runs in"));
+  const Json& host_clock = budget["host_error_ms"];
+  EXPECT_TRUE(host_clock["note"].is_null());
+  double sum = host_clock["algorithm"]["mean"].get<double>();
+  for (const Json& part : host_clock["parts"]) sum += part["mean"].get<double>();
+  EXPECT_NEAR(sum, host_clock["total"]["mean"].get<double>(), 1e-12);
+  EXPECT_THAT(result.err, HasSubstr("272 runs in"));
 }
 
 TEST_F(BudgetCommand, TheTableNamesEveryStage) {
   const ProgramResult result = run(small());
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"trigger", "exposure", "stamp quantisation", "device clock",
-                           "USB delivery", "host clock", "gathering", "remainder", "Shapley"}) {
+  for (const char* part :
+       {"trigger", "exposure", "stamp quantisation", "device clock", "USB delivery", "host clock",
+        "gathering", "remainder", "Shapley", "estimation", "staleness", "steering", "algorithm"}) {
     EXPECT_THAT(result.out, HasSubstr(part));
   }
+}
+
+TEST_F(BudgetCommand, SaysWhyHostClocksAreNotDivided) {
+  const ProgramResult result =
+      run({"run", "--budget", "--scenario", "18cam_6host_45fps_lan", "--seeds", "1", "--set",
+           "/timeline/frames=20", "--pipelines", "oracle", "--format", "markdown"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Not divided: oracle sends nothing and sets no clock."));
+  EXPECT_THAT(result.err, HasSubstr("128 runs in"));
 }
 
 TEST_F(BudgetCommand, RefusesWhatABudgetHasNot) {

@@ -146,7 +146,7 @@ TEST_F(ChangedWorld, ABudgetStatesItsSeedsBeforeItBegins) {
       run({"figure", "budget", "--scenario", "18cam_6host_45fps", "-o", "budget.svg"},
           {.interrupt_after = std::chrono::milliseconds(500)});
   EXPECT_EQ(result.status, 130);
-  EXPECT_THAT(result.err, HasSubstr("budget runs 32 seeds (1-32), each of them 128 times"));
+  EXPECT_THAT(result.err, HasSubstr("budget runs 32 seeds (1-32), each of them 136 times"));
 }
 
 }  // namespace

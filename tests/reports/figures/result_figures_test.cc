@@ -146,13 +146,25 @@ TEST(BudgetFigureTest, ABarForEveryStageAndTheRemainder) {
   budget.amd_ms.total = {.values = {3}, .mean = 3, .p05 = 3, .p95 = 3};
   budget.amd_ms.stages[5] = {.values = {2}, .mean = 2, .p05 = 1, .p95 = 4};
   budget.amd_ms.remainder = {.values = {1}, .mean = 1, .p05 = 1, .p95 = 1};
-  const Figure figure = budget_figure(budget);
+  evaluation::HostClockBudget host_clock = {.pipeline = "mine", .is_divided = true};
+  host_clock.parts[0] = {.values = {5}, .mean = 5, .p05 = 5, .p95 = 5};
+  host_clock.algorithm = {.values = {2}, .mean = 2, .p05 = 2, .p95 = 2};
+  const Figure figure = budget_figure({budget, host_clock});
   EXPECT_EQ(figure.pipeline, "mine");
   const FigurePanel& amd = figure.panels.at(0);
   ASSERT_THAT(amd.categories, SizeIs(evaluation::kStageCount + 1));
   EXPECT_EQ(amd.categories[5], "host clock");
   EXPECT_THAT(amd.series.at(0).y, ElementsAre(0, 0, 0, 0, 0, 2, 0, 1));
   EXPECT_EQ(amd.series.at(2).y.at(5), 4);
+  const FigurePanel& hosts = figure.panels.back();
+  EXPECT_THAT(hosts.categories, ElementsAre("estimation", "staleness", "steering", "algorithm"));
+  EXPECT_THAT(hosts.series.at(0).y, ElementsAre(5, 0, 0, 2));
+}
+
+TEST(BudgetFigureTest, SaysWhyHostClocksAreNotDivided) {
+  const Figure figure = budget_figure({{}, {.pipeline = "mine", .note = "one host"}});
+  EXPECT_THAT(figure.panels, SizeIs(3));
+  EXPECT_THAT(figure.caption, HasSubstr("not divided: one host"));
 }
 
 }  // namespace
