@@ -21,9 +21,7 @@ using evaluation::ErrorParts;
 using evaluation::HostClockBudget;
 using evaluation::PipelineBudget;
 
-std::string band(const BudgetPart& part) {
-  return time_band_text(part.p05, part.p95);
-}
+std::string band(const BudgetPart& part) { return time_band_text(part.p05, part.p95); }
 
 std::string share_of(const BudgetPart& part, const BudgetPart& total) {
   const double share = part.mean / total.mean;
@@ -59,11 +57,8 @@ Table budget_table(const Budget& budget) {
 }
 
 Table host_clock_table(const HostClockBudget& budget) {
-  Table table({{"part", Align::kLeft},
-               {"gone with ideal", Align::kLeft},
-               {"mean"},
-               {"5-95 %"},
-               {"share"}});
+  Table table(
+      {{"part", Align::kLeft}, {"gone with ideal", Align::kLeft}, {"mean"}, {"5-95 %"}, {"share"}});
   const auto add = [&](std::string_view name, std::string_view cause, const BudgetPart& part) {
     table.add({std::string(name), std::string(cause), time_text(part.mean), band(part),
                share_of(part, budget.total)});

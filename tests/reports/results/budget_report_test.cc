@@ -67,9 +67,9 @@ TEST(BudgetReport, SaysWhenGatheringHasNoPart) {
 TEST(BudgetReport, DividesTheHostClockErrorBetweenWorldAndAlgorithm) {
   const std::string text = plain(budget_document(sample_report()));
   EXPECT_THAT(text, HasSubstr("Host clock error of mine in sample, 1 seed (1)"));
-  EXPECT_THAT(text, ContainsRegex("estimation +messages +4.000 +.4.000, 4.000. +50.0 %"));
-  EXPECT_THAT(text, ContainsRegex("steering +clock calls +-1.000"));
-  EXPECT_THAT(text, ContainsRegex("algorithm +- +3.000 .*37.5 %"));
+  EXPECT_THAT(text, ContainsRegex("estimation +messages +4.00 ms +.4.00, 4.00. ms +50.0 %"));
+  EXPECT_THAT(text, ContainsRegex("steering +clock calls +-1.00 ms"));
+  EXPECT_THAT(text, ContainsRegex("algorithm +- +3.00 ms .*37.5 %"));
   const auto root = nlohmann::json::parse(budget_json(sample_report()));
   const auto& error = root["budgets"][0]["host_error_ms"];
   EXPECT_TRUE(error["note"].is_null());

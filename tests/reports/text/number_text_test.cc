@@ -53,9 +53,7 @@ TEST(NumberText, ASharePretendsNothing) {
   EXPECT_EQ(share_text(0.00001), "< 0.1 %");
 }
 
-TEST(NumberText, Percentiles) {
-  EXPECT_EQ(percentile_text({33.3, 18, 51.2}), "33 % [18-51]");
-}
+TEST(NumberText, Percentiles) { EXPECT_EQ(percentile_text({33.3, 18, 51.2}), "33 % [18-51]"); }
 
 TEST(NumberText, CountsAreGroupedByThousands) {
   EXPECT_EQ(count_text(0), "0");
