@@ -85,7 +85,7 @@ std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& fol
 
 reports::Document document_of(const evaluation::Results& results,
                               const scenarios::Scenario& scenario, bool leaderboard,
-                              const reports::Block& answer, Detail detail) {
+                              const reports::AnswerText& answer, Detail detail) {
   if (detail == Detail::kAnswer) return reports::quiet_document(results, answer);
   if (detail == Detail::kScreen) {
     return reports::summary_document(
@@ -94,14 +94,16 @@ reports::Document document_of(const evaluation::Results& results,
   reports::Document document = leaderboard
                                    ? reports::leaderboard_document(results, scenario.summary)
                                    : reports::results_document(results, scenario.summary);
-  document.head.insert(document.head.begin(), answer.prose.begin(), answer.prose.end());
+  const std::vector<std::string> first = paragraphs(answer);
+  document.head.insert(document.head.begin(), first.begin(), first.end());
   return document;
 }
 
 }  // namespace
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, Detail detail, const reports::Block& answer,
+                         const std::string& format, Detail detail,
+                         const reports::AnswerText& answer,
                          const std::vector<reports::Block>& more) {
   const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
   if (format == "json") {

@@ -165,8 +165,8 @@ std::vector<Block> summary_blocks(const Results& results, bool is_leaderboard) {
 }
 
 Document summary_document(const Results& results, const SummaryOptions& options,
-                          const Block& answer) {
-  Document document{.title = results_title(results), .head = answer.prose};
+                          const AnswerText& answer) {
+  Document document{.title = results_title(results), .head = paragraphs(answer)};
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
   document.blocks = summary_blocks(results, options.is_leaderboard);
@@ -178,8 +178,8 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   return document;
 }
 
-Document quiet_document(const Results& results, const Block& answer) {
-  Document document{.title = results_title(results), .head = answer.prose};
+Document quiet_document(const Results& results, const AnswerText& answer) {
+  Document document{.title = results_title(results), .head = paragraphs(answer)};
   add_failures(results, document);
   return document;
 }
