@@ -55,7 +55,8 @@ void add_band(const Metric& metric, RowFields& fields) {
                     [metric](const Row& row) {
                       const evaluation::Series& series = metric.series(row);
                       return time_band_text(series.p05, series.p95);
-                    }});
+                    },
+                    [metric](const Row& row) { return seeds_sparkline(metric.series(row)); }});
 }
 
 void add_published_amd(const Results& results, RowFields& fields) {
