@@ -308,9 +308,9 @@ Figure budget_figure(const Budget& budget) {
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   figure.caption = fmt::format(
-      "The reduction of the error by an ideal stage, averaged over all orders in which the stages "
-      "can be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
-      "zero cancels another.",
+      "Bars: means over {}; dots: 5 and 95 % of the seeds. A part is the reduction of the error by "
+      "an ideal stage, averaged over all orders in which the stages can be replaced (Shapley "
+      "values). Parts and remainder add up to the whole; a part below zero cancels another.",
       counted(budget.amd_ms.total.values.size(), "seed"));
   return figure;
 }

@@ -270,7 +270,9 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
     for (const Metric* metric : metrics) {
       const double value = row.value(*metric);
       cells.push_back(metric->is_share() ? share_text(value) : number(value));
-      if (metric == metrics.front()) cells.push_back(band_text(row.of(metric->sweep), number));
+      if (metric != metrics.front()) continue;
+      table.sparklines[cells.size()].push_back(seeds_sparkline(row.of(metric->sweep)));
+      cells.push_back(band_text(row.of(metric->sweep), number));
     }
     table.add(std::move(cells));
   }
