@@ -229,7 +229,9 @@ std::vector<Figure> together_and_each(const Results& results, const Make& make) 
 
 FigurePanel parts_panel(const std::string& title, const ErrorParts& parts) {
   FigurePanel made =
-      panel(fmt::format("{}: {} ms in all", title, number_text(parts.total.mean)), "", "part (ms)");
+      panel(fmt::format("{}: {} ms in all (bars: mean, dots: 5 and 95 % of the seeds)", title,
+                        number_text(parts.total.mean)),
+            "", "part (ms)");
   FigureSeries bars = series("mean over seeds", Mark::kBars, 0);
   FigureSeries low = series("5 %", Mark::kPoints, 1);
   FigureSeries high = series("95 %", Mark::kPoints, 2);
@@ -308,9 +310,9 @@ Figure budget_figure(const Budget& budget) {
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   figure.caption = fmt::format(
-      "Bars: means over {}; dots: 5 and 95 % of the seeds. A part is the reduction of the error by "
-      "an ideal stage, averaged over all orders in which the stages can be replaced (Shapley "
-      "values). Parts and remainder add up to the whole; a part below zero cancels another.",
+      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders in "
+      "which the stages can be replaced (Shapley values). Parts and remainder add up to the whole; "
+      "a part below zero cancels another.",
       counted(budget.amd_ms.total.values.size(), "seed"));
   return figure;
 }

@@ -195,8 +195,10 @@ std::string figures_json(const std::vector<Figure>& figures) {
 std::string html_article(const HtmlArticle& article) {
   std::string lead = article.lead;
   if (!article.lead_figures.empty()) {
-    lead += fmt::format("<div class=\"figures lead\" data-figures=\"{}\"></div>\n",
-                        html_escaped(fmt::format("{}", fmt::join(article.lead_figures, " "))));
+    lead += fmt::format(
+        "<div class=\"figures lead\" data-figures=\"{}\" data-pipeline=\"{}\"></div>\n",
+        html_escaped(fmt::format("{}", fmt::join(article.lead_figures, " "))),
+        html_escaped(article.lead_pipeline));
   }
   std::string figures;
   if (article.has_more_figures) {
@@ -250,12 +252,12 @@ std::string html_command(std::string_view what, const std::string& command) {
                      html_escaped(what), html_escaped(command));
 }
 
-std::string html_scenario(const std::string& use, const std::string& scenario_json) {
+std::string html_scenario(const std::string& use, const std::string& scenario) {
   return fmt::format(
       "<details><summary>The resolved scenario</summary>\n{}"
       "<pre class=\"scroll\" tabindex=\"0\">{}</pre>\n</details>\n",
       use.empty() ? "" : fmt::format("<p>{}</p>\n", use),
-      html_escaped(Json::parse(scenario_json).dump(2)));
+      html_escaped(scenario));
 }
 
 }  // namespace simbench::reports

@@ -44,6 +44,7 @@ struct HtmlArticle {
   AnswerText answer{};
   std::string lead{};                       // a figure without a script
   std::vector<std::string> lead_figures{};  // ids of those of its data that follow
+  std::string lead_pipeline{};              // which alternative these show first; text
   std::string summary{};                    // the table that most readers want
   std::string about{};                      // what the result is of
   std::string body{};
@@ -70,7 +71,7 @@ std::string html_notes(const std::vector<std::string>& notes);
 // A command that reproduces a result.
 std::string html_command(std::string_view what, const std::string& command);
 // The resolved scenario, folded; `use`: HTML that says what it is good for.
-std::string html_scenario(const std::string& use, const std::string& scenario_json);
+std::string html_scenario(const std::string& use, const std::string& scenario);
 
 std::string figures_json(const std::vector<Figure>& figures);
 

@@ -72,7 +72,7 @@ std::string scenario_details(const Archive& archive) {
                   "{} --first-seed {}</code>",
                   repeating_command(archive.results), archive.results.seed_count,
                   archive.results.first_seed),
-      archive.scenario_json);
+      Json::parse(archive.scenario_json).dump(2));
 }
 
 bool is_leaderboard(const Archive& archive) {
@@ -129,12 +129,14 @@ HtmlArticle article_of(const ReportedArchive& reported, std::size_t number,
                        const ReportInput& input) {
   const Archive& archive = reported.archive;
   const bool is_of_clocks = archive.results.kind == evaluation::ResultKind::kClockRuns;
+  const Row* const best = evaluation::answer_of(archive.results, ranked_by_of(archive)).best;
   return {.number = number,
           .name = archive.path,
           .heading = scenarios::named(archive.results.scenario, archive.results.derivation),
           .answer = reported.answer,
           .lead = overview_html(archive.results, ranked_by_of(archive)),
           .lead_figures = {is_of_clocks ? "clocks" : "budget"},
+          .lead_pipeline = best == nullptr ? "" : best->pipeline,
           .summary = summary_of(archive),
           .about = about_archive(archive, input.archives.size() > 1),
           .body = html(blocks_of(archive)),
@@ -150,6 +152,14 @@ std::string title_of(const ReportInput& input) {
     if (title.find(scenario) == std::string::npos) title += fmt::format(" {}", scenario);
   }
   return title;
+}
+
+const char* subtitle_of(const ReportInput& input) {
+  const bool is_of_cameras = std::ranges::any_of(input.archives, [](const auto& reported) {
+    return reported.archive.results.kind == evaluation::ResultKind::kCaptures;
+  });
+  return is_of_cameras ? "how well are these cameras synchronised, and what limits it"
+                       : "how well do these clocks agree, and what limits it";
 }
 
 std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
@@ -204,7 +214,7 @@ std::string html_report(const ReportInput& input) {
     data.push_back(figures_json(input.archives[i].figures));
   }
   return html_page({.title = title_of(input),
-                    .subtitle = "how well are these cameras synchronised, and what limits it",
+                    .subtitle = subtitle_of(input),
                     .main = html(archive_blocks(input.archives)) + parts,
                     .data = data});
 }

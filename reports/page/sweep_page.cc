@@ -7,7 +7,7 @@
 #include "reports/archive/archive.h"
 #include "reports/page/html_page.h"
 #include "reports/sweep/sweep_parts.h"
-#include "reports/text/html_text.h"
+#include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
 
 namespace simbench::reports {
@@ -64,7 +64,7 @@ std::string sweep_html(const SweepPage& page) {
       .reproduce =
           fmt::format("<dl>\n{}</dl>\n", html_command("All of this", repeating_line(plan))) +
           html_scenario("Saved to a file, it is the FILE of the command above.",
-                        plan.scenario_json)};
+                        Json::parse(plan.scenario_json).dump(2))};
   return html_page({.title = fmt::format("simbench sweep {}", plan.scenario),
                     .subtitle = "how do these pipelines respond to what is varied",
                     .main = html_article(article),

@@ -20,6 +20,7 @@ using evaluation::GroupVerdict;
 
 constexpr std::size_t kMostCameras = 24;    // more cannot be told apart
 constexpr std::size_t kFramesOfZero = 50;   // whose median is 0
+constexpr std::size_t kMostBlocks = 80;     // whose medians a curve has
 constexpr std::size_t kMostSlipLines = 12;  // of all cameras
 
 bool has_place(const CameraDiagnosis& camera) {
@@ -64,7 +65,7 @@ std::vector<FigurePanel> panels_of(const Diagnosis& diagnosis, const GroupVerdic
     bars.y.push_back(jitter_ms(camera, curve));
     widths.categories.push_back(camera.camera);
     add_slips(camera, curve.colour, phases);
-    phases.series.push_back(thinned(std::move(curve), kMostPoints));
+    phases.series.push_back(block_medians(curve));
   }
   if (phases.series.empty()) return {};
   widths.series = {std::move(bars)};
@@ -72,6 +73,19 @@ std::vector<FigurePanel> panels_of(const Diagnosis& diagnosis, const GroupVerdic
 }
 
 }  // namespace
+
+FigureSeries block_medians(const FigureSeries& curve) {
+  FigureSeries medians{
+      .label = curve.label, .mark = curve.mark, .x = {}, .y = {}, .colour = curve.colour};
+  const std::size_t size = (curve.x.size() + kMostBlocks - 1) / kMostBlocks;
+  for (std::size_t from = 0; from < curve.x.size(); from += size) {
+    const auto begin = static_cast<std::ptrdiff_t>(from);
+    const auto end = static_cast<std::ptrdiff_t>(std::min(from + size, curve.x.size()));
+    medians.x.push_back(evaluation::median({curve.x.begin() + begin, curve.x.begin() + end}));
+    medians.y.push_back(evaluation::median({curve.y.begin() + begin, curve.y.begin() + end}));
+  }
+  return medians;
+}
 
 FigureSeries phase_series(const CameraDiagnosis& camera, double period_ms) {
   FigureSeries curve = series(camera.camera, Mark::kLine, 0);
@@ -101,7 +115,8 @@ Figure diagnose_figure(const Diagnosis& diagnosis) {
     return absent(std::move(figure), "No stream has a frame period that is known well enough.");
   }
   figure.caption =
-      "Arrivals in the host's time less whole common frame periods, from 0 on. A camera on the "
+      "Arrivals in the host's time less whole common frame periods, from 0 on, as medians of short "
+      "stretches. A camera on the "
       "trigger stays level; one that runs free, or whose host's clock drifts, leaves along a line. "
       "Where stamps slip, a line stands, and the arrivals are shown without the slip.";
   return figure;

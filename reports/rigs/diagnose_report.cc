@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "recording/version.h"
-#include "reports/figures/figure_parts.h"
 #include "reports/rigs/diagnose_answer.h"
 #include "reports/rigs/diagnose_figure.h"
 #include "reports/text/json_node.h"
@@ -24,7 +23,6 @@ using evaluation::GroupVerdict;
 using evaluation::PairDiagnosis;
 using evaluation::SyncStatus;
 
-constexpr std::size_t kSparklinePoints = 80;
 constexpr std::size_t kMovesColumn = 7;  // of the cameras' table
 
 const char* status_name(SyncStatus status) {
@@ -76,7 +74,7 @@ Sparkline phase_sparkline(const CameraDiagnosis& camera, const Diagnosis& diagno
   const auto group = std::ranges::find(diagnosis.groups, camera.stream, &GroupVerdict::stream);
   if (group == diagnosis.groups.end()) return {};
   return {.kind = Sparkline::Kind::kSeries,
-          .values = thinned(phase_series(camera, group->period_ms), kSparklinePoints).y,
+          .values = block_medians(phase_series(camera, group->period_ms)).y,
           .words = fmt::format("phase of {} over the recording: {} ms a minute", camera.camera,
                                number_text(camera.standing.moves_ms_per_minute))};
 }

@@ -91,9 +91,8 @@ class Winner {
     const std::size_t points = part_.plan.points();
     const std::string values =
         points == 1 ? time_text(value(*rows_.front()))
-                    : fmt::format("from {} at {} to {} at {}", time_text(value(*rows_.front())),
-                                  place(*rows_.front()), time_text(value(*rows_.back())),
-                                  place(*rows_.back()));
+                    : fmt::format("{} to {}", time_text(value(*rows_.front())),
+                                  time_text(value(*rows_.back())));
     if (part_.plan.pipelines.size() == 1) {
       return fmt::format("{}, the only pipeline here that a rig can run, has {} {} of {}.", name_,
                          article(), metric_.title, values);
@@ -106,10 +105,16 @@ class Winner {
       if (point.is_apart.front()) ++apart;
     }
     return fmt::format(
-        "{} is the best of the {} pipelines that a rig can run at {} of {}, beyond chance at {}: "
+        "{} is the best of the {} pipelines that a rig can run at {} of {} (beyond chance at {}): "
         "{} {}.",
         name_, part_.plan.pipelines.size(), first, counted(points, "point"), apart, metric_.title,
         values);
+  }
+
+  std::string range() const {
+    if (rows_.size() < 2) return "";
+    return fmt::format("It is best at {} and worst at {}.", place(*rows_.front()),
+                       place(*rows_.back()));
   }
 
   // Which axis changes it most, the others being fixed.
@@ -239,6 +244,7 @@ AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& r
                                 metric.title)};
   }
   AnswerText answer{.lead = winner.lead(ranking)};
+  answer.add("Range", winner.range());
   answer.add("Order", flips_text(part.plan, ranking));
   answer.add("Effect", winner.what_matters());
   answer.add("Sets", winner.sets());

@@ -19,11 +19,12 @@ function groupedById(figures) {
 function makeArchive(root, script) {
   const {figures, columns} = JSON.parse(script.textContent);
   const page = {columns: new Columns(columns), marked: () => state.pulse, chosen: choseFrame};
-  const views = groupedById(figures).map((alternatives) => new FigureView(alternatives, page));
   // The figures that belong to the answer stand beside it.
   const lead = root.querySelector('.figures.lead');
   const leading = lead?.dataset.figures.split(' ') ?? [];
   const rest = root.querySelector('.figures:not(.lead)');
+  const views = groupedById(figures).map((alternatives) => new FigureView(
+      alternatives, {...page, preferred: leading.includes(alternatives[0].id) && lead.dataset.pipeline}));
   for (const view of views) (leading.includes(view.id) ? lead : rest).append(view.root);
   return {root, figures, views};
 }
