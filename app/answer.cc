@@ -51,7 +51,7 @@ evaluation::RankedBy ranked_by(const Scenario& scenario) {
 }
 
 reports::AnswerText run_answer(const Results& results, const Scenario& scenario,
-                          const evaluation::Progress& progress) {
+                               const evaluation::Progress& progress) {
   const evaluation::RankedBy by = ranked_by(scenario);
   const Row* const best = evaluation::answer_of(results, by).best;
   std::optional<Budget> budget;

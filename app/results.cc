@@ -11,12 +11,12 @@
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/page/sweep_page.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
 #include "reports/results/summary_document.h"
-#include "reports/page/sweep_page.h"
 #include "reports/sweep/sweep_answer.h"
 #include "reports/sweep/sweep_ranking.h"
 #include "reports/sweep/sweep_report.h"
@@ -180,10 +180,10 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
   const reports::Document document = document_of(plan, rows, tables, answer);
   const std::vector<reports::Figure> figures = figures_of(plan, rows, tables);
   folder.write("sweep.txt", text_for_file(document));
-  folder.write("sweep.html", reports::sweep_html({.plan = plan,
-                                                  .answer = answer,
-                                                  .figures = figures,
-                                                  .blocks = document.blocks}));
+  folder.write(
+      "sweep.html",
+      reports::sweep_html(
+          {.plan = plan, .answer = answer, .figures = figures, .blocks = document.blocks}));
   std::string not_drawn = draw_figure(figures.front(), folder);
   folder.log().put_in_order();
   return {.tables = plain(document), .not_drawn = std::move(not_drawn)};

@@ -143,9 +143,9 @@ int run_folder(const std::string& folder, const ReplayOptions& options) {
   if (archive.write(*results, run.scenario())) {
     print_note("results written to " + options.output);
   }
-  print_result(
-      app::results_text(*results, run.scenario(), options.format, app::Detail::kAll,
-                        reports::results_answer(*results, app::ranked_by(run.scenario()), nullptr)));
+  print_result(app::results_text(
+      *results, run.scenario(), options.format, app::Detail::kAll,
+      reports::results_answer(*results, app::ranked_by(run.scenario()), nullptr)));
   return kOk;
 }
 

@@ -15,9 +15,9 @@
 #include "evaluation/budget/budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
-#include "reports/results/results_answer.h"
 #include "reports/results/budget_report.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/results_answer.h"
 #include "reports/rigs/prediction_report.h"
 
 namespace simbench::cli {
@@ -175,8 +175,8 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
 
 // Empty for a format that only programs read; nothing after an interruption.
 std::optional<reports::AnswerText> answer_for_people(const evaluation::Results& results,
-                                                const scenarios::Scenario& scenario,
-                                                const RunOptions& options) {
+                                                     const scenarios::Scenario& scenario,
+                                                     const RunOptions& options) {
   if (options.format == "csv" || options.format == "tidy" || options.format == "json") {
     return reports::AnswerText{};
   }

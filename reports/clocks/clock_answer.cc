@@ -36,42 +36,45 @@ std::string in_sync_sentence(const Row& row) {
   const struct {
     const evaluation::Series& seconds;
     const char* bound;
-  } bounds[] = {{row.below_0_01_ms_s, "10 us"}, {row.below_0_1_ms_s, "0.1 ms"},
-                {row.below_1_ms_s, "1 ms"}};
+  } bounds[] = {
+      {row.below_0_01_ms_s, "10 us"}, {row.below_0_1_ms_s, "0.1 ms"}, {row.below_1_ms_s, "1 ms"}};
   for (const auto& [seconds, bound] : bounds) {
     const double median_s = median_time(seconds.values);
     if (std::isnan(median_s)) continue;
-    return fmt::format("In sync: within {} for good from second {} of the cold start on; the "
-                       "largest error of a host is {}.",
-                       bound, significant_text(median_s), time_text(row.max_te_ms.median));
+    return fmt::format(
+        "In sync: within {} for good from second {} of the cold start on; the "
+        "largest error of a host is {}.",
+        bound, significant_text(median_s), time_text(row.max_te_ms.median));
   }
-  return fmt::format("Not in sync: half of the seeds or more never stay within 1 ms; the largest "
-                     "error of a host is {}.",
-                     time_text(row.max_te_ms.median));
+  return fmt::format(
+      "Not in sync: half of the seeds or more never stay within 1 ms; the largest "
+      "error of a host is {}.",
+      time_text(row.max_te_ms.median));
 }
 
 std::string kind_of_error_sentence(const Row& row) {
   const double share = row.constant_te_ms.median / row.max_te_ms.median;
   if (!std::isfinite(share)) return "";
   return share > kMostlyConstant
-             ? fmt::format("What limits it: a constant error of {}, as unequal paths there and "
-                           "back make it, which no averaging removes.",
-                           time_text(row.constant_te_ms.median))
-             : fmt::format("What limits it: noise and drift, a range of {} in a host; the constant "
-                           "part is {}.",
-                           time_text(row.dynamic_te_ms.median),
-                           time_text(row.constant_te_ms.median));
+             ? fmt::format(
+                   "What limits it: a constant error of {}, as unequal paths there and "
+                   "back make it, which no averaging removes.",
+                   time_text(row.constant_te_ms.median))
+             : fmt::format(
+                   "What limits it: noise and drift, a range of {} in a host; the constant "
+                   "part is {}.",
+                   time_text(row.dynamic_te_ms.median), time_text(row.constant_te_ms.median));
 }
 
 std::string without_master_sentence(const Row& row) {
   if (std::isnan(row.holdover_600_ms.median)) return "";
   const double recovery_s = median_time(row.recovery_s.values);
-  return fmt::format("Without its master a host is {} off after 60 s, {} after 600 s; {}.",
-                     time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
-                     std::isnan(recovery_s)
-                         ? "then half of the seeds or more do not recover within an hour"
-                         : fmt::format("then it recovers within {} s",
-                                       significant_text(recovery_s)));
+  return fmt::format(
+      "Without its master a host is {} off after 60 s, {} after 600 s; {}.",
+      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
+      std::isnan(recovery_s)
+          ? "then half of the seeds or more do not recover within an hour"
+          : fmt::format("then it recovers within {} s", significant_text(recovery_s)));
 }
 
 }  // namespace

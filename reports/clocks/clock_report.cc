@@ -57,8 +57,9 @@ double median_of(const Metric& metric, const Row& row) {
 }
 
 Field<Row> clock_field(const Metric& metric) {
-  Field<Row> field = {{metric.heading, Align::kRight, metric.legend},
-                      [metric](const Row& row) { return significant_text(median_of(metric, row)); }};
+  Field<Row> field = {{metric.heading, Align::kRight, metric.legend}, [metric](const Row& row) {
+                        return significant_text(median_of(metric, row));
+                      }};
   if (metric.band_heading != nullptr) {
     field.sparkline = [metric](const Row& row) { return seeds_sparkline(metric.series(row)); };
   }

@@ -234,7 +234,7 @@ FigurePanel parts_panel(const std::string& title, const ErrorParts& parts) {
             "", "part (ms)");
   FigureSeries bars = series("mean over seeds", Mark::kBars, 0);
   FigureSeries low = series("5 %", Mark::kPoints, 1);
-  FigureSeries high = series("95 %", Mark::kPoints, 2);
+  FigureSeries high = series("95 %", Mark::kPoints, 1);
   const auto add = [&](const std::string& name, const BudgetPart& part) {
     const auto x = static_cast<double>(made.categories.size());
     made.categories.push_back(name);
@@ -310,7 +310,8 @@ Figure budget_figure(const Budget& budget) {
   }
   if (figure.panels.empty()) return absent(std::move(figure), "No seed has an error to divide.");
   figure.caption = fmt::format(
-      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders in "
+      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders "
+      "in "
       "which the stages can be replaced (Shapley values). Parts and remainder add up to the whole; "
       "a part below zero cancels another.",
       counted(budget.amd_ms.total.values.size(), "seed"));

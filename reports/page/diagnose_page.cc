@@ -20,8 +20,8 @@ std::string diagnose_html(const DiagnosePage& page) {
       .answer = diagnose_answer(page.diagnosis),
       .lead_figures = {figure.id},
       .body = html(diagnose_document(page.diagnosis).blocks),
-      .reproduce = fmt::format("<dl>\n{}</dl>\n",
-                               html_command("All of this", simbench_line(page.command)))};
+      .reproduce =
+          fmt::format("<dl>\n{}</dl>\n", html_command("All of this", simbench_line(page.command)))};
   return html_page({.title = fmt::format("simbench diagnose {}", inputs),
                     .subtitle = "does the hardware sync of this rig work",
                     .main = html_article(article),

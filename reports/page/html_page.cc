@@ -195,15 +195,15 @@ std::string figures_json(const std::vector<Figure>& figures) {
 std::string html_article(const HtmlArticle& article) {
   std::string lead = article.lead;
   if (!article.lead_figures.empty()) {
-    lead += fmt::format(
-        "<div class=\"figures lead\" data-figures=\"{}\" data-pipeline=\"{}\"></div>\n",
-        html_escaped(fmt::format("{}", fmt::join(article.lead_figures, " "))),
-        html_escaped(article.lead_pipeline));
+    lead +=
+        fmt::format("<div class=\"figures lead\" data-figures=\"{}\" data-pipeline=\"{}\"></div>\n",
+                    html_escaped(fmt::format("{}", fmt::join(article.lead_figures, " "))),
+                    html_escaped(article.lead_pipeline));
   }
   std::string figures;
   if (article.has_more_figures) {
-    figures = fmt::format("<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n",
-                          article.figure_notes);
+    figures =
+        fmt::format("<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n", article.figure_notes);
   }
   return fmt::format(
       "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n"
@@ -256,8 +256,7 @@ std::string html_scenario(const std::string& use, const std::string& scenario) {
   return fmt::format(
       "<details><summary>The resolved scenario</summary>\n{}"
       "<pre class=\"scroll\" tabindex=\"0\">{}</pre>\n</details>\n",
-      use.empty() ? "" : fmt::format("<p>{}</p>\n", use),
-      html_escaped(scenario));
+      use.empty() ? "" : fmt::format("<p>{}</p>\n", use), html_escaped(scenario));
 }
 
 }  // namespace simbench::reports

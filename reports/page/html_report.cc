@@ -107,7 +107,7 @@ evaluation::RankedBy ranked_by_of(const Archive& archive) {
 }
 
 // "" of clock runs, whose first table is short.
-std::string summary_of(const Archive& archive) {
+std::string archive_summary(const Archive& archive) {
   if (archive.results.kind != evaluation::ResultKind::kCaptures) return "";
   std::vector<Block> summary = summary_blocks(archive.results, is_leaderboard(archive));
   summary.front().heading = "Summary";
@@ -137,7 +137,7 @@ HtmlArticle article_of(const ReportedArchive& reported, std::size_t number,
           .lead = overview_html(archive.results, ranked_by_of(archive)),
           .lead_figures = {is_of_clocks ? "clocks" : "budget"},
           .lead_pipeline = best == nullptr ? "" : best->pipeline,
-          .summary = summary_of(archive),
+          .summary = archive_summary(archive),
           .about = about_archive(archive, input.archives.size() > 1),
           .body = html(blocks_of(archive)),
           .has_more_figures = !is_of_clocks,

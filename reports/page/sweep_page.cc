@@ -28,9 +28,8 @@ std::string repeating_line(const evaluation::SweepPlan& plan) {
     words.insert(words.end(), {"--sweep", axis_text(axis)});
   }
   if (of_clocks(plan)) {
-    words.insert(words.end(),
-                 {"--clocks", "--from-s", std::to_string(plan.clock_period.from_s), "--duration-s",
-                  std::to_string(plan.clock_period.duration_s)});
+    words.insert(words.end(), {"--clocks", "--from-s", std::to_string(plan.clock_period.from_s),
+                               "--duration-s", std::to_string(plan.clock_period.duration_s)});
   }
   words.insert(words.end(), {"--pipelines", fmt::format("{}", fmt::join(plan.pipelines, ",")),
                              "--seeds", std::to_string(plan.seeds), "--first-seed",
@@ -43,10 +42,10 @@ std::string about_sweep(const evaluation::SweepPlan& plan) {
   for (const std::string& line : scenarios::derivation_lines(plan.derivation)) {
     about += html_paragraph("provenance", line);
   }
-  return about + html_paragraph("provenance",
-                                fmt::format("{} at each point, simbench {} ({})",
-                                            counted_seeds(plan.first_seed, plan.seeds), version(),
-                                            commit()));
+  return about +
+         html_paragraph("provenance", fmt::format("{} at each point, simbench {} ({})",
+                                                  counted_seeds(plan.first_seed, plan.seeds),
+                                                  version(), commit()));
 }
 
 }  // namespace

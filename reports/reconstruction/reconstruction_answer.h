@@ -1,6 +1,6 @@
-// The answer of `simbench reconstruct`: which pipeline gives the smallest reprojection error, whether
-// that is above what a perfect synchronisation leaves, how far apart cameras may be, and what is
-// uncertain.
+// The answer of `simbench reconstruct`: which pipeline gives the smallest reprojection error,
+// whether that is above what a perfect synchronisation leaves, how far apart cameras may be, and
+// what is uncertain.
 //
 //   document.head = paragraphs(reconstruction_answer(results));
 #ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_ANSWER_H_

@@ -111,8 +111,7 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
 }
 
 std::string sets_sentence(const Row& row) {
-  if (is_unverified(row))
-    return "Whether its sets are right is unknown: the capture has no truth.";
+  if (is_unverified(row)) return "Whether its sets are right is unknown: the capture has no truth.";
   if (row.sets.emitted == 0) return "It gathers no complete set.";
   if (std::isnan(row.precision) || std::isnan(row.recall)) return "";
   if (row.precision == 1 && row.recall == 1) {

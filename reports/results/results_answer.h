@@ -1,7 +1,7 @@
 // The answer of a run (evaluation/answer/answer.h): which pipeline is best and by how much, how far
-// it is from the limit, what limits it, whether its sets can be trusted, what would improve it most,
-// and what is uncertain. Every sentence is computed from the results; what they do not hold has
-// none.
+// it is from the limit, what limits it, whether its sets can be trusted, what would improve it
+// most, and what is uncertain. Every sentence is computed from the results; what they do not hold
+// has none.
 //
 //   const AnswerText first = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
 #ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_
@@ -22,7 +22,8 @@ AnswerText results_answer(const evaluation::Results& results, evaluation::Ranked
 
 // Its sentences that other answers have too; `answer` has a best pipeline.
 //
-// Which pipelines cannot be told from the best, the next one, and the paper's; "" if there are none.
+// Which pipelines cannot be told from the best, the next one, and the paper's; "" if there are
+// none.
 std::string distance_text(const evaluation::Results& results, const evaluation::Answer& answer);
 // What these seeds leave open; "" if that is little.
 std::string uncertainty_text(const evaluation::Answer& answer);

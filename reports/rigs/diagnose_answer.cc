@@ -61,7 +61,8 @@ std::string drift_sentence(const Diagnosis& diagnosis) {
 }
 
 bool slips(const CameraDiagnosis& camera) {
-  return std::ranges::any_of(camera.facts.jumps, [](const auto& jump) { return jump.periods != 0; });
+  return std::ranges::any_of(camera.facts.jumps,
+                             [](const auto& jump) { return jump.periods != 0; });
 }
 
 // Of which cameras stamps slipped, and who lost frames.
@@ -74,9 +75,9 @@ std::string slips_sentence(const Diagnosis& diagnosis) {
     lost += camera.facts.lost_frames;
     if (most == nullptr || camera.facts.lost_frames > most->facts.lost_frames) most = &camera;
   }
-  std::string text = names.empty() ? std::string("No camera's stamps slip by whole frames")
-                                   : fmt::format("The stamps of {} slip by whole frames",
-                                                 fmt::join(names, ", "));
+  std::string text =
+      names.empty() ? std::string("No camera's stamps slip by whole frames")
+                    : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
   text += lost == 0 ? "; no frame is lost."
                     : fmt::format("; {} lost, most by camera {}.",
                                   lost == 1 ? "1 frame is" : count_text(lost) + " frames are",

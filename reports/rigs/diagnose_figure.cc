@@ -43,10 +43,11 @@ double jitter_ms(const CameraDiagnosis& camera, const FigureSeries& phases) {
 void add_slips(const CameraDiagnosis& camera, int colour, FigurePanel& panel) {
   for (const evaluation::StampJump& jump : camera.facts.jumps) {
     if (panel.lines.size() == kMostSlipLines) return;
-    panel.lines.push_back({.label = camera.camera + (jump.periods != 0 ? " slips" : ": a clock is set"),
-                           .vertical = true,
-                           .at = jump.at_s,
-                           .colour = colour});
+    panel.lines.push_back(
+        {.label = camera.camera + (jump.periods != 0 ? " slips" : ": a clock is set"),
+         .vertical = true,
+         .at = jump.at_s,
+         .colour = colour});
   }
 }
 

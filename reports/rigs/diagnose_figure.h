@@ -3,7 +3,8 @@
 // For each kind of stream two panels. The first has for each camera its arrivals less the common
 // frame period, from 0 on, as medians of short stretches: a camera on the trigger stays level, one
 // that runs free leaves along a straight line. The second has the jitter of the single arrivals
-// about that, the drift taken out: from 5 to 95 %. Cameras at no whole fraction of the common rate have no place in it.
+// about that, the drift taken out: from 5 to 95 %. Cameras at no whole fraction of the common rate
+// have no place in it.
 //
 //   const Figure figure = diagnose_figure(diagnosis);
 #ifndef SIMBENCH_REPORTS_RIGS_DIAGNOSE_FIGURE_H_

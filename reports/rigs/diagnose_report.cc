@@ -189,8 +189,8 @@ Document diagnose_document(const Diagnosis& diagnosis) {
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The cameras", .table = cameras_table(diagnosis)});
   if (!diagnosis.pairs.empty()) {
-    blocks.push_back({.heading = "Streams of one camera against each other",
-                      .table = pairs_table(diagnosis)});
+    blocks.push_back(
+        {.heading = "Streams of one camera against each other", .table = pairs_table(diagnosis)});
   }
   Block findings{.heading = "Findings"};
   for (const Finding& finding : diagnosis.findings) findings.items.push_back(finding.text);

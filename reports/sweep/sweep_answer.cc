@@ -23,8 +23,8 @@ namespace simbench::reports {
 namespace {
 
 using evaluation::Metric;
-using evaluation::Ranking;
 using evaluation::RankedBy;
+using evaluation::Ranking;
 using evaluation::ResponseRow;
 using evaluation::SweepPlan;
 
@@ -44,8 +44,7 @@ std::vector<bool> runnable_pipelines(const SweepPlan& plan) {
   const RankedBy by = of_clocks(plan) ? RankedBy::kClockSpread : RankedBy::kAbsoluteError;
   std::vector<bool> runnable;
   for (const std::string& name : plan.pipelines) {
-    const auto found =
-        std::ranges::find(scenario.pipelines, name, &scenarios::Pipeline::name);
+    const auto found = std::ranges::find(scenario.pipelines, name, &scenarios::Pipeline::name);
     evaluation::Row row;
     if (found != scenario.pipelines.end()) {
       row.host_sync = found->host_sync;
@@ -89,10 +88,10 @@ class Winner {
 
   std::string lead(const Ranking& ranking) const {
     const std::size_t points = part_.plan.points();
-    const std::string values =
-        points == 1 ? time_text(value(*rows_.front()))
-                    : fmt::format("{} to {}", time_text(value(*rows_.front())),
-                                  time_text(value(*rows_.back())));
+    const std::string values = points == 1
+                                   ? time_text(value(*rows_.front()))
+                                   : fmt::format("{} to {}", time_text(value(*rows_.front())),
+                                                 time_text(value(*rows_.back())));
     if (part_.plan.pipelines.size() == 1) {
       return fmt::format("{}, the only pipeline here that a rig can run, has {} {} of {}.", name_,
                          article(), metric_.title, values);
@@ -151,9 +150,10 @@ class Winner {
       if (pure == 1 && whole == 1) ++sound;
     }
     if (known == 0) return "";
-    return fmt::format("Its sets can be trusted at {} of {}: no set mixes pulses, no pulse is "
-                       "missing.",
-                       sound, counted(known, "point"));
+    return fmt::format(
+        "Its sets can be trusted at {} of {}: no set mixes pulses, no pulse is "
+        "missing.",
+        sound, counted(known, "point"));
   }
 
   std::string certainty() const {
@@ -167,12 +167,11 @@ class Winner {
           evaluation::median_interval(values, static_cast<std::int64_t>(seeds)).relative;
       if (!std::isnan(relative)) widest = std::max(widest, relative);
     }
-    std::string text =
-        fewest < kFewestSeedsOfPoint
-            ? fmt::format("Uncertain: {} of a point say little about other worlds",
-                          counted(fewest, "seed"))
-            : fmt::format("Uncertain: the medians are known to {:.0f} % or better",
-                          std::ceil(100 * widest));
+    std::string text = fewest < kFewestSeedsOfPoint
+                           ? fmt::format("Uncertain: {} of a point say little about other worlds",
+                                         counted(fewest, "seed"))
+                           : fmt::format("Uncertain: the medians are known to {:.0f} % or better",
+                                         std::ceil(100 * widest));
     const std::size_t without = part_.plan.points() - rows_.size();
     if (without > 0) text += fmt::format("; {} without a value", counted(without, "point"));
     return text + ".";
@@ -240,8 +239,8 @@ AnswerText sweep_answer(const SweepPlan& plan, const std::vector<ResponseRow>& r
   const Ranking ranking = evaluation::rank(part.plan, part.rows, metric);
   const Winner winner(part, metric, most_often_first(ranking, part.plan.pipelines.size()));
   if (!winner.exists()) {
-    return {.lead = fmt::format("No pipeline that a rig can run has a value of the {}.",
-                                metric.title)};
+    return {.lead =
+                fmt::format("No pipeline that a rig can run has a value of the {}.", metric.title)};
   }
   AnswerText answer{.lead = winner.lead(ranking)};
   answer.add("Range", winner.range());

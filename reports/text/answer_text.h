@@ -1,4 +1,5 @@
-// The answer that a report begins with: one sentence, then what else a reader wants to know at once.
+// The answer that a report begins with: one sentence, then what else a reader wants to know at
+// once.
 //
 // A terminal has it as one paragraph, a page as the first sentence in larger type and a line for
 // each of the rest, under its label. Labels are a word or two; without them the texts are whole

@@ -165,8 +165,9 @@ std::string html_row(const Table& table, std::size_t row) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string text = html_escaped(cells[i]);
     const char* const align = table.columns[i].align == Align::kLeft ? " class=\"text\"" : "";
-    out += i < table.key_columns ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
-                                 : fmt::format("<td{}>{}{}</td>", align, text, sparkline_of(table, row, i));
+    out += i < table.key_columns
+               ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
+               : fmt::format("<td{}>{}{}</td>", align, text, sparkline_of(table, row, i));
   }
   return out + "</tr>\n";
 }

@@ -22,8 +22,9 @@ TEST(ReconstructionAnswer, SaysWhichIsBestAndHowFarApartHostsMayBe) {
   EXPECT_THAT(text, HasSubstr("mean error 2.40 [2.04, 2.58] cm, its exposures 5.0 ms apart."));
   EXPECT_THAT(text, HasSubstr("These seeds cannot tell "));
   // 10 % of 2 cm at 0.01 cm/ms from 10 ms on.
-  EXPECT_THAT(text, HasSubstr("At 1.20 m/s hosts may be 30.0 ms apart until the error is 10 % above "
-                              "its floor of 2.00 cm"));
+  EXPECT_THAT(text,
+              HasSubstr("At 1.20 m/s hosts may be 30.0 ms apart until the error is 10 % above "
+                        "its floor of 2.00 cm"));
   EXPECT_THAT(text, HasSubstr("3 seeds say little about other worlds"));
 }
 

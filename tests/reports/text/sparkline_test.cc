@@ -44,7 +44,9 @@ TEST(Sparkline, TwoValuesNeedNoPicture) {
 TEST(Sparkline, OnlyHtmlShowsIt) {
   const std::vector<Field<int>> fields = {
       {{"n"}, [](int n) { return std::to_string(n); }},
-      {{"AMD"}, [](int) { return std::string("1"); }, [](int n) {
+      {{"AMD"},
+       [](int) { return std::string("1"); },
+       [](int n) {
          return Sparkline{.values = {0, 1, static_cast<double>(n)}, .words = "the seeds"};
        }}};
   const Table table = table_of(fields, std::vector<int>{2, 3});
