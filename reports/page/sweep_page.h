@@ -1,8 +1,7 @@
 // The page of a sweep, sweep.html in its folder: the answer, the response as a figure, the tables.
 // It depends on the plan and the results alone: equal sweeps have equal pages.
 //
-//   folder.write("sweep.html", sweep_html({.plan = plan, .answer = answer, .figures = figures,
-//                                          .blocks = blocks}));
+//   file << sweep_html({.plan = plan, .answer = answer, .figures = figures, .blocks = blocks});
 #ifndef SIMBENCH_REPORTS_PAGE_SWEEP_PAGE_H_
 #define SIMBENCH_REPORTS_PAGE_SWEEP_PAGE_H_
 

@@ -19,6 +19,7 @@ namespace {
 using evaluation::RowStanding;
 using reconstruction::ReconstructionResults;
 using reconstruction::ReprojectionRow;
+using reconstruction::SeedReprojection;
 
 constexpr std::size_t kFewestReconstructedSeeds = 6;  // for an interval of the median
 
@@ -41,21 +42,24 @@ std::vector<const ReprojectionRow*> by_error(const std::vector<ReprojectionRow>&
   return sorted;
 }
 
-// By seed, in the order of the seeds.
-std::vector<double> errors_by_seed(const ReprojectionRow& row) {
+// Of the seeds of `as`, in their order; NaN for one that the row does not have.
+std::vector<double> errors_by_seed(const ReprojectionRow& row, const ReprojectionRow& as) {
   std::vector<double> values;
-  values.reserve(row.seeds.size());
-  for (const reconstruction::SeedReprojection& seed : row.seeds) {
-    values.push_back(seed.errors.mean_cm);
+  values.reserve(as.seeds.size());
+  for (const SeedReprojection& seed : as.seeds) {
+    const auto found = std::ranges::find(row.seeds, seed.seed, &SeedReprojection::seed);
+    values.push_back(found == row.seeds.end() ? reconstruction::kNoError : found->errors.mean_cm);
   }
   return values;
 }
 
 std::string others_text(const std::vector<const ReprojectionRow*>& sorted) {
+  const ReprojectionRow& best = *sorted.front();
   std::vector<evaluation::ComparisonTask> tasks;
+  tasks.reserve(sorted.size());
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     tasks.push_back(
-        {evaluation::pair_up(errors_by_seed(*sorted[0]), errors_by_seed(*sorted[i])), {}});
+        {evaluation::pair_up(errors_by_seed(best, best), errors_by_seed(*sorted[i], best)), {}});
   }
   const std::vector<evaluation::PairedComparison> compared = evaluation::compare_together(tasks);
   std::vector<std::string> equals;
@@ -93,7 +97,7 @@ std::string tolerance_text(const ReconstructionResults& results) {
 }
 
 std::string certainty_text(const ReprojectionRow& best) {
-  const std::vector<double> values = errors_by_seed(best);
+  const std::vector<double> values = errors_by_seed(best, best);
   const std::size_t seeds = evaluation::count_of_existing(values);
   if (seeds < kFewestReconstructedSeeds) {
     return fmt::format("Uncertain: {} say little about other worlds.", counted(seeds, "seed"));
