@@ -6,7 +6,7 @@
 
 #include "app/interrupt.h"
 #include "evaluation/budget/budget.h"
-#include "reports/results/answer_block.h"
+#include "reports/results/results_answer.h"
 
 namespace simbench::app {
 namespace {
@@ -50,13 +50,13 @@ evaluation::RankedBy ranked_by(const Scenario& scenario) {
              : evaluation::RankedBy::kAmd;
 }
 
-reports::Block run_answer(const Results& results, const Scenario& scenario,
-                          const evaluation::Progress& progress) {
+reports::AnswerText run_answer(const Results& results, const Scenario& scenario,
+                               const evaluation::Progress& progress) {
   const evaluation::RankedBy by = ranked_by(scenario);
   const Row* const best = evaluation::answer_of(results, by).best;
   std::optional<Budget> budget;
   if (best != nullptr) budget = affordable_budget(results, scenario, *best, progress);
-  return reports::answer_block(results, by, budget ? &*budget : nullptr);
+  return reports::results_answer(results, by, budget ? &*budget : nullptr);
 }
 
 }  // namespace simbench::app

@@ -1,14 +1,14 @@
-// The answer of a simulated run: its first paragraph, with an error budget of the best pipeline
+// The answer of a simulated run: what it begins with, with an error budget of the best pipeline
 // where that is affordable.
 //
-//   const reports::Block first = run_answer(results, scenario, nullptr);
+//   const reports::AnswerText first = run_answer(results, scenario, nullptr);
 #ifndef SIMBENCH_APP_ANSWER_H_
 #define SIMBENCH_APP_ANSWER_H_
 
 #include "evaluation/answer/answer.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/scoring/results.h"
-#include "reports/text/block.h"
+#include "reports/text/answer_text.h"
 #include "scenarios/scenario.h"
 
 namespace simbench::app {
@@ -19,8 +19,9 @@ evaluation::RankedBy ranked_by(const scenarios::Scenario& scenario);
 // The budget is over the first seeds of the results, at most four, as many as take at most some 20
 // million events; none for programs, whose runs are too slow. The same results have the same
 // answer. Throws what evaluation::error_budgets() throws.
-reports::Block run_answer(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                          const evaluation::Progress& progress);
+reports::AnswerText run_answer(const evaluation::Results& results,
+                               const scenarios::Scenario& scenario,
+                               const evaluation::Progress& progress);
 
 }  // namespace simbench::app
 

@@ -18,6 +18,7 @@
 #include "evaluation/run/pipeline_choice.h"
 #include "evaluation/run/run_detail.h"
 #include "recording/version.h"
+#include "reports/clocks/clock_answer.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/result_figures.h"
@@ -384,6 +385,7 @@ ReportedArchive with_figures(Archive archive, const ReportDetail& detail,
                              const evaluation::Progress& progress) {
   ReportedArchive reported{.archive = std::move(archive)};
   if (reported.archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    reported.answer = reports::clock_answer(reported.archive.results);
     reported.figures = {reports::clock_figure(reports::clock_results_of(reported.archive))};
     return reported;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -10,11 +11,13 @@
 #include "evaluation/sweep/sweep_score.h"
 #include "reports/clocks/clock_report.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/page/sweep_page.h"
 #include "reports/results/csv.h"
 #include "reports/results/json.h"
 #include "reports/results/leaderboard_report.h"
 #include "reports/results/results_document.h"
 #include "reports/results/summary_document.h"
+#include "reports/sweep/sweep_answer.h"
 #include "reports/sweep/sweep_ranking.h"
 #include "reports/sweep/sweep_report.h"
 #include "reports/text/output_file.h"
@@ -39,10 +42,13 @@ std::vector<SweepScore> scores_in(const reports::SweepLog& log, const SweepPlan&
   return scores;
 }
 
-std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
-                    const std::vector<StudyTable>& tables) {
-  reports::Document document;
-  if (!plan.derivation.changes.empty()) document.head = {scenarios::changed_text(plan.derivation)};
+reports::Document document_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                              const std::vector<StudyTable>& tables,
+                              const reports::AnswerText& answer) {
+  reports::Document document{.head = paragraphs(answer)};
+  if (!plan.derivation.changes.empty()) {
+    document.head.push_back(scenarios::changed_text(plan.derivation));
+  }
   for (const StudyTable table : tables) {
     document.blocks.push_back(
         table == StudyTable::kHostOrder     ? reports::host_order_block(plan, rows)
@@ -51,13 +57,12 @@ std::string text_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
         : table == StudyTable::kPackets     ? reports::packets_block(plan, rows)
                                             : reports::response_block(plan, rows));
   }
-  return plain(document);
+  return document;
 }
 
-std::string text_for_file(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
-                          const std::vector<StudyTable>& tables) {
+std::string text_for_file(const reports::Document& document) {
   const reports::FilePage page;
-  return text_of(plan, rows, tables);
+  return plain(document);
 }
 
 reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
@@ -66,6 +71,19 @@ reports::Figure figure_of(const SweepPlan& plan, const std::vector<ResponseRow>&
   if (table == StudyTable::kSeedsNeeded) return reports::seeds_needed_figure(plan, rows);
   if (table == StudyTable::kPackets) return reports::packets_figure(plan, rows);
   return reports::response_figure(plan, rows);
+}
+
+// Those of the tables, each once; the first is that of the first table.
+std::vector<reports::Figure> figures_of(const SweepPlan& plan, const std::vector<ResponseRow>& rows,
+                                        const std::vector<StudyTable>& tables) {
+  std::vector<reports::Figure> figures;
+  for (const StudyTable table : tables) {
+    reports::Figure figure = figure_of(plan, rows, table);
+    const bool is_there = std::ranges::any_of(
+        figures, [&figure](const reports::Figure& other) { return other.id == figure.id; });
+    if (!is_there) figures.push_back(std::move(figure));
+  }
+  return figures;
 }
 
 // Returns why the figure was not drawn, which is no error; empty if it was.
@@ -85,7 +103,7 @@ std::string draw_figure(const reports::Figure& figure, reports::SweepFolder& fol
 
 reports::Document document_of(const evaluation::Results& results,
                               const scenarios::Scenario& scenario, bool leaderboard,
-                              const reports::Block& answer, Detail detail) {
+                              const reports::AnswerText& answer, Detail detail) {
   if (detail == Detail::kAnswer) return reports::quiet_document(results, answer);
   if (detail == Detail::kScreen) {
     return reports::summary_document(
@@ -94,14 +112,16 @@ reports::Document document_of(const evaluation::Results& results,
   reports::Document document = leaderboard
                                    ? reports::leaderboard_document(results, scenario.summary)
                                    : reports::results_document(results, scenario.summary);
-  document.head.insert(document.head.begin(), answer.prose.begin(), answer.prose.end());
+  const std::vector<std::string> first = paragraphs(answer);
+  document.head.insert(document.head.begin(), first.begin(), first.end());
   return document;
 }
 
 }  // namespace
 
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, Detail detail, const reports::Block& answer,
+                         const std::string& format, Detail detail,
+                         const reports::AnswerText& answer,
                          const std::vector<reports::Block>& more) {
   const bool leaderboard = scenario.evaluation.table == scenarios::TableKind::kLeaderboard;
   if (format == "json") {
@@ -156,10 +176,17 @@ SweepText write_sweep_results(const SweepPlan& plan, const std::vector<StudyTabl
   const std::vector<ResponseRow> rows = evaluation::response(plan, scores);
   folder.write("sweep.csv", reports::sweep_csv(plan, scores));
   folder.write("hosts.csv", reports::sweep_hosts_csv(plan, scores));
-  folder.write("sweep.txt", text_for_file(plan, rows, tables));
-  std::string not_drawn = draw_figure(figure_of(plan, rows, tables.front()), folder);
+  const reports::AnswerText answer = reports::sweep_answer(plan, rows);
+  const reports::Document document = document_of(plan, rows, tables, answer);
+  const std::vector<reports::Figure> figures = figures_of(plan, rows, tables);
+  folder.write("sweep.txt", text_for_file(document));
+  folder.write(
+      "sweep.html",
+      reports::sweep_html(
+          {.plan = plan, .answer = answer, .figures = figures, .blocks = document.blocks}));
+  std::string not_drawn = draw_figure(figures.front(), folder);
   folder.log().put_in_order();
-  return {.tables = text_of(plan, rows, tables), .not_drawn = std::move(not_drawn)};
+  return {.tables = plain(document), .not_drawn = std::move(not_drawn)};
 }
 
 }  // namespace simbench::app

@@ -17,6 +17,7 @@
 #include "evaluation/sweep/sweep_plan.h"
 #include "reports/archive/archive.h"
 #include "reports/sweep/sweep_folder.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 #include "scenarios/scenario.h"
 #include "scenarios/study.h"
@@ -27,10 +28,11 @@ namespace simbench::app {
 enum class Detail : std::uint8_t { kAnswer, kScreen, kAll };
 
 // The results as `simbench run` prints them. `format`: table, markdown, latex, csv, tidy or json;
-// the detail is that of a table, Markdown and LaTeX have all. `answer`: the first paragraph of
-// these. `more`: blocks that follow.
+// the detail is that of a table, Markdown and LaTeX have all. `answer`: what these begin
+// with. `more`: blocks that follow.
 std::string results_text(const evaluation::Results& results, const scenarios::Scenario& scenario,
-                         const std::string& format, Detail detail, const reports::Block& answer,
+                         const std::string& format, Detail detail,
+                         const reports::AnswerText& answer,
                          const std::vector<reports::Block>& more = {});
 
 // The same of `simbench clocks`.
@@ -58,8 +60,8 @@ struct SweepText {
   std::string not_drawn;  // why there is no plot; empty where there is one
 };
 
-// Writes sweep.csv, hosts.csv, sweep.txt and, if gnuplot is installed, sweep.svg with the first of
-// `tables`; puts the log in order. Throws reports::OutputError.
+// Writes sweep.csv, hosts.csv, sweep.txt, sweep.html and, if gnuplot is installed, sweep.svg with
+// the figure of the first of `tables`; puts the log in order. Throws reports::OutputError.
 SweepText write_sweep_results(const evaluation::SweepPlan& plan,
                               const std::vector<scenarios::StudyTable>& tables,
                               reports::SweepFolder& folder);

@@ -12,7 +12,9 @@
 #include "evaluation/diagnosis/diagnose.h"
 #include "recording/camera_streams.h"
 #include "recording/recording_folder.h"
+#include "reports/page/diagnose_page.h"
 #include "reports/rigs/diagnose_report.h"
+#include "reports/text/output_file.h"
 
 namespace simbench::cli {
 namespace {
@@ -30,6 +32,7 @@ Examples:
   simbench diagnose rig.csv
   simbench diagnose results/monday                     a folder of `simbench record`
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
+  simbench diagnose rig.csv --html rig.html            the same as a page
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
 Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input.)";
@@ -39,6 +42,8 @@ struct DiagnoseOptions {
   std::string format;
   std::optional<double> rate_hz;
   bool one_host = false;
+  std::string html;
+  std::vector<std::string> command;
 };
 
 // Of the first capture.
@@ -72,10 +77,18 @@ std::vector<CameraStream> streams_of(const std::vector<std::string>& inputs) {
 }
 
 int run_diagnose(const DiagnoseOptions& options) {
+  std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
+  if (!options.html.empty()) page.emplace(options.html);
   const evaluation::Diagnosis diagnosis = evaluation::diagnose(
       streams_of(options.files), {.rate_hz = options.rate_hz, .one_host = options.one_host});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
-                                        : reports::diagnose_table(diagnosis));
+                                        : plain(reports::diagnose_document(diagnosis)));
+  if (page) {
+    page->write(reports::diagnose_html(
+        {.diagnosis = diagnosis, .inputs = options.files, .command = options.command}));
+    page->publish();
+    print_note(options.html + " written");
+  }
   return kOk;
 }
 
@@ -83,6 +96,7 @@ int run_diagnose(const DiagnoseOptions& options) {
 
 void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
+  options->command = line.arguments;
   Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
   command.texts("inputs", "INPUT...", options->files, "A recording folder, or CSV files")
       .required();
@@ -91,6 +105,9 @@ void add_diagnose_command(CommandLine& line) {
                  "The trigger's rate. Default: the rate of most cameras");
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
+  command.text("--html", "FILE.html", options->html,
+               "Write a page, too: the answer, how each camera's phase moves, the tables. It\n"
+               "is one file, which opens offline");
   command.footer(kDiagnoseExamples);
   command.runs([options] { return run_diagnose(*options); });
 }

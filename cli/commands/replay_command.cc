@@ -19,7 +19,7 @@
 #include "evaluation/replay/replay.h"
 #include "recording/recording.h"
 #include "reports/archive/archive.h"
-#include "reports/results/answer_block.h"
+#include "reports/results/results_answer.h"
 #include "reports/rigs/replay_report.h"
 
 namespace simbench::cli {
@@ -143,9 +143,9 @@ int run_folder(const std::string& folder, const ReplayOptions& options) {
   if (archive.write(*results, run.scenario())) {
     print_note("results written to " + options.output);
   }
-  print_result(
-      app::results_text(*results, run.scenario(), options.format, app::Detail::kAll,
-                        reports::answer_block(*results, app::ranked_by(run.scenario()), nullptr)));
+  print_result(app::results_text(
+      *results, run.scenario(), options.format, app::Detail::kAll,
+      reports::results_answer(*results, app::ranked_by(run.scenario()), nullptr)));
   return kOk;
 }
 

@@ -15,9 +15,9 @@
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/pipeline_choice.h"
-#include "reports/results/answer_block.h"
 #include "reports/results/budget_report.h"
 #include "reports/results/ground_truth_text.h"
+#include "reports/results/results_answer.h"
 #include "reports/rigs/prediction_report.h"
 
 namespace simbench::cli {
@@ -139,7 +139,7 @@ std::string text_with_prediction(const evaluation::Results& measured,
                                  const scenarios::Scenario& scenario, const RunOptions& options) {
   if (options.format == "json") return reports::json_with_prediction(measured, simulated);
   return app::results_text(measured, scenario, options.format, options.detail(),
-                           reports::answer_block(measured, app::ranked_by(scenario), nullptr),
+                           reports::results_answer(measured, app::ranked_by(scenario), nullptr),
                            {reports::prediction_block(measured, simulated)});
 }
 
@@ -174,13 +174,13 @@ int run_on_rig(const RunOptions& options, const scenarios::Scenario& scenario,
 }
 
 // Empty for a format that only programs read; nothing after an interruption.
-std::optional<reports::Block> answer_for_people(const evaluation::Results& results,
-                                                const scenarios::Scenario& scenario,
-                                                const RunOptions& options) {
+std::optional<reports::AnswerText> answer_for_people(const evaluation::Results& results,
+                                                     const scenarios::Scenario& scenario,
+                                                     const RunOptions& options) {
   if (options.format == "csv" || options.format == "tidy" || options.format == "json") {
-    return reports::Block{};
+    return reports::AnswerText{};
   }
-  return watched<reports::Block>([&](const evaluation::Progress& progress) {
+  return watched<reports::AnswerText>([&](const evaluation::Progress& progress) {
     return app::run_answer(results, scenario, progress);
   });
 }
@@ -201,7 +201,7 @@ int run(RunOptions options) {
   if (!results) return kInterrupted;
   print_warnings(results->warnings);
   if (archive.write(*results, scenario)) print_note("results written to " + options.output);
-  const std::optional<reports::Block> answer = answer_for_people(*results, scenario, options);
+  const std::optional<reports::AnswerText> answer = answer_for_people(*results, scenario, options);
   if (!answer) return kInterrupted;
   print_result(app::results_text(*results, scenario, options.format, options.detail(), *answer));
   return kOk;

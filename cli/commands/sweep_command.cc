@@ -44,7 +44,8 @@ A sweep that was interrupted, killed or ran out of disk space goes on when the s
 again: no finished run is lost or repeated, and the results are the same.
 
 In the folder: sweep.csv has a line for each point, pipeline and seed, hosts.csv one for each host
-of these, sweep.txt the table, sweep.svg the plot (drawn by gnuplot), runs.log the finished runs.
+of these, sweep.txt the answer and the tables, sweep.html the same as a page with its figures,
+sweep.svg the plot (drawn by gnuplot), runs.log the finished runs.
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 

@@ -33,7 +33,7 @@ std::vector<const Row*> rows_of(const std::vector<const Row*>& all, RowStanding 
                                 RankedBy ranked_by) {
   std::vector<const Row*> rows;
   for (const Row* row : all) {
-    if (standing_of(*row) == standing && has_value(*row, ranked_by)) rows.push_back(row);
+    if (standing_by(*row, ranked_by) == standing && has_value(*row, ranked_by)) rows.push_back(row);
   }
   std::ranges::stable_sort(
       rows, {}, [ranked_by](const Row* row) { return ranked_series(*row, ranked_by).median; });
@@ -91,6 +91,11 @@ RowStanding standing_of(const Row& row) {
   return is_relative ? RowStanding::kReference : RowStanding::kRunnable;
 }
 
+RowStanding standing_by(const Row& row, RankedBy ranked_by) {
+  if (ranked_by != RankedBy::kClockSpread) return standing_of(row);
+  return is_oracle(find_host_sync(row.host_sync)) ? RowStanding::kLimit : RowStanding::kRunnable;
+}
+
 const char* standing_name(RowStanding standing) {
   switch (standing) {
     case RowStanding::kRunnable:
@@ -109,7 +114,15 @@ const Row* best_of(const std::vector<const Row*>& rows, RankedBy ranked_by) {
 }
 
 const Series& ranked_series(const Row& row, RankedBy ranked_by) {
-  return ranked_by == RankedBy::kAmd ? row.amd_ms : row.absolute_error_ms;
+  switch (ranked_by) {
+    case RankedBy::kAmd:
+      return row.amd_ms;
+    case RankedBy::kAbsoluteError:
+      return row.absolute_error_ms;
+    case RankedBy::kClockSpread:
+      break;
+  }
+  return row.clock_spread_ms;
 }
 
 Answer answer_of(const Results& results, RankedBy ranked_by) {

@@ -5,7 +5,8 @@
 // the truth) or references (stamps that count from a camera's own first frame). The best pipeline
 // is the one with the smallest median of the ranking metric: AMD, or the absolute error where rows
 // are ranked by that, or where there is no AMD (one camera). Offline pipelines count like others;
-// rows that were captured without truth too.
+// rows that were captured without truth too. A run of the clocks alone is ranked by their spread,
+// and needs nothing but a host_sync that a rig can run.
 //
 // Every other pipeline that a rig can run is compared with the best seed by seed, with Holm's
 // correction over all of them (evaluation/statistics/paired.h): `equals` cannot be told from it by
@@ -32,7 +33,11 @@
 
 namespace simbench::evaluation {
 
-enum class RankedBy : std::uint8_t { kAmd, kAbsoluteError };
+enum class RankedBy : std::uint8_t {
+  kAmd,
+  kAbsoluteError,
+  kClockSpread,  // of clock runs: the mean spread in time
+};
 
 // What a row may be called in an answer.
 enum class RowStanding : std::uint8_t {
@@ -43,6 +48,8 @@ enum class RowStanding : std::uint8_t {
 RowStanding standing_of(const Row& row);
 // In tables: "", "reference" or "limit".
 const char* standing_name(RowStanding standing);
+// The same in an answer that ranks so.
+RowStanding standing_by(const Row& row, RankedBy ranked_by);
 
 struct Answer {
   RankedBy ranked_by = RankedBy::kAmd;

@@ -10,6 +10,7 @@
 
 #include "evaluation/clock_run/clock_curves.h"
 #include "recording/version.h"
+#include "reports/clocks/clock_answer.h"
 #include "reports/results/csv.h"
 #include "reports/results/derivation_json.h"
 #include "reports/results/ground_truth_text.h"
@@ -50,18 +51,6 @@ double rms(const std::vector<double>& values) {
   return found.empty() ? kNan : std::sqrt(squares / static_cast<double>(found.size()));
 }
 
-// The median, where a seed without a value is later than all others.
-double median_time(std::vector<double> values) {
-  for (double& value : values) {
-    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
-  }
-  std::sort(values.begin(), values.end());
-  if (values.empty()) return kNan;
-  const double high = values[values.size() / 2];
-  const double median = (values[(values.size() - 1) / 2] + high) / 2;
-  return std::isfinite(median) ? median : kNan;
-}
-
 // Over the seeds.
 double median_of(const Metric& metric, const Row& row) {
   const evaluation::Series& series = metric.series(row);
@@ -69,8 +58,13 @@ double median_of(const Metric& metric, const Row& row) {
 }
 
 Field<Row> clock_field(const Metric& metric) {
-  return {{metric.heading, Align::kRight, metric.legend},
-          [metric](const Row& row) { return metric_text(metric, median_of(metric, row)); }};
+  Field<Row> field = {{metric.heading, Align::kRight, metric.legend}, [metric](const Row& row) {
+                        return metric_text(metric, median_of(metric, row));
+                      }};
+  if (metric.band_heading != nullptr) {
+    field.sparkline = [metric](const Row& row) { return seeds_sparkline(metric.series(row)); };
+  }
+  return field;
 }
 
 Table metrics_table(const ClockResults& results) {
@@ -124,13 +118,26 @@ std::vector<std::string> legend(const ClockResults& results) {
 
 }  // namespace
 
+double median_time(std::vector<double> values) {
+  for (double& value : values) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  }
+  std::sort(values.begin(), values.end());
+  if (values.empty()) return kNan;
+  const double high = values[values.size() / 2];
+  const double median = (values[(values.size() - 1) / 2] + high) / 2;
+  return std::isfinite(median) ? median : kNan;
+}
+
 ClockResults clock_results_of(const Archive& archive) {
   return {.results = archive.results, .curves = archive.curves};
 }
 
 Document clock_document(const ClockResults& results, const std::string& summary) {
   Document document{.title = results_title(results.results),
-                    .head = results_head(results.results, summary)};
+                    .head = paragraphs(clock_answer(results.results))};
+  const std::vector<std::string> head = results_head(results.results, summary);
+  document.head.insert(document.head.end(), head.begin(), head.end());
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The hosts' clocks", .table = metrics_table(results)});
   if (std::optional<Block> gap = program_gap_block(results.results)) {

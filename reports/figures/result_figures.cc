@@ -16,6 +16,7 @@
 #include "evaluation/statistics/statistics.h"
 #include "reports/figures/figure_parts.h"
 #include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -235,10 +236,12 @@ using NamedParts = std::vector<std::pair<std::string_view, const BudgetPart*>>;
 FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
                         const NamedParts& parts) {
   FigurePanel made =
-      panel(fmt::format("{}: {} ms in all", title, number_text(total.mean)), "", "part (ms)");
+      panel(fmt::format("{}: {} in all (bars: mean, dots: 5 and 95 % of the seeds)", title,
+                        time_text(total.mean)),
+            "", "part (ms)");
   FigureSeries bars = series("mean over seeds", Mark::kBars, 0);
   FigureSeries low = series("5 %", Mark::kPoints, 1);
-  FigureSeries high = series("95 %", Mark::kPoints, 2);
+  FigureSeries high = series("95 %", Mark::kPoints, 1);
   for (const auto& [name, part] : parts) {
     const auto x = static_cast<double>(made.categories.size());
     made.categories.emplace_back(name);
@@ -345,9 +348,9 @@ Figure budget_figure(const PipelineBudget& pipeline) {
         parts_panel("Host clock error", host_clock.total, named_parts(host_clock)));
   }
   figure.caption = fmt::format(
-      "The reduction of the error by an ideal stage, averaged over all orders in which the stages "
-      "can be replaced (Shapley values), {}. Parts and remainder add up to the whole; a part below "
-      "zero cancels another.{}",
+      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders in "
+      "which the stages can be replaced (Shapley values). Parts and remainder add up to the whole; "
+      "a part below zero cancels another.{}",
       counted(budget.amd_ms.total.values.size(), "seed"), host_clock_caption(host_clock));
   return figure;
 }

@@ -1,6 +1,7 @@
 #include "reports/page/html_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <cmath>
@@ -191,6 +192,28 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string html_article(const HtmlArticle& article) {
+  std::string lead = article.lead;
+  if (!article.lead_figures.empty()) {
+    lead +=
+        fmt::format("<div class=\"figures lead\" data-figures=\"{}\" data-pipeline=\"{}\"></div>\n",
+                    html_escaped(fmt::format("{}", fmt::join(article.lead_figures, " "))),
+                    html_escaped(article.lead_pipeline));
+  }
+  std::string figures;
+  if (article.has_more_figures) {
+    figures =
+        fmt::format("<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n", article.figure_notes);
+  }
+  return fmt::format(
+      "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n"
+      "{}{}{}{}{}{}<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}</section>\n"
+      "</article>\n",
+      article.number, html_escaped(article.name), html_escaped(article.heading),
+      html(article.answer), lead, article.summary, article.about, article.body, figures,
+      article.reproduce);
+}
+
 std::string html_page(const HtmlPage& page) {
   std::string data;
   for (const std::string& json : page.data) {
@@ -227,6 +250,13 @@ std::string html_notes(const std::vector<std::string>& notes) {
 std::string html_command(std::string_view what, const std::string& command) {
   return fmt::format("<dt>{}</dt><dd><pre class=\"scroll\" tabindex=\"0\">{}</pre></dd>\n",
                      html_escaped(what), html_escaped(command));
+}
+
+std::string html_scenario(const std::string& use, const std::string& scenario) {
+  return fmt::format(
+      "<details><summary>The resolved scenario</summary>\n{}"
+      "<pre class=\"scroll\" tabindex=\"0\">{}</pre>\n</details>\n",
+      use.empty() ? "" : fmt::format("<p>{}</p>\n", use), html_escaped(scenario));
 }
 
 }  // namespace simbench::reports

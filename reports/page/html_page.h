@@ -2,7 +2,8 @@
 //
 // A page has the style, the script, uPlot and the report's own content in one file, which opens
 // offline and needs no server. The script draws figures into each <div class="figures"> of an
-// <article class="archive">: the n-th data into the n-th article.
+// <article class="archive">: the n-th data into the n-th article. An article begins with the answer
+// and the figures that explain it.
 //
 // Figures are JSON, small enough for a mail:
 //
@@ -30,8 +31,29 @@
 #include <vector>
 
 #include "reports/figures/figure.h"
+#include "reports/text/answer_text.h"
 
 namespace simbench::reports {
+
+// A part of a page about one result, in the order in which it is read. Members are HTML but for
+// name, heading and ids; "" leaves a part out.
+struct HtmlArticle {
+  std::size_t number = 0;  // among the page's
+  std::string name;        // for the switch between them
+  std::string heading;
+  AnswerText answer{};
+  std::string lead{};                       // a figure without a script
+  std::vector<std::string> lead_figures{};  // ids of those of its data that follow
+  std::string lead_pipeline{};              // which alternative these show first; text
+  std::string summary{};                    // the table that most readers want
+  std::string about{};                      // what the result is of
+  std::string body{};
+  bool has_more_figures = false;  // than those that lead
+  std::string figure_notes{};
+  std::string reproduce{};
+};
+
+std::string html_article(const HtmlArticle& article);
 
 struct HtmlPage {
   std::string title;              // text
@@ -48,6 +70,8 @@ std::string html_paragraph(std::string_view style, const std::string& text);
 std::string html_notes(const std::vector<std::string>& notes);
 // A command that reproduces a result.
 std::string html_command(std::string_view what, const std::string& command);
+// The resolved scenario, folded; `use`: HTML that says what it is good for.
+std::string html_scenario(const std::string& use, const std::string& scenario);
 
 std::string figures_json(const std::vector<Figure>& figures);
 

@@ -67,12 +67,12 @@ std::string scenario_details(const Archive& archive) {
   if (archive.scenario_json.empty()) {
     return "<p>A results.json alone holds neither the scenario nor the command that ran it.</p>\n";
   }
-  return fmt::format(
-      "<details><summary>The resolved scenario</summary>\n<p>Saved to a file, it repeats the run: "
-      "<code>simbench {} --scenario FILE --seeds {} --first-seed {}</code></p>\n"
-      "<pre class=\"scroll\" tabindex=\"0\">{}</pre>\n</details>\n",
-      repeating_command(archive.results), archive.results.seed_count, archive.results.first_seed,
-      html_escaped(Json::parse(archive.scenario_json).dump(2)));
+  return html_scenario(
+      fmt::format("Saved to a file, it repeats the run: <code>simbench {} --scenario FILE --seeds "
+                  "{} --first-seed {}</code>",
+                  repeating_command(archive.results), archive.results.seed_count,
+                  archive.results.first_seed),
+      Json::parse(archive.scenario_json).dump(2));
 }
 
 bool is_leaderboard(const Archive& archive) {
@@ -98,45 +98,51 @@ std::vector<Block> blocks_of(const Archive& archive) {
   return blocks;
 }
 
-// The answer, the figures that explain it, and the summary.
-std::string first_part(const ReportedArchive& reported) {
-  std::string text;
-  for (const std::string& paragraph : reported.answer.prose) {
-    text += html_paragraph("answer", paragraph);
+evaluation::RankedBy ranked_by_of(const Archive& archive) {
+  if (archive.results.kind == evaluation::ResultKind::kClockRuns) {
+    return evaluation::RankedBy::kClockSpread;
   }
-  const evaluation::Results& results = reported.archive.results;
-  const bool by_error = is_leaderboard(reported.archive);
-  if (results.kind == evaluation::ResultKind::kCaptures) {
-    text += overview_html(
-        results, by_error ? evaluation::RankedBy::kAbsoluteError : evaluation::RankedBy::kAmd);
-  }
-  text += "<div class=\"figures lead\"></div>\n";
-  if (results.kind != evaluation::ResultKind::kCaptures) return text;
-  std::vector<Block> summary = summary_blocks(results, by_error);
+  return is_leaderboard(archive) ? evaluation::RankedBy::kAbsoluteError
+                                 : evaluation::RankedBy::kAmd;
+}
+
+// "" of clock runs, whose first table is short.
+std::string archive_summary(const Archive& archive) {
+  if (archive.results.kind != evaluation::ResultKind::kCaptures) return "";
+  std::vector<Block> summary = summary_blocks(archive.results, is_leaderboard(archive));
   summary.front().heading = "Summary";
-  return text + html(summary);
+  return html(summary);
+}
+
+std::string about_archive(const Archive& archive, bool is_one_of_several) {
+  std::string about = html_paragraph("summary", scenario_text(archive, "/summary"));
+  for (const std::string& line : scenarios::derivation_lines(archive.results.derivation)) {
+    about += html_paragraph("provenance", line);
+  }
+  about += html_paragraph("provenance", provenance_line(archive));
+  if (is_one_of_several) about += html_paragraph("provenance", "Archive: " + archive.path);
+  return about;
 }
 
 // The part of the page for one archive; `number`: its place among them.
-std::string archive_part(const ReportedArchive& reported, std::size_t number,
-                         const ReportInput& input) {
+HtmlArticle article_of(const ReportedArchive& reported, std::size_t number,
+                       const ReportInput& input) {
   const Archive& archive = reported.archive;
-  const std::string heading =
-      scenarios::named(archive.results.scenario, archive.results.derivation);
-  std::string derivation;
-  for (const std::string& line : scenarios::derivation_lines(archive.results.derivation)) {
-    derivation += html_paragraph("provenance", line);
-  }
-  return fmt::format(
-      "<article class=\"archive\" data-archive=\"{}\" data-name=\"{}\">\n<h2>{}</h2>\n{}{}{}{}{}"
-      "<h3>Figures</h3>\n{}<div class=\"figures\"></div>\n"
-      "<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}{}</section>\n</article>\n",
-      number, html_escaped(archive.path), html_escaped(heading), first_part(reported),
-      html_paragraph("summary", scenario_text(archive, "/summary")) + derivation,
-      html_paragraph("provenance", provenance_line(archive)),
-      input.archives.size() > 1 ? html_paragraph("provenance", "Archive: " + archive.path) : "",
-      html(blocks_of(archive)), html_notes(reported.notes), commands_of(reported, input),
-      scenario_details(archive));
+  const bool is_of_clocks = archive.results.kind == evaluation::ResultKind::kClockRuns;
+  const Row* const best = evaluation::answer_of(archive.results, ranked_by_of(archive)).best;
+  return {.number = number,
+          .name = archive.path,
+          .heading = scenarios::named(archive.results.scenario, archive.results.derivation),
+          .answer = reported.answer,
+          .lead = overview_html(archive.results, ranked_by_of(archive)),
+          .lead_figures = {is_of_clocks ? "clocks" : "budget"},
+          .lead_pipeline = best == nullptr ? "" : best->pipeline,
+          .summary = archive_summary(archive),
+          .about = about_archive(archive, input.archives.size() > 1),
+          .body = html(blocks_of(archive)),
+          .has_more_figures = !is_of_clocks,
+          .figure_notes = html_notes(reported.notes),
+          .reproduce = commands_of(reported, input) + scenario_details(archive)};
 }
 
 std::string title_of(const ReportInput& input) {
@@ -146,6 +152,14 @@ std::string title_of(const ReportInput& input) {
     if (title.find(scenario) == std::string::npos) title += fmt::format(" {}", scenario);
   }
   return title;
+}
+
+const char* subtitle_of(const ReportInput& input) {
+  const bool is_of_cameras = std::ranges::any_of(input.archives, [](const auto& reported) {
+    return reported.archive.results.kind == evaluation::ResultKind::kCaptures;
+  });
+  return is_of_cameras ? "how well are these cameras synchronised, and what limits it"
+                       : "how well do these clocks agree, and what limits it";
 }
 
 std::string cell_of(const Archive& archive, const std::string& pipeline, Series Row::*series) {
@@ -197,11 +211,11 @@ std::string html_report(const ReportInput& input) {
   std::string parts;
   std::vector<std::string> data;
   for (std::size_t i = 0; i < input.archives.size(); ++i) {
-    parts += archive_part(input.archives[i], i, input);
+    parts += html_article(article_of(input.archives[i], i, input));
     data.push_back(figures_json(input.archives[i].figures));
   }
   return html_page({.title = title_of(input),
-                    .subtitle = "how well are these cameras synchronised, and what limits it",
+                    .subtitle = subtitle_of(input),
                     .main = html(archive_blocks(input.archives)) + parts,
                     .data = data});
 }

@@ -1,8 +1,8 @@
 // One self-contained HTML file of one or more result archives: tables, figures, and how to
 // reproduce them. It opens offline, in light and dark, and prints.
 //
-// It begins with the answer (reports/results/answer_block.h), the figures over all pipelines and of
-// the error budget, and the summary; then come all tables and the other figures.
+// It begins with the answer (reports/results/results_answer.h), the figures over all pipelines and
+// of the error budget, and the summary; then come all tables and the other figures.
 //
 // The tables are HTML: the blocks that `simbench run` prints (reports/results/results_document.h,
 // leaderboard_report.h). The figures are data (reports/page/html_page.h), which the page's
@@ -20,7 +20,7 @@
 
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
-#include "reports/text/block.h"
+#include "reports/text/answer_text.h"
 
 namespace simbench::reports {
 
@@ -28,7 +28,7 @@ struct ReportedArchive {
   Archive archive;
   std::vector<Figure> figures{};
   std::vector<std::string> notes{};  // about the figures
-  Block answer{};                    // the first paragraph; empty: none
+  AnswerText answer{};               // empty: none
 };
 
 struct ReportInput {

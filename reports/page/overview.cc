@@ -7,7 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "reports/results/results_answer.h"
 #include "reports/text/html_text.h"
+#include "reports/text/number_text.h"
 #include "reports/text/time_text.h"
 
 namespace simbench::reports {
@@ -60,9 +62,9 @@ struct RowStyle {
   const char* word;
 };
 
-RowStyle style_of(const Row& row, bool is_best) {
+RowStyle style_of(const Row& row, RankedBy ranked_by, bool is_best) {
   if (is_best) return {"best", "best"};
-  switch (evaluation::standing_of(row)) {
+  switch (evaluation::standing_by(row, ranked_by)) {
     case RowStanding::kLimit:
       return {"limit", "limit"};
     case RowStanding::kReference:
@@ -73,9 +75,19 @@ RowStyle style_of(const Row& row, bool is_best) {
   return {"", ""};
 }
 
+// A name that may break behind its underscores and nowhere else.
+std::string breakable(const std::string& name) {
+  std::string text;
+  for (const char c : html_escaped(name)) {
+    text += c;
+    if (c == '_') text += "<wbr>";
+  }
+  return text;
+}
+
 std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bool is_best) {
   const Series& series = evaluation::ranked_series(row, ranked_by);
-  const RowStyle style = style_of(row, is_best);
+  const RowStyle style = style_of(row, ranked_by, is_best);
   const double from = axis.at(series.p05);
   std::string marks = fmt::format(
       "<i class=\"band\" style=\"left:{:.2f}%;width:{:.2f}%\"></i>"
@@ -88,7 +100,7 @@ std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bo
   }
   return fmt::format(
       "<tr class=\"{}\"><th scope=\"row\">{}{}</th><td class=\"track\">{}</td><td>{}</td></tr>\n",
-      style.style, html_escaped(row.pipeline),
+      style.style, breakable(row.pipeline),
       *style.word == '\0' ? "" : fmt::format(" <small>{}</small>", style.word), marks,
       time_text(series.median));
 }
@@ -127,7 +139,7 @@ std::string overview_html(const Results& results, RankedBy ranked_by) {
   const Row* const best = evaluation::answer_of(results, ranked_by).best;
   std::string body;
   for (const Row* row : rows) body += row_html(*row, ranked_by, axis, row == best);
-  const char* const what = ranked_by == RankedBy::kAmd ? "AMD" : "Absolute error";
+  const std::string what = capitalised(ranked_name(ranked_by));
   return fmt::format(
       "<figure class=\"overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"
       "{}{}</tbody></table>\n<figcaption>{}: median (dot) and band from 5 to 95 % over the seeds, "

@@ -13,6 +13,7 @@
 
 #include "evaluation/statistics/statistics.h"
 #include "recording/version.h"
+#include "reports/reconstruction/reconstruction_answer.h"
 #include "reports/results/results_document.h"
 #include "reports/text/number_text.h"
 
@@ -454,7 +455,8 @@ std::vector<std::string> honest_notes(const ReconstructionResults& results) {
 }
 
 Document reconstruction_document(const ReconstructionResults& results) {
-  Document document{.title = title_line(results)};
+  Document document{.title = title_line(results),
+                    .head = paragraphs(reconstruction_answer(results))};
   if (!results.scenario.summary.empty()) document.head.push_back(results.scenario.summary);
   for (std::string& line : scenarios::derivation_lines(results.scenario.derivation)) {
     document.head.push_back(std::move(line));

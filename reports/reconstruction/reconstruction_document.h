@@ -1,11 +1,11 @@
 // A reconstruction experiment for people: the paper's Table 4 over seeds, and how good the
 // synchronisation must be for a subject of some speed.
 //
-// A row for each pipeline with mean and standard deviation of the reprojection error beside the
-// published ones; details of the sets; the curve of error over desynchronisation; the largest
-// tolerable desynchronisation for each speed; the assumptions. No line of a table is wider than 100
-// columns with pipeline names of up to 21. Medians are over seeds. Between the points of the curve
-// values are interpolated linearly.
+// It begins with the answer (reconstruction_answer.h). A row for each pipeline with mean and
+// standard deviation of the reprojection error beside the published ones; details of the sets; the
+// curve of error over desynchronisation; the largest tolerable desynchronisation for each speed;
+// the assumptions. No line of a table is wider than 100 columns with pipeline names of up to 21.
+// Medians are over seeds. Between the points of the curve values are interpolated linearly.
 //
 //   std::cout << plain(reconstruction_document(results));
 #ifndef SIMBENCH_REPORTS_RECONSTRUCTION_RECONSTRUCTION_DOCUMENT_H_

@@ -12,6 +12,7 @@
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
 #include "reports/page/html_page.h"
+#include "reports/reconstruction/reconstruction_answer.h"
 #include "reports/reconstruction/reconstruction_document.h"
 #include "reports/reconstruction/reconstruction_json.h"
 #include "reports/text/html_text.h"
@@ -77,14 +78,8 @@ std::string pictures_html(const ReconstructionPage& page) {
 std::string reproduce_html(const ReconstructionPage& page) {
   std::string text =
       fmt::format("<dl>\n{}</dl>\n", html_command("All of this", simbench_line(page.command)));
-  if (!page.results.scenario.resolved_json().empty()) {
-    text += fmt::format(
-        "<details><summary>The resolved scenario</summary>\n<pre class=\"scroll\" "
-        "tabindex=\"0\">{}</pre>\n</details>\n",
-        html_escaped(page.results.scenario.resolved_json()));
-  }
-  return fmt::format("<section class=\"reproduce\"><h3>How to reproduce it</h3>\n{}</section>\n",
-                     text);
+  const std::string scenario = page.results.scenario.resolved_json();
+  return scenario.empty() ? text : text + html_scenario("", scenario);
 }
 
 std::string reconstruction_line(const ReconstructionResults& results) {
@@ -125,17 +120,21 @@ std::string reconstruction_html(const ReconstructionPage& page) {
   for (const std::string& line : scenarios::derivation_lines(derivation)) {
     about += html_paragraph("provenance", line);
   }
-  const std::string main = fmt::format(
-      "<article class=\"archive\" data-archive=\"0\" data-name=\"{0}\">\n<h2>{0}</h2>\n{1}{2}{3}{4}"
-      "{5}<h3>Figures</h3>\n<div class=\"figures\"></div>\n{6}</article>\n",
-      html_escaped(scenarios::named(name, derivation)), about,
-      html_paragraph("provenance", reconstruction_line(results)), html(blocks.front()),
-      pictures_html(page), html(std::vector<Block>(blocks.begin() + 1, blocks.end())),
-      reproduce_html(page));
+  about += html_paragraph("provenance", reconstruction_line(results));
+  const Figure figure = reconstruction_figure(results);
+  const HtmlArticle article = {
+      .name = name,
+      .heading = scenarios::named(name, derivation),
+      .answer = reconstruction_answer(results),
+      .lead_figures = {figure.id},
+      .summary = html(blocks.front()),
+      .about = about,
+      .body = pictures_html(page) + html(std::vector<Block>(blocks.begin() + 1, blocks.end())),
+      .reproduce = reproduce_html(page)};
   return html_page({.title = fmt::format("simbench reconstruct {}", name),
                     .subtitle = "what desynchronisation costs a reconstruction",
-                    .main = main,
-                    .data = {figures_json({reconstruction_figure(results)})}});
+                    .main = html_article(article),
+                    .data = {figures_json({figure})}});
 }
 
 std::map<std::string, std::string> mesh_names(const scenarios::Scenario& scenario) {

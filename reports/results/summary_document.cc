@@ -41,7 +41,11 @@ std::vector<const Metric*> summary_metrics() {
 void add_metric(const Metric& metric, RowFields& fields) {
   RowFields both = metric_fields(metric);
   const bool with_band = metric.id == std::string_view("amd_ms");
-  if (!with_band) both.resize(1);
+  if (with_band) {
+    both[1].sparkline = [metric](const Row& row) { return seeds_sparkline(metric.series(row)); };
+  } else {
+    both.resize(1);
+  }
   fields.insert(fields.end(), both.begin(), both.end());
 }
 
@@ -162,8 +166,8 @@ std::vector<Block> summary_blocks(const Results& results, bool is_leaderboard) {
 }
 
 Document summary_document(const Results& results, const SummaryOptions& options,
-                          const Block& answer) {
-  Document document{.title = results_title(results), .head = answer.prose};
+                          const AnswerText& answer) {
+  Document document{.title = results_title(results), .head = paragraphs(answer)};
   const std::vector<std::string> head = results_head(results, options.summary);
   document.head.insert(document.head.end(), head.begin(), head.end());
   document.blocks = summary_blocks(results, options.is_leaderboard);
@@ -175,8 +179,8 @@ Document summary_document(const Results& results, const SummaryOptions& options,
   return document;
 }
 
-Document quiet_document(const Results& results, const Block& answer) {
-  Document document{.title = results_title(results), .head = answer.prose};
+Document quiet_document(const Results& results, const AnswerText& answer) {
+  Document document{.title = results_title(results), .head = paragraphs(answer)};
   add_failures(results, document);
   return document;
 }

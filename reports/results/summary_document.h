@@ -1,12 +1,12 @@
 // Results for people in a hurry: what `simbench run` prints by default, on one screen.
 //
-// The answer (reports/results/answer_block.h), what the scenario is, and one table with a row per
+// The answer (reports/results/results_answer.h), what the scenario is, and one table with a row per
 // pipeline and the metrics that name it (evaluation::TablePlaces::summary), each value in the unit
 // that fits it. A leaderboard has a short table for each board. Whatever failed is said; so is
 // where the rest is. Of many pipelines the first are shown, in order of the answer's metric for
 // leaderboards, else in the scenario's order.
 //
-//   const Block answer = answer_block(all_results, evaluation::RankedBy::kAmd, nullptr);
+//   const AnswerText answer = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
 //   std::cout << plain(summary_document(all_results, {.summary = scenario.summary}, answer));
 #ifndef SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
 #define SIMBENCH_REPORTS_RESULTS_SUMMARY_DOCUMENT_H_
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "evaluation/scoring/results.h"
+#include "reports/text/answer_text.h"
 #include "reports/text/block.h"
 
 namespace simbench::reports {
@@ -29,10 +30,10 @@ std::vector<Block> summary_blocks(const evaluation::Results& results, bool is_le
 
 // The default output. `answer` becomes its first paragraph.
 Document summary_document(const evaluation::Results& results, const SummaryOptions& options,
-                          const Block& answer);
+                          const AnswerText& answer);
 
 // The answer alone, with what failed: --quiet.
-Document quiet_document(const evaluation::Results& results, const Block& answer);
+Document quiet_document(const evaluation::Results& results, const AnswerText& answer);
 
 }  // namespace simbench::reports
 

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "recording/version.h"
-#include "reports/text/block.h"
+#include "reports/rigs/diagnose_answer.h"
+#include "reports/rigs/diagnose_figure.h"
 #include "reports/text/json_node.h"
 #include "reports/text/number_text.h"
-#include "reports/text/plain_text.h"
 
 namespace simbench::reports {
 namespace {
@@ -21,17 +23,7 @@ using evaluation::GroupVerdict;
 using evaluation::PairDiagnosis;
 using evaluation::SyncStatus;
 
-const char* status_text(SyncStatus status) {
-  switch (status) {
-    case SyncStatus::kWorks:
-      return "works";
-    case SyncStatus::kDoesNotWork:
-      return "does not work";
-    case SyncStatus::kCannotBeTold:
-      break;
-  }
-  return "cannot be determined";
-}
+constexpr std::size_t kMovesColumn = 7;  // of the cameras' table
 
 const char* status_name(SyncStatus status) {
   switch (status) {
@@ -77,13 +69,17 @@ const char* follows_name(Follows follows) {
   return "unknown";
 }
 
-std::string verdict_line(const GroupVerdict& verdict) {
-  return wrapped(
-      fmt::format("{}: hardware sync {}{}{}", verdict.stream, status_text(verdict.status),
-                  verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason));
+// How a camera's phase moves.
+Sparkline phase_sparkline(const CameraDiagnosis& camera, const Diagnosis& diagnosis) {
+  const auto group = std::ranges::find(diagnosis.groups, camera.stream, &GroupVerdict::stream);
+  if (group == diagnosis.groups.end()) return {};
+  return {.kind = Sparkline::Kind::kSeries,
+          .values = block_medians(phase_series(camera, group->period_ms)).y,
+          .words = fmt::format("phase of {} over the recording: {} ms a minute", camera.camera,
+                               number_text(camera.standing.moves_ms_per_minute))};
 }
 
-std::string cameras_text(const Diagnosis& diagnosis) {
+Table cameras_table(const Diagnosis& diagnosis) {
   Table table({{"camera", Align::kLeft},
                {"host", Align::kLeft},
                {"stream", Align::kLeft},
@@ -107,11 +103,12 @@ std::string cameras_text(const Diagnosis& diagnosis) {
                number_text(standing.phase_ms), number_text(facts.interval_jitter_ms),
                count_text(facts.lost_frames), count_text(facts.skipped_pulses),
                count_text(static_cast<std::int64_t>(facts.jumps.size()))});
+    table.sparklines[kMovesColumn].push_back(phase_sparkline(camera, diagnosis));
   }
-  return plain(table);
+  return table;
 }
 
-std::string pairs_text(const Diagnosis& diagnosis) {
+Table pairs_table(const Diagnosis& diagnosis) {
   Table table({{"camera", Align::kLeft},
                {"stream", Align::kLeft},
                {"against", Align::kLeft},
@@ -127,7 +124,7 @@ std::string pairs_text(const Diagnosis& diagnosis) {
     table.add({pair.camera, pair.stream, pair.against, number_text(pair.offset_ms),
                number_text(pair.spread_ms), number_text(pair.moves_ms_per_minute), is});
   }
-  return plain(table);
+  return table;
 }
 
 Json verdict_json(const GroupVerdict& verdict) {
@@ -173,29 +170,42 @@ Json camera_json(const CameraDiagnosis& camera) {
           {"jumps", jumps}};
 }
 
-constexpr const char* kDiagnosisLegend = R"(
-How to read it
-  follows: the trigger, if its frame period in host time is that of the others; free-running cameras
-    differ by tens of ppm. phase: of the arrivals, relative to the first camera that follows.
-  intervals: deviation of the stamps from whole periods. lost: counted by the camera, never arrived.
-    skipped: periods without a frame that its counter did not count.
-)";
-
 }  // namespace
 
-std::string diagnose_table(const Diagnosis& diagnosis) {
-  std::string text;
-  for (const GroupVerdict& verdict : diagnosis.groups) text += verdict_line(verdict);
-  text += "\nThe cameras\n\n" + cameras_text(diagnosis);
-  if (!diagnosis.pairs.empty()) {
-    text += "\nStreams of one camera against each other\n\n" + pairs_text(diagnosis);
+const char* sync_status_text(SyncStatus status) {
+  switch (status) {
+    case SyncStatus::kWorks:
+      return "works";
+    case SyncStatus::kDoesNotWork:
+      return "does not work";
+    case SyncStatus::kCannotBeTold:
+      break;
   }
-  text += "\nFindings\n";
-  if (diagnosis.findings.empty()) text += "  none\n";
-  for (const Finding& finding : diagnosis.findings) text += wrapped(finding.text, 2);
-  text += "\nWhat stamps alone cannot show\n";
-  for (const std::string& unknown : diagnosis.cannot_know) text += wrapped(unknown, 2);
-  return fitted(text + kDiagnosisLegend);
+  return "cannot be determined";
+}
+
+Document diagnose_document(const Diagnosis& diagnosis) {
+  Document document{.head = paragraphs(diagnose_answer(diagnosis))};
+  std::vector<Block>& blocks = document.blocks;
+  blocks.push_back({.heading = "The cameras", .table = cameras_table(diagnosis)});
+  if (!diagnosis.pairs.empty()) {
+    blocks.push_back(
+        {.heading = "Streams of one camera against each other", .table = pairs_table(diagnosis)});
+  }
+  Block findings{.heading = "Findings"};
+  for (const Finding& finding : diagnosis.findings) findings.items.push_back(finding.text);
+  if (findings.items.empty()) findings.items = {"none"};
+  blocks.push_back(std::move(findings));
+  blocks.push_back({.heading = "What stamps alone cannot show", .items = diagnosis.cannot_know});
+  blocks.push_back(
+      {.heading = "How to read it",
+       .items = {"follows: the trigger, if its frame period in host time is that of the others; "
+                 "free-running cameras differ by tens of ppm. phase: of the arrivals, relative to "
+                 "the first camera that follows.",
+                 "intervals: deviation of the stamps from whole periods. lost: counted by the "
+                 "camera, never arrived. skipped: periods without a frame that its counter did not "
+                 "count."}});
+  return document;
 }
 
 std::string diagnose_json(const Diagnosis& diagnosis, const std::vector<std::string>& files) {

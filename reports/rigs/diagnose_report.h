@@ -1,4 +1,4 @@
-// The findings of `simbench diagnose` as text and JSON.
+// The findings of `simbench diagnose` as blocks and JSON.
 //
 // JSON, schema_version 1 (what does not exist is null):
 //   {"schema_version", "version", "commit", "files",
@@ -24,12 +24,18 @@
 #include <vector>
 
 #include "evaluation/diagnosis/diagnose.h"
+#include "reports/text/block.h"
 
 namespace simbench::reports {
 
-std::string diagnose_table(const evaluation::Diagnosis& diagnosis);
+// Its head is the answer (diagnose_answer.h).
+Document diagnose_document(const evaluation::Diagnosis& diagnosis);
+
 std::string diagnose_json(const evaluation::Diagnosis& diagnosis,
                           const std::vector<std::string>& files);
+
+// "works", "does not work", "cannot be determined".
+const char* sync_status_text(evaluation::SyncStatus status);
 
 }  // namespace simbench::reports
 

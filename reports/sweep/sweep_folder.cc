@@ -46,8 +46,8 @@ bool write_all(int file, std::string_view text) {
 
 constexpr const char* kLog = "runs.log";
 constexpr const char* kLock = "lock";
-constexpr std::array<const char*, 7> kSweepFiles = {
-    kManifest, kLog, kLock, "sweep.csv", "hosts.csv", "sweep.txt", "sweep.svg"};
+constexpr std::array<const char*, 8> kSweepFiles = {
+    kManifest, kLog, kLock, "sweep.csv", "hosts.csv", "sweep.txt", "sweep.svg", "sweep.html"};
 constexpr const char* kWayOut =
     "name another folder, repeat that sweep's command, or replace it with --restart";
 

@@ -23,11 +23,6 @@ using evaluation::RankingFlip;
 using evaluation::ResponseRow;
 using evaluation::SweepPlan;
 
-const Metric& ranked_metric(const SweepPlan& plan) {
-  return of_clocks(plan) ? evaluation::metric("clock_spread_ms", plan.kind)
-                         : evaluation::metric("absolute_error_ms");
-}
-
 // "two_way_hull < chrony ~ ntp".
 std::string order_text(const SweepPlan& plan, const RankedPoint& point) {
   std::string text = plan.pipelines[point.order.front()];
@@ -35,25 +30,6 @@ std::string order_text(const SweepPlan& plan, const RankedPoint& point) {
     text.append(point.is_apart[i - 1] ? " < " : " ~ ").append(plan.pipelines[point.order[i]]);
   }
   return text;
-}
-
-// The point by the first pointer of each axis; what goes in lockstep with it is in the table.
-std::string leading_text(const SweepPlan& plan, std::size_t point) {
-  std::vector<std::string> texts;
-  for (const scenarios::Override& value : plan.overrides(point)) {
-    const bool leads = std::ranges::any_of(plan.axes, [&value](const evaluation::SweepAxis& axis) {
-      return axis.pointers.front() == value.pointer;
-    });
-    if (leads) texts.push_back(fmt::format("{}={}", value.pointer, value.value));
-  }
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-// "chrony is better than ntp up to /hosts/count=2, ntp from /hosts/count=4 on."
-std::string flip_text(const SweepPlan& plan, const RankingFlip& flip) {
-  return fmt::format("{} is better than {} up to {}, worse from {} on.",
-                     plan.pipelines[flip.before], plan.pipelines[flip.after],
-                     leading_text(plan, flip.last), leading_text(plan, flip.first));
 }
 
 // The rows of a pipeline in order of the packets.
@@ -69,6 +45,28 @@ std::vector<const ResponseRow*> by_packets(const std::vector<ResponseRow>& rows,
 }
 
 }  // namespace
+
+const Metric& ranked_metric(const SweepPlan& plan) {
+  return of_clocks(plan) ? evaluation::metric("clock_spread_ms", plan.kind)
+                         : evaluation::metric("absolute_error_ms");
+}
+
+std::string leading_text(const SweepPlan& plan, std::size_t point) {
+  std::vector<std::string> texts;
+  for (const scenarios::Override& value : plan.overrides(point)) {
+    const bool leads = std::ranges::any_of(plan.axes, [&value](const evaluation::SweepAxis& axis) {
+      return axis.pointers.front() == value.pointer;
+    });
+    if (leads) texts.push_back(fmt::format("{}={}", value.pointer, value.value));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string flip_text(const SweepPlan& plan, const RankingFlip& flip) {
+  return fmt::format("{} is better than {} up to {}, worse from {} on.",
+                     plan.pipelines[flip.before], plan.pipelines[flip.after],
+                     leading_text(plan, flip.last), leading_text(plan, flip.first));
+}
 
 Block ranking_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows) {
   const Metric& metric = ranked_metric(plan);

@@ -272,6 +272,7 @@ Block response_block(const SweepPlan& plan, const std::vector<ResponseRow>& rows
       cells.push_back(metric_text(*metric, row.value(*metric)));
       if (metric != metrics.front()) continue;
       const evaluation::Series& series = row.of(metric->sweep);
+      table.sparklines[cells.size()].push_back(seeds_sparkline(series));
       cells.push_back(interval_text(*metric, series.p05, series.p95));
     }
     table.add(std::move(cells));

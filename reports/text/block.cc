@@ -154,13 +154,20 @@ std::string attributes(const Column& column) {
   return out;
 }
 
-std::string html_row(const Table& table, const std::vector<std::string>& cells) {
+std::string sparkline_of(const Table& table, std::size_t row, std::size_t column) {
+  const auto found = table.sparklines.find(column);
+  return found == table.sparklines.end() ? "" : svg(found->second[row]);
+}
+
+std::string html_row(const Table& table, std::size_t row) {
+  const std::vector<std::string>& cells = table.rows[row];
   std::string out = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string text = html_escaped(cells[i]);
     const char* const align = table.columns[i].align == Align::kLeft ? " class=\"text\"" : "";
-    out += i < table.key_columns ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
-                                 : fmt::format("<td{}>{}</td>", align, text);
+    out += i < table.key_columns
+               ? fmt::format("<th scope=\"row\" class=\"text\">{}</th>", text)
+               : fmt::format("<td{}>{}{}</td>", align, text, sparkline_of(table, row, i));
   }
   return out + "</tr>\n";
 }
@@ -235,7 +242,7 @@ std::string html(const Table& table, const std::string& caption) {
                         html_escaped(one_line(column.header)));
   }
   std::string rows;
-  for (const auto& row : table.rows) rows += html_row(table, row);
+  for (std::size_t row = 0; row < table.rows.size(); ++row) rows += html_row(table, row);
   return fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\">\n"
       "<table><caption>{0}</caption>\n<thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table>"

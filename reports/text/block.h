@@ -23,10 +23,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "reports/text/sparkline.h"
 
 namespace simbench::reports {
 
@@ -49,6 +52,8 @@ struct Table {
   std::vector<Column> columns;
   std::size_t key_columns;
   std::vector<std::vector<std::string>> rows{};
+  // Pictures behind the texts of some columns, one for each row; only HTML shows them.
+  std::map<std::size_t, std::vector<Sparkline>> sparklines{};
 };
 
 // A column, and its cell for a row about a `Subject`.
@@ -56,6 +61,7 @@ template <class Subject>
 struct Field {
   Column column;
   std::function<std::string(const Subject&)> cell;
+  std::function<Sparkline(const Subject&)> sparkline{};
 };
 
 // The column of a row's pipeline, a key of most tables.
@@ -76,6 +82,9 @@ Table table_of(const std::vector<Field<Subject>>& fields, const Subjects& subjec
     cells.reserve(fields.size());
     for (const Field<Subject>& field : fields) cells.push_back(field.cell(subject));
     table.add(std::move(cells));
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (fields[i].sparkline) table.sparklines[i].push_back(fields[i].sparkline(subject));
+    }
   }
   return table;
 }

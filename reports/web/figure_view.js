@@ -6,9 +6,9 @@
 // The default of a figure that exists for single pipelines only: the paper's own.
 const kPaperPipeline = 'yoon2021_both';
 
-function nearest(alternatives, wish) {
+function nearest(alternatives, wish, preferred) {
   const score = ({pipeline, seed}) => (pipeline === wish.pipeline ? 4 : 0) +
-      (String(seed ?? '') === wish.seed ? 2 : 0) + (pipeline === kPaperPipeline ? 1 : 0);
+      (String(seed ?? '') === wish.seed ? 2 : 0) + (pipeline === preferred ? 1 : 0);
   return alternatives.reduce((best, each) => score(each) > score(best) ? each : best);
 }
 
@@ -34,7 +34,7 @@ function selectElement(label, options, action) {
 }
 
 class FigureView {
-  // `page`: {columns, marked(), chosen(view, pulse)}; see report.js.
+  // `page`: {columns, marked(), chosen(view, pulse), preferred: pipeline}; see report.js.
   constructor(alternatives, page) {
     this.alternatives = alternatives;
     this.page = page;
@@ -80,7 +80,7 @@ class FigureView {
 
   choose(wish) {
     this.wish = wish;
-    const shown = nearest(this.alternatives, wish);
+    const shown = nearest(this.alternatives, wish, this.page.preferred || kPaperPipeline);
     if (shown === this.shown) return;
     this.shown = shown;
     this.pipeline.select.value = shown.pipeline;

@@ -3,8 +3,6 @@
 // The choices are in the fragment of the address, so that a link shows another reader the same:
 //   #archive=0&pipeline=yoon2021_both&seed=1&figure=frame_errors&pulse=312
 
-// What limits the best pipeline: it belongs to the answer.
-const kLeadFigures = ['budget'];
 const kPrintWidth = 680;  // CSS pixels: a page of A4 or Letter less its margins
 
 const controls = Object.fromEntries(
@@ -21,10 +19,13 @@ function groupedById(figures) {
 function makeArchive(root, script) {
   const {figures, columns} = JSON.parse(script.textContent);
   const page = {columns: new Columns(columns), marked: () => state.pulse, chosen: choseFrame};
-  const views = groupedById(figures).map((alternatives) => new FigureView(alternatives, page));
+  // The figures that belong to the answer stand beside it.
   const lead = root.querySelector('.figures.lead');
+  const leading = lead?.dataset.figures.split(' ') ?? [];
   const rest = root.querySelector('.figures:not(.lead)');
-  for (const view of views) (lead && kLeadFigures.includes(view.id) ? lead : rest).append(view.root);
+  const views = groupedById(figures).map((alternatives) => new FigureView(
+      alternatives, {...page, preferred: leading.includes(alternatives[0].id) && lead.dataset.pipeline}));
+  for (const view of views) (leading.includes(view.id) ? lead : rest).append(view.root);
   return {root, figures, views};
 }
 
@@ -68,6 +69,7 @@ function showControls() {
              state.figure);
   const hasPulses = figures.some(({panels}) => panels.some(({x_is_pulse}) => x_is_pulse));
   controls.archive.parentElement.hidden = archives.length < 2;
+  controls.jump.parentElement.hidden = views.length < 2;
   controls.pipeline.parentElement.hidden = pipelines.length === 0;
   controls.seed.parentElement.hidden = seeds.length === 0;
   controls.pulse.parentElement.hidden = !hasPulses;

@@ -6,6 +6,30 @@ import path from 'node:path';
 const kScenario = '18cam_6host_45fps';
 const kPipelines = 'ntp_last_set,yoon2021_both,genlock';
 
+// A minute of two cameras of which the second runs free, as `simbench diagnose` reads them.
+function recording() {
+  const lines = ['Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms),camera,host'];
+  for (let i = 0; i < 1800; ++i) {
+    const ms = i * 1000 / 30, late = 9 + i * 7919 % 97 * 0.005;
+    lines.push(`Depth,0,${i},${(700 + ms).toFixed(3)},${(ms + late).toFixed(6)},left,pc`);
+    lines.push(`Depth,0,${i},${(400 + ms).toFixed(3)},${(ms * 1.00006 + late).toFixed(6)},right,pc`);
+  }
+  return `${lines.join('\n')}\n`;
+}
+
+// The pages of other commands: {clocks, sweep, diagnose}.
+export function makeOtherPages(simbench, folder) {
+  const run = (...words) => execFileSync(simbench, words, {cwd: folder, stdio: 'pipe'});
+  const file = (name) => path.join(folder, name);
+  run('clocks', '--scenario', '6host_star', '--duration-s', '900', '--seeds', '4', '--output', 'star');
+  run('report', 'star', '-o', 'clocks.html');
+  run('sweep', '--scenario', '3cam_1host_30fps', '--sweep', '/usb/delivery_jitter_transfers=0:0.4:0.2',
+      '--set', '/timeline/frames=120', '--seeds', '4', '--output', 'jitter');
+  writeFileSync(file('rig.csv'), recording());
+  run('diagnose', 'rig.csv', '--html', 'diagnose.html');
+  return {clocks: file('clocks.html'), sweep: file('jitter/sweep.html'), diagnose: file('diagnose.html')};
+}
+
 // {one, two, hostile}: files with one archive, with two, and with names that are markup.
 export function makeReport(simbench, folder) {
   const run = (...words) => execFileSync(simbench, words, {cwd: folder, stdio: 'pipe'});

@@ -1,5 +1,6 @@
-// The HTML report in a real browser: a report made by the real simbench is opened from the disk, in
-// two widths and two themes, looked at, used, and printed.
+// The HTML pages in a real browser: a report made by the real simbench is opened from the disk, in
+// two widths and two themes, looked at, used, and printed; it and the pages of other commands must
+// be legible and reachable by keyboard from a telephone's width up.
 //
 // Run by CTest (label `browser`); by hand:
 //   node tests/browser/report_test.mjs build/release/bin/simbench build/browser
@@ -11,7 +12,8 @@ import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 import {closeBrowser, openPage} from './browser.mjs';
-import {makeReport} from './make_report.mjs';
+import {makeOtherPages, makeReport} from './make_report.mjs';
+import * as access from './access.mjs';
 import * as look from './look.mjs';
 import * as use from './use.mjs';
 
@@ -25,6 +27,10 @@ const folder = mkdtempSync(path.join(tmpdir(), 'simbench_report.'));
 const kShapes = [
   {width: 1280, height: 900, theme: 'light'}, {width: 1280, height: 900, theme: 'dark'},
   {width: 390, height: 844, theme: 'light'}, {width: 390, height: 844, theme: 'dark'},
+];
+const kAccessShapes = [
+  {width: 1400, height: 900, theme: 'light'}, {width: 1400, height: 900, theme: 'dark'},
+  {width: 1024, height: 900, theme: 'light'}, {width: 390, height: 844, theme: 'light'},
 ];
 let passed = 0, failed = 0;
 
@@ -63,6 +69,19 @@ async function checkLook(file, shape) {
     const first = await page.evaluate(() => performance.getEntriesByName('first figure')[0].startTime);
     console.log(`${path.basename(file)} at ${shape.width}, ${shape.theme}: first figure after ${
         first.toFixed(0)} ms`);
+  });
+}
+
+// What everyone needs who reads a page, whichever command made it.
+async function checkAccess(file, shape) {
+  await withPage(file, shape, '', async (page, test) => {
+    await test('it begins with the answer', () => access.beginsWithTheAnswer(page));
+    await look.scrollThrough(page);
+    await test('the page does not scroll sideways', () => look.fitsWidth(page));
+    await test('nothing is cut off', () => access.nothingIsCutOff(page));
+    await test('text stands out from what is behind it', () => access.textIsLegible(page));
+    await test('the keyboard reaches everything, visibly', () => access.keyboardReachesAll(page));
+    await test('every control has a name', () => look.controlsAreNamed(page));
   });
 }
 
@@ -120,6 +139,9 @@ async function checkWithoutScript(file) {
 
 const {one, two, hostile} = makeReport(simbench, folder);
 for (const shape of kShapes) await checkLook(one, shape);
+for (const file of [one, ...Object.values(makeOtherPages(simbench, folder))]) {
+  for (const shape of kAccessShapes) await checkAccess(file, shape);
+}
 await checkUse(one);
 await checkLink(one);
 await checkPrint(one);

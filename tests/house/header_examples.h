@@ -200,7 +200,7 @@ extern ReprojectionRow row;
 
 namespace reports {
 extern const Whatever law, simulated, path, manifest, identity, begin, end, work_on, refuse,
-    provenance, measured, summary, run, choice, results, mesh;
+    provenance, measured, summary, run, choice, results, mesh, rows, clocks, diagnosis;
 extern const Archive a, b;
 extern const SeedRange seeds_of_a, seeds_of_b;
 extern const evaluation::Row row_a, row_b;
@@ -210,6 +210,11 @@ extern FigureSeries dense;
 extern const evaluation::SweepPlan plan;
 extern const Trace trace;
 extern const std::vector<Figure> figures;
+extern const std::vector<Block> blocks;
+extern const AnswerText answer;
+extern Document document;
+extern const evaluation::Row row;
+extern std::string cell;
 extern std::unique_ptr<RecordingSource> source;
 }  // namespace reports
 

@@ -13,8 +13,8 @@ using testing::HasSubstr;
 
 TEST(Overview, HasARowPerPipelineInOrder) {
   const std::string html = overview_html(sample_results(), RankedBy::kAmd);
-  const std::size_t best = html.find("yoon2021_both <small>best</small>");
-  const std::size_t other = html.find("free_running");
+  const std::size_t best = html.find("yoon2021_<wbr>both <small>best</small>");
+  const std::size_t other = html.find("free_<wbr>running");
   ASSERT_NE(best, std::string::npos) << html;
   ASSERT_NE(other, std::string::npos) << html;
   EXPECT_LT(best, other);

@@ -30,7 +30,7 @@ std::vector<CameraStream> streams() {
 }
 
 TEST(DiagnoseReport, TheTableBeginsWithTheVerdict) {
-  const std::string text = diagnose_table(evaluation::diagnose(streams(), {}));
+  const std::string text = plain(diagnose_document(evaluation::diagnose(streams(), {})));
   EXPECT_THAT(text, testing::StartsWith("Depth 0: hardware sync works: all 2 cameras have one "));
   EXPECT_THAT(text, HasSubstr("\n  camera back: half the rate (25.000 Hz)"));
   EXPECT_THAT(text, HasSubstr("What stamps alone cannot show"));
@@ -65,8 +65,8 @@ TEST(DiagnoseReport, WhatIsUnknownIsNull) {
     EXPECT_TRUE(root["cameras"][0][key].is_null()) << key;
   }
   EXPECT_EQ(root["cameras"][0]["follows"], "unknown");
-  EXPECT_THAT(diagnose_table(diagnosis), HasSubstr("one frame: too few for a diagnosis"));
-  EXPECT_THAT(diagnose_table(diagnosis), Not(HasSubstr("nan")));
+  EXPECT_THAT(plain(diagnose_document(diagnosis)), HasSubstr("one frame: too few for a diagnosis"));
+  EXPECT_THAT(plain(diagnose_document(diagnosis)), Not(HasSubstr("nan")));
 }
 
 }  // namespace

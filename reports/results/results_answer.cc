@@ -1,6 +1,7 @@
-#include "reports/results/answer_block.h"
+#include "reports/results/results_answer.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -39,10 +40,6 @@ constexpr std::array<const char*, kStageCount> kIdeals = {"pulses on time",
                                                           "perfect host clocks",
                                                           "gathering by the true pulse"};
 
-const char* metric_name(RankedBy ranked_by) {
-  return ranked_by == RankedBy::kAmd ? "AMD" : "absolute error";
-}
-
 // "a, b and 7 more".
 std::string some_of(const std::vector<const Row*>& rows) {
   std::string text;
@@ -61,33 +58,20 @@ std::string best_sentence(const Answer& answer) {
           ? "is the only pipeline here that a rig can run"
           : fmt::format("is the best of the {} pipelines that a rig can run", answer.runnable);
   return fmt::format("{} {}: {} {} (5-95 %: {}).", answer.best->pipeline, place,
-                     metric_name(answer.ranked_by), time_text(series.median),
+                     ranked_name(answer.ranked_by), time_text(series.median),
                      time_band_text(series.p05, series.p95));
 }
 
-std::string distance_sentences(const Results& results, const Answer& answer) {
-  std::string text;
-  if (!answer.equals.empty()) {
-    text += fmt::format(" These seeds cannot tell {} from it.", some_of(answer.equals));
-  }
-  if (answer.next != nullptr) {
-    const evaluation::Estimate& ratio = answer.to_next.ratio;
-    const std::string range =
-        std::isnan(ratio.low)
-            ? ""
-            : fmt::format(" [{}, {}]", number_text(ratio.low), number_text(ratio.high));
-    text += fmt::format(" The next, {}, has {}{} times as much.", answer.next->pipeline,
-                        number_text(ratio.value), range);
-  }
+std::string paper_sentence(const Results& results, const Answer& answer) {
   const Row* const paper = evaluation::find_row(results.rows, evaluation::kPaperPipeline);
-  if (paper == nullptr || paper == answer.best || paper == answer.next) return text;
+  if (paper == nullptr || paper == answer.best || paper == answer.next) return "";
   const double times =
       evaluation::paired_ratio(evaluation::ranked_series(*paper, answer.ranked_by),
                                evaluation::ranked_series(*answer.best, answer.ranked_by))
           .median;
-  if (std::isnan(times)) return text;
-  return text + fmt::format(" The paper's method, {}, has {} times as much.", paper->pipeline,
-                            number_text(times));
+  if (std::isnan(times)) return "";
+  return fmt::format("The paper's method, {}, has {} times as much.", paper->pipeline,
+                     number_text(times));
 }
 
 std::string limit_sentence(const Answer& answer) {
@@ -96,7 +80,7 @@ std::string limit_sentence(const Answer& answer) {
   const std::string what = answer.limit_is_host_sync ? "Perfect host clocks would give it"
                                                      : fmt::format("{}, which knows the truth, has",
                                                                    answer.limit->pipeline);
-  return fmt::format(" {} {}; it has {} times that limit.", what, time_text(median),
+  return fmt::format("{} {}; it has {} times that limit.", what, time_text(median),
                      number_text(answer.times_limit));
 }
 
@@ -117,7 +101,7 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
     shares += fmt::format("{}{} {:.0f} %", shares.empty() ? "" : ", ",
                           evaluation::kStageNames[stage], 100 * share);
   }
-  std::string text = fmt::format(" What limits it (error budget over {}): {}.",
+  std::string text = fmt::format("What limits it (error budget over {}): {}.",
                                  counted(parts.total.values.size(), "seed"), shares);
   const auto most = std::ranges::max_element(parts.alone, {}, &evaluation::BudgetPart::mean);
   if (most->mean < kWorthWinning * total) return text;
@@ -127,23 +111,55 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
 }
 
 std::string sets_sentence(const Row& row) {
-  if (is_unverified(row))
-    return " Whether its sets are right is unknown: the capture has no truth.";
-  if (row.sets.emitted == 0) return " It gathers no complete set.";
+  if (is_unverified(row)) return "Whether its sets are right is unknown: the capture has no truth.";
+  if (row.sets.emitted == 0) return "It gathers no complete set.";
   if (std::isnan(row.precision) || std::isnan(row.recall)) return "";
   if (row.precision == 1 && row.recall == 1) {
     const std::string spare =
         row.margin_ms > 0 ? fmt::format(", with {} to spare", time_text(row.margin_ms)) : "";
     return fmt::format(
-        " Its sets can be trusted here: none of {} mixes pulses, no pulse is missing{}.",
+        "Its sets can be trusted here: none of {} mixes pulses, no pulse is missing{}.",
         count_text(row.sets.emitted), spare);
   }
   return fmt::format(
-      " Do not trust its sets: {} of them mix pulses, {} of the pulses are not whole.",
+      "Do not trust its sets: {} of them mix pulses, {} of the pulses are not whole.",
       share_text(1 - row.precision), share_text(1 - row.recall));
 }
 
-std::string uncertainty_sentence(const Answer& answer) {
+}  // namespace
+
+const char* ranked_name(RankedBy ranked_by) {
+  switch (ranked_by) {
+    case RankedBy::kAmd:
+      return "AMD";
+    case RankedBy::kAbsoluteError:
+      return "absolute error";
+    case RankedBy::kClockSpread:
+      break;
+  }
+  return "spread of the clocks";
+}
+
+std::string distance_text(const Results& results, const Answer& answer) {
+  std::vector<std::string> sentences;
+  if (!answer.equals.empty()) {
+    sentences.push_back(fmt::format("These seeds cannot tell {} from it.", some_of(answer.equals)));
+  }
+  if (answer.next != nullptr) {
+    const evaluation::Estimate& ratio = answer.to_next.ratio;
+    const std::string range =
+        std::isnan(ratio.low)
+            ? ""
+            : fmt::format(" [{}, {}]", number_text(ratio.low), number_text(ratio.high));
+    sentences.push_back(fmt::format("The next, {}, has {}{} times as much.", answer.next->pipeline,
+                                    number_text(ratio.value), range));
+  }
+  sentences.push_back(paper_sentence(results, answer));
+  if (sentences.back().empty()) sentences.pop_back();
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+std::string uncertainty_text(const Answer& answer) {
   const Row& best = *answer.best;
   std::vector<std::string> parts;
   const std::size_t seeds =
@@ -160,25 +176,21 @@ std::string uncertainty_sentence(const Answer& answer) {
         fmt::format("AMD hides that all cameras are {} off together", time_text(error_ms)));
   }
   if (parts.empty()) return "";
-  std::string text = " Uncertain: " + parts.front();
+  std::string text = "Uncertain: " + parts.front();
   for (std::size_t i = 1; i < parts.size(); ++i) text += "; " + parts[i];
   return text + ".";
 }
 
-}  // namespace
-
-Block answer_block(const Results& results, RankedBy ranked_by, const Budget* budget) {
-  Block block{.heading = "Answer"};
+AnswerText results_answer(const Results& results, RankedBy ranked_by, const Budget* budget) {
   const Answer answer = evaluation::answer_of(results, ranked_by);
-  if (answer.best == nullptr) {
-    block.prose = {"No pipeline that a rig can run has a result here."};
-    return block;
-  }
-  std::string text =
-      best_sentence(answer) + distance_sentences(results, answer) + limit_sentence(answer);
-  if (budget != nullptr) text += budget_sentences(answer, *budget);
-  block.prose = {text + sets_sentence(*answer.best) + uncertainty_sentence(answer)};
-  return block;
+  if (answer.best == nullptr) return {.lead = "No pipeline that a rig can run has a result here."};
+  AnswerText text{.lead = best_sentence(answer)};
+  text.add("Others", distance_text(results, answer));
+  text.add("Limit", limit_sentence(answer));
+  if (budget != nullptr) text.add("Causes", budget_sentences(answer, *budget));
+  text.add("Sets", sets_sentence(*answer.best));
+  text.add("Certainty", uncertainty_text(answer));
+  return text;
 }
 
 }  // namespace simbench::reports

@@ -1,4 +1,4 @@
-#include "reports/results/answer_block.h"
+#include "reports/results/results_answer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using testing::Not;
 
 std::string answer_text(const evaluation::Results& results,
                         const evaluation::Budget* budget = nullptr) {
-  return answer_block(results, RankedBy::kAmd, budget).prose.front();
+  return paragraphs(results_answer(results, RankedBy::kAmd, budget)).front();
 }
 
 evaluation::BudgetPart equal_part(double mean) {
@@ -36,26 +36,26 @@ evaluation::Budget budget_of(double host_clock_ms, double delivery_ms) {
   return budget;
 }
 
-TEST(AnswerBlock, NamesTheBestWithItsBand) {
+TEST(ResultsAnswer, NamesTheBestWithItsBand) {
   const std::string text = answer_text(sample_results());
   EXPECT_THAT(text, HasSubstr("yoon2021_both is the best of the 2 pipelines that a rig can run: "
                               "AMD 2.00 ms (5-95 %: [1.50, 2.50] ms)."));
 }
 
-TEST(AnswerBlock, DoubtsSetsThatLackPulses) {
+TEST(ResultsAnswer, DoubtsSetsThatLackPulses) {
   EXPECT_THAT(answer_text(sample_results()),
               HasSubstr("Do not trust its sets: 0 % of them mix pulses, 25.0 % of the pulses are "
                         "not whole."));
 }
 
-TEST(AnswerBlock, TrustsSetsWithoutAFault) {
+TEST(ResultsAnswer, TrustsSetsWithoutAFault) {
   evaluation::Results results = sample_results();
   results.rows.front().recall = 1;
   EXPECT_THAT(answer_text(results), HasSubstr("none of 720 mixes pulses, no pulse is missing, with "
                                               "8.50 ms to spare."));
 }
 
-TEST(AnswerBlock, SaysWhatLimitsItAndWhatWouldBeWon) {
+TEST(ResultsAnswer, SaysWhatLimitsItAndWhatWouldBeWon) {
   const evaluation::Budget budget = budget_of(3, 1);
   EXPECT_THAT(answer_text(sample_results(), &budget),
               HasSubstr("What limits it (error budget over 2 seeds): host clock 75 %, USB delivery "
@@ -63,17 +63,17 @@ TEST(AnswerBlock, SaysWhatLimitsItAndWhatWouldBeWon) {
   EXPECT_THAT(answer_text(sample_results()), Not(HasSubstr("What limits it")));
 }
 
-TEST(AnswerBlock, SaysThatAmdHidesWhatAllCamerasShare) {
+TEST(ResultsAnswer, SaysThatAmdHidesWhatAllCamerasShare) {
   EXPECT_THAT(answer_text(sample_results()),
               HasSubstr("AMD hides that all cameras are 29.0 ms off together"));
 }
 
-TEST(AnswerBlock, SaysSoWhereThereIsNoAnswer) {
+TEST(ResultsAnswer, SaysSoWhereThereIsNoAnswer) {
   EXPECT_EQ(answer_text({}), "No pipeline that a rig can run has a result here.");
 }
 
 TEST(Summary, HasTheAnswerATableAndWhatFailed) {
-  const Block answer = answer_block(sample_results(), RankedBy::kAmd, nullptr);
+  const AnswerText answer = results_answer(sample_results(), RankedBy::kAmd, nullptr);
   const std::string text = plain(summary_document(sample_results(), {.summary = "A fit."}, answer));
   EXPECT_THAT(text, HasSubstr("sample: 2 seeds (1-2)\nyoon2021_both is the best"));
   EXPECT_THAT(text, HasSubstr("2.00 ms"));

@@ -1,0 +1,96 @@
+#include "reports/clocks/clock_answer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "evaluation/answer/answer.h"
+#include "reports/clocks/clock_report.h"
+#include "reports/results/results_answer.h"
+#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::Answer;
+using evaluation::Row;
+
+constexpr double kMostlyConstant = 0.5;  // of the largest time error
+
+std::string closest_sentence(const Answer& answer) {
+  const Row& best = *answer.best;
+  return fmt::format("{} {}: {} apart, mean in time (5-95 %: {}).", best.pipeline,
+                     answer.runnable == 1
+                         ? "is the only host_sync here that a rig can run, and keeps the clocks"
+                         : fmt::format("keeps the clocks closest together of the {} that a rig can "
+                                       "run",
+                                       answer.runnable),
+                     time_text(best.clock_spread_ms.median),
+                     time_band_text(best.clock_spread_ms.p05, best.clock_spread_ms.p95));
+}
+
+// "below 1 ms from second 1 on".
+std::string in_sync_sentence(const Row& row) {
+  const struct {
+    const evaluation::Series& seconds;
+    const char* bound;
+  } bounds[] = {
+      {row.below_0_01_ms_s, "10 us"}, {row.below_0_1_ms_s, "0.1 ms"}, {row.below_1_ms_s, "1 ms"}};
+  for (const auto& [seconds, bound] : bounds) {
+    const double median_s = median_time(seconds.values);
+    if (std::isnan(median_s)) continue;
+    return fmt::format(
+        "In sync: within {} for good from second {} of the cold start on; the "
+        "largest error of a host is {}.",
+        bound, number_text(median_s), time_text(row.max_te_ms.median));
+  }
+  return fmt::format(
+      "Not in sync: half of the seeds or more never stay within 1 ms; the largest "
+      "error of a host is {}.",
+      time_text(row.max_te_ms.median));
+}
+
+std::string kind_of_error_sentence(const Row& row) {
+  const double share = row.constant_te_ms.median / row.max_te_ms.median;
+  if (!std::isfinite(share)) return "";
+  return share > kMostlyConstant
+             ? fmt::format(
+                   "What limits it: a constant error of {}, as unequal paths there and "
+                   "back make it, which no averaging removes.",
+                   time_text(row.constant_te_ms.median))
+             : fmt::format(
+                   "What limits it: noise and drift, a range of {} in a host; the constant "
+                   "part is {}.",
+                   time_text(row.dynamic_te_ms.median), time_text(row.constant_te_ms.median));
+}
+
+std::string without_master_sentence(const Row& row) {
+  if (std::isnan(row.holdover_600_ms.median)) return "";
+  const double recovery_s = median_time(row.recovery_s.values);
+  return fmt::format(
+      "Without its master a host is {} off after 60 s, {} after 600 s; {}.",
+      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
+      std::isnan(recovery_s)
+          ? "then half of the seeds or more do not recover within an hour"
+          : fmt::format("then it recovers within {} s", number_text(recovery_s)));
+}
+
+}  // namespace
+
+AnswerText clock_answer(const evaluation::Results& results) {
+  const Answer answer = evaluation::answer_of(results, evaluation::RankedBy::kClockSpread);
+  if (answer.best == nullptr) return {.lead = "No host_sync that a rig can run has a result here."};
+  AnswerText text{.lead = closest_sentence(answer)};
+  text.add("Others", distance_text(results, answer));
+  text.add("In sync?", in_sync_sentence(*answer.best));
+  text.add("Limit", kind_of_error_sentence(*answer.best));
+  text.add("Holdover", without_master_sentence(*answer.best));
+  text.add("Cost", fmt::format("It sends {} packets per second.",
+                               number_text(answer.best->packets_per_s.median)));
+  text.add("Certainty", uncertainty_text(answer));
+  return text;
+}
+
+}  // namespace simbench::reports

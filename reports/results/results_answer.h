@@ -1,0 +1,36 @@
+// The answer of a run (evaluation/answer/answer.h): which pipeline is best and by how much, how far
+// it is from the limit, what limits it, whether its sets can be trusted, what would improve it
+// most, and what is uncertain. Every sentence is computed from the results; what they do not hold
+// has none.
+//
+//   const AnswerText first = results_answer(all_results, evaluation::RankedBy::kAmd, nullptr);
+#ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_
+#define SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_
+
+#include <string>
+
+#include "evaluation/answer/answer.h"
+#include "evaluation/budget/budget.h"
+#include "evaluation/scoring/results.h"
+#include "reports/text/answer_text.h"
+
+namespace simbench::reports {
+
+// `budget`: of the best pipeline; null: unknown, and nothing is said about it.
+AnswerText results_answer(const evaluation::Results& results, evaluation::RankedBy ranked_by,
+                          const evaluation::Budget* budget);
+
+// Its sentences that other answers have too; `answer` has a best pipeline.
+//
+// Which pipelines cannot be told from the best, the next one, and the paper's; "" if there are
+// none.
+std::string distance_text(const evaluation::Results& results, const evaluation::Answer& answer);
+// What these seeds leave open; "" if that is little.
+std::string uncertainty_text(const evaluation::Answer& answer);
+
+// The name of what an answer ranks by: "AMD".
+const char* ranked_name(evaluation::RankedBy ranked_by);
+
+}  // namespace simbench::reports
+
+#endif  // SIMBENCH_REPORTS_RESULTS_RESULTS_ANSWER_H_

@@ -1,0 +1,122 @@
+#include "reports/rigs/diagnose_answer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "recording/counted.h"
+#include "reports/rigs/diagnose_report.h"
+#include "reports/text/number_text.h"
+#include "reports/text/time_text.h"
+
+namespace simbench::reports {
+namespace {
+
+using evaluation::CameraDiagnosis;
+using evaluation::Diagnosis;
+using evaluation::Follows;
+using evaluation::GroupVerdict;
+using evaluation::SyncStatus;
+
+std::string verdict_sentence(const GroupVerdict& verdict) {
+  return fmt::format("{}: hardware sync {}{}{}.", verdict.stream, sync_status_text(verdict.status),
+                     verdict.status == SyncStatus::kWorks ? ": " : ", because ", verdict.reason);
+}
+
+std::string other_streams(const Diagnosis& diagnosis) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 1; i < diagnosis.groups.size(); ++i) {
+    sentences.push_back(verdict_sentence(diagnosis.groups[i]));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+bool drifts(const CameraDiagnosis& camera) {
+  return camera.standing.follows == Follows::kOwnClock ||
+         camera.standing.follows == Follows::kHostOrOwn;
+}
+
+// The camera of the first stream that moves most, and how soon it is a frame off.
+std::string drift_sentence(const Diagnosis& diagnosis) {
+  const CameraDiagnosis* fastest = nullptr;
+  const auto speed = [](const CameraDiagnosis& camera) {
+    return std::abs(camera.standing.moves_ms_per_minute);
+  };
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    if (camera.stream != diagnosis.verdict.stream || !drifts(camera) || !(speed(camera) > 0)) {
+      continue;
+    }
+    if (fastest == nullptr || speed(camera) > speed(*fastest)) fastest = &camera;
+  }
+  if (fastest == nullptr) return "";
+  return fmt::format(
+      "Camera {} drifts most: {} a minute against the common period, a whole frame within {} "
+      "minutes.",
+      fastest->camera, time_text(fastest->standing.moves_ms_per_minute),
+      number_text(diagnosis.verdict.period_ms / speed(*fastest)));
+}
+
+bool slips(const CameraDiagnosis& camera) {
+  return std::ranges::any_of(camera.facts.jumps,
+                             [](const auto& jump) { return jump.periods != 0; });
+}
+
+// Of which cameras stamps slipped, and who lost frames.
+std::string slips_sentence(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  std::int64_t lost = 0;
+  const CameraDiagnosis* most = nullptr;
+  for (const CameraDiagnosis& camera : diagnosis.cameras) {
+    if (slips(camera)) names.push_back(fmt::format("{} ({})", camera.camera, camera.stream));
+    lost += camera.facts.lost_frames;
+    if (most == nullptr || camera.facts.lost_frames > most->facts.lost_frames) most = &camera;
+  }
+  std::string text =
+      names.empty() ? std::string("No camera's stamps slip by whole frames")
+                    : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
+  text += lost == 0 ? "; no frame is lost."
+                    : fmt::format("; {} lost, most by camera {}.",
+                                  lost == 1 ? "1 frame is" : count_text(lost) + " frames are",
+                                  most->camera);
+  return text;
+}
+
+std::string resolution_sentence(const GroupVerdict& verdict) {
+  if (std::isnan(verdict.resolution_ppm)) return "";
+  constexpr double kMsPerMinutePerPpm = 0.06;
+  return fmt::format(
+      "These stamps show frame periods to {} ppm: cameras that drift apart by less than {} a "
+      "minute look synchronised.",
+      number_text(verdict.resolution_ppm),
+      time_text(verdict.resolution_ppm * kMsPerMinutePerPpm));
+}
+
+// What each unknown is about, without its explanation.
+std::string unknown_sentence(const std::vector<std::string>& unknowns) {
+  std::vector<std::string> subjects;
+  subjects.reserve(unknowns.size());
+  for (const std::string& unknown : unknowns) {
+    subjects.push_back(unknown.substr(0, unknown.find(':')));
+  }
+  if (subjects.empty()) return "";
+  return fmt::format("Stamps alone cannot show {}.", fmt::join(subjects, ", nor "));
+}
+
+}  // namespace
+
+AnswerText diagnose_answer(const Diagnosis& diagnosis) {
+  if (diagnosis.groups.empty()) return {.lead = "There is no camera."};
+  AnswerText answer{.lead = verdict_sentence(diagnosis.verdict)};
+  answer.add("Streams", other_streams(diagnosis));
+  answer.add("Drift", drift_sentence(diagnosis));
+  answer.add("Slips", slips_sentence(diagnosis));
+  answer.add("Can tell", resolution_sentence(diagnosis.verdict));
+  answer.add("Cannot tell", unknown_sentence(diagnosis.cannot_know));
+  return answer;
+}
+
+}  // namespace simbench::reports

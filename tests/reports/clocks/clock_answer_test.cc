@@ -1,0 +1,43 @@
+#include "reports/clocks/clock_answer.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/reports/sample_clocks.h"
+
+namespace simbench::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+std::string clock_answer_of(const evaluation::Results& results) {
+  return paragraphs(clock_answer(results)).front();
+}
+
+// "good" has 0.5, 1 and 3 ms of everything, and comes below 0.1 ms in one seed of three.
+TEST(ClockAnswer, SaysWhoIsBestAndWhenItIsInSync) {
+  const std::string text = clock_answer_of(sample_clock_results().results);
+  EXPECT_THAT(text, StartsWith("good is the only host_sync here that a rig can run, and keeps the "
+                               "clocks: 1.00 ms apart, mean in time"));
+  EXPECT_THAT(text, HasSubstr("within 1 ms for good from second 20.0"));
+  EXPECT_THAT(text, HasSubstr("What limits it: a constant error of 1.00 ms"));
+  EXPECT_THAT(text, HasSubstr("Without its master a host is 1.00 ms off after 60 s"));
+  EXPECT_THAT(text, HasSubstr("3 seeds say little about other worlds"));
+  EXPECT_THAT(text, Not(HasSubstr("oracle")));
+}
+
+TEST(ClockAnswer, SaysThatClocksDoNotComeTogether) {
+  evaluation::Results results = sample_clock_results().results;
+  results.rows[0].below_1_ms_s = results.rows[0].below_0_01_ms_s;
+  EXPECT_THAT(clock_answer_of(results), HasSubstr("Not in sync: half of the seeds or more"));
+}
+
+TEST(ClockAnswer, AnOracleIsNoAnswer) {
+  evaluation::Results results = sample_clock_results().results;
+  results.rows.erase(results.rows.begin());
+  EXPECT_EQ(clock_answer_of(results), "No host_sync that a rig can run has a result here.");
+}
+
+}  // namespace
+}  // namespace simbench::reports

@@ -1,0 +1,39 @@
+#include "reports/text/answer_text.h"
+
+#include <gmock/gmock.h>
+
+namespace simbench::reports {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+AnswerText short_answer() {
+  AnswerText answer{.lead = "a < b is best."};
+  answer.add("Others", "The next has twice as much.");
+  answer.add("Limit", "");
+  answer.add("Certainty", "Uncertain: 1 seed.");
+  return answer;
+}
+
+TEST(AnswerText, IsOneParagraphWithoutLabels) {
+  EXPECT_THAT(paragraphs(short_answer()),
+              ElementsAre("a < b is best. The next has twice as much. Uncertain: 1 seed."));
+}
+
+TEST(AnswerText, IsALeadAndLabelledLinesOnAPage) {
+  const std::string page = html(short_answer());
+  EXPECT_THAT(page, HasSubstr("<p>a &lt; b is best.</p>"));
+  EXPECT_THAT(page, HasSubstr("<dt>Others</dt><dd>The next has twice as much.</dd>"));
+  EXPECT_THAT(page, Not(HasSubstr("Limit")));
+}
+
+TEST(AnswerText, WithoutALeadThereIsNone) {
+  EXPECT_THAT(paragraphs({}), IsEmpty());
+  EXPECT_EQ(html(AnswerText{}), "");
+}
+
+}  // namespace
+}  // namespace simbench::reports
