@@ -69,12 +69,11 @@ std::string kind_of_error_sentence(const Row& row) {
 std::string without_master_sentence(const Row& row) {
   if (std::isnan(row.holdover_600_ms.median)) return "";
   const double recovery_s = median_time(row.recovery_s.values);
-  return fmt::format(
-      "Without its master a host is {} off after 60 s, {} after 600 s; {}.",
-      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
-      std::isnan(recovery_s)
-          ? "then half of the seeds or more do not recover within an hour"
-          : fmt::format("then it recovers within {} s", number_text(recovery_s)));
+  return fmt::format("Without its master a host is {} off after 60 s, {} after 600 s; {}.",
+                     time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
+                     std::isnan(recovery_s)
+                         ? "then half of the seeds or more do not recover within an hour"
+                         : fmt::format("then it recovers within {} s", number_text(recovery_s)));
 }
 
 }  // namespace

@@ -235,10 +235,9 @@ using NamedParts = std::vector<std::pair<std::string_view, const BudgetPart*>>;
 
 FigurePanel parts_panel(const std::string& title, const BudgetPart& total,
                         const NamedParts& parts) {
-  FigurePanel made =
-      panel(fmt::format("{}: {} in all (bars: mean, dots: 5 and 95 % of the seeds)", title,
-                        time_text(total.mean)),
-            "", "part (ms)");
+  FigurePanel made = panel(fmt::format("{}: {} in all (bars: mean, dots: 5 and 95 % of the seeds)",
+                                       title, time_text(total.mean)),
+                           "", "part (ms)");
   FigureSeries bars = series("mean over seeds", Mark::kBars, 0);
   FigureSeries low = series("5 %", Mark::kPoints, 1);
   FigureSeries high = series("95 %", Mark::kPoints, 1);
@@ -348,7 +347,8 @@ Figure budget_figure(const PipelineBudget& pipeline) {
         parts_panel("Host clock error", host_clock.total, named_parts(host_clock)));
   }
   figure.caption = fmt::format(
-      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders in "
+      "Over {}. A part is the reduction of the error by an ideal stage, averaged over all orders "
+      "in "
       "which the stages can be replaced (Shapley values). Parts and remainder add up to the whole; "
       "a part below zero cancels another.{}",
       counted(budget.amd_ms.total.values.size(), "seed"), host_clock_caption(host_clock));

@@ -18,7 +18,6 @@ namespace {
 using evaluation::RankedBy;
 using evaluation::Results;
 using evaluation::Row;
-using evaluation::RowStanding;
 using evaluation::Series;
 
 constexpr std::size_t kMostOverviewRows = 24;
@@ -57,22 +56,10 @@ bool has_published(const Row& row, RankedBy ranked_by) {
   return ranked_by == RankedBy::kAmd && row.published && row.published->amd_ms > 0;
 }
 
-struct RowStyle {
-  const char* style;
-  const char* word;
-};
-
-RowStyle style_of(const Row& row, RankedBy ranked_by, bool is_best) {
-  if (is_best) return {"best", "best"};
-  switch (evaluation::standing_by(row, ranked_by)) {
-    case RowStanding::kLimit:
-      return {"limit", "limit"};
-    case RowStanding::kReference:
-      return {"limit", "reference"};
-    case RowStanding::kRunnable:
-      break;
-  }
-  return {"", ""};
+// "best", "limit", "reference" or "".
+std::string word_of(const Row& row, RankedBy ranked_by, bool is_best) {
+  if (is_best) return "best";
+  return evaluation::standing_name(evaluation::standing_by(row, ranked_by));
 }
 
 // A name that may break behind its underscores and nowhere else.
@@ -87,7 +74,8 @@ std::string breakable(const std::string& name) {
 
 std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bool is_best) {
   const Series& series = evaluation::ranked_series(row, ranked_by);
-  const RowStyle style = style_of(row, ranked_by, is_best);
+  const std::string word = word_of(row, ranked_by, is_best);
+  const char* const style = is_best ? "best" : word.empty() ? "" : "limit";
   const double from = axis.at(series.p05);
   std::string marks = fmt::format(
       "<i class=\"band\" style=\"left:{:.2f}%;width:{:.2f}%\"></i>"
@@ -100,20 +88,15 @@ std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bo
   }
   return fmt::format(
       "<tr class=\"{}\"><th scope=\"row\">{}{}</th><td class=\"track\">{}</td><td>{}</td></tr>\n",
-      style.style, breakable(row.pipeline),
-      *style.word == '\0' ? "" : fmt::format(" <small>{}</small>", style.word), marks,
-      time_text(series.median));
+      style, breakable(row.pipeline), word.empty() ? "" : fmt::format(" <small>{}</small>", word),
+      marks, time_text(series.median));
 }
 
 std::string axis_html(const LogAxis& axis) {
   std::string ticks;
   for (double decade = axis.low; decade <= axis.high; ++decade) {
     const double ms = std::pow(10.0, decade);
-    // The nearest unit, without zeros: "10 us".
-    const double per_unit = ms >= 1e3 ? 1e-3 : ms >= 0.0999 ? 1 : ms >= 0.99e-4 ? 1e3 : 1e6;
-    const char* unit = ms >= 1e3 ? "s" : ms >= 0.0999 ? "ms" : ms >= 0.99e-4 ? "us" : "ns";
-    ticks += fmt::format("<span style=\"left:{:.2f}%\">{:g} {}</span>", axis.at(ms), ms * per_unit,
-                         unit);
+    ticks += fmt::format("<span style=\"left:{:.2f}%\">{}</span>", axis.at(ms), tick_text(ms));
   }
   return fmt::format("<tr class=\"axis\"><td></td><td class=\"track\">{}</td><td></td></tr>\n",
                      ticks);

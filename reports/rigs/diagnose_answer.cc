@@ -91,8 +91,7 @@ std::string resolution_sentence(const GroupVerdict& verdict) {
   return fmt::format(
       "These stamps show frame periods to {} ppm: cameras that drift apart by less than {} a "
       "minute look synchronised.",
-      number_text(verdict.resolution_ppm),
-      time_text(verdict.resolution_ppm * kMsPerMinutePerPpm));
+      number_text(verdict.resolution_ppm), time_text(verdict.resolution_ppm * kMsPerMinutePerPpm));
 }
 
 // What each unknown is about, without its explanation.

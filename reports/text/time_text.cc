@@ -32,6 +32,11 @@ std::string time_text(double ms) {
   return fmt::format("{} {}", number_text(ms * unit.per_ms), unit.name);
 }
 
+std::string tick_text(double ms) {
+  const TimeUnit& unit = time_unit_of(ms);
+  return fmt::format("{:g} {}", ms * unit.per_ms, unit.name);
+}
+
 std::string time_band_text(double low_ms, double high_ms) {
   if (!std::isfinite(low_ms) || !std::isfinite(high_ms)) return "-";
   if (low_ms == 0 && high_ms == 0) return "[0, 0]";

@@ -12,6 +12,9 @@ namespace simbench::reports {
 // "35.0 ns", "3.12 us", "0.694 ms", "543 ms", "1.61 s"; "0" for 0, "-" for what is not finite.
 std::string time_text(double ms);
 
+// A round duration at a tick, without zeros: "10 us".
+std::string tick_text(double ms);
+
 // Both ends in the unit of the one further from zero: "[0.350, 1.20] ms"; "-" if one is not finite.
 std::string time_band_text(double low_ms, double high_ms);
 

@@ -21,6 +21,13 @@ TEST(TimeText, TakesTheUnitThatFits) {
   EXPECT_EQ(time_text(std::numeric_limits<double>::infinity()), "-");
 }
 
+TEST(TimeText, ATickHasNoZeros) {
+  EXPECT_EQ(tick_text(0.01), "10 us");
+  EXPECT_EQ(tick_text(1), "1 ms");
+  EXPECT_EQ(tick_text(0.1), "0.1 ms");
+  EXPECT_EQ(tick_text(1e4), "10 s");
+}
+
 TEST(TimeText, ABandHasOneUnit) {
   EXPECT_EQ(time_band_text(1.45, 4.86), "[1.45, 4.86] ms");
   EXPECT_EQ(time_band_text(0.0121, 0.015), "[12.1, 15.0] us");
