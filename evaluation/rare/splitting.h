@@ -48,6 +48,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "evaluation/run/evaluate.h"
@@ -79,10 +80,11 @@ using RareFunction = std::function<RareScore(const RareRun& run)>;
 struct SplittingOptions {
   double bound = 0;
   std::uint64_t seed = 1;
-  std::size_t runs = 64;    // that start, and at each level
-  std::size_t moves = 4;    // of each of them at a level
-  std::size_t repeats = 8;  // at least 2
-  double kept = 0.25;       // part of the runs above the next level
+  std::size_t starts = 1024;  // runs that start, more than chains
+  std::size_t chains = 64;    // kept at each level
+  std::size_t moves = 4;      // of each of them, at least 2
+  std::size_t repeats = 8;    // at least 2
+  std::uint64_t most_runs = std::numeric_limits<std::uint64_t>::max();
   double least_probability = 1e-10;
   unsigned jobs = 0;
   const std::atomic<bool>* cancel = nullptr;
