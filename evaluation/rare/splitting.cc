@@ -39,7 +39,8 @@ struct Particle {
   RareScore score;
 };
 
-// Kinds of changes: of some numbers, which are drawn anew or moved. Their size is the share of these.
+// Kinds of changes: of some numbers, which are drawn anew or moved. Their size is the share of
+// these.
 constexpr std::array<double, 2> kSteps = {1, 0.5};
 constexpr std::size_t kKinds = kSteps.size();
 

@@ -49,7 +49,8 @@ Block rare_block(const std::string& heading, const std::vector<RareResult>& resu
                     "it is what these show, and a way to the event that none of them found is not "
                     "in it. The probability is that of any set of any such rig: one rig is better "
                     "or worse. Below about: the runs did not get to the event, and the number, the "
-                    "probability of what they got to, is a guide without an interval. What is not in the world (a "
+                    "probability of what they got to, is a guide without an interval. What is not "
+                    "in the world (a "
                     "cable that fails, a service that restarts) is not counted."}};
 }
 

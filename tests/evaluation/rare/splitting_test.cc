@@ -53,8 +53,8 @@ TEST(Splitting, IsNearBruteForceWhereThatIsAffordable) {
 }
 
 TEST(Splitting, FindsOneInAMillionAtAHundredthOfTheCost) {
-  const RareEstimate split =
-      estimate_rare(largest(kLargest6), {.bound = kLargest6, .starts = 256, .repeats = 16}, nullptr);
+  const RareEstimate split = estimate_rare(
+      largest(kLargest6), {.bound = kLargest6, .starts = 256, .repeats = 16}, nullptr);
   EXPECT_LE(split.low, 1e-6);
   EXPECT_GE(split.high, 1e-6);
   EXPECT_LT(std::abs(std::log(split.probability / 1e-6)), std::log(1.5));
@@ -67,7 +67,8 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
   int inside = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RareEstimate split =
-        estimate_rare(largest(kLargest4), {.bound = kLargest4, .seed = seed, .starts = 128, .chains = 16}, nullptr);
+        estimate_rare(largest(kLargest4),
+                      {.bound = kLargest4, .seed = seed, .starts = 128, .chains = 16}, nullptr);
     ASSERT_FALSE(split.is_below) << "seed " << seed;
     estimates.push_back(split.probability);
     if (split.low <= 1e-4 && 1e-4 <= split.high) ++inside;
@@ -80,7 +81,8 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
 
 TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   const auto estimate = [](unsigned jobs) {
-    return estimate_rare(normal_sums(3), {.bound = 3, .starts = 64, .chains = 8, .repeats = 4, .jobs = jobs},
+    return estimate_rare(normal_sums(3),
+                         {.bound = 3, .starts = 64, .chains = 8, .repeats = 4, .jobs = jobs},
                          nullptr);
   };
   const RareEstimate one = estimate(1);
@@ -90,7 +92,8 @@ TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(one.levels, four.levels);
   EXPECT_EQ(one.runs, four.runs);
   const RareEstimate other = estimate_rare(
-      normal_sums(3), {.bound = 3, .seed = 2, .starts = 64, .chains = 8, .repeats = 4, .jobs = 1}, nullptr);
+      normal_sums(3), {.bound = 3, .seed = 2, .starts = 64, .chains = 8, .repeats = 4, .jobs = 1},
+      nullptr);
   EXPECT_NE(one.probability, other.probability);
 }
 

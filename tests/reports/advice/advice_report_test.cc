@@ -24,16 +24,24 @@ PipelineAdvice pipeline(std::int64_t met, std::int64_t seeds, double margin) {
           .bad_quantile = {0.05}};
 }
 
+scenarios::Part named_part(const std::string& part_name, const std::string& name) {
+  scenarios::Part part;
+  part.part = part_name;
+  part.name = name;
+  return part;
+}
+
 OptionAdvice option(std::int64_t hosts, double price_eur, const PipelineAdvice& best,
                     bool is_settled) {
-  OptionAdvice option{.option = {.hosts = hosts,
-                                 .cameras_per_host = 4,
-                                 .host = {.part = "small_pc", .name = "A small computer"},
-                                 .network_switch = {.part = "a_switch", .name = "A switch"},
-                                 .clock = {.part = "pps_wires", .name = "Wires"},
-                                 .price = {price_eur, 2 * price_eur}},
-                      .pipelines = {best},
-                      .is_settled = is_settled};
+  OptionAdvice option;
+  option.option.hosts = hosts;
+  option.option.cameras_per_host = 4;
+  option.option.host = named_part("small_pc", "A small computer");
+  option.option.network_switch = named_part("a_switch", "A switch");
+  option.option.clock = named_part("pps_wires", "Wires");
+  option.option.price = {price_eur, 2 * price_eur};
+  option.pipelines = {best};
+  option.is_settled = is_settled;
   return option;
 }
 

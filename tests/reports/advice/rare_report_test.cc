@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "reports/text/number_text.h"
+
 namespace simbench::reports {
 namespace {
 
@@ -20,10 +22,8 @@ std::vector<RareResult> results() {
   found.estimate.high = 4e-5;
   found.estimate.runs = 5000;
   found.estimate.repeats = {1e-5, 2e-5, 3e-5};
-  RareResult below{.event = "set of several pulses",
-                   .bound_ms = 4,
-                   .sets_per_day = kSetsPerDay,
-                   .estimate = {}};
+  RareResult below{
+      .event = "set of several pulses", .bound_ms = 4, .sets_per_day = kSetsPerDay, .estimate = {}};
   below.estimate.is_below = true;
   below.estimate.high = 3e-8;
   below.estimate.runs = 1200;
@@ -36,15 +36,15 @@ TEST(RareReport, GivesProbabilityAndSetsPerDayWithTheirIntervals) {
   ASSERT_TRUE(block.table);
   ASSERT_EQ(block.table->rows.size(), 2U);
   EXPECT_THAT(block.table->rows[0],
-              ElementsAre("spread above 0.1 ms", "2e-05", "[1e-05, 4e-05]", "20", "[10, 40]",
-                          "5000", "3"));
+              ElementsAre("spread above 0.1 ms", "2.00e-05", "[1.00e-05, 4.00e-05]", "20.0",
+                          "[10.0, 40.0]", count_text(5000), "3"));
 }
 
 TEST(RareReport, HasNoIntervalOfWhatWasNotReached) {
   const Block block = rare_block("How often", results());
   EXPECT_THAT(block.table->rows[1],
-              ElementsAre("set of several pulses", "below about 3e-08", "-", "below about 0.03",
-                          "-", "1200", "0"));
+              ElementsAre("set of several pulses", "below about 3.00e-08", "-",
+                          "below about 0.0300", "-", count_text(1200), "0"));
 }
 
 TEST(RareReport, SaysTooRareWithoutAGuide) {
@@ -55,7 +55,8 @@ TEST(RareReport, SaysTooRareWithoutAGuide) {
 }
 
 TEST(RareReport, SaysWhatItsIntervalIs) {
-  const std::string text = plain({.title = "t", .head = {}, .blocks = {rare_block("h", results())}});
+  const std::string text =
+      plain({.title = "t", .head = {}, .blocks = {rare_block("h", results())}});
   EXPECT_THAT(text, HasSubstr("independent repeats"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
 }
