@@ -38,8 +38,8 @@ Exit status: 0 ok (also if no rig meets it), 1 internal error, 2 bad usage or in
 constexpr std::int64_t kMostHosts = 24;
 
 // Of both events together: some five minutes on two cores for 24 cameras at 60 Hz.
-constexpr std::uint64_t kSpreadRuns = 7500;
-constexpr std::uint64_t kWrongSetRuns = 3000;
+constexpr std::uint64_t kSpreadRuns = 6000;
+constexpr std::uint64_t kWrongSetRuns = 5600;
 constexpr std::size_t kRareStarts = 512;
 constexpr std::size_t kRareChains = 32;
 constexpr double kLeastProbability = 1e-8;
@@ -233,7 +233,7 @@ void add_advise_command(CommandLine& line) {
                 "A part of your own, repeatable: a file as those of `simbench list parts`");
   command.flag("--per-day", options->per_day,
                "How often a set of the recommended rig goes wrong, down to once in a million,\n"
-               "by importance splitting: up to 10500 simulated runs, some minutes");
+               "by importance splitting: up to 11600 simulated runs, some minutes");
   command.number("--bound-ms", "MS", options->bound_ms, 1e-6, 1e6,
                  "With --per-day: the spread of a set that counts as wrong. Default: the required\n"
                  "AMD, else gathering's interval");

@@ -49,6 +49,11 @@ struct Moves {
   std::array<double, kKinds> sizes = {0.1, 0.1};
   std::array<std::uint64_t, kKinds> tried{};
   std::array<std::uint64_t, kKinds> accepted{};
+
+  double accepted_part() const {
+    return static_cast<double>(std::accumulate(accepted.begin(), accepted.end(), 0UL)) /
+           static_cast<double>(std::accumulate(tried.begin(), tried.end(), 0UL));
+  }
 };
 
 constexpr std::uint64_t kPilot = 0;                // the repeats count from 1
@@ -195,7 +200,7 @@ class Splitting {
       if (moves.tried[kind] == 0) continue;
       const double part =
           static_cast<double>(moves.accepted[kind]) / static_cast<double>(moves.tried[kind]);
-      if (part < kFew) sizes[kind] = std::max(kLeast, sizes[kind] * std::max(part / kFew, 0.25));
+      if (part < kFew) sizes[kind] = std::max(kLeast, sizes[kind] * std::max(part / kFew, 0.1));
       if (part > kMany) sizes[kind] = std::min(1.0, sizes[kind] * 1.6);
     }
     return sizes;
@@ -215,22 +220,34 @@ class Splitting {
     return std::nullopt;
   }
 
+  // The pilot's chains at a level, again until enough was accepted and not all are at one level.
+  // Returns the sizes of the changes that this took.
+  std::array<double, kKinds> mixed(std::vector<Particle>& particles, double level) {
+    constexpr std::uint64_t kMostRounds = 8;
+    constexpr double kEnough = 0.1;
+    Moves moves;
+    if (!moves_.empty()) moves.sizes = moves_.back();
+    for (std::uint64_t round = 0; round < kMostRounds; ++round) {
+      const std::uint64_t stage = kLevelsApart * round + levels_.size();
+      if (round > 0) keep(particles, level, kPilot, stage);  // in another order
+      move(particles, level, moves, kPilot, stage);
+      const bool is_enough = moves.accepted_part() >= kEnough && next_level(particles);
+      moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
+      if (is_enough) break;
+    }
+    return moves.sizes;
+  }
+
   // The pilot. False if the bound is too far.
   bool find_levels() {
     std::vector<Particle> particles = started(kPilot);
-    Moves moves;
     while (reached_ > options_.least_probability && done_ < options_.most_runs / 2) {
       const std::optional<double> level = next_level(particles);
       if (!level) return particles.front().score.level > options_.bound;
       if (*level >= options_.bound) return true;
       reached_ *= keep(particles, *level, kPilot, levels_.size());
       levels_.push_back(*level);
-      // Twice, so that the sizes of the changes are those of this level.
-      for (std::size_t round = 0; round < 2; ++round) {
-        move(particles, *level, moves, kPilot, kLevelsApart * round + levels_.size());
-        moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
-      }
-      moves_.push_back(moves.sizes);
+      moves_.push_back(mixed(particles, *level));
       expect(std::max(expected_runs_, done_ * (options_.repeats + 1)));
     }
     return false;
