@@ -206,30 +206,32 @@ class Splitting {
     return sizes;
   }
 
-  // The level that as many particles are above as there are chains, or the next lower one that any
-  // is; nothing if all are at one.
+  // The level that as many particles are above as there are chains; where some are at one level, a
+  // lower one that not too few are above. Nothing if there is none.
   std::optional<double> next_level(const std::vector<Particle>& particles) const {
     std::vector<double> levels(particles.size());
     std::ranges::transform(particles, levels.begin(),
                            [](const Particle& each) { return each.score.level; });
     std::ranges::sort(levels, std::greater<>());
-    const double highest = levels.front();
+    const std::size_t fewest = std::max<std::size_t>(options_.chains / 4, 1);
     for (std::size_t i = options_.chains; i < levels.size(); ++i) {
-      if (levels[i] < highest) return levels[i];
+      const auto first = std::ranges::lower_bound(levels, levels[i], std::greater<>());
+      if (static_cast<std::size_t>(first - levels.begin()) >= fewest) return levels[i];
     }
     return std::nullopt;
   }
 
-  // The pilot's chains at a level, again until enough was accepted and not all are at one level.
-  // Returns the sizes of the changes that this took.
+  // The pilot's chains at a level, from the kept particles again until enough is accepted and not
+  // all are at one level. Returns the sizes of the changes that this took.
   std::array<double, kKinds> mixed(std::vector<Particle>& particles, double level) {
     constexpr std::uint64_t kMostRounds = 8;
     constexpr double kEnough = 0.1;
+    const std::vector<Particle> kept = particles;
     Moves moves;
     if (!moves_.empty()) moves.sizes = moves_.back();
     for (std::uint64_t round = 0; round < kMostRounds; ++round) {
       const std::uint64_t stage = kLevelsApart * round + levels_.size();
-      if (round > 0) keep(particles, level, kPilot, stage);  // in another order
+      particles = kept;
       move(particles, level, moves, kPilot, stage);
       const bool is_enough = moves.accepted_part() >= kEnough && next_level(particles);
       moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};

@@ -66,9 +66,9 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
   std::vector<double> estimates;
   int inside = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const RareEstimate split =
-        estimate_rare(largest(kLargest4),
-                      {.bound = kLargest4, .seed = seed, .starts = 128, .chains = 16}, nullptr);
+    const RareEstimate split = estimate_rare(
+        largest(kLargest4),
+        {.bound = kLargest4, .seed = seed, .starts = 128, .chains = 64, .moves = 4}, nullptr);
     ASSERT_FALSE(split.is_below) << "seed " << seed;
     estimates.push_back(split.probability);
     if (split.low <= 1e-4 && 1e-4 <= split.high) ++inside;
