@@ -17,9 +17,12 @@
 // certain rig is better or worse. Evaluated pulses lie in the capture of the scenario; what happens
 // once a day, and the drift of days, is not in it.
 //
-// What can be moved smoothly is the first draw of each stream: jitter of deliveries and of hosts,
-// constants of devices, first draws of messages and polls. Others are drawn anew, so that tails of
-// these alone are found as by brute force. The interval shows what that costs.
+// Every draw can be moved by itself (sim/engine/seed_field.h). Some hundred of them decide an event
+// of a host that is synchronised by messages: one in a hundred drawn anew loses more than half of
+// the events, so that chains forget slowly. evaluation/rare/splitting.h has what that costs.
+//
+// The whole world runs each time, with the service's hours before the capture: they are most of the
+// cost, and a shorter service or capture would be another law.
 //
 //   const evaluation::RareFunction run =
 //       rare_sets(scenario, "chrony_lan", RareEvent::kSpread, 0.1);

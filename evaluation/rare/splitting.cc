@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/ports/assert.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/statistics/in_double.h"
 
@@ -38,33 +39,35 @@ struct Particle {
   RareScore score;
 };
 
-// Kinds of changes: of some numbers, which are drawn anew; of some, which are moved; of all, which
-// are moved. The size of a change is the share of the first two, the step of the third.
-constexpr std::size_t kKinds = 3;
-constexpr double kMoveStep = 0.5;
-
-RareChange change_of(std::size_t kind, double size, std::uint64_t key) {
-  if (kind == 0) return {.key = key, .share = size, .step = 1};
-  if (kind == 1) return {.key = key, .share = size, .step = kMoveStep};
-  return {.key = key, .share = 1, .step = std::min(size, 0.99)};
-}
+// Kinds of changes: of some numbers, which are drawn anew or moved. Their size is the share of
+// these.
+constexpr std::array<double, 2> kSteps = {1, 0.5};
+constexpr std::size_t kKinds = kSteps.size();
 
 // How large changes are at a level, and how many were accepted.
 struct Moves {
-  std::array<double, kKinds> sizes = {0.5, 0.5, 0.5};
+  std::array<double, kKinds> sizes = {0.1, 0.1};
   std::array<std::uint64_t, kKinds> tried{};
   std::array<std::uint64_t, kKinds> accepted{};
+
+  double accepted_part() const {
+    return static_cast<double>(std::accumulate(accepted.begin(), accepted.end(), 0UL)) /
+           static_cast<double>(std::accumulate(tried.begin(), tried.end(), 0UL));
+  }
 };
 
 constexpr std::uint64_t kPilot = 0;                // the repeats count from 1
 constexpr std::uint64_t kLevelsApart = 1'000'000;  // more than there are levels
+constexpr std::size_t kLeastRepeats = 2;
 
 class Splitting {
  public:
   Splitting(const RareFunction& run, const SplittingOptions& options, const Progress& progress)
       : run_(run), options_(options), progress_(progress) {
+    SIMBENCH_ASSERT(options.moves > 1 && options.chains > 0 && options.starts > options.chains,
+                    "some runs are kept and moved");
     constexpr std::uint64_t kGuessedLevels = 8;
-    expected_runs_ = options.runs * (1 + options.moves * kGuessedLevels) * (options.repeats + 1);
+    expect(runs_of_repeat(kGuessedLevels) * (options.repeats + 1));
   }
 
   RareEstimate estimate() {
@@ -72,14 +75,9 @@ class Splitting {
     estimate.is_below = !find_levels();
     estimate.levels = levels_;
     if (estimate.is_below) {
-      estimate.high = std::pow(options_.kept, static_cast<double>(levels_.size()));
+      estimate.high = reached_;
     } else {
-      const double one = static_cast<double>(options_.runs * (1 + options_.moves * levels_.size()));
-      expected_runs_ = done_ + static_cast<std::uint64_t>(one) * options_.repeats;
-      estimate.repeats.resize(options_.repeats);
-      run_all(options_.repeats, options_.jobs,
-              [&](std::size_t repeat) { estimate.repeats[repeat] = repeat_of(repeat + 1); });
-      set_interval(estimate);
+      repeat(estimate);
     }
     estimate.runs = done_;
     return estimate;
@@ -88,7 +86,7 @@ class Splitting {
   RareEstimate count(std::uint64_t runs) {
     expected_runs_ = runs;
     std::vector<double> shares(runs);
-    run_all(runs, options_.jobs, [&](std::size_t i) {
+    run_all(runs, [&](std::size_t i) {
       shares[i] = scored({.seed = hash_of({options_.seed, kStart, kPilot, i})}).share;
     });
     RareEstimate estimate{.runs = runs};
@@ -106,10 +104,18 @@ class Splitting {
   }
 
  private:
-  void run_all(std::size_t count, unsigned jobs, const Job& job) {
-    if (!run_jobs(count, {.threads = jobs, .cancel = options_.cancel}, job)) {
+  void run_all(std::size_t count, const Job& job) {
+    if (!run_jobs(count, {.threads = options_.jobs, .cancel = options_.cancel}, job)) {
       throw EvaluationCancelled("cancelled", {});
     }
+  }
+
+  std::uint64_t runs_of_repeat(std::size_t levels) const {
+    return options_.starts + options_.chains * options_.moves * levels;
+  }
+
+  void expect(std::uint64_t runs) {
+    expected_runs_ = std::max(done_, std::min(runs, options_.most_runs));
   }
 
   RareScore scored(const RareRun& run) {
@@ -121,56 +127,62 @@ class Splitting {
     return score;
   }
 
-  std::vector<Particle> started(std::uint64_t repeat, unsigned jobs) {
-    std::vector<Particle> particles(options_.runs);
-    run_all(particles.size(), jobs, [&](std::size_t i) {
+  std::vector<Particle> started(std::uint64_t repeat) {
+    std::vector<Particle> particles(options_.starts);
+    run_all(particles.size(), [&](std::size_t i) {
       particles[i].run.seed = hash_of({options_.seed, kStart, repeat, i});
       particles[i].score = scored(particles[i].run);
     });
     return particles;
   }
 
-  // Copies the particles above the level in equal numbers, chance deciding about the rest. Returns
-  // their part, 0 without any.
+  // Keeps the particles above the level, in a random order. Returns their part.
   double keep(std::vector<Particle>& particles, double level, std::uint64_t repeat,
               std::size_t stage) const {
-    const std::size_t all = particles.size();
+    const auto all = static_cast<double>(particles.size());
     std::erase_if(particles, [level](const Particle& each) { return !(each.score.level > level); });
-    const std::size_t kept = particles.size();
-    if (kept == 0) return 0;
-    // A random order, of which the first get a copy more.
     std::vector<std::pair<std::uint64_t, std::size_t>> order;
-    for (std::size_t i = 0; i < kept; ++i) {
+    order.reserve(particles.size());
+    for (std::size_t i = 0; i < particles.size(); ++i) {
       order.emplace_back(hash_of({options_.seed, kOrder, repeat, stage, i}), i);
     }
     std::ranges::sort(order);
-    particles.reserve(all);
-    for (std::size_t i = kept; i < all; ++i) {
-      particles.emplace_back(particles[order[i % kept].second]);
-    }
-    return static_cast<double>(kept) / static_cast<double>(all);
+    std::vector<Particle> kept;
+    kept.reserve(particles.size());
+    for (const auto& [hash, i] : order) kept.push_back(std::move(particles[i]));
+    particles = std::move(kept);
+    return static_cast<double>(particles.size()) / all;
   }
 
-  // Moves every particle `moves` times within the level.
+  // Chains of `moves` runs within the level, from the particles in turn; all of their runs are the
+  // new particles.
   void move(std::vector<Particle>& particles, double level, Moves& moves, std::uint64_t repeat,
-            std::size_t stage, unsigned jobs) {
+            std::size_t stage) {
     const std::array<double, kKinds> sizes = moves.sizes;
-    std::vector<Moves> of_particle(particles.size());
-    run_all(particles.size(), jobs, [&](std::size_t i) {
+    std::vector<Particle> moved(options_.chains * options_.moves);
+    std::vector<Moves> of_chain(options_.chains);
+    run_all(options_.chains, [&](std::size_t i) {
+      const Particle* before = &particles[i % particles.size()];
       for (std::size_t step = 0; step < options_.moves; ++step) {
         // The number of a move alone decides its kind: each is reversible by itself.
         const std::size_t kind = (i + step) % kKinds;
-        RareRun changed = particles[i].run;
-        changed.changes.push_back(
-            change_of(kind, sizes[kind], hash_of({options_.seed, kKey, repeat, stage, i, step})));
-        const RareScore score = scored(changed);
-        ++of_particle[i].tried[kind];
-        if (!(score.level > level)) continue;
-        ++of_particle[i].accepted[kind];
-        particles[i] = {.run = std::move(changed), .score = score};
+        Particle& after = moved[i * options_.moves + step];
+        after.run = before->run;
+        after.run.changes.push_back({.key = hash_of({options_.seed, kKey, repeat, stage, i, step}),
+                                     .share = sizes[kind],
+                                     .step = kSteps[kind]});
+        after.score = scored(after.run);
+        ++of_chain[i].tried[kind];
+        if (after.score.level > level) {
+          ++of_chain[i].accepted[kind];
+        } else {
+          after = *before;
+        }
+        before = &after;
       }
     });
-    for (const Moves& each : of_particle) {
+    particles = std::move(moved);
+    for (const Moves& each : of_chain) {
       for (std::size_t kind = 0; kind < kKinds; ++kind) {
         moves.tried[kind] += each.tried[kind];
         moves.accepted[kind] += each.accepted[kind];
@@ -188,58 +200,81 @@ class Splitting {
       if (moves.tried[kind] == 0) continue;
       const double part =
           static_cast<double>(moves.accepted[kind]) / static_cast<double>(moves.tried[kind]);
-      if (part < kFew) sizes[kind] = std::max(kLeast, sizes[kind] * std::max(part / kFew, 0.25));
+      if (part < kFew) sizes[kind] = std::max(kLeast, sizes[kind] * std::max(part / kFew, 0.1));
       if (part > kMany) sizes[kind] = std::min(1.0, sizes[kind] * 1.6);
     }
     return sizes;
   }
 
-  // The level that the wanted part of the particles is above, or the next lower one that any is;
-  // nothing if all are at one.
+  // The level that as many particles are above as there are chains; where some are at one level, a
+  // lower one that not too few are above. Nothing if there is none.
   std::optional<double> next_level(const std::vector<Particle>& particles) const {
     std::vector<double> levels(particles.size());
     std::ranges::transform(particles, levels.begin(),
                            [](const Particle& each) { return each.score.level; });
     std::ranges::sort(levels, std::greater<>());
-    const double highest = levels.front();
-    const auto above = static_cast<std::size_t>(options_.kept * static_cast<double>(levels.size()));
-    for (std::size_t i = std::max<std::size_t>(above, 1); i < levels.size(); ++i) {
-      if (levels[i] < highest) return levels[i];
+    const std::size_t fewest = std::max<std::size_t>(options_.chains / 4, 1);
+    for (std::size_t i = options_.chains; i < levels.size(); ++i) {
+      const auto first = std::ranges::lower_bound(levels, levels[i], std::greater<>());
+      if (static_cast<std::size_t>(first - levels.begin()) >= fewest) return levels[i];
     }
     return std::nullopt;
   }
 
+  // The pilot's chains at a level, from the kept particles again until enough is accepted and not
+  // all are at one level. Returns the sizes of the changes that this took.
+  std::array<double, kKinds> mixed(std::vector<Particle>& particles, double level) {
+    constexpr std::uint64_t kMostRounds = 8;
+    constexpr double kEnough = 0.1;
+    const std::vector<Particle> kept = particles;
+    Moves moves;
+    if (!moves_.empty()) moves.sizes = moves_.back();
+    for (std::uint64_t round = 0; round < kMostRounds; ++round) {
+      const std::uint64_t stage = kLevelsApart * round + levels_.size();
+      particles = kept;
+      move(particles, level, moves, kPilot, stage);
+      const bool is_enough = moves.accepted_part() >= kEnough && next_level(particles);
+      moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
+      if (is_enough) break;
+    }
+    return moves.sizes;
+  }
+
   // The pilot. False if the bound is too far.
   bool find_levels() {
-    std::vector<Particle> particles = started(kPilot, options_.jobs);
-    Moves moves;
-    double probability = 1;
-    while (probability > options_.least_probability) {
+    std::vector<Particle> particles = started(kPilot);
+    while (reached_ > options_.least_probability && done_ < options_.most_runs / 2) {
       const std::optional<double> level = next_level(particles);
       if (!level) return particles.front().score.level > options_.bound;
       if (*level >= options_.bound) return true;
-      probability *= keep(particles, *level, kPilot, levels_.size());
+      reached_ *= keep(particles, *level, kPilot, levels_.size());
       levels_.push_back(*level);
-      // Twice, so that the sizes of the changes are those of this level.
-      for (std::size_t round = 0; round < 2; ++round) {
-        move(particles, *level, moves, kPilot, kLevelsApart * round + levels_.size(),
-             options_.jobs);
-        moves = {.sizes = adapted(moves), .tried = {}, .accepted = {}};
-      }
-      moves_.push_back(moves.sizes);
-      expected_runs_ = std::max(expected_runs_, done_ * (options_.repeats + 1));
+      moves_.push_back(mixed(particles, *level));
+      expect(std::max(expected_runs_, done_ * (options_.repeats + 1)));
     }
     return false;
   }
 
+  // Repeats until they are enough.
+  void repeat(RareEstimate& estimate) {
+    const std::uint64_t one = runs_of_repeat(levels_.size());
+    expect(done_ + one * options_.repeats);
+    while (estimate.repeats.size() < options_.repeats) {
+      const std::size_t made = estimate.repeats.size();
+      if (made >= kLeastRepeats && done_ + one > options_.most_runs) break;
+      estimate.repeats.push_back(repeat_of(made + 1));
+    }
+    set_interval(estimate);
+  }
+
   double repeat_of(std::uint64_t repeat) {
-    std::vector<Particle> particles = started(repeat, 1);
+    std::vector<Particle> particles = started(repeat);
     double product = 1;
     for (std::size_t stage = 0; stage < levels_.size(); ++stage) {
       product *= keep(particles, levels_[stage], repeat, stage);
       if (product == 0) return 0;
       Moves moves{.sizes = moves_[stage], .tried = {}, .accepted = {}};
-      move(particles, levels_[stage], moves, repeat, stage, 1);
+      move(particles, levels_[stage], moves, repeat, stage);
     }
     double shares = 0;
     for (const Particle& each : particles) shares += each.score.share;
@@ -281,6 +316,7 @@ class Splitting {
   const RareFunction& run_;
   const SplittingOptions& options_;
   const Progress& progress_;
+  double reached_ = 1;  // the pilot's probability of the last level
   std::vector<double> levels_;
   std::vector<std::array<double, kKinds>> moves_;  // sizes of the changes at each level
   std::mutex mutex_;                               // guards what follows

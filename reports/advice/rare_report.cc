@@ -35,15 +35,22 @@ Block rare_block(const std::string& heading, const std::vector<RareResult>& resu
        [](const RareResult& each) { return value_or_below(each, each.sets_per_day); }},
       {{"95 %\ninterval"},
        [](const RareResult& each) { return bounds_text(each, each.sets_per_day); }},
-      {{"simulated\nruns"}, [](const RareResult& each) {
+      {{"simulated\nruns"},
+       [](const RareResult& each) {
          return count_text(static_cast<std::int64_t>(each.estimate.runs));
+       }},
+      {{"repeats"}, [](const RareResult& each) {
+         return count_text(static_cast<std::int64_t>(each.estimate.repeats.size()));
        }}};
   return {.heading = heading,
           .table = table_of(fields, results),
           .prose = {"By importance splitting over clocks, calibrations and loads of the runs; the "
-                    "interval is that of independent repeats. The probability is that of any set "
-                    "of any such rig: one rig is better or worse. Below about: no run came near, "
-                    "and the number is a guide without an interval. What is not in the world (a "
+                    "interval is that of independent repeats, as many as the budget of runs holds: "
+                    "it is what these show, and a way to the event that none of them found is not "
+                    "in it. The probability is that of any set of any such rig: one rig is better "
+                    "or worse. Below about: the runs did not get to the event, and the number, the "
+                    "probability of what they got to, is a guide without an interval. What is not "
+                    "in the world (a "
                     "cable that fails, a service that restarts) is not counted."}};
 }
 
@@ -60,7 +67,8 @@ Json rare_json(const std::vector<RareResult>& results) {
                    {"per_day_low", estimate.low * each.sets_per_day},
                    {"per_day_high", estimate.high * each.sets_per_day},
                    {"is_below", estimate.is_below},
-                   {"runs", estimate.runs}});
+                   {"runs", estimate.runs},
+                   {"repeats", estimate.repeats.size()}});
   }
   return all;
 }

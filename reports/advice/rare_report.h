@@ -1,7 +1,7 @@
 // How often a recommended rig goes wrong (app/rare_sets.h, evaluation/rare) as a block and as JSON.
 //
 // JSON: [{"event", "bound_ms", "probability", "low", "high", "per_day", "per_day_low",
-// "per_day_high", "is_below", "runs"}]; what does not exist is null.
+// "per_day_high", "is_below", "runs", "repeats"}]; what does not exist is null.
 #ifndef SIMBENCH_REPORTS_ADVICE_RARE_REPORT_H_
 #define SIMBENCH_REPORTS_ADVICE_RARE_REPORT_H_
 

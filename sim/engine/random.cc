@@ -7,11 +7,11 @@ namespace simbench::sim {
 std::uint64_t RandomStream::below(std::uint64_t n) {
   __extension__ using Wide = unsigned __int128;
   SIMBENCH_ASSERT(n > 0, "there is no number below 0");
-  Wide product = static_cast<Wide>(generator_()) * n;
+  Wide product = static_cast<Wide>((*this)()) * n;
   if (static_cast<std::uint64_t>(product) < n) {
     const std::uint64_t threshold = (0 - n) % n;
     while (static_cast<std::uint64_t>(product) < threshold) {
-      product = static_cast<Wide>(generator_()) * n;
+      product = static_cast<Wide>((*this)()) * n;
     }
   }
   return static_cast<std::uint64_t>(product >> 64);

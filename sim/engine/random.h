@@ -41,11 +41,14 @@ namespace simbench::sim {
 // splitmix64: a generator whose state only counts; each output is a strong mix of its state.
 class SplitMix64 {
  public:
+  using result_type = std::uint64_t;
   constexpr explicit SplitMix64(std::uint64_t state) : state_(state) {}
   constexpr std::uint64_t operator()() {
     state_ += 0x9E3779B97F4A7C15;
     return mix(state_);
   }
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
 
   static constexpr std::uint64_t mix(std::uint64_t z) {
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
@@ -61,7 +64,10 @@ class SplitMix64 {
 class Xoshiro256PlusPlus {
  public:
   using State = std::array<std::uint64_t, 4>;
+  using result_type = std::uint64_t;
   constexpr explicit Xoshiro256PlusPlus(const State& state) : state_(state) {}
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
 
   constexpr std::uint64_t operator()() {
     const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
@@ -94,7 +100,8 @@ class ComponentKey {
 class RandomStream;
 class SeedField;
 
-// Replaces the roots of the streams that this thread makes (sim/engine/seed_field.h); null: none.
+// Replaces the words of the streams that this thread draws from (sim/engine/seed_field.h); null:
+// none.
 inline thread_local constinit const SeedField* active_seed_field = nullptr;
 
 // The streams of a component's events, as far as their keys are known already.
@@ -138,20 +145,29 @@ class RandomStream {
 
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
-  result_type operator()() { return generator_(); }
+  result_type operator()() {
+    const result_type word = generator_();
+    if (active_seed_field != nullptr) [[unlikely]]
+      return word_in_field(word);
+    return word;
+  }
 
   // In [0, 1), a multiple of 2^-53.
-  double uniform() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+  double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
   // In [low, high); rounding may give high itself where the two are close.
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
   // Mean 0, standard deviation sigma >= 0; sigma 0 gives exactly 0.
   double normal(double sigma) {
-    return boost::random::normal_distribution<double>(0.0, sigma)(*this);
+    if (active_seed_field != nullptr) [[unlikely]]
+      return sigma * normal_in_field();
+    return boost::random::normal_distribution<double>(0.0, sigma)(generator_);
   }
   // Mean >= 0; mean 0 gives exactly 0.
   double exponential(double mean) {
-    return mean * boost::random::exponential_distribution<double>(1.0)(*this);
+    if (active_seed_field != nullptr) [[unlikely]]
+      return mean * exponential_in_field();
+    return mean * boost::random::exponential_distribution<double>(1.0)(generator_);
   }
   // exp(N(0, log_sigma)): median 1, mean exp(log_sigma^2 / 2); log_sigma 0 gives exactly 1.
   double lognormal(double log_sigma) { return std::exp(normal(log_sigma)); }
@@ -166,18 +182,15 @@ class RandomStream {
   friend class KeyedStreams;
   explicit RandomStream(KeyedStreams keyed) : generator_(expand(keyed.hash_)) {}
   static Xoshiro256PlusPlus::State expand(std::uint64_t root) {
-    if (active_seed_field != nullptr) [[unlikely]]
-      return expand_in_field(root);
-    return plain_state(root);
-  }
-  static Xoshiro256PlusPlus::State plain_state(std::uint64_t root) {
     SplitMix64 words(root);
     Xoshiro256PlusPlus::State state{};
     for (std::uint64_t& word : state) word = words();
     return state;
   }
-  static Xoshiro256PlusPlus::State expand_in_field(std::uint64_t root);
-  friend class SeedField;
+  static std::uint64_t word_in_field(std::uint64_t word);
+  // By inversion of a word, so that a word moved a little moves the number a little.
+  double normal_in_field();
+  double exponential_in_field();
 
   Xoshiro256PlusPlus generator_;
 };

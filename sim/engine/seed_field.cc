@@ -15,7 +15,7 @@
 namespace simbench::sim {
 namespace {
 
-// Of a word: choose a layer of a ziggurat, and are beyond a double's digits.
+// Of a word: beyond a double's digits.
 constexpr int kLowBits = 11;
 constexpr std::uint64_t kLowMask = (std::uint64_t{1} << kLowBits) - 1;
 constexpr double kUpperValues = 0x1p53;
@@ -23,21 +23,8 @@ constexpr double kUpperValues = 0x1p53;
 // Boost would compute in long double, which takes several times as long.
 using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-// A generator for Boost's distributions that is no RandomStream: those ask the field.
-class MutationWords {
- public:
-  using result_type = std::uint64_t;
-  explicit MutationWords(std::uint64_t state) : words_(state) {}
-  static constexpr result_type min() { return 0; }
-  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
-  result_type operator()() { return words_(); }
-
- private:
-  SplitMix64 words_;
-};
-
 double standard_normal(std::uint64_t state) {
-  MutationWords words(state);
+  SplitMix64 words(state);
   return boost::random::normal_distribution<double>(0.0, 1.0)(words);
 }
 
@@ -62,42 +49,42 @@ void SeedField::add(const Mutation& mutation) {
   const std::uint64_t most = mutation.share == 1
                                  ? std::numeric_limits<std::uint64_t>::max()
                                  : static_cast<std::uint64_t>(std::ldexp(mutation.share, 64));
-  steps_.push_back({mutation.key, SplitMix64(mutation.key)(), most, mutation.step});
+  steps_.push_back({.key = mutation.key,
+                    .factor = SplitMix64(mutation.key)() | 1,
+                    .most = most,
+                    .step = mutation.step,
+                    .kept = std::sqrt(1 - mutation.step * mutation.step)});
 }
 
-StreamOrigin SeedField::origin(std::uint64_t root) const {
-  const auto hash_in = [root](const Step& step) { return SplitMix64::mix(root ^ step.salt); };
-  const auto fresh = [root](const Step& step, std::uint64_t hash) {
-    return SplitMix64::mix(SplitMix64(hash ^ step.key)() + root);
+std::uint64_t SeedField::replaced(std::uint64_t word) const {
+  // Multiply-shift hashing (Dietzfelbinger and others, Journal of Algorithms 25(1), 1997).
+  const auto takes_part = [word](const Step& step) { return word * step.factor <= step.most; };
+  const auto fresh = [word](const Step& step) {
+    return SplitMix64::mix(SplitMix64(word ^ step.factor)() + step.key);
   };
-  StreamOrigin origin{.root = root};
-  // From the last mutation that renewed the stream on.
+  std::uint64_t renewed = word;
+  // From the last mutation that renewed the word on.
   std::size_t first = steps_.size();
   bool is_moved = false;
   while (first > 0) {
     const Step& step = steps_[first - 1];
-    const std::uint64_t hash = hash_in(step);
-    if (hash <= step.most) {
+    if (takes_part(step)) {
       if (step.step == 1) {
-        origin.root = fresh(step, hash);
+        renewed = fresh(step);
         break;
       }
       is_moved = true;
     }
     --first;
   }
-  if (!is_moved) return origin;
-  const std::uint64_t word = Xoshiro256PlusPlus(RandomStream::plain_state(origin.root))();
-  double quantile = quantile_of_word(word);
+  if (!is_moved) return renewed;
+  double quantile = quantile_of_word(renewed);
   for (std::size_t i = first; i < steps_.size(); ++i) {
     const Step& step = steps_[i];
-    const std::uint64_t hash = hash_in(step);
-    if (hash > step.most) continue;
-    quantile = std::sqrt(1 - step.step * step.step) * quantile +
-               step.step * standard_normal(fresh(step, hash));
+    if (!takes_part(step)) continue;
+    quantile = step.kept * quantile + step.step * standard_normal(fresh(step));
   }
-  origin.shift = word_of_quantile(quantile, word & kLowMask) - word;
-  return origin;
+  return word_of_quantile(quantile, renewed & kLowMask);
 }
 
 SeedFieldScope::SeedFieldScope(const SeedField& field) {
@@ -107,13 +94,12 @@ SeedFieldScope::SeedFieldScope(const SeedField& field) {
 
 SeedFieldScope::~SeedFieldScope() { active_seed_field = nullptr; }
 
-// The first output is rotl(s0 + s3, 23) + s0: it is greater by `shift` while s0 + s3 stays.
-Xoshiro256PlusPlus::State RandomStream::expand_in_field(std::uint64_t root) {
-  const StreamOrigin origin = active_seed_field->origin(root);
-  Xoshiro256PlusPlus::State state = plain_state(origin.root);
-  state[0] += origin.shift;
-  state[3] -= origin.shift;
-  return state;
+std::uint64_t RandomStream::word_in_field(std::uint64_t word) {
+  return active_seed_field->replaced(word);
 }
+
+double RandomStream::normal_in_field() { return quantile_of_word((*this)()); }
+
+double RandomStream::exponential_in_field() { return -std::log1p(-uniform()); }
 
 }  // namespace simbench::sim

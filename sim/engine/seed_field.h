@@ -1,31 +1,30 @@
-// Which random streams of a run are drawn anew: a world beside a world, for rare events.
+// Which random numbers of a run are drawn anew or moved: a world beside a world, for rare events.
 //
-// A run is a function of its streams (sim/engine/random.h), each of which follows from a root, the
-// hash of (run seed, component, keys). A field of mutations replaces them: each mutation changes a
-// chosen share of all streams and leaves the others as they are. Which streams those are follows
-// from the mutation's key and the stream's own root alone, so it does not depend on their order,
-// nor on what they drew. Changed streams get new numbers throughout; with a step below 1 their
-// first number is only moved, x' = sqrt(1 - step^2) x + step N(0, 1), x being its normal quantile
-// (the preconditioned Crank-Nicolson proposal), so that a rare draw stays rare. Both leave the law
-// of the streams as it is and are reversible: a mutation is a step of a Markov chain over runs
-// whose law is that of independent runs. evaluation/rare/splitting.h rests on that.
+// A run is a function of the words of its streams (sim/engine/random.h). A field of mutations
+// replaces them: each mutation changes a chosen share of all words and leaves the others as they
+// are. Which words those are follows from the mutation's key and the word itself alone, so it does
+// not depend on their order. Changed words are drawn anew; with a step below 1 they are moved, x' =
+// sqrt(1 - step^2) x + step N(0, 1), x being a word's normal quantile (the preconditioned
+// Crank-Nicolson proposal), so that a rare draw stays rare. Both leave the law of the words as it
+// is and are reversible: a mutation is a step of a Markov chain over runs whose law is that of
+// independent runs. evaluation/rare/splitting.h rests on that.
 //
-// A field counts on the thread that has a SeedFieldScope of it, for streams made during its
-// lifetime. Streams that are otherwise one for a whole run (delays of a camera's frames, jitter of
-// a host) are then one for each frame or period, with the same distribution, so that a mutation can
-// change a part of a run. So an empty field gives another run than no field.
+// A field counts on the thread that has a SeedFieldScope of it. There, normal and exponential
+// numbers are made of one word each, by inversion instead of a ziggurat: so a word moved a little
+// moves the number a little, its tails included, and no later draw. So an empty field gives another
+// run than no field, of the same law. For the same reason the delays of a camera's frame have a
+// stream for each frame (sim/usb/host_stack.h), since a jump takes one word more.
 //
 // A backend keeps a world for its seed (sim/rig/simulation.h): make one for each field.
 //
-// Of a stream's words the first alone is moved, its lowest eleven bits excepted, which choose a
-// layer of a ziggurat; xoshiro's state is shifted so that its first output is.
+// Of a word, the lowest eleven bits are not moved: they are beyond a double's digits.
 //
 // Source: Cotter, Roberts, Stuart and White, "MCMC methods for functions", Statistical Science
-// 28(3), 2013. Cost: some nanoseconds a stream and mutation since the last that renewed it, 0.1 us
-// more for a stream that was moved.
+// 28(3), 2013. Cost: some nanoseconds a word and mutation since the last that renewed it, 0.1 us
+// more for a word that was moved, 50 ns for a normal number.
 //
 //   SeedField field;
-//   field.add({.key = 7, .share = 0.1});              // a tenth of the streams anew
+//   field.add({.key = 7, .share = 0.1});              // a tenth of the words anew
 //   field.add({.key = 8, .share = 0.5, .step = 0.3});  // half of them moved
 //   const SeedFieldScope scope(field);
 //   make_simulation(scenario)->record(request, sink);
@@ -39,28 +38,23 @@ namespace simbench::sim {
 
 struct Mutation {
   std::uint64_t key = 0;  // no two of a field have the same
-  double share = 1;       // of the streams, 0 to 1
+  double share = 1;       // of the words, 0 to 1
   double step = 1;        // above 0; 1: anew
-};
-
-// What a stream is made of: its root, and by how much its first word is greater.
-struct StreamOrigin {
-  std::uint64_t root = 0;
-  std::uint64_t shift = 0;
 };
 
 class SeedField {
  public:
   void add(const Mutation& mutation);
-  // The origin in place of this root.
-  StreamOrigin origin(std::uint64_t root) const;
+  // The word in place of this.
+  std::uint64_t replaced(std::uint64_t word) const;
 
  private:
   struct Step {
     std::uint64_t key;
-    std::uint64_t salt;  // of the streams' hashes
-    std::uint64_t most;  // a stream takes part whose hash is not above this
+    std::uint64_t factor;  // odd; a word's hash is their product
+    std::uint64_t most;    // a word takes part whose hash is not above this
     double step;
+    double kept;  // of a moved quantile
   };
   std::vector<Step> steps_;
 };

@@ -41,8 +41,6 @@ class HostJitter {
   double at(TrueTime t);
 
  private:
-  double draw();
-
   double mean_;
   double correlation_;
   double period_ns_;
@@ -50,7 +48,6 @@ class HostJitter {
   std::int64_t cell_ = -1;
   double value_ = 0;
   RandomStream stream_;
-  KeyedStreams cells_;  // in its place under a seed field
 };
 
 // One stream's own delays. Draws are made for every exposed frame, in order of exposure.
@@ -67,7 +64,6 @@ class FrameDelays {
 
  private:
   double draw_from_table_ms();
-  Draw draw_in_field(double transfer_ns);
 
   double kernel_copy_mean_ns_;
   double jitter_transfers_;

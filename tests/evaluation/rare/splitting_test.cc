@@ -41,7 +41,7 @@ TEST(Splitting, TestsKnowTheirProbabilities) {
 
 TEST(Splitting, IsNearBruteForceWhereThatIsAffordable) {
   const RareFunction run = normal_sums(kNormal4);
-  const SplittingOptions options{.bound = kNormal4, .runs = 200};
+  const SplittingOptions options{.bound = kNormal4};
   const RareEstimate split = estimate_rare(run, options, nullptr);
   const RareEstimate counted = count_rare(run, 400000, options, nullptr);
   EXPECT_LE(counted.low, 1e-4);
@@ -53,8 +53,8 @@ TEST(Splitting, IsNearBruteForceWhereThatIsAffordable) {
 }
 
 TEST(Splitting, FindsOneInAMillionAtAHundredthOfTheCost) {
-  const RareEstimate split =
-      estimate_rare(largest(kLargest6), {.bound = kLargest6, .runs = 100, .repeats = 16}, nullptr);
+  const RareEstimate split = estimate_rare(
+      largest(kLargest6), {.bound = kLargest6, .starts = 256, .repeats = 16}, nullptr);
   EXPECT_LE(split.low, 1e-6);
   EXPECT_GE(split.high, 1e-6);
   EXPECT_LT(std::abs(std::log(split.probability / 1e-6)), std::log(1.5));
@@ -66,8 +66,9 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
   std::vector<double> estimates;
   int inside = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const RareEstimate split =
-        estimate_rare(largest(kLargest4), {.bound = kLargest4, .seed = seed, .runs = 32}, nullptr);
+    const RareEstimate split = estimate_rare(
+        largest(kLargest4),
+        {.bound = kLargest4, .seed = seed, .starts = 128, .chains = 64, .moves = 4}, nullptr);
     ASSERT_FALSE(split.is_below) << "seed " << seed;
     estimates.push_back(split.probability);
     if (split.low <= 1e-4 && 1e-4 <= split.high) ++inside;
@@ -80,7 +81,8 @@ TEST(Splitting, IsUnbiasedAndItsIntervalHoldsTheTruth) {
 
 TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   const auto estimate = [](unsigned jobs) {
-    return estimate_rare(normal_sums(3), {.bound = 3, .runs = 32, .repeats = 4, .jobs = jobs},
+    return estimate_rare(normal_sums(3),
+                         {.bound = 3, .starts = 64, .chains = 8, .repeats = 4, .jobs = jobs},
                          nullptr);
   };
   const RareEstimate one = estimate(1);
@@ -90,7 +92,8 @@ TEST(Splitting, IsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(one.levels, four.levels);
   EXPECT_EQ(one.runs, four.runs);
   const RareEstimate other = estimate_rare(
-      normal_sums(3), {.bound = 3, .seed = 2, .runs = 32, .repeats = 4, .jobs = 1}, nullptr);
+      normal_sums(3), {.bound = 3, .seed = 2, .starts = 64, .chains = 8, .repeats = 4, .jobs = 1},
+      nullptr);
   EXPECT_NE(one.probability, other.probability);
 }
 
@@ -99,7 +102,7 @@ TEST(Splitting, OfTheOrdinaryIsCounting) {
   const RareEstimate split = estimate_rare(normal_sums(0), {.bound = 0}, nullptr);
   EXPECT_TRUE(split.levels.empty());
   EXPECT_NEAR(split.probability, 0.5, 0.1);
-  EXPECT_EQ(split.runs, 9 * 64U);
+  EXPECT_EQ(split.runs, 9 * 1024U);
 }
 
 TEST(Splitting, SaysWhatIsTooRare) {

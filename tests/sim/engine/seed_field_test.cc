@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sim/engine/normal_process.h"
 #include "sim/engine/random.h"
 
 namespace simbench::sim {
@@ -55,7 +56,7 @@ TEST(SeedField, ChangesNothingWithoutMutations) {
   EXPECT_EQ(first_numbers({}), plain);
 }
 
-TEST(SeedField, RenewsItsShareOfTheStreams) {
+TEST(SeedField, RenewsItsShareOfTheWords) {
   for (const double share : {0.001, 0.1, 0.5, 1.0}) {
     SeedField field;
     field.add({.key = 3, .share = share});
@@ -67,7 +68,7 @@ TEST(SeedField, RenewsItsShareOfTheStreams) {
   }
 }
 
-TEST(SeedField, MovesFirstNumbersAndKeepsTheirLaw) {
+TEST(SeedField, MovesNumbersAndKeepsTheirLaw) {
   SeedField field;
   field.add({.key = 3, .share = 1, .step = 0.3});
   const auto numbers = first_numbers(field);
@@ -105,19 +106,57 @@ TEST(SeedField, CountsOnlyWithinItsScope) {
   EXPECT_EQ(RandomStream(5, "component").uniform(), before);
 }
 
-TEST(SeedField, MovedStreamsAreIndependentAfterTheirFirstNumber) {
+TEST(SeedField, MovesEveryWordOfAStreamByItself) {
   SeedField field;
-  field.add({.key = 9, .share = 1, .step = 0.1});
-  const SeedFieldScope scope(field);
+  field.add({.key = 9, .share = 0.3, .step = 0.1});
   std::vector<double> first;
   std::vector<double> second;
+  int changed_alone = 0;
   for (std::uint64_t i = 0; i < kStreams; ++i) {
+    RandomStream plain(5, "component", i);
+    const double plain_first = plain.uniform();
+    const double plain_second = plain.uniform();
+    const SeedFieldScope scope(field);
     RandomStream stream(5, "component", i);
     first.push_back(stream.uniform());
     second.push_back(stream.uniform());
+    if (first.back() == plain_first && second.back() != plain_second) ++changed_alone;
   }
   EXPECT_LT(distance_from_uniform(second), 2.69 / std::sqrt(kStreams));
   EXPECT_NEAR(uniform_correlation(first, second), 0, 5 / std::sqrt(kStreams));
+  EXPECT_NEAR(static_cast<double>(changed_alone) / kStreams, 0.7 * 0.3, 0.02);
+}
+
+// By inversion, so that numbers beyond a ziggurat's tail (3.65) move as others do.
+TEST(SeedField, MovesTailsByLittle) {
+  constexpr double kLittle = 0.05;
+  SeedField empty;
+  SeedField field;
+  field.add({.key = 1, .share = 1, .step = kLittle});
+  std::vector<double> probabilities;
+  int beyond = 0;
+  for (std::uint64_t i = 0; i < 10 * kStreams; ++i) {
+    const auto number = [i](const SeedField& each) {
+      const SeedFieldScope scope(each);
+      return RandomStream(5, "tail", i).normal(1);
+    };
+    const double before = number(empty);
+    if (probabilities.size() < kStreams) probabilities.push_back(normal_probability(before));
+    if (std::abs(before) < 3.7) continue;
+    ++beyond;
+    EXPECT_NEAR(number(field), before, 6 * kLittle) << i;
+  }
+  EXPECT_LT(distance_from_uniform(probabilities), 2.69 / std::sqrt(kStreams));
+  EXPECT_NEAR(beyond, 43, 5 * std::sqrt(43.0));
+}
+
+TEST(SeedField, DrawsExponentialNumbersByInversion) {
+  SeedField empty;
+  const SeedFieldScope scope(empty);
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const double share = RandomStream(5, "component", i).uniform();
+    EXPECT_DOUBLE_EQ(RandomStream(5, "component", i).exponential(2), -2 * std::log1p(-share));
+  }
 }
 
 }  // namespace
