@@ -98,7 +98,7 @@ TEST(Prediction, OneRepetitionHasAValueAndNoBand) {
   const std::string text = plain({.blocks = {prediction_block(measured({2}), simulated())}});
   EXPECT_THAT(
       text,
-      HasSubstr("both      AMD       2.00 ms         -    2.00 ms    [1.10, 2.90] ms  inside\n"));
+      HasSubstr("both      AMD      2.00 ms         -    2.00 ms   [1.10, 2.90] ms  inside\n"));
   EXPECT_THAT(text, HasSubstr("One repetition has a\nvalue and no band."));
   EXPECT_THAT(plain({.blocks = {prediction_block(measured({2, 2}), simulated())}}),
               Not(HasSubstr("One repetition")));
