@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -13,6 +14,7 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
+#include "app/recordings.h"
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -78,6 +80,11 @@ class FigureMaker {
   FigureMaker(const Archive& archive, const FigureOptions& options,
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
+
+  // Captures that are not simulated again.
+  void take_runs_from(std::function<std::unique_ptr<RecordingSource>()> make_source) {
+    make_source_ = std::move(make_source);
+  }
 
   bool wants(const std::string& id) const {
     return std::find(wanted_.begin(), wanted_.end(), id) != wanted_.end();
@@ -163,7 +170,8 @@ class FigureMaker {
     std::mutex mutex;  // of the progress
     const auto make_worker = [&]() -> evaluation::Job {
       // Keeps the cameras' half of the seed for the next pipeline.
-      const std::shared_ptr<RecordingSource> source = simulated_world(scenario);
+      const std::shared_ptr<RecordingSource> source =
+          make_source_ ? make_source_() : simulated_world(scenario);
       return [&, source](std::size_t i) {
         made[i] = evaluation::run_detail(scenario, choices[i], seed, *source);
         const std::lock_guard lock(mutex);
@@ -209,6 +217,7 @@ class FigureMaker {
   const FigureOptions& options_;
   const evaluation::Progress& progress_;
   std::vector<std::string> wanted_;
+  std::function<std::unique_ptr<RecordingSource>()> make_source_;
   std::uint64_t runs_ = 0;
   ArchiveFigures made_;
 };
@@ -234,6 +243,16 @@ Scenario scenario_of(const Archive& archive) {
   }
   scenario.pipelines = std::move(pipelines);
   return scenario;
+}
+
+Archive archive_without_runs(const Scenario& scenario, const std::string& path) {
+  Archive archive;
+  archive.path = path;
+  archive.version = version();
+  archive.commit = commit();
+  archive.results.scenario = scenario.name;
+  archive.results.derivation = scenario.derivation;
+  return archive;
 }
 
 bool has_seed_details(const Archive& archive) {
@@ -268,16 +287,34 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
   return maker.finish();
 }
 
+ArchiveFigures recording_figures(const std::string& folder, const FigureOptions& options,
+                                 const evaluation::Progress& progress) {
+  const RecordedRun run(folder);
+  FigureOptions chosen = options;
+  if (chosen.seeds.empty()) chosen.seeds = {run.first_seed()};
+  chosen.pipelines = run.chosen(options.pipelines);
+  chosen.budget_seeds = 0;
+  Archive archive = archive_without_runs(run.scenario(), folder);
+  archive.results.first_seed = run.first_seed();
+  archive.results.seed_count = run.seeds();
+  check_seeds(archive, chosen);
+  FigureMaker maker(archive, chosen, progress);
+  if (maker.wants("distributions") || maker.wants("host_order") || maker.wants("frame_errors")) {
+    archive.results = run.evaluate(chosen.pipelines, true, progress);
+  }
+  const std::vector<PipelineChoice> choices =
+      evaluation::choose_pipelines(run.scenario(), chosen.pipelines);
+  maker.take_runs_from([&] { return run.source(choices); });
+  maker.add_result_figures();
+  maker.add_run_figures(run.scenario());
+  return maker.finish();
+}
+
 ArchiveFigures scenario_figures(const Scenario& scenario, const FigureOptions& options,
                                 std::uint64_t over_seeds, const evaluation::Progress& progress) {
   FigureOptions chosen = options;
   if (chosen.seeds.empty()) chosen.seeds = {1};
-  Archive archive;
-  archive.path = scenario.name;
-  archive.version = version();
-  archive.commit = commit();
-  archive.results.scenario = scenario.name;
-  archive.results.derivation = scenario.derivation;
+  Archive archive = archive_without_runs(scenario, scenario.name);
   FigureMaker maker(archive, chosen, progress);
   const bool over = maker.wants("distributions") || maker.wants("host_order");
   if (over || maker.wants("frame_errors")) {

@@ -1,6 +1,6 @@
 // Makes figures: of a result archive, whose runs it repeats in the simulator for what an archive
-// does not hold, or of a scenario alone; and what a report shows of an archive, within bounds of
-// time and size.
+// does not hold, of a recording folder, or of a scenario alone; and what a report shows of an
+// archive, within bounds of time and size.
 //
 // A run is a pure function of scenario, pipeline and seed, so a repeated run is the archive's. Its
 // AMD is still compared with the archive's: another version of simbench may give another run. The
@@ -56,6 +56,11 @@ ArchiveFigures archive_figures(reports::Archive& archive, const FigureOptions& o
 ArchiveFigures scenario_figures(const scenarios::Scenario& scenario, const FigureOptions& options,
                                 std::uint64_t over_seeds,
                                 const evaluation::Progress& progress = nullptr);
+
+// Those of a recording folder, whose captures stand in place of runs: without budgets, which need
+// other worlds. Throws also RecordingFolderError and RecordingFailed.
+ArchiveFigures recording_figures(const std::string& folder, const FigureOptions& options,
+                                 const evaluation::Progress& progress = nullptr);
 
 struct ReportDetail {
   // How many seeds, from the first; nothing: kDefaultSeeds, fewer where there are many pipelines.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -152,21 +153,29 @@ std::vector<std::string> RecordedRun::chosen(const std::vector<std::string>& pip
   return pipelines.empty() ? known : pipelines;
 }
 
+std::unique_ptr<RecordingSource> RecordedRun::source(
+    const std::vector<evaluation::PipelineChoice>& choices) const {
+  return interruptible(std::make_unique<PollCheck>(make_recorded_source(folder_), choices));
+}
+
 evaluation::Results RecordedRun::evaluate(const std::vector<std::string>& pipelines,
                                           bool keep_pulses,
                                           const evaluation::Progress& progress) const {
   const std::vector<evaluation::PipelineChoice> choices =
       evaluation::choose_pipelines(scenario_, pipelines);
   return evaluation::evaluate(
-      scenario_,
-      [this, &choices] {
-        return interruptible(std::make_unique<PollCheck>(make_recorded_source(folder_), choices));
-      },
+      scenario_, [this, &choices] { return source(choices); },
       {.first_seed = first_seed_,
        .seeds = seeds_,
        .pipelines = pipelines,
        .keep_pulses = keep_pulses},
       progress);
+}
+
+bool is_recording_folder(const std::string& path) {
+  const std::filesystem::path folder(path);
+  return std::filesystem::exists(folder / "manifest.json") &&
+         !std::filesystem::exists(folder / "results.json");
 }
 
 std::vector<std::string> capture_notes(const evaluation::Results& results) {

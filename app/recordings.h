@@ -14,6 +14,7 @@
 #define SIMBENCH_APP_RECORDINGS_H_
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -56,8 +57,14 @@ class RecordedRun {
   // These pipelines, or all in the order in which they were recorded if none is named. Throws
   // scenarios::InputError for one that was not recorded.
   std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;
+  std::uint64_t first_seed() const { return first_seed_; }
+  std::uint64_t seeds() const { return seeds_; }
+  // Plays the captures of these pipelines, which it outlives, as this does; refuses one without
+  // polls to a pipeline that needs them (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
+  std::unique_ptr<RecordingSource> source(
+      const std::vector<evaluation::PipelineChoice>& choices) const;
   // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C
-  // (app/interrupt.h).
+  // .
   evaluation::Results evaluate(const std::vector<std::string>& pipelines, bool keep_pulses,
                                const evaluation::Progress& progress) const;
 
@@ -68,6 +75,9 @@ class RecordedRun {
   std::uint64_t first_seed_ = 0;
   std::uint64_t seeds_ = 0;
 };
+
+// Whether the folder has a manifest and no results: a recording, and no archive of a run.
+bool is_recording_folder(const std::string& path);
 
 // What went wrong in captures that were scored all the same.
 std::vector<std::string> capture_notes(const evaluation::Results& results);

@@ -1,17 +1,12 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/recorded_streams.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "evaluation/diagnosis/diagnose.h"
-#include "recording/camera_streams.h"
-#include "recording/recording_folder.h"
 #include "reports/page/diagnose_page.h"
 #include "reports/rigs/diagnose_report.h"
 #include "reports/text/output_file.h"
@@ -46,41 +41,13 @@ struct DiagnoseOptions {
   std::vector<std::string> command;
 };
 
-// Of the first capture.
-std::vector<CameraStream> streams_of_folder(const std::string& path) {
-  const RecordingFolder folder(path);
-  if (folder.captures().empty()) {
-    throw scenarios::InputError(fmt::format("{}: found no capture", path));
-  }
-  const RecordedCapture& capture = folder.captures().front();
-  if (folder.captures().size() > 1) {
-    print_note(fmt::format("{}: of {} captures that of {}, seed {}", path, folder.captures().size(),
-                           capture.pipeline, capture.seed));
-  }
-  CameraStreamSink sink(folder.description());
-  folder.play(0, sink);
-  return sink.take();
-}
-
-std::vector<CameraStream> streams_of(const std::vector<std::string>& inputs) {
-  const auto folder = std::ranges::find_if(
-      inputs, [](const std::string& path) { return std::filesystem::is_directory(path); });
-  if (folder != inputs.end()) {
-    if (inputs.size() == 1) return streams_of_folder(*folder);
-    throw scenarios::InputError(
-        fmt::format("{}: found among {} inputs, allowed one recording folder or CSV files", *folder,
-                    inputs.size()));
-  }
-  CsvRecordings recordings = read_recordings(inputs);
-  for (const std::string& note : recordings.notes) print_note(note);
-  return std::move(recordings.streams);
-}
-
 int run_diagnose(const DiagnoseOptions& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
-  const evaluation::Diagnosis diagnosis = evaluation::diagnose(
-      streams_of(options.files), {.rate_hz = options.rate_hz, .one_host = options.one_host});
+  const CsvRecordings rig = app::recorded_streams(options.files);
+  for (const std::string& note : rig.notes) print_note(note);
+  const evaluation::Diagnosis diagnosis =
+      evaluation::diagnose(rig.streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : plain(reports::diagnose_document(diagnosis)));
   if (page) {

@@ -7,15 +7,19 @@
 #include <utility>
 
 #include "app/figure_source.h"
+#include "app/recorded_streams.h"
+#include "app/recordings.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/progress.h"
 #include "evaluation/budget/pipeline_budget.h"
+#include "evaluation/diagnosis/diagnose.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
 #include "reports/figures/gnuplot.h"
+#include "reports/rigs/diagnose_figure.h"
 #include "reports/text/block.h"
 #include "reports/text/number_text.h"
 #include "reports/text/output_file.h"
@@ -38,6 +42,7 @@ Examples:
   simbench figure fig8 --scenario 18cam_6host_45fps -o fig8.pdf
   simbench figure host_clocks --scenario 18cam_6host_45fps --seed 7 --pipelines ntp_w32time -o h.svg
   simbench figure distributions results/monday -o distributions.csv
+  simbench figure phases rig.csv -o phases.svg          of a recording: who follows the trigger
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
@@ -63,6 +68,8 @@ const char* drawn_for(FigureScope scope) {
       return "a pipeline";
     case FigureScope::kSeed:
       return "a seed";
+    case FigureScope::kRecording:
+      return "a recording";
     case FigureScope::kRun:
       break;
   }
@@ -163,6 +170,36 @@ std::optional<app::ArchiveFigures> make_of_archive(const FigureCommand& command,
   });
 }
 
+std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& command,
+                                                     const FigureEntry& entry) {
+  if (entry.scope == FigureScope::kPipeline) {
+    throw InputError(
+        fmt::format("{}: found a recording, allowed: --scenario or the folder of "
+                    "`simbench run --output`, because {} needs other worlds",
+                    command.archive, entry.id));
+  }
+  const app::FigureOptions options =
+      options_of(command, entry, app::RecordedRun(command.archive).chosen({}));
+  return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
+    return app::recording_figures(command.archive, options, progress);
+  });
+}
+
+// What the stamps of a rig show, of which nothing else is known.
+app::ArchiveFigures make_of_stamps(const FigureCommand& command) {
+  const CsvRecordings rig = app::recorded_streams({command.archive});
+  return {.figures = {reports::diagnose_figure(evaluation::diagnose(rig.streams, {}))},
+          .notes = rig.notes};
+}
+
+std::optional<app::ArchiveFigures> make_figures(const FigureCommand& command,
+                                                const FigureEntry& entry) {
+  if (entry.scope == FigureScope::kRecording) return make_of_stamps(command);
+  if (app::is_recording_folder(command.archive)) return make_of_recording(command, entry);
+  return command.archive.empty() ? make_of_scenario(command, entry)
+                                 : make_of_archive(command, entry);
+}
+
 // The requested one of the made figures: of the named pipeline, if one is named.
 const Figure& meant(const FigureCommand& command, const app::ArchiveFigures& made) {
   const std::string pipeline = command.pipelines.size() == 1 ? command.pipelines.front() : "";
@@ -182,8 +219,7 @@ int draw_figure(const FigureCommand& command) {
   const FigureEntry& entry = reports::figure_named(command.name);
   const FileKind kind = file_kind(command.output);
   const reports::OutputFile file(command.output);
-  const std::optional<app::ArchiveFigures> made =
-      command.archive.empty() ? make_of_scenario(command, entry) : make_of_archive(command, entry);
+  const std::optional<app::ArchiveFigures> made = make_figures(command, entry);
   if (!made) return kInterrupted;
   print_warnings(made->notes);
   const Figure& figure = meant(command, *made);
@@ -214,6 +250,12 @@ void check(const FigureCommand& command) {
   if (!command.archive.empty() && !command.sets.empty()) {
     refuse("--set", "allowed only with --scenario: an archive has its own parameters");
   }
+  if (!command.scenario.empty() &&
+      reports::figure_named(command.name).scope == FigureScope::kRecording) {
+    refuse("--scenario", fmt::format("allowed only for figures of simulated runs; {} is of a "
+                                     "recording: `simbench record` makes one",
+                                     command.name));
+  }
   if (command.output.empty()) {
     refuse("--output", "is missing: FILE.svg, FILE.pdf or FILE.csv");
   }
@@ -226,7 +268,10 @@ void add_figure_command(CommandLine& line) {
   Command command(line, "figure", "Draw one figure as SVG, PDF or CSV");
   command.text("name", "FIGURE", options->name,
                "The figure's name (see --list), or the paper's number as fig8");
-  command.text("archive", "ARCHIVE", options->archive, "Folder that `simbench run --output` wrote");
+  command.text(
+      "archive", "ARCHIVE", options->archive,
+      "Folder that `simbench run --output` wrote; of a figure of a recording, the folder of\n"
+      "`simbench record` or a CSV file");
   command.flag("--list", options->list, "List the figures");
   command.text("--scenario", "SCENARIO", options->scenario,
                "Instead of ARCHIVE: name of a scenario or path of a scenario file");

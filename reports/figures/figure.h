@@ -106,7 +106,7 @@ struct Figure {
 
 // The scope of a figure: a figure of kRun exists once for each pipeline and seed, one of kResults
 // once. A few exist for each pipeline (Figure::pipeline) besides their scope.
-enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun };
+enum class FigureScope : std::uint8_t { kResults, kPipeline, kSeed, kRun, kRecording };
 
 struct FigureEntry {
   std::string id;

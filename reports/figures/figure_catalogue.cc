@@ -44,6 +44,7 @@ const std::vector<FigureEntry>& figure_catalogue() {
       {"hosts", "Global stamps of one host and of two", "Fig. 5", {"fig5", "fig5a", "fig5b"}, kRun},
       {"first_seconds", "The first 10 s of the capture", "Fig. 7 b", {"fig7", "fig7b"}, kRun},
       {"budget", "Error budget", "", {}, kPipeline},
+      {"phases", "Phases of the cameras' arrivals over time", "", {}, kRecording},
   };
   return entries;
 }

@@ -15,7 +15,7 @@
 
 namespace simbench::reports {
 
-// Its id is "phases".
+// Figure "phases" of the catalogue.
 Figure diagnose_figure(const evaluation::Diagnosis& diagnosis);
 
 // The phase of each frame of one camera, in order of time; empty where it has no place.

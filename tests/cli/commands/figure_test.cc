@@ -62,6 +62,32 @@ TEST_F(FigureTest, OfAnArchiveIsThatOfTheScenario) {
   }
 }
 
+TEST_F(FigureTest, OfARecordingIsThatOfItsScenario) {
+  ASSERT_EQ(run({"record", "--scenario", "18cam_6host_45fps", "--set", "/timeline/frames=40",
+                 "--pipelines", "yoon2021_both,oracle", "--repeats", "2", "-o", "rig"})
+                .status,
+            0);
+  for (const std::string name : {"fig5", "frame_errors", "fig8"}) {
+    const ProgramResult result = figure(name, "a.csv", {"rig", "--seed", "2"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::vector<std::string> more = kOfScenario;
+    more.insert(more.end(), {"--seed", "2"});
+    if (name == "frame_errors" || name == "fig8") {
+      more.insert(more.end(), {"--pipelines", "yoon2021_both,oracle"});
+    }
+    EXPECT_EQ(figure(name, "b.csv", more).status, 0);
+    EXPECT_EQ(content("a.csv"), content("b.csv")) << name;
+  }
+  const ProgramResult budget = figure("budget", "c.csv", {"rig"});
+  EXPECT_EQ(budget.status, 2);
+  EXPECT_THAT(budget.err, HasSubstr("needs other worlds"));
+  EXPECT_EQ(figure("phases", "p.csv", {"rig"}).status, 0);
+  EXPECT_THAT(content("p.csv"), StartsWith("panel,series,x,y"));
+  const ProgramResult simulated = figure("phases", "p.svg");
+  EXPECT_EQ(simulated.status, 2);
+  EXPECT_THAT(simulated.err, HasSubstr("simbench record"));
+}
+
 TEST_F(FigureTest, BadInputIsRefusedAndNothingIsWritten) {
   struct Case {
     ProgramResult result;
