@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <map>
 #include <utility>
 
 #include "evaluation/replay/replay.h"
@@ -19,14 +21,21 @@ constexpr double kLateS = 1;        // a later start or earlier end than this is
 constexpr double kUnsteady = 0.02;  // jitter as a share of the period
 constexpr std::size_t kMostJumps = 3;
 
+// From the first to the last arrival of a host's cameras, on its clock.
+struct Presence {
+  double first_s = std::numeric_limits<double>::infinity();
+  double last_s = -std::numeric_limits<double>::infinity();
+};
+
 // Finds the faults camera by camera.
 class Findings {
  public:
   explicit Findings(const Diagnosis& diagnosis) : diagnosis_(diagnosis) {
     for (const CameraDiagnosis& camera : diagnosis.cameras) {
       if (camera.facts.frames == 0) continue;
-      first_s_ = std::min(first_s_, camera.facts.first_arrival_s);
-      last_s_ = std::max(last_s_, camera.facts.last_arrival_s);
+      Presence& host = hosts_[camera.host];
+      host.first_s = std::min(host.first_s, camera.facts.first_arrival_s);
+      host.last_s = std::max(host.last_s, camera.facts.last_arrival_s);
     }
   }
 
@@ -247,6 +256,8 @@ class Findings {
     }
   }
 
+  std::string of_host() const { return hosts_.size() > 1 ? " of " + camera_->host : ""; }
+
   void add_presence() {
     const StreamFacts& facts = camera_->facts;
     if (facts.longest_gap_s > kLeastGapS &&
@@ -254,13 +265,12 @@ class Findings {
       add("stalled", fmt::format("no frame for {:.2f} s, {:.1f} s after its first",
                                  facts.longest_gap_s, facts.gap_at_s));
     }
-    if (facts.first_arrival_s - first_s_ > kLateS) {
-      add("late_start",
-          fmt::format("starts {:.1f} s after the first camera", facts.first_arrival_s - first_s_));
+    const Presence& host = hosts_.at(camera_->host);
+    if (const double late_s = facts.first_arrival_s - host.first_s; late_s > kLateS) {
+      add("late_start", fmt::format("starts {:.1f} s after the first camera{}", late_s, of_host()));
     }
-    if (last_s_ - facts.last_arrival_s > kLateS) {
-      add("ended_early",
-          fmt::format("ends {:.1f} s before the last camera", last_s_ - facts.last_arrival_s));
+    if (const double early_s = host.last_s - facts.last_arrival_s; early_s > kLateS) {
+      add("ended_early", fmt::format("ends {:.1f} s before the last camera{}", early_s, of_host()));
     }
   }
 
@@ -277,8 +287,7 @@ class Findings {
 
   const Diagnosis& diagnosis_;
   const CameraDiagnosis* camera_ = nullptr;
-  double first_s_ = 1e300;
-  double last_s_ = -1e300;
+  std::map<std::string, Presence> hosts_;  // whose clocks may have nothing in common
   std::vector<Finding> findings_;
 };
 

@@ -29,7 +29,7 @@ using evaluation::SetDetail;
 void add_span(std::string label, double from_ms, double to_ms, double panel_from_ms,
               FigurePanel& panel) {
   const double from = std::fmax(from_ms, panel_from_ms);
-  if (!(to_ms > from)) return;  // also if one of them is unknown
+  if (!std::isfinite(from_ms) || !(to_ms > from)) return;  // also if one of them is unknown
   panel.spans.push_back({std::move(label), from / 1000, to_ms / 1000});
 }
 

@@ -11,6 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::vector<std::string> kOfScenario = {"--scenario", "18cam_6host_45fps", "--set",
@@ -81,11 +82,21 @@ TEST_F(FigureTest, OfARecordingIsThatOfItsScenario) {
   const ProgramResult budget = figure("budget", "c.csv", {"rig"});
   EXPECT_EQ(budget.status, 2);
   EXPECT_THAT(budget.err, HasSubstr("needs other worlds"));
-  EXPECT_EQ(figure("phases", "p.csv", {"rig"}).status, 0);
-  EXPECT_THAT(content("p.csv"), StartsWith("panel,series,x,y"));
+  EXPECT_EQ(figure("host_clocks", "h.svg", {"rig"}).status, 0);
   const ProgramResult simulated = figure("phases", "p.svg");
   EXPECT_EQ(simulated.status, 2);
   EXPECT_THAT(simulated.err, HasSubstr("simbench record"));
+}
+
+TEST_F(FigureTest, DrawsThePhasesOfAnyRecordedRig) {
+  ASSERT_EQ(run({"record", "--scenario", "18cam_6host_45fps", "--set", "/timeline/frames=1500",
+                 "--pipelines", "free_running", "-o", "rig"})
+                .status,
+            0);
+  EXPECT_EQ(figure("phases", "p.csv", {"rig"}).status, 0);
+  EXPECT_THAT(content("p.csv"), StartsWith("panel,series,x,y"));
+  EXPECT_EQ(figure("phases", "p.svg", {"rig"}).status, 0);
+  EXPECT_THAT(run({"diagnose", "rig"}).out, Not(HasSubstr("after the first camera")));
 }
 
 TEST_F(FigureTest, BadInputIsRefusedAndNothingIsWritten) {
