@@ -181,8 +181,13 @@ TEST_F(ClocksCommand, RefusesOptionsBeforeAnyWork) {
 }
 
 TEST_F(ClocksCommand, LeavesOutWhatNeedsCamerasAndSaysSo) {
-  const ProgramResult result = run({"clocks", "--scenario", "leaderboard_lan", "--seeds", "1",
-                                    "--duration-s", "10", "--from-s", "2", "--format", "json"});
+  const std::string boards = file("boards.json", R"({"base": "leaderboard_lan", "name": "boards",
+    "summary": "Two.", "pipelines": [
+      {"name": "seen", "host_sync": "common_view", "device_time": "oracle", "gathering": "oracle"},
+      {"name": "sent", "host_sync": "yoon2021_both", "device_time": "oracle",
+       "gathering": "oracle"}]})");
+  const ProgramResult result = run({"clocks", "--scenario", boards, "--seeds", "1", "--duration-s",
+                                    "10", "--from-s", "2", "--format", "json"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("\"common_view\" needs the frames of cameras, which a run of "
                                     "the clocks alone does not have; left out"));
