@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
@@ -13,7 +12,6 @@
 
 #include "algorithms/ports/assert.h"
 #include "evaluation/run/jobs.h"
-#include "evaluation/statistics/in_double.h"
 
 namespace simbench::evaluation {
 namespace {
@@ -284,11 +282,7 @@ class Splitting {
   // Of the 95 % interval of their mean.
   static double half_width(const std::vector<double>& values) {
     const auto n = static_cast<double>(values.size());
-    return student_quantile(n) * standard_deviation(values) / std::sqrt(n);
-  }
-  static double student_quantile(double n) {
-    const boost::math::students_t_distribution<double, InDouble> student(n - 1);
-    return boost::math::quantile(student, 0.975);
+    return student_t_exceeded(0.025, n - 1) * standard_deviation(values) / std::sqrt(n);
   }
 
   // The repeats are products, so their logarithms are nearly normal: Cox's interval for the mean of
@@ -307,7 +301,8 @@ class Splitting {
       std::ranges::transform(estimate.repeats, logs.begin(), [](double p) { return std::log(p); });
       const double variance = std::pow(standard_deviation(logs), 2);
       centre = mean_of(logs) + variance / 2;
-      half = student_quantile(n) * std::sqrt(variance / n + variance * variance / (2 * (n - 1)));
+      half = student_t_exceeded(0.025, n - 1) *
+             std::sqrt(variance / n + variance * variance / (2 * (n - 1)));
     }
     estimate.low = std::min(estimate.probability, std::exp(centre - half));
     estimate.high = std::clamp(std::exp(centre + half), estimate.probability, 1.0);

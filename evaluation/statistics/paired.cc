@@ -160,8 +160,8 @@ double two_sided_p(double mean, double standard_error, std::size_t pairs) {
 
 Estimate PairedT::interval(double error) const {
   if (pairs < 2) return {.value = mean};
-  const StudentsT t(static_cast<double>(pairs - 1));
-  const double half = standard_error * boost::math::quantile(boost::math::complement(t, error / 2));
+  const double half =
+      standard_error * student_t_exceeded(error / 2, static_cast<double>(pairs - 1));
   return {.value = mean, .low = mean - half, .high = mean + half};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <numeric>
@@ -103,6 +104,11 @@ double standard_deviation(std::span<const double> values) {
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
   return values.size() < 2 ? kNan : std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+double student_t_exceeded(double tail, double degrees_of_freedom) {
+  using StudentsT = boost::math::students_t_distribution<double, InDouble>;
+  return boost::math::quantile(boost::math::complement(StudentsT(degrees_of_freedom), tail));
 }
 
 FittedLine fit_line(std::span<const double> x, std::span<const double> y) {

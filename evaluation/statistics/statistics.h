@@ -49,6 +49,9 @@ std::size_t count_of_existing(std::span<const double> values);
 double mean_of(std::span<const double> values);
 double standard_deviation(std::span<const double> values);
 
+// What Student's t of so many degrees of freedom (above 0) exceeds with the probability `tail`.
+double student_t_exceeded(double tail, double degrees_of_freedom);
+
 // The least-squares line of y over x, about the mean of x: numerically sound for any zero of x.
 struct FittedLine {
   double slope = 0;  // NaN with fewer than two different x
