@@ -69,7 +69,7 @@ class Findings {
     findings_.push_back({.camera = camera_->camera,
                          .stream = camera_->stream,
                          .kind = kind,
-                         .text = fmt::format("camera {}: {}", name(), text)});
+                         .text = fmt::format("{}: {}", called_camera(name()), text)});
   }
 
   const GroupVerdict& group() const {
@@ -280,9 +280,9 @@ class Findings {
         {.camera = pair.camera,
          .stream = pair.stream,
          .kind = "stream_runs_free",
-         .text =
-             fmt::format("camera {}: {} does not follow {}: its offset drifts {:.3g} ms per minute",
-                         pair.camera, pair.stream, pair.against, pair.moves_ms_per_minute)});
+         .text = fmt::format("{}: {} does not follow {}: its offset drifts {:.3g} ms per minute",
+                             called_camera(pair.camera), pair.stream, pair.against,
+                             pair.moves_ms_per_minute)});
   }
 
   const Diagnosis& diagnosis_;
@@ -357,6 +357,10 @@ std::vector<std::string> cannot_know(const Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+std::string called_camera(const std::string& name) {
+  return name.starts_with("camera") ? name : "camera " + name;
+}
 
 Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptions& options) {
   Diagnosis diagnosis;

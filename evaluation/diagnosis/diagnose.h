@@ -174,6 +174,9 @@ struct Diagnosis {
   std::vector<std::string> cannot_know;  // from stamps alone
 };
 
+// "camera front"; a name that says so itself alone: "camera11".
+std::string called_camera(const std::string& name);
+
 Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptions& options);
 
 }  // namespace simbench::evaluation

@@ -31,7 +31,7 @@ std::string closest_sentence(const Answer& answer) {
                      time_band_text(best.clock_spread_ms.p05, best.clock_spread_ms.p95));
 }
 
-// "below 1 ms from second 1 on".
+// "within 1 ms for good 8.00 s after the cold start".
 std::string in_sync_sentence(const Row& row) {
   const struct {
     const evaluation::Series& seconds;
@@ -42,9 +42,8 @@ std::string in_sync_sentence(const Row& row) {
     const double median_s = median_time(seconds.values);
     if (std::isnan(median_s)) continue;
     return fmt::format(
-        "In sync: within {} for good from second {} of the cold start on; the "
-        "largest error of a host is {}.",
-        bound, number_text(median_s), time_text(row.max_te_ms.median));
+        "In sync: within {} for good {} after the cold start; the largest error of a host is {}.",
+        bound, time_text(1000 * median_s), time_text(row.max_te_ms.median));
   }
   return fmt::format(
       "Not in sync: half of the seeds or more never stay within 1 ms; the largest "
@@ -73,7 +72,7 @@ std::string without_master_sentence(const Row& row) {
                      time_text(row.holdover_60_ms.median), time_text(row.holdover_600_ms.median),
                      std::isnan(recovery_s)
                          ? "then half of the seeds or more do not recover within an hour"
-                         : fmt::format("then it recovers within {} s", number_text(recovery_s)));
+                         : fmt::format("then it recovers within {}", time_text(1000 * recovery_s)));
 }
 
 }  // namespace

@@ -54,9 +54,10 @@ std::string drift_sentence(const Diagnosis& diagnosis) {
   }
   if (fastest == nullptr) return "";
   return fmt::format(
-      "Camera {} drifts most: {} a minute against the common period, a whole frame within {} "
+      "{} drifts most: {} a minute against the common period, a whole frame within {} "
       "minutes.",
-      fastest->camera, time_text(fastest->standing.moves_ms_per_minute),
+      capitalised(evaluation::called_camera(fastest->camera)),
+      time_text(fastest->standing.moves_ms_per_minute),
       number_text(diagnosis.verdict.period_ms / speed(*fastest)));
 }
 

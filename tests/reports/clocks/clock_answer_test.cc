@@ -20,7 +20,7 @@ TEST(ClockAnswer, SaysWhoIsBestAndWhenItIsInSync) {
   const std::string text = clock_answer_of(sample_clock_results().results);
   EXPECT_THAT(text, StartsWith("good is the only host_sync here that a rig can run, and keeps the "
                                "clocks: 1.00 ms apart, mean in time"));
-  EXPECT_THAT(text, HasSubstr("within 1 ms for good from second 20.0"));
+  EXPECT_THAT(text, HasSubstr("within 1 ms for good 20.0 s after the cold start"));
   EXPECT_THAT(text, HasSubstr("What limits it: a constant error of 1.00 ms"));
   EXPECT_THAT(text, HasSubstr("Without its master a host is 1.00 ms off after 60 s"));
   EXPECT_THAT(text, HasSubstr("3 seeds say little about other worlds"));
