@@ -23,7 +23,7 @@ inline std::uint16_t free_port() {
   // Test programs that run at the same time begin far from each other (golden section: those of
   // the next eight process numbers are a thousand ports apart), since a port is free while a test
   // has killed its owner. No two threads get the same.
-  static std::atomic<std::uint32_t> next = static_cast<std::uint32_t>(getpid()) * 12'361;
+  static std::atomic<std::uint32_t> next = static_cast<std::uint32_t>(getpid() % kPorts) * 12'361;
   boost::asio::io_context context;
   for (int tries = 0; tries < 1000; ++tries) {
     const auto port = static_cast<std::uint16_t>(kFirst + next++ % kPorts);
