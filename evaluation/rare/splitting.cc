@@ -39,8 +39,8 @@ struct Particle {
 
 // Kinds of changes: of some numbers, which are drawn anew or moved. Their size is the share of
 // these.
-constexpr std::array<double, 2> kSteps = {1, 0.5};
-constexpr std::size_t kKinds = kSteps.size();
+constexpr std::array<double, 2> kChangeSteps = {1, 0.5};
+constexpr std::size_t kKinds = kChangeSteps.size();
 
 // How large changes are at a level, and how many were accepted.
 struct Moves {
@@ -168,7 +168,7 @@ class Splitting {
         after.run = before->run;
         after.run.changes.push_back({.key = hash_of({options_.seed, kKey, repeat, stage, i, step}),
                                      .share = sizes[kind],
-                                     .step = kSteps[kind]});
+                                     .step = kChangeSteps[kind]});
         after.score = scored(after.run);
         ++of_chain[i].tried[kind];
         if (after.score.level > level) {

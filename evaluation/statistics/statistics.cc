@@ -107,8 +107,8 @@ double standard_deviation(std::span<const double> values) {
 }
 
 double student_t_exceeded(double tail, double degrees_of_freedom) {
-  using StudentsT = boost::math::students_t_distribution<double, InDouble>;
-  return boost::math::quantile(boost::math::complement(StudentsT(degrees_of_freedom), tail));
+  const boost::math::students_t_distribution<double, InDouble> student(degrees_of_freedom);
+  return boost::math::quantile(boost::math::complement(student, tail));
 }
 
 FittedLine fit_line(std::span<const double> x, std::span<const double> y) {

@@ -3,17 +3,16 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "reports/reconstruction/reconstruction_json.h"
+#include "reports/text/json_node.h"
 #include "reports/text/plain_text.h"
 #include "tests/reports/sample_reconstruction.h"
 
 namespace simbench::reports {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
