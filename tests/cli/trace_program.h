@@ -16,31 +16,31 @@
 
 namespace simbench {
 
-using Json = nlohmann::ordered_json;
-
-inline std::vector<Json> events_of(const Json& trace, const std::string& phase,
-                                   const std::string& category = "") {
-  std::vector<Json> found;
-  for (const Json& event : trace["traceEvents"]) {
+inline std::vector<nlohmann::ordered_json> events_of(const nlohmann::ordered_json& trace,
+                                                     const std::string& phase,
+                                                     const std::string& category = "") {
+  std::vector<nlohmann::ordered_json> found;
+  for (const nlohmann::ordered_json& event : trace["traceEvents"]) {
     if (event["ph"] != phase) continue;
     if (category.empty() || event.value("cat", "") == category) found.push_back(event);
   }
   return found;
 }
 
-inline std::map<std::int64_t, std::string> track_names(const Json& trace) {
+inline std::map<std::int64_t, std::string> track_names(const nlohmann::ordered_json& trace) {
   std::map<std::int64_t, std::string> names;
-  for (const Json& event : events_of(trace, "M")) {
+  for (const nlohmann::ordered_json& event : events_of(trace, "M")) {
     if (event["name"] == "thread_name") names[event["tid"]] = event["args"]["name"];
   }
   return names;
 }
 
 // The slices on tracks whose name ends like this.
-inline std::vector<Json> slices_on(const Json& trace, const std::string& ending) {
+inline std::vector<nlohmann::ordered_json> slices_on(const nlohmann::ordered_json& trace,
+                                                     const std::string& ending) {
   const std::map<std::int64_t, std::string> names = track_names(trace);
-  std::vector<Json> found;
-  for (const Json& event : events_of(trace, "X")) {
+  std::vector<nlohmann::ordered_json> found;
+  for (const nlohmann::ordered_json& event : events_of(trace, "X")) {
     if (names.at(event["tid"]).ends_with(ending)) found.push_back(event);
   }
   return found;
@@ -60,12 +60,13 @@ class TraceCommand : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  Json valid_trace(const std::string& scenario, std::vector<std::string> more = {}) {
+  nlohmann::ordered_json valid_trace(const std::string& scenario,
+                                     std::vector<std::string> more = {}) {
     more.insert(more.end(), {"-o", "trace.json"});
     const ProgramResult result = trace(scenario, std::move(more));
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "");
-    Json json = Json::parse(content("trace.json"));
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(content("trace.json"));
     EXPECT_THAT(TraceFormat::violations(json), testing::IsEmpty()) << scenario;
     return json;
   }

@@ -13,6 +13,7 @@
 namespace simbench {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

@@ -15,6 +15,7 @@
 namespace simbench {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 
 TEST_F(TraceCommand, IsValidWhateverHappens) {
