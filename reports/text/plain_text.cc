@@ -47,7 +47,7 @@ std::size_t widest(const Lines& lines) {
 // The escape of what a verdict's first word says; "" for none.
 const char* verdict_colour(std::string_view verdict) {
   struct Words {
-    const char* escape;
+    const char* escape = "";
     std::initializer_list<std::string_view> words;
   };
   static const Words words[] = {
