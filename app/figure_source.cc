@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -14,7 +13,6 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
-#include "app/recordings.h"
 #include "evaluation/budget/pipeline_budget.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/run/pipeline_choice.h"
@@ -81,10 +79,8 @@ class FigureMaker {
               const evaluation::Progress& progress)
       : archive_(archive), options_(options), progress_(progress), wanted_(wanted_ids(options)) {}
 
-  // Captures that are not simulated again.
-  void take_runs_from(std::function<std::unique_ptr<RecordingSource>()> make_source) {
-    make_source_ = std::move(make_source);
-  }
+  // In place of the simulator.
+  void take_runs_from(evaluation::WorldFactory make_world) { make_world_ = std::move(make_world); }
 
   bool wants(const std::string& id) const {
     return std::find(wanted_.begin(), wanted_.end(), id) != wanted_.end();
@@ -170,8 +166,7 @@ class FigureMaker {
     std::mutex mutex;  // of the progress
     const auto make_worker = [&]() -> evaluation::Job {
       // Keeps the cameras' half of the seed for the next pipeline.
-      const std::shared_ptr<RecordingSource> source =
-          make_source_ ? make_source_() : simulated_world(scenario);
+      const std::shared_ptr<RecordingSource> source = make_world_(scenario);
       return [&, source](std::size_t i) {
         made[i] = evaluation::run_detail(scenario, choices[i], seed, *source);
         const std::lock_guard lock(mutex);
@@ -198,7 +193,7 @@ class FigureMaker {
     pipelines.reserve(choices.size());
     for (const PipelineChoice& choice : choices) pipelines.push_back(choice.pipeline);
     for (const evaluation::PipelineBudget& budget :
-         evaluation::pipeline_budgets(scenario, pipelines, simulated_world, seeds, progress_)) {
+         evaluation::pipeline_budgets(scenario, pipelines, make_world_, seeds, progress_)) {
       add({reports::budget_figure(budget)}, source);
     }
   }
@@ -217,7 +212,7 @@ class FigureMaker {
   const FigureOptions& options_;
   const evaluation::Progress& progress_;
   std::vector<std::string> wanted_;
-  std::function<std::unique_ptr<RecordingSource>()> make_source_;
+  evaluation::WorldFactory make_world_ = simulated_world;
   std::uint64_t runs_ = 0;
   ArchiveFigures made_;
 };
@@ -287,14 +282,13 @@ ArchiveFigures archive_figures(Archive& archive, const FigureOptions& options,
   return maker.finish();
 }
 
-ArchiveFigures recording_figures(const std::string& folder, const FigureOptions& options,
+ArchiveFigures recording_figures(const RecordedRun& run, const FigureOptions& options,
                                  const evaluation::Progress& progress) {
-  const RecordedRun run(folder);
   FigureOptions chosen = options;
   if (chosen.seeds.empty()) chosen.seeds = {run.first_seed()};
   chosen.pipelines = run.chosen(options.pipelines);
   chosen.budget_seeds = 0;
-  Archive archive = archive_without_runs(run.scenario(), folder);
+  Archive archive = archive_without_runs(run.scenario(), run.path());
   archive.results.first_seed = run.first_seed();
   archive.results.seed_count = run.seeds();
   check_seeds(archive, chosen);
@@ -304,7 +298,7 @@ ArchiveFigures recording_figures(const std::string& folder, const FigureOptions&
   }
   const std::vector<PipelineChoice> choices =
       evaluation::choose_pipelines(run.scenario(), chosen.pipelines);
-  maker.take_runs_from([&] { return run.source(choices); });
+  maker.take_runs_from([&](const Scenario&) { return run.source(choices); });
   maker.add_result_figures();
   maker.add_run_figures(run.scenario());
   return maker.finish();

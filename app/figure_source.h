@@ -24,6 +24,7 @@
 #include <string>
 #include <vector>
 
+#include "app/recordings.h"
 #include "evaluation/run/evaluate.h"
 #include "reports/archive/archive.h"
 #include "reports/figures/figure.h"
@@ -58,8 +59,8 @@ ArchiveFigures scenario_figures(const scenarios::Scenario& scenario, const Figur
                                 const evaluation::Progress& progress = nullptr);
 
 // Those of a recording folder, whose captures stand in place of runs: without budgets, which need
-// other worlds. Throws also RecordingFolderError and RecordingFailed.
-ArchiveFigures recording_figures(const std::string& folder, const FigureOptions& options,
+// other worlds. Throws also RecordingFailed.
+ArchiveFigures recording_figures(const RecordedRun& run, const FigureOptions& options,
                                  const evaluation::Progress& progress = nullptr);
 
 struct ReportDetail {

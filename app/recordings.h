@@ -51,6 +51,7 @@ class RecordedRun {
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
 
+  const std::string& path() const { return path_; }
   const scenarios::Scenario& scenario() const { return scenario_; }
   // The planned captures that are not there, as of a killed `simbench record`: a line a pipeline.
   std::vector<std::string> missing() const;
@@ -59,12 +60,11 @@ class RecordedRun {
   std::vector<std::string> chosen(const std::vector<std::string>& pipelines) const;
   std::uint64_t first_seed() const { return first_seed_; }
   std::uint64_t seeds() const { return seeds_; }
-  // Plays the captures of these pipelines, which it outlives, as this does; refuses one without
-  // polls to a pipeline that needs them (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
+  // Plays the captures of these pipelines; `choices` and this outlive it. Refuses one without polls
+  // to a pipeline that needs them (RecordingFailed). Ends at Ctrl-C (app/interrupt.h).
   std::unique_ptr<RecordingSource> source(
       const std::vector<evaluation::PipelineChoice>& choices) const;
-  // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C
-  // .
+  // Scores all recorded seeds; notes captures that are missing or damaged. Ends at Ctrl-C.
   evaluation::Results evaluate(const std::vector<std::string>& pipelines, bool keep_pulses,
                                const evaluation::Progress& progress) const;
 

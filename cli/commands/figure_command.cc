@@ -178,10 +178,10 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
                     "`simbench run --output`, because {} needs other worlds",
                     command.archive, entry.id));
   }
-  const app::FigureOptions options =
-      options_of(command, entry, app::RecordedRun(command.archive).chosen({}));
+  const app::RecordedRun run(command.archive);
+  const app::FigureOptions options = options_of(command, entry, run.chosen({}));
   return watched<app::ArchiveFigures>([&](const evaluation::Progress& progress) {
-    return app::recording_figures(command.archive, options, progress);
+    return app::recording_figures(run, options, progress);
   });
 }
 

@@ -119,7 +119,7 @@ std::string overview_html(const Results& results, RankedBy ranked_by) {
     any_published = true;
   }
   axis.widen();
-  const Row* const best = evaluation::answer_of(results, ranked_by).best;
+  const Row* const best = evaluation::best_of(rows, ranked_by);
   std::string body;
   for (const Row* row : rows) body += row_html(*row, ranked_by, axis, row == best);
   const std::string what = capitalised(ranked_name(ranked_by));

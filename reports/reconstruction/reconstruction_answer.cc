@@ -21,8 +21,6 @@ using reconstruction::ReconstructionResults;
 using reconstruction::ReprojectionRow;
 using reconstruction::SeedReprojection;
 
-constexpr std::size_t kFewestReconstructedSeeds = 6;  // for an interval of the median
-
 bool can_run(const ReprojectionRow& row) {
   evaluation::Row choice;
   choice.host_sync = row.host_sync;
@@ -99,7 +97,7 @@ std::string tolerance_text(const ReconstructionResults& results) {
 std::string certainty_text(const ReprojectionRow& best) {
   const std::vector<double> values = errors_by_seed(best, best);
   const std::size_t seeds = evaluation::count_of_existing(values);
-  if (seeds < kFewestReconstructedSeeds) {
+  if (seeds < kFewestSeeds) {
     return fmt::format("Uncertain: {} say little about other worlds.", counted(seeds, "seed"));
   }
   const double relative =

@@ -26,7 +26,6 @@ using evaluation::Results;
 using evaluation::Row;
 using evaluation::Series;
 
-constexpr std::size_t kFewestSeeds = 6;  // for an interval of the median
 constexpr std::size_t kNamedEquals = 2;  // of those that cannot be told from the best
 constexpr double kSmallShare = 0.05;     // parts of a budget below this have no name
 constexpr double kMuchLarger = 3;        // absolute error / AMD that deserves a word

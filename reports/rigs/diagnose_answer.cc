@@ -80,9 +80,9 @@ std::string slips_sentence(const Diagnosis& diagnosis) {
       names.empty() ? std::string("No camera's stamps slip by whole frames")
                     : fmt::format("The stamps of {} slip by whole frames", fmt::join(names, ", "));
   text += lost == 0 ? "; no frame is lost."
-                    : fmt::format("; {} lost, most by camera {}.",
+                    : fmt::format("; {} lost, most by {}.",
                                   lost == 1 ? "1 frame is" : count_text(lost) + " frames are",
-                                  most->camera);
+                                  evaluation::called_camera(most->camera));
   return text;
 }
 

@@ -29,8 +29,7 @@ using evaluation::ResponseRow;
 using evaluation::SweepPlan;
 
 constexpr std::size_t kMostFlips = 3;
-constexpr std::size_t kFewestSeedsOfPoint = 6;  // for an interval of a median
-constexpr double kMattersFrom = 1.05;           // a smaller factor is none
+constexpr double kMattersFrom = 1.05;  // a smaller factor is none
 
 // The plan and rows of the pipelines that a rig can run.
 struct RunnablePart {
@@ -167,7 +166,7 @@ class Winner {
           evaluation::median_interval(values, static_cast<std::int64_t>(seeds)).relative;
       if (!std::isnan(relative)) widest = std::max(widest, relative);
     }
-    std::string text = fewest < kFewestSeedsOfPoint
+    std::string text = fewest < kFewestSeeds
                            ? fmt::format("Uncertain: {} of a point say little about other worlds",
                                          counted(fewest, "seed"))
                            : fmt::format("Uncertain: the medians are known to {:.0f} % or better",
