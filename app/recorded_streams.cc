@@ -12,12 +12,12 @@
 namespace simbench::app {
 namespace {
 
-CsvRecordings streams_of_folder(const std::string& path) {
+RecordedStreams streams_of_folder(const std::string& path) {
   const RecordingFolder folder(path);
   if (folder.captures().empty()) {
     throw scenarios::InputError(fmt::format("{}: found no capture", path));
   }
-  CsvRecordings found;
+  RecordedStreams found;
   const RecordedCapture& capture = folder.captures().front();
   if (folder.captures().size() > 1) {
     found.notes.push_back(fmt::format("{}: of {} captures that of {}, seed {}", path,
@@ -31,7 +31,7 @@ CsvRecordings streams_of_folder(const std::string& path) {
 
 }  // namespace
 
-CsvRecordings recorded_streams(const std::vector<std::string>& inputs) {
+RecordedStreams recorded_streams(const std::vector<std::string>& inputs) {
   const auto folder = std::ranges::find_if(
       inputs, [](const std::string& path) { return std::filesystem::is_directory(path); });
   if (folder == inputs.end()) return read_recordings(inputs);

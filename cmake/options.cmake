@@ -31,7 +31,12 @@ endfunction()
 # g++ collects its garbage from a GB on, not from 128 MB: a tenth of the time.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   simbench_build_options(--param=ggc-min-heapsize=1000000)
+  # Nobody replaces a function of a library at run time, as position-independent code would allow.
+  simbench_build_options(-fno-semantic-interposition)
 endif()
+# The libraries go into programs and into the Python module. Not CMake's property, which has -fPIE
+# for programs: these would then need precompiled headers of their own.
+simbench_build_options(-fPIC)
 simbench_build_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 if(NOT CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_definitions(simbench_flags INTERFACE $<BUILD_INTERFACE:_GLIBCXX_ASSERTIONS>)

@@ -334,7 +334,7 @@ std::vector<std::string> camera_names(const std::vector<std::string>& files) {
   return names;
 }
 
-CsvRecordings read_recordings(const std::vector<std::string>& files, const ReadProgress& progress) {
+RecordedStreams read_recordings(const std::vector<std::string>& files, const ReadProgress& progress) {
   check_given_once(files);
   const std::vector<std::string> names = camera_names(files);
   std::uint64_t total = 0;

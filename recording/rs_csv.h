@@ -31,30 +31,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
-#include "algorithms/ports/time.h"
+#include "recording/recorded_streams.h"
 
 namespace simbench {
-
-struct StampedFrame {
-  std::uint64_t counter = 0;
-  Nanoseconds sensor{};   // of the camera's clock
-  Nanoseconds arrival{};  // since the zero of its host
-};
-
-// One stream of one camera, frames in order of delivery.
-struct CameraStream {
-  std::string camera;
-  std::string host;
-  std::string stream;  // "Depth 0": type and index
-  std::vector<StampedFrame> frames;
-};
 
 // A file that is no such recording. what() is the message for the user, "FILE:LINE: ...".
 class CsvError : public std::runtime_error {
@@ -64,9 +49,6 @@ class CsvError : public std::runtime_error {
 
 // Largest stamp, in milliseconds either way: 126 years.
 inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
-
-// How much is read: bytes, and how many there are (0: unknown). May throw, which ends the reading.
-using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 class CsvRecordingReader {
  public:
@@ -103,13 +85,8 @@ class CsvRecordingReader {
   std::vector<std::string> notes_;
 };
 
-struct CsvRecordings {
-  std::vector<CameraStream> streams;
-  std::vector<std::string> notes;  // what was left out
-};
-
 // The streams of all files, in order. Throws CsvError, also for a file that is given twice.
-CsvRecordings read_recordings(const std::vector<std::string>& files,
+RecordedStreams read_recordings(const std::vector<std::string>& files,
                               const ReadProgress& progress = {});
 
 // The name of each file as a camera: its last parts, without the extension, as few as tell it from

@@ -56,6 +56,10 @@ std::size_t InputFile::read(char* to, std::size_t most) {
   }
 }
 
+void InputFile::seek(std::uint64_t position) {
+  if (lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) fail_with(errno);
+}
+
 std::string file_content(const std::string& path, std::size_t most) {
   InputFile file(path);
   const std::string too_large = fmt::format("found more than {} bytes", most);

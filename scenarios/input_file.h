@@ -44,6 +44,8 @@ class InputFile {
   // Returns the number of bytes read, 1 to `most`; 0 only at the end. A signal that has a handler
   // ends the wait for a pipe with a FileError.
   std::size_t read(char* to, std::size_t most);
+  // The next read() is of the bytes from `position` on. A pipe has no positions: FileError.
+  void seek(std::uint64_t position);
   // Its size when it was opened; 0 if that is unknown (a pipe).
   std::uint64_t size() const { return size_; }
 

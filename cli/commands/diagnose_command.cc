@@ -44,7 +44,7 @@ struct DiagnoseOptions {
 int run_diagnose(const DiagnoseOptions& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
-  const CsvRecordings rig = app::recorded_streams(options.files);
+  const RecordedStreams rig = app::recorded_streams(options.files);
   for (const std::string& note : rig.notes) print_note(note);
   const evaluation::Diagnosis diagnosis =
       evaluation::diagnose(rig.streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});

@@ -187,7 +187,7 @@ std::optional<app::ArchiveFigures> make_of_recording(const FigureCommand& comman
 
 // What the stamps of a rig show, of which nothing else is known.
 app::ArchiveFigures make_of_stamps(const FigureCommand& command) {
-  const CsvRecordings rig = app::recorded_streams({command.archive});
+  const RecordedStreams rig = app::recorded_streams({command.archive});
   return {.figures = {reports::diagnose_figure(evaluation::diagnose(rig.streams, {}))},
           .notes = rig.notes};
 }

@@ -117,7 +117,7 @@ FitTask task_of_files(const FitOptions& options) {
     throw evaluation::FitError("--pipeline and --seed choose a capture of a recording folder");
   }
   FitTask task;
-  const CsvRecordings recordings = read_recordings(options.inputs);
+  const RecordedStreams recordings = read_recordings(options.inputs);
   for (const std::string& note : recordings.notes) print_note(note);
   task.input = evaluation::fit_input(recordings.streams, options.one_host);
   task.base =

@@ -74,10 +74,10 @@ void end_if_interrupted() {
 }
 
 // Nothing after Ctrl-C.
-std::optional<CsvRecordings> read_files(const std::vector<std::string>& files) {
+std::optional<RecordedStreams> read_files(const std::vector<std::string>& files) {
   constexpr unsigned kMegabyte = 20;
   constexpr std::uint64_t kFewMegabytes = 16;
-  return watched<CsvRecordings>(
+  return watched<RecordedStreams>(
       [&](const evaluation::Progress& progress) {
         return read_recordings(files, [&](std::uint64_t done, std::uint64_t total) {
           const std::uint64_t all = total >> kMegabyte;

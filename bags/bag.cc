@@ -1,0 +1,61 @@
+#include "bags/bag.h"
+
+#include <array>
+
+#include "scenarios/input_file.h"
+
+namespace simbench::bags {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kRosbagMagic = "#ROSBAG V2.0"sv;
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n"sv;
+constexpr std::string_view kSqliteMagic = "SQLite format 3\0"sv;
+
+}  // namespace
+
+std::string_view to_text(BagFormat format) {
+  constexpr std::array<std::string_view, 3> kNames = {"rosbag 2.0", "MCAP", "rosbag2 (SQLite)"};
+  return kNames.at(static_cast<std::size_t>(format));
+}
+
+std::optional<BagFormat> bag_format(const std::string& path) {
+  std::array<char, 16> first{};
+  InputFile file(path);
+  std::size_t size = 0;
+  while (size < first.size()) {
+    const std::size_t more = file.read(first.data() + size, first.size() - size);
+    if (more == 0) break;
+    size += more;
+  }
+  const std::string_view bytes(first.data(), size);
+  if (bytes.starts_with(kRosbagMagic)) return BagFormat::kRosbag;
+  if (bytes.starts_with(kMcapMagic)) return BagFormat::kMcap;
+  if (bytes.starts_with(kSqliteMagic)) return BagFormat::kSqlite;
+  return std::nullopt;
+}
+
+BagFacts read_bag(const std::string& path, BagSink& sink, const ReadProgress& progress) {
+  try {
+    const std::optional<BagFormat> format = bag_format(path);
+    if (!format) {
+      throw BagError(path +
+                     ": found no bag, allowed: rosbag 2.0 (also of the RealSense SDK), MCAP, or "
+                     "SQLite of rosbag2");
+    }
+    switch (*format) {
+      case BagFormat::kRosbag:
+        return read_rosbag(path, sink, progress);
+      case BagFormat::kMcap:
+        return read_mcap(path, sink, progress);
+      case BagFormat::kSqlite:
+        return read_sqlite_bag(path, sink, progress);
+    }
+  } catch (const FileError& error) {
+    throw BagError(path + ": cannot be read: " + error.what());
+  }
+  return {};
+}
+
+}  // namespace simbench::bags
