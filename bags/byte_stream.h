@@ -69,6 +69,7 @@ class LimitedBytes final : public ByteStream {
   LimitedBytes(ByteStream& from, std::uint64_t count) : from_(from), left_(count) {}
   std::size_t read(char* to, std::size_t most) override;
   std::uint64_t skip(std::uint64_t count) override;
+  std::uint64_t left() const { return left_; }
 
  private:
   ByteStream& from_;

@@ -26,6 +26,8 @@ struct StampedFrame {
 struct StreamOrigin {
   std::string file{};
   std::string topic{};                    // of a bag
+  std::string stamps{};                   // what `sensor` is: "SENSOR_TIMESTAMP (camera's clock)"
+  std::string arrivals{};                 // likewise: "log time (recorder's clock)"
   std::vector<std::uint64_t> messages{};  // a number a frame, of the topic's messages
 };
 
