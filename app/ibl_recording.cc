@@ -14,6 +14,7 @@
 
 #include "algorithms/device_time/unwrap.h"
 #include "recording/line_reader.h"
+#include "recording/rs_csv.h"
 #include "recording/text_fields.h"
 #include "scenarios/input_file.h"
 

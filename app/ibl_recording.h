@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recording/rs_csv.h"
+#include "recording/recorded_streams.h"
 
 namespace simbench::app {
 

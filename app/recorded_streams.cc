@@ -31,14 +31,22 @@ RecordedStreams streams_of_folder(const std::string& path) {
 
 }  // namespace
 
-RecordedStreams recorded_streams(const std::vector<std::string>& inputs) {
-  const auto folder = std::ranges::find_if(
-      inputs, [](const std::string& path) { return std::filesystem::is_directory(path); });
-  if (folder == inputs.end()) return read_recordings(inputs);
-  if (inputs.size() == 1) return streams_of_folder(*folder);
-  throw scenarios::InputError(
-      fmt::format("{}: found among {} inputs, allowed one recording folder or CSV files", *folder,
-                  inputs.size()));
+std::optional<std::string> recording_folder_of(const std::vector<std::string>& inputs) {
+  const auto folder = std::ranges::find_if(inputs, [](const std::string& path) {
+    return std::filesystem::is_directory(path) && !bags::is_bag(path);
+  });
+  if (folder == inputs.end()) return std::nullopt;
+  if (inputs.size() == 1) return *folder;
+  throw scenarios::InputError(fmt::format(
+      "{}: found among {} inputs, allowed one recording folder, or files and folders of "
+      "rosbag2",
+      *folder, inputs.size()));
+}
+
+RecordedStreams recorded_streams(const std::vector<std::string>& inputs,
+                                 const bags::FileOptions& options, const ReadProgress& progress) {
+  if (const auto folder = recording_folder_of(inputs)) return streams_of_folder(*folder);
+  return bags::read_recorded_files(inputs, options, progress);
 }
 
 }  // namespace simbench::app

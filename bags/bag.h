@@ -27,7 +27,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,9 +37,9 @@
 namespace simbench::bags {
 
 // A file that is no bag, or of which nothing can be read: "FILE: what was found, what is allowed".
-class BagError : public std::runtime_error {
+class BagError : public RecordedFileError {
  public:
-  using std::runtime_error::runtime_error;
+  using RecordedFileError::RecordedFileError;
 };
 
 enum class BagFormat : std::uint8_t { kRosbag, kMcap, kSqlite };
@@ -79,10 +78,10 @@ inline constexpr std::size_t kMostBagMemory = std::size_t{160} << 20;
 // What a file turned out to be.
 struct BagFacts {
   BagFormat format = BagFormat::kRosbag;
-  std::string description{};  // "rosbag 2.0, LZ4 chunks"
-  bool indexed = false;       // its recorder closed it properly
-  std::uint64_t messages = 0;      // read, also of topics that were left out where they were seen
-  std::uint64_t lost_bytes = 0;    // of the file, which damage made unreadable
+  std::string description{};     // "rosbag 2.0, LZ4 chunks"
+  bool indexed = false;          // its recorder closed it properly
+  std::uint64_t messages = 0;    // read, also of topics that were left out where they were seen
+  std::uint64_t lost_bytes = 0;  // of the file, which damage made unreadable
   // By the file's index; unknown without one.
   std::optional<std::uint64_t> lost_messages{};
   std::vector<std::string> notes{};  // what was lost, a line each: "FILE: at byte N: ..."

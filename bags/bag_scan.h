@@ -42,6 +42,8 @@ struct TopicScan {
 
   // Mean, by the log times; 0 with fewer than two messages.
   double rate_hz() const;
+  // The same topic in the file that follows, where it has messages.
+  void append(const TopicScan& next);
 };
 
 struct BagScan {

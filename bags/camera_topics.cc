@@ -10,8 +10,8 @@ namespace simbench::bags {
 namespace {
 
 constexpr std::array<std::string_view, 12> kStreamNames = {
-    "depth", "color", "colour", "rgb", "infra", "infra1", "infra2", "ir", "ir2", "fisheye",
-    "fisheye1", "fisheye2"};
+    "depth",  "color", "colour", "rgb",     "infra",    "infra1",
+    "infra2", "ir",    "ir2",    "fisheye", "fisheye1", "fisheye2"};
 // What image transports append.
 constexpr std::array<std::string_view, 5> kTransports = {"compressed", "compressedDepth", "theora",
                                                          "ffmpeg", "zstd"};
@@ -37,9 +37,12 @@ std::string joined(const std::vector<std::string_view>& parts, std::size_t count
   return text;
 }
 
+bool is_of_sdk(std::string_view name) {
+  return name.starts_with("/device_") && (name.ends_with("/info") || name.find("/sensor_") != name.npos);
+}
+
 CameraTopic sdk_topic(std::string_view name) {
   const std::vector<std::string_view> parts = parts_of(name);
-  if (parts.empty() || !parts[0].starts_with("device_")) return {};
   if (parts.size() == 2 && parts[1] == "info") {
     return {TopicKind::kSdkInfo, joined(parts, 1)};
   }
@@ -74,7 +77,7 @@ int rank_of(TopicKind kind, std::string_view last, bool transported) {
 }  // namespace
 
 CameraTopic camera_topic(const BagTopic& topic) {
-  if (CameraTopic sdk = sdk_topic(topic.name); sdk.kind != TopicKind::kOther) return sdk;
+  if (is_of_sdk(topic.name)) return sdk_topic(topic.name);
   const TopicKind kind = kind_of(topic.type);
   if (kind == TopicKind::kOther) return {};
   std::vector<std::string_view> parts = parts_of(topic.name);

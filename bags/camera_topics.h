@@ -23,8 +23,8 @@ namespace simbench::bags {
 
 enum class TopicKind : std::uint8_t {
   kOther,
-  kMetadata,    // realsense-ros
-  kImage,       // any, compressed ones too
+  kMetadata,  // realsense-ros
+  kImage,     // any, compressed ones too
   kCameraInfo,
   kPoints,
   kSdkImage,

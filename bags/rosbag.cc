@@ -67,7 +67,6 @@ class RosbagReading {
   bool read_chunk_content(std::uint64_t position, ByteStream& stream);
   bool read_message(const RecordHeader& record, ByteStream& stream);
   std::uint64_t next_chunk_after(std::uint64_t position);
-  bool is_record_at(std::uint64_t position);
   void finish();
 
   const IndexedChunk* indexed_chunk(std::uint64_t position) const {
@@ -86,6 +85,8 @@ class RosbagReading {
   std::vector<IndexedChunk> chunks_;  // by position
   std::uint64_t index_at_ = 0;        // 0: none
   std::uint64_t indexed_messages_ = 0;
+  std::size_t indexed_connections_ = 0;
+  std::size_t indexed_chunks_ = 0;
   std::string head_;
   std::string connection_data_;
   std::map<std::string, std::uint64_t> compressions_;
@@ -109,6 +110,8 @@ void RosbagReading::read_bag_header() {
         printable_name(*encryptor)));
   }
   index_at_ = u64_field(record.fields(), "index_pos").value_or(0);
+  indexed_connections_ = u32_field(record.fields(), "conn_count").value_or(0);
+  indexed_chunks_ = u32_field(record.fields(), "chunk_count").value_or(0);
   if (index_at_ > file_.size()) index_at_ = 0;
 }
 
@@ -127,10 +130,10 @@ void RosbagReading::read_index() {
       sound = false;
     }
   }
-  facts_.indexed = sound && record.ended();
-  std::sort(chunks_.begin(), chunks_.end(), [](const IndexedChunk& a, const IndexedChunk& b) {
-    return a.position < b.position;
-  });
+  facts_.indexed = sound && record.ended() && connections_.size() == indexed_connections_ &&
+                   chunks_.size() == indexed_chunks_;
+  std::sort(chunks_.begin(), chunks_.end(),
+            [](const IndexedChunk& a, const IndexedChunk& b) { return a.position < b.position; });
   if (facts_.indexed) return;
   note(index_at_, "the index is damaged; the messages are found without it");
   chunks_.clear();
@@ -255,9 +258,8 @@ std::uint64_t RosbagReading::read_chunk(std::uint64_t position, const RecordHead
   if (!whole) facts_.lost_bytes += bytes.left();
   if (whole && end == declared_end) return end;
   if (end < declared_end) note(position, "a chunk that is cut off, or whose size is wrong");
-  if (end == limit) return end;
-  // The size may be what is wrong: looks for the next chunk inside, too.
-  return is_record_at(end) ? end : next_chunk_after(data_at);
+  // The size may be what is wrong: without an index, looks for the next chunk inside, too.
+  return index_at_ > 0 ? end : next_chunk_after(data_at);
 }
 
 // False if a part makes no sense; what came before was passed on.
@@ -295,13 +297,6 @@ bool RosbagReading::read_message(const RecordHeader& record, ByteStream& stream)
                     .size = record.data_size(),
                     .head = std::string_view(head_)});
   return true;
-}
-
-bool RosbagReading::is_record_at(std::uint64_t position) {
-  if (position >= file_.size()) return true;
-  file_.seek(position);
-  RecordHeader record;
-  return record.read(file_);
 }
 
 // The position of the next chunk at or after this one: by the index, else by its look.

@@ -15,7 +15,7 @@
 #include "cli/help.h"
 #include "cli/process.h"
 #include "recording/recording_folder.h"
-#include "recording/rs_csv.h"
+#include "recording/recorded_streams.h"
 #include "recording/version.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
@@ -86,8 +86,8 @@ const std::vector<CommandGroup>& command_groups() {
        {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},
       {"Recordings",
-       {cli::add_record_command, cli::add_replay_command, cli::add_diagnose_command,
-        cli::add_stability_command, cli::add_fit_command, cli::add_convert_ibl_command}},
+       {cli::add_inspect_command, cli::add_record_command, cli::add_replay_command,
+        cli::add_diagnose_command, cli::add_export_command, cli::add_stability_command, cli::add_fit_command, cli::add_convert_ibl_command}},
       {"Real rigs",
        {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
         cli::add_relay_command}},
@@ -155,7 +155,7 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
     return bad_input(error);
   } catch (const reports::OutputError& error) {
     return bad_input(error);
-  } catch (const CsvError& error) {
+  } catch (const RecordedFileError& error) {
     return bad_input(error);
   } catch (const RecordingFolderError& error) {
     return bad_input(error);

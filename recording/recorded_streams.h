@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,12 @@ struct CameraStream {
 struct RecordedStreams {
   std::vector<CameraStream> streams;
   std::vector<std::string> notes;  // for the user: what was left out
+};
+
+// A file that cannot be read as such streams. what() is the message for the user and names the file.
+class RecordedFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 // How much is read: bytes, and how many there are (0: unknown). May throw, which ends the reading.

@@ -18,13 +18,30 @@ namespace {
 constexpr const char* kHeader = "Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)";
 constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
 
-enum ColumnId : std::size_t { kStream, kIndex, kCounter, kSensor, kArrival, kCamera, kHost };
-constexpr std::array<std::string_view, 7> kColumns = {
-    "streamtype", "index", "f#", "hwtimestamp(ms)", "hosttimestamp(ms)", "camera", "host"};
-constexpr std::size_t kRequiredColumns = 5;
+constexpr std::array<std::string_view, kCsvFields> kFieldNames = {
+    "stream", "index", "counter", "sensor", "arrival", "camera", "host"};
+
+struct Unit {
+  std::string_view name;
+  int exponent;  // of ten, to milliseconds
+};
+constexpr std::array<Unit, 4> kUnits = {{{"ns", -6}, {"us", -3}, {"ms", 0}, {"s", 3}}};
+
+// Those of rs-data-collect.
+const CsvColumns& usual_columns() {
+  static const CsvColumns columns{{{{"Stream Type"},
+                                    {"Index"},
+                                    {"F#"},
+                                    {"HW Timestamp (ms)"},
+                                    {"Host Timestamp(ms)"},
+                                    {"camera"},
+                                    {"host"}}}};
+  return columns;
+}
 
 struct Header {
-  std::array<std::size_t, kColumns.size()> position = {};
+  std::array<std::size_t, kCsvFields> position = {};
+  char separator = ',';
   std::size_t cells = 0;         // of the header itself; a line with more has decimal commas
   std::size_t cells_needed = 0;  // a line with fewer is truncated
 };
@@ -46,10 +63,10 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-void split(std::string_view line, std::vector<std::string_view>& cells) {
+void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
     cells.push_back(trimmed(line.substr(begin, end - begin)));
     begin = end + 1;
   }
@@ -65,65 +82,80 @@ std::string plain_name(std::string_view cell) {
   return name;
 }
 
+// Whether a file must have the column: rs-data-collect writes five, others those that are named.
+bool is_required(const CsvColumns& columns, CsvField field, bool usual) {
+  if (usual) return field != CsvField::kCamera && field != CsvField::kHost;
+  return !columns.of(field).name.empty();
+}
+
 // Nothing if it is no header.
-std::optional<Header> parse_header(const std::vector<std::string_view>& cells, const Place& place) {
+std::optional<Header> parse_header(const std::vector<std::string_view>& cells,
+                                   const CsvColumns& columns, bool usual, const Place& place) {
   Header header;
   header.cells = cells.size();
   header.position.fill(kAbsent);
   std::optional<std::size_t> repeated;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto* column = std::find(kColumns.begin(), kColumns.end(), plain_name(cells[i]));
-    if (column == kColumns.end()) continue;
-    std::size_t& position = header.position[static_cast<std::size_t>(column - kColumns.begin())];
-    if (position != kAbsent) repeated = i;
-    position = i;
-    header.cells_needed = i + 1;
+    for (std::size_t field = 0; field < kCsvFields; ++field) {
+      const std::string& name = columns.columns[field].name;
+      if (name.empty() || plain_name(cells[i]) != plain_name(name)) continue;
+      if (header.position[field] != kAbsent) repeated = i;
+      header.position[field] = i;
+      header.cells_needed = i + 1;
+    }
   }
-  const auto required_end = header.position.begin() + kRequiredColumns;
-  if (std::find(header.position.begin(), required_end, kAbsent) != required_end) {
-    return std::nullopt;
+  for (std::size_t field = 0; field < kCsvFields; ++field) {
+    if (header.position[field] == kAbsent &&
+        is_required(columns, static_cast<CsvField>(field), usual)) {
+      return std::nullopt;
+    }
   }
   if (repeated) place.fail("found the column " + quoted_bytes(cells[*repeated]) + " twice");
   return header;
 }
 
-bool is_header_again(const std::vector<std::string_view>& cells) {
-  return plain_name(cells.front()) == kColumns[kStream];
+// Of a header of any columns.
+char separator_of(std::string_view line) {
+  char best = ',';
+  for (const char candidate : {';', '\t'}) {
+    if (std::count(line.begin(), line.end(), candidate) >
+        std::count(line.begin(), line.end(), best)) {
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+bool is_header_again(const std::vector<std::string_view>& cells, const Header& header,
+                     const CsvColumns& columns) {
+  const std::size_t position = header.position[static_cast<std::size_t>(CsvField::kSensor)];
+  return position < cells.size() &&
+         plain_name(cells[position]) == plain_name(columns.of(CsvField::kSensor).name);
 }
 
 bool is_motion(std::string_view stream) {
   return stream == "Gyro" || stream == "Accel" || stream == "Pose";
 }
 
-Nanoseconds stamp_of(std::string_view cell, const char* column, const Place& place) {
-  const std::optional<Nanoseconds> stamp = parse_ms(cell, kLargestStampMs);
-  if (!stamp) {
-    place.fail(std::string(column) + ": found " + quoted_bytes(cell) +
-               ", allowed: a number of milliseconds up to 4e12");
+Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column, const Place& place) {
+  std::optional<Nanoseconds> stamp;
+  if (column.exponent == 0) {
+    stamp = parse_ms(cell, kLargestStampMs);
+  } else if (!cell.empty() && cell.find_first_of("eE") == std::string_view::npos) {
+    stamp = parse_ms(std::string(cell) + "e" + std::to_string(column.exponent), kLargestStampMs);
   }
-  return *stamp;
+  if (stamp) return *stamp;
+  place.fail(column.name + ": found " + quoted_bytes(cell) + ", allowed: a number of " +
+             (column.exponent == 0 ? "milliseconds up to 4e12" : "its unit, up to 126 years"));
 }
 
-std::uint64_t counter_of(std::string_view cell, const Place& place) {
+std::uint64_t counter_of(std::string_view cell, const std::string& column, const Place& place) {
   std::uint64_t counter = 0;
   const auto [stop, error] = std::from_chars(cell.data(), cell.data() + cell.size(), counter);
   if (error != std::errc() || stop != cell.data() + cell.size()) {
-    place.fail("F#: found " + quoted_bytes(cell) + ", allowed: a whole number");
+    place.fail(column + ": found " + quoted_bytes(cell) + ", allowed: a whole number");
   }
   return counter;
-}
-
-StampedFrame frame_of(const std::vector<std::string_view>& cells, const Header& header,
-                      const Place& place) {
-  StampedFrame frame;
-  frame.counter = counter_of(cells[header.position[kCounter]], place);
-  frame.sensor = stamp_of(cells[header.position[kSensor]], "HW Timestamp (ms)", place);
-  if (frame.sensor < Nanoseconds::zero()) {
-    place.fail("HW Timestamp (ms): found " + quoted_bytes(cells[header.position[kSensor]]) +
-               ", allowed: 0 or more");
-  }
-  frame.arrival = stamp_of(cells[header.position[kArrival]], "Host Timestamp(ms)", place);
-  return frame;
 }
 
 }  // namespace
@@ -132,7 +164,10 @@ StampedFrame frame_of(const std::vector<std::string_view>& cells, const Header& 
 class CsvRecordingReader::File {
  public:
   File(CsvRecordingReader& reader, const std::string& path, std::string name)
-      : reader_(reader), place_{.path = path}, name_(std::move(name)) {
+      : reader_(reader),
+        columns_(reader.columns_ ? *reader.columns_ : usual_columns()),
+        place_{.path = path},
+        name_(std::move(name)) {
     if (name_.empty()) name_ = std::filesystem::path(path).stem().string();
   }
 
@@ -141,16 +176,32 @@ class CsvRecordingReader::File {
   void end(bool torn);
 
  private:
+  bool is_usual() const { return !reader_.columns_; }
   bool take_header(std::string_view line);
+  [[noreturn]] void fail_header(std::string_view line) const;
   void check_cells() const;
+  StampedFrame frame(std::uint64_t order) const;
   CameraStream& stream_of(std::string_view camera, std::string_view host);
   const Naming& naming_of(std::string_view camera, std::string_view host);
   void check_naming(const Naming& naming, std::string_view camera, std::string_view host) const;
 
-  bool has(ColumnId id) const { return header_->position[id] != kAbsent; }
-  std::string_view cell(ColumnId id) const { return cells_[header_->position[id]]; }
+  bool has(CsvField field) const {
+    return header_->position[static_cast<std::size_t>(field)] != kAbsent;
+  }
+  std::string_view cell(CsvField field) const {
+    return cells_[header_->position[static_cast<std::size_t>(field)]];
+  }
+  // "Depth 0"; "frame" where no column says it.
+  std::string stream_name() const {
+    if (!has(CsvField::kStream)) return "frame";
+    std::string name(cell(CsvField::kStream));
+    if (has(CsvField::kIndex)) name.append(" ").append(cell(CsvField::kIndex));
+    return name;
+  }
+  bool is_motion_line() const { return is_usual() && is_motion(cell(CsvField::kStream)); }
 
   CsvRecordingReader& reader_;
+  const CsvColumns& columns_;
   Place place_;
   std::string name_;
   std::optional<Header> header_;
@@ -164,17 +215,34 @@ void CsvRecordingReader::File::read_line(std::string_view line) {
   if (++place_.line == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
   line = trimmed(line);
   if (line.empty()) return;
-  split(line, cells_);
-  if ((!header_ || is_header_again(cells_)) && take_header(line)) return;
+  split(line, header_ ? header_->separator : is_usual() ? ',' : separator_of(line), cells_);
+  if ((!header_ || is_header_again(cells_, *header_, columns_)) && take_header(line)) return;
   check_cells();
-  if (is_motion(cell(kStream))) return;
-  const std::string_view camera = has(kCamera) ? cell(kCamera) : name_;
-  const std::string_view host = has(kHost) ? cell(kHost) : name_;
-  if (camera.empty() || host.empty() || cell(kStream).empty()) {
+  if (is_motion_line()) return;
+  const std::string_view camera = has(CsvField::kCamera) ? cell(CsvField::kCamera) : name_;
+  const std::string_view host = has(CsvField::kHost) ? cell(CsvField::kHost) : name_;
+  if (camera.empty() || host.empty() ||
+      (has(CsvField::kStream) && cell(CsvField::kStream).empty())) {
     place_.fail("found an empty cell, allowed: the name of a stream, camera or host");
   }
-  stream_of(camera, host).frames.push_back(frame_of(cells_, *header_, place_));
+  CameraStream& stream = stream_of(camera, host);
+  stream.frames.push_back(frame(stream.frames.size()));
   any_frame_ = true;
+}
+
+StampedFrame CsvRecordingReader::File::frame(std::uint64_t order) const {
+  StampedFrame frame;
+  const std::string& name = columns_.of(CsvField::kCounter).name;
+  frame.counter =
+      has(CsvField::kCounter) ? counter_of(cell(CsvField::kCounter), name, place_) : order;
+  const CsvColumns::Column& sensor = columns_.of(CsvField::kSensor);
+  frame.sensor = stamp_of(cell(CsvField::kSensor), sensor, place_);
+  if (frame.sensor < Nanoseconds::zero()) {
+    place_.fail(sensor.name + ": found " + quoted_bytes(cell(CsvField::kSensor)) +
+                ", allowed: 0 or more");
+  }
+  frame.arrival = stamp_of(cell(CsvField::kArrival), columns_.of(CsvField::kArrival), place_);
+  return frame;
 }
 
 void CsvRecordingReader::File::end(bool torn) {
@@ -191,10 +259,27 @@ void CsvRecordingReader::File::end(bool torn) {
 
 // False for a line that is neither a header nor before one.
 bool CsvRecordingReader::File::take_header(std::string_view line) {
-  header_ = parse_header(cells_, place_);
-  preamble_ = !header_ && (preamble_ || line.starts_with("Configuration"));
+  const char separator = is_usual() ? ',' : separator_of(line);
+  header_ = parse_header(cells_, columns_, is_usual(), place_);
+  if (header_) header_->separator = separator;
+  preamble_ = !header_ && is_usual() && (preamble_ || line.starts_with("Configuration"));
   if (header_ || preamble_) return true;
-  place_.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader);
+  fail_header(line);
+}
+
+void CsvRecordingReader::File::fail_header(std::string_view line) const {
+  if (is_usual()) {
+    place_.fail("found " + quoted_bytes(line) + ", allowed: the header " + kHeader +
+                ", or --columns sensor=COLUMN,arrival=COLUMN for columns of other names");
+  }
+  std::string missing;
+  for (const CsvColumns::Column& column : columns_.columns) {
+    const bool there = std::any_of(cells_.begin(), cells_.end(), [&](std::string_view cell) {
+      return plain_name(cell) == plain_name(column.name);
+    });
+    if (!column.name.empty() && !there) missing += (missing.empty() ? "" : ", ") + column.name;
+  }
+  place_.fail("found no column " + quoted_bytes(missing) + " in the header " + quoted_bytes(line));
 }
 
 void CsvRecordingReader::File::check_cells() const {
@@ -203,7 +288,7 @@ void CsvRecordingReader::File::check_cells() const {
                 std::to_string(header_->cells_needed) + "; is the line complete?");
   }
   // Motion has more values than older versions of the tool have columns.
-  if (cells_.size() > header_->cells && !is_motion(cell(kStream))) {
+  if (cells_.size() > header_->cells && !is_motion_line()) {
     place_.fail("found " + std::to_string(cells_.size()) +
                 " cells, allowed: " + std::to_string(header_->cells) +
                 ", as in the header; do the numbers have decimal commas?");
@@ -211,17 +296,18 @@ void CsvRecordingReader::File::check_cells() const {
 }
 
 CameraStream& CsvRecordingReader::File::stream_of(std::string_view camera, std::string_view host) {
-  key_.assign(camera).append(",").append(cell(kStream)).append(" ").append(cell(kIndex));
+  const std::string name = stream_name();
+  key_.assign(camera).append(",").append(name);
   auto known = reader_.index_.find(key_);
   if (known == reader_.index_.end()) {
     const Naming& naming = naming_of(camera, host);
     const std::size_t number = reader_.streams_.size();
     known = reader_.index_.emplace(key_, Known{number, &naming}).first;
     reader_.streams_.push_back(
-        {printable_name(camera),
-         printable_name(naming.host),
-         printable_name(std::string(cell(kStream)).append(" ").append(cell(kIndex))),
-         {}});
+        {printable_name(camera), printable_name(naming.host), printable_name(name), {}});
+    CameraStream& added = reader_.streams_.back();
+    added.counted = has(CsvField::kCounter);
+    added.origin.file = place_.path;
   }
   check_naming(*known->second.camera, camera, host);
   return reader_.streams_[known->second.stream];
@@ -231,20 +317,20 @@ const CsvRecordingReader::Naming& CsvRecordingReader::File::naming_of(std::strin
                                                                       std::string_view host) {
   return reader_.cameras_
       .try_emplace(std::string(camera), Naming{.path = place_.path,
-                                               .by_column = has(kCamera),
-                                               .with_host = has(kHost),
+                                               .by_column = has(CsvField::kCamera),
+                                               .with_host = has(CsvField::kHost),
                                                .host = std::string(host)})
       .first->second;
 }
 
 void CsvRecordingReader::File::check_naming(const Naming& naming, std::string_view camera,
                                             std::string_view host) const {
-  const bool goes_on = naming.by_column && has(kCamera);
+  const bool goes_on = naming.by_column && has(CsvField::kCamera);
   if (!goes_on && naming.path != place_.path) {
     place_.fail("camera " + quoted_bytes(camera) + " is in " + naming.path +
                 " too, allowed: files of different names, or a column `camera` in each");
   }
-  if (naming.with_host && has(kHost) && naming.host != host) {
+  if (naming.with_host && has(CsvField::kHost) && naming.host != host) {
     place_.fail("camera " + quoted_bytes(camera) + ": found host " + quoted_bytes(host) +
                 ", allowed: " + quoted_bytes(naming.host) +
                 " as before; cameras need names of "
@@ -281,6 +367,40 @@ void CsvRecordingReader::read_text(std::string_view text, const std::string& pat
   file.end(!text.empty());
 }
 
+CsvColumns CsvColumns::parse(const std::string& text) {
+  const auto fail = [](std::string_view found) {
+    throw CsvError("--columns: found " + quoted_bytes(found) +
+                   ", allowed: FIELD=COLUMN or FIELD=COLUMN:UNIT with commas between them; fields "
+                   "stream, index, counter, sensor, arrival, camera, host; units ns, us, ms, s");
+  };
+  CsvColumns parsed;
+  std::vector<std::string_view> parts;
+  split(text, ',', parts);
+  for (const std::string_view part : parts) {
+    const std::size_t equals = part.find('=');
+    const auto* field = std::find(kFieldNames.begin(), kFieldNames.end(), part.substr(0, equals));
+    if (equals == std::string_view::npos || field == kFieldNames.end()) fail(part);
+    Column& column = parsed.columns[static_cast<std::size_t>(field - kFieldNames.begin())];
+    std::string_view name = part.substr(equals + 1);
+    const std::size_t colon = name.rfind(':');
+    if (colon != std::string_view::npos) {
+      const auto* unit = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& known) {
+        return known.name == name.substr(colon + 1);
+      });
+      if (unit == kUnits.end()) fail(part);
+      column.exponent = unit->exponent;
+      name = name.substr(0, colon);
+    }
+    if (name.empty() || !column.name.empty()) fail(part);
+    column.name = std::string(name);
+  }
+  if (parsed.of(CsvField::kSensor).name.empty() || parsed.of(CsvField::kArrival).name.empty()) {
+    throw CsvError("--columns: found " + quoted_bytes(text) +
+                   ", allowed: at least sensor=COLUMN and arrival=COLUMN");
+  }
+  return parsed;
+}
+
 std::vector<CameraStream> CsvRecordingReader::take() {
   index_.clear();
   cameras_.clear();
@@ -303,6 +423,8 @@ std::string last_parts(const fs::path& path, std::size_t count) {
   return name.generic_string();
 }
 
+}  // namespace
+
 void check_given_once(const std::vector<std::string>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -313,8 +435,6 @@ void check_given_once(const std::vector<std::string>& files) {
     }
   }
 }
-
-}  // namespace
 
 std::vector<std::string> camera_names(const std::vector<std::string>& files) {
   std::vector<std::string> names(files.size());
@@ -334,7 +454,8 @@ std::vector<std::string> camera_names(const std::vector<std::string>& files) {
   return names;
 }
 
-RecordedStreams read_recordings(const std::vector<std::string>& files, const ReadProgress& progress) {
+RecordedStreams read_recordings(const std::vector<std::string>& files,
+                                const ReadProgress& progress) {
   check_given_once(files);
   const std::vector<std::string> names = camera_names(files);
   std::uint64_t total = 0;

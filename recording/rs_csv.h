@@ -14,6 +14,10 @@
 // that files name in a column continues in the order of the files. Stamps of several cameras must
 // count from one zero per host, and, for a meaningful spread, from one for all hosts.
 //
+// CsvColumns reads files of any other tool: which column is what, and in which unit. Its cells may
+// be separated by commas, semicolons or tabs, whichever the header has most of. Without a column
+// for the counter frames count as they come; without one for the stream, it is "frame".
+//
 // What may be wrong is refused, with its line: more or fewer cells than the header has (a decimal
 // comma), a column that stands twice, a camera on two hosts. A last line without its line end may
 // be cut in mid-number: it is left out, with a note. Names have control characters as \xHH.
@@ -29,12 +33,14 @@
 #ifndef SIMBENCH_RECORDING_RS_CSV_H_
 #define SIMBENCH_RECORDING_RS_CSV_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "recording/recorded_streams.h"
@@ -42,16 +48,38 @@
 namespace simbench {
 
 // A file that is no such recording. what() is the message for the user, "FILE:LINE: ...".
-class CsvError : public std::runtime_error {
+class CsvError : public RecordedFileError {
  public:
-  using std::runtime_error::runtime_error;
+  using RecordedFileError::RecordedFileError;
 };
 
 // Largest stamp, in milliseconds either way: 126 years.
 inline constexpr std::int64_t kLargestStampMs = 4'000'000'000'000;
 
+enum class CsvField : std::uint8_t { kStream, kIndex, kCounter, kSensor, kArrival, kCamera, kHost };
+inline constexpr std::size_t kCsvFields = 7;
+
+// Which columns of a file are what.
+struct CsvColumns {
+  struct Column {
+    std::string name{};  // as in the header; blanks and capitals do not matter; empty: none
+    int exponent = 0;    // of ten, from its unit to milliseconds
+  };
+  std::array<Column, kCsvFields> columns{};
+
+  // From "sensor=t_cam:us,arrival=t_host:ns,counter=seq": of stream, index, counter, sensor,
+  // arrival, camera and host, the units ns, us, ms (the default) and s. Throws CsvError:
+  // "--columns: ...", also if the sensor's or the arrival's is missing.
+  static CsvColumns parse(const std::string& text);
+  const Column& of(CsvField field) const { return columns[static_cast<std::size_t>(field)]; }
+};
+
 class CsvRecordingReader {
  public:
+  // Those of rs-data-collect.
+  CsvRecordingReader() = default;
+  explicit CsvRecordingReader(CsvColumns columns) : columns_(std::move(columns)) {}
+
   // `name`: of the camera, if the file names none; empty: that of the file. Throws CsvError:
   // unreadable, without a header or a frame, a line that is damaged.
   void read_file(const std::string& path, const std::string& name = {},
@@ -79,6 +107,7 @@ class CsvRecordingReader {
     const Naming* camera;
   };
 
+  std::optional<CsvColumns> columns_;
   std::vector<CameraStream> streams_;
   std::unordered_map<std::string, Known> index_;  // by camera and stream
   std::unordered_map<std::string, Naming> cameras_;
@@ -87,7 +116,9 @@ class CsvRecordingReader {
 
 // The streams of all files, in order. Throws CsvError, also for a file that is given twice.
 RecordedStreams read_recordings(const std::vector<std::string>& files,
-                              const ReadProgress& progress = {});
+                                const ReadProgress& progress = {});
+// Throws CsvError.
+void check_given_once(const std::vector<std::string>& files);
 
 // The name of each file as a camera: its last parts, without the extension, as few as tell it from
 // all others.

@@ -36,6 +36,10 @@ void add_compare_command(CommandLine& line);
 // A result against a baseline.
 void add_gate_command(CommandLine& line);
 
+// What a bag or another recording has.
+void add_inspect_command(CommandLine& line);
+// The frames that belong together, as places in the files.
+void add_export_command(CommandLine& line);
 // Captures of a scenario as a recording folder.
 void add_record_command(CommandLine& line);
 // The scores of a recording folder; device_time and gathering over CSV of real cameras.

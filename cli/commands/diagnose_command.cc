@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "app/recorded_streams.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/input_options.h"
 #include "evaluation/diagnosis/diagnose.h"
 #include "reports/page/diagnose_page.h"
 #include "reports/rigs/diagnose_report.h"
@@ -18,22 +18,26 @@ constexpr double kLowestRateHz = 0.01;
 constexpr double kHighestRateHz = 10'000;
 
 constexpr const char* kDiagnoseExamples = R"(
-Takes the recordings that `simbench replay` takes: a recording folder, of which it diagnoses the
-first capture; or the CSV of librealsense's rs-data-collect, one file per camera, or one of several
-cameras with two more columns, `camera` and `host`. A minute is enough to tell cameras that run free
-from cameras that follow a trigger.
+Takes the recordings that `simbench replay` takes: bags of the RealSense SDK, of ROS 1 and of ROS 2
+(MCAP, SQLite), CSV files, or a recording folder, of which it diagnoses the first capture. Several
+files are one rig. A minute is enough to tell cameras that run free from cameras that follow a
+trigger.
 
 Examples:
+  simbench diagnose front.bag back.bag --html rig.html
+  simbench diagnose rig.mcap --topics /left/image_raw,/right/image_raw
+  simbench diagnose log.csv --columns sensor=t_camera:us,arrival=t_host:s,camera=id
   simbench diagnose rig.csv
   simbench diagnose results/monday                     a folder of `simbench record`
   simbench diagnose front.csv back.csv --one-host      both recorded on one computer
   simbench diagnose rig.csv --html rig.html            the same as a page
   simbench diagnose rig.csv --rate-hz 30 --format json > diagnosis.json
 
-Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, for any diagnosis, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
 struct DiagnoseOptions {
   std::vector<std::string> files;
+  InputOptions inputs;
   std::string format;
   std::optional<double> rate_hz;
   bool one_host = false;
@@ -44,10 +48,10 @@ struct DiagnoseOptions {
 int run_diagnose(const DiagnoseOptions& options) {
   std::optional<reports::OutputFile> page;  // refuses before the work what cannot be written
   if (!options.html.empty()) page.emplace(options.html);
-  const RecordedStreams rig = app::recorded_streams(options.files);
-  for (const std::string& note : rig.notes) print_note(note);
-  const evaluation::Diagnosis diagnosis =
-      evaluation::diagnose(rig.streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
+  const auto rig = read_inputs(options.files, options.inputs);
+  if (!rig) return kInterrupted;
+  const evaluation::Diagnosis diagnosis = evaluation::diagnose(
+      rig->streams, {.rate_hz = options.rate_hz, .one_host = options.one_host});
   print_result(options.format == "json" ? reports::diagnose_json(diagnosis, options.files)
                                         : plain(reports::diagnose_document(diagnosis)));
   if (page) {
@@ -65,11 +69,11 @@ void add_diagnose_command(CommandLine& line) {
   auto options = std::make_shared<DiagnoseOptions>();
   options->command = line.arguments;
   Command command(line, "diagnose", "Find out whether the hardware sync of a recorded rig works");
-  command.texts("inputs", "INPUT...", options->files, "A recording folder, or CSV files")
-      .required();
+  command.texts("inputs", "INPUT...", options->files, kInputsText).required();
   command.format(options->format, {"table", "json"});
   command.number("--rate-hz", "HZ", options->rate_hz, kLowestRateHz, kHighestRateHz,
                  "The trigger's rate. Default: the rate of most cameras");
+  add_input_options(command, options->inputs);
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
   command.text("--html", "FILE.html", options->html,

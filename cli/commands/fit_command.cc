@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "app/recorded_streams.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/input_options.h"
 #include "evaluation/fit/fit_check.h"
 #include "recording/recording_folder.h"
 #include "reports/rigs/fit_report.h"
@@ -19,8 +20,8 @@ namespace simbench::cli {
 namespace {
 
 constexpr const char* kFitExamples = R"(
-Takes a recording folder (simbench record, or a real rig's), or the CSV files that `simbench replay`
-takes. Writes a scenario file: the recording gives the drift of each camera, the distribution and
+Takes a recording folder (simbench record, or a real rig's), or the bags and CSV files that
+`simbench replay` takes. Writes a scenario file: the recording gives the drift of each camera, the distribution and
 correlation of the delivery delay and the dropped frames; with exchanges between hosts also the
 network's latency and the hosts' rates. A base scenario gives the rest. Prints the evidence of each
 value, what stamps cannot show, and how the simulated model compares with the recording, also with a
@@ -32,10 +33,12 @@ Examples:
   simbench fit monday --pipeline two_way_hull --seed 3 -o model.json
   simbench fit left.csv right.csv --one-host --base my_rig.json -o model.json --format json
 
-Exit status: 0 ok, 1 internal error, 2 bad usage or input.)";
+Exit status: 0 ok, 1 internal error, 2 bad usage or input,
+130 interrupted.)";
 
 struct FitOptions {
   std::vector<std::string> inputs;
+  InputOptions files;
   std::string output;
   std::string base;
   std::string pipeline;
@@ -112,36 +115,32 @@ FitTask task_of_folder(const FitOptions& options) {
   return task;
 }
 
-FitTask task_of_files(const FitOptions& options) {
+std::optional<FitTask> task_of_files(const FitOptions& options) {
   if (!options.pipeline.empty() || options.seed) {
     throw evaluation::FitError("--pipeline and --seed choose a capture of a recording folder");
   }
   FitTask task;
-  const RecordedStreams recordings = read_recordings(options.inputs);
-  for (const std::string& note : recordings.notes) print_note(note);
-  task.input = evaluation::fit_input(recordings.streams, options.one_host);
+  const auto recordings = read_inputs(options.inputs, options.files);
+  if (!recordings) return std::nullopt;
+  task.input = evaluation::fit_input(recordings->streams, options.one_host);
   task.base =
       options.base.empty() ? evaluation::default_base(task.input) : stated_base(options.base);
   return task;
 }
 
-FitTask task_of(const FitOptions& options) {
-  const auto is_folder = [](const std::string& path) {
-    return std::filesystem::is_directory(path);
-  };
-  const auto folder = std::find_if(options.inputs.begin(), options.inputs.end(), is_folder);
-  if (folder == options.inputs.end()) return task_of_files(options);
-  if (options.inputs.size() == 1) return task_of_folder(options);
-  throw evaluation::FitError(
-      fmt::format("{}: found among {} inputs, allowed one recording folder or CSV files", *folder,
-                  options.inputs.size()));
+// Nothing after Ctrl-C.
+std::optional<FitTask> task_of(const FitOptions& options) {
+  if (app::recording_folder_of(options.inputs)) return task_of_folder(options);
+  return task_of_files(options);
 }
 
 int run_fit(const FitOptions& options) {
   const reports::OutputFile output(options.output);
   reports::FitReport report;
   try {
-    FitTask task = task_of(options);
+    const std::optional<FitTask> chosen = task_of(options);
+    if (!chosen) return kInterrupted;
+    const FitTask& task = *chosen;
     report.inputs = options.inputs;
     report.capture = task.capture;
     report.base = task.base.scenario.name;
@@ -166,20 +165,20 @@ void add_fit_command(CommandLine& line) {
   auto options = std::make_shared<FitOptions>();
   Command command(line, "fit",
                   "Fit a scenario to a recording: the simulator with a rig's own numbers");
-  command.texts("inputs", "INPUT...", options->inputs, "A recording folder, or CSV files")
-      .required();
+  command.texts("inputs", "INPUT...", options->inputs, kInputsText).required();
   command
       .text("-o,--output", "FILE.json", options->output,
             "The scenario file to write. Replaces an earlier file")
       .required();
   command.text("--base", "SCENARIO", options->base,
                "Scenario (name or file) that gives what is not fitted.\n"
-               "Default: the recording's own; for CSV files a built-in one with their counts "
+               "Default: the recording's own; for files a built-in one with their counts "
                "and rate");
   command.text("--pipeline", "NAME", options->pipeline,
                "Pipeline of the capture, in a folder with several. Default: the first");
   command.whole_number("--seed", "K", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
                        "Likewise: seed of the capture, or its repetition on a rig");
+  add_input_options(command, options->files);
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
   command.format(options->format, {"table", "json"});

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,10 +9,12 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
+#include "app/recorded_streams.h"
 #include "app/recordings.h"
 #include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
+#include "cli/input_options.h"
 #include "cli/progress.h"
 #include "evaluation/replay/replay.h"
 #include "recording/recording.h"
@@ -29,15 +29,17 @@ constexpr const char* kReplayExamples = R"(
 Takes a folder that `simbench record` wrote, and prints the table of the recorded run. It scores
 what it finds of a recording that was cut off or is damaged, and notes that.
 
-Or takes the CSV of librealsense's rs-data-collect:
+Or takes files of real cameras, by their content: bags of the RealSense SDK, of ROS 1 and of ROS 2
+(MCAP, SQLite, a folder of them), and the CSV of librealsense's rs-data-collect:
   Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)
-one file per camera, or one file of several cameras with two more columns, `camera` and `host`.
-Arrivals of several cameras must count from one instant. It runs device_time and gathering on these
-files; host_sync cannot be replayed.
+one file per camera, or one file of several cameras with two more columns, `camera` and `host`;
+--columns reads other CSV. Arrivals of several cameras must count from one instant. It runs
+device_time and gathering on these files; host_sync cannot be replayed.
 
 Examples:
   simbench replay monday                            a recording folder
   simbench replay monday --pipelines genlock --format markdown
+  simbench replay front.bag back.bag
   simbench replay front.csv
   simbench replay front.csv back.csv --format json > replay.json
   simbench replay rig.csv --output results/rig      frames.csv: a line per frame, with global stamps
@@ -46,6 +48,7 @@ Exit status: 0 ok, 1 internal error, 2 bad usage or input, 130 interrupted.)";
 
 struct ReplayOptions {
   std::vector<std::string> files;
+  InputOptions inputs;
   std::vector<std::string> pipelines;
   std::string format;
   std::string output;
@@ -61,8 +64,7 @@ std::string replay_text(const evaluation::Replay& replay, const ReplayOptions& o
 // Refuses options that need a recording folder.
 void check_options_for_files(const ReplayOptions& options) {
   if (options.format == "markdown") {
-    throw scenarios::InputError(
-        "--format: found 'markdown', allowed with CSV files: table, json, csv");
+    throw scenarios::InputError("--format: found 'markdown', allowed with files: table, json, csv");
   }
   if (!options.pipelines.empty()) {
     throw scenarios::InputError("--pipelines: only a recording folder has pipelines");
@@ -71,21 +73,6 @@ void check_options_for_files(const ReplayOptions& options) {
 
 void end_if_interrupted() {
   if (app::InterruptHandler::raised()) throw RecordingCancelled();
-}
-
-// Nothing after Ctrl-C.
-std::optional<RecordedStreams> read_files(const std::vector<std::string>& files) {
-  constexpr unsigned kMegabyte = 20;
-  constexpr std::uint64_t kFewMegabytes = 16;
-  return watched<RecordedStreams>(
-      [&](const evaluation::Progress& progress) {
-        return read_recordings(files, [&](std::uint64_t done, std::uint64_t total) {
-          const std::uint64_t all = total >> kMegabyte;
-          if (all >= kFewMegabytes) progress(done >> kMegabyte, all);
-          end_if_interrupted();
-        });
-      },
-      {.unit = "megabyte"});
 }
 
 // Nothing after Ctrl-C.
@@ -108,9 +95,8 @@ int run_files(const ReplayOptions& options) {
   provenance.started = std::chrono::system_clock::now();
   std::unique_ptr<reports::OutputFolder> output;
   if (!options.output.empty()) output = std::make_unique<reports::OutputFolder>(options.output);
-  auto recordings = read_files(options.files);
+  auto recordings = read_inputs(options.files, options.inputs);
   if (!recordings) return kInterrupted;
-  for (const std::string& note : recordings->notes) print_note(note);
   const auto replayed = replay_files(std::move(recordings->streams));
   if (!replayed) return kInterrupted;
   const evaluation::Replay& replay = *replayed;
@@ -150,15 +136,8 @@ int run_folder(const std::string& folder, const ReplayOptions& options) {
 }
 
 int run_replay(const ReplayOptions& options) {
-  const auto folder =
-      std::find_if(options.files.begin(), options.files.end(),
-                   [](const std::string& name) { return std::filesystem::is_directory(name); });
-  if (folder == options.files.end()) return run_files(options);
-  if (options.files.size() > 1) {
-    throw scenarios::InputError(
-        fmt::format("{}: is a folder, allowed: one recording folder, or files only", *folder));
-  }
-  return run_folder(*folder, options);
+  const std::optional<std::string> folder = app::recording_folder_of(options.files);
+  return folder ? run_folder(*folder, options) : run_files(options);
 }
 
 }  // namespace
@@ -166,10 +145,11 @@ int run_replay(const ReplayOptions& options) {
 void add_replay_command(CommandLine& line) {
   auto options = std::make_shared<ReplayOptions>();
   options->command = line.arguments;
-  Command command(line, "replay",
-                  "Score a recording folder, or device_time and gathering on CSV of real cameras");
-  command.texts("recordings", "FILE.csv...|DIR", options->files, "A recording folder, or CSV files")
-      .required();
+  Command command(
+      line, "replay",
+      "Score a recording folder, or device_time and gathering on files of real cameras");
+  command.texts("recordings", "INPUT...", options->files, kInputsText).required();
+  add_input_options(command, options->inputs);
   command.list("--pipelines", "PIPELINE,...", options->pipelines,
                "With a folder: only these of the recorded pipelines, in this order");
   command.format(options->format, {"table", "markdown", "json", "csv"});

@@ -20,6 +20,10 @@ constexpr double kLeastGapS = 0.5;
 constexpr double kLateS = 1;        // a later start or earlier end than this is reported
 constexpr double kUnsteady = 0.02;  // jitter as a share of the period
 constexpr std::size_t kMostJumps = 3;
+constexpr double kLeastClockMs = 1;        // ahead of the recorder
+constexpr double kLeastClockApartMs = 50;  // more delay than the quickest camera's
+constexpr double kSwapS = 0.5;
+constexpr double kSwapShare = 0.5;  // of a period: lateness of the frames around a step
 
 // From the first to the last arrival of a host's cameras, on its clock.
 struct Presence {
@@ -52,6 +56,7 @@ class Findings {
       add_stamps();
       add_presence();
     }
+    add_swaps();
     for (const PairDiagnosis& pair : diagnosis_.pairs) add_pair(pair);
     return std::move(findings_);
   }
@@ -168,6 +173,14 @@ class Findings {
 
   void add_lost() {
     const StreamFacts& facts = camera_->facts;
+    if (!facts.counted) {
+      if (facts.skipped_pulses == 0) return;
+      add("missing_frames",
+          fmt::format("{} without a frame: lost or never exposed, which nothing tells without a "
+                      "frame counter",
+                      counted(facts.skipped_pulses, "period")));
+      return;
+    }
     if (facts.lost_frames > 0) {
       add("lost_frames", fmt::format("{} lost after the camera had counted them: in the "
                                      "camera, on USB or in the host",
@@ -195,7 +208,9 @@ class Findings {
 
   void add_clock() {
     const StreamFacts& facts = camera_->facts;
-    if (facts.global_time) {
+    if (facts.stamped_by_host) {
+      add_host_clock();
+    } else if (facts.global_time) {
       add("global_time",
           "its stamps count from 1970, as a computer's clock does and no camera's: with "
           "librealsense's global time they are the host's own estimate. Record with global time "
@@ -208,8 +223,46 @@ class Findings {
     }
   }
 
+  // Header stamps and arrivals may be of two computers: their difference has the delay in it, which
+  // is positive, and much the same for all cameras.
+  void add_host_clock() {
+    const double delay_ms = camera_->facts.least_delay_ms;
+    double least_ms = delay_ms;
+    const CameraDiagnosis* earliest = camera_;
+    for (const CameraDiagnosis& other : diagnosis_.cameras) {
+      if (!(other.facts.least_delay_ms < least_ms)) continue;
+      least_ms = other.facts.least_delay_ms;
+      earliest = &other;
+    }
+    if (delay_ms < -kLeastClockMs) {
+      add("clock_ahead",
+          fmt::format("its stamps are {:.1f} ms later than the recorder had its frames: the clock "
+                      "that made them is ahead of the recorder's by at least that",
+                      -delay_ms));
+    } else if (delay_ms - std::max(least_ms, 0.0) > kLeastClockApartMs) {
+      add("clock_apart",
+          fmt::format(
+              "the recorder has its frames {:.1f} ms after their stamps, those of camera "
+              "{} after {:.1f} ms: the clocks that made the stamps are apart, or its frames "
+              "are held up",
+              delay_ms, earliest->camera, least_ms));
+    }
+  }
+
   void add_stamps() {
     const StreamFacts& facts = camera_->facts;
+    if (facts.repeated_stamps > 0) {
+      add("repeated_stamps", fmt::format("{} with the stamp of the frame before",
+                                         counted(facts.repeated_stamps, "frame")));
+    }
+    for (const DelayBurst& burst : facts.bursts) {
+      add("late_burst",
+          fmt::format(
+              "from {:.1f} s on, for {:.2f} s, {} came up to {:.1f} ms later than usual: the "
+              "host or its bus was busy",
+              burst.at_s, burst.for_s, counted(static_cast<std::uint64_t>(burst.late), "frame"),
+              burst.most_ms));
+    }
     std::size_t shown = 0;
     for (const StampJump& jump : facts.jumps) {
       if (shown++ == kMostJumps) {
@@ -271,6 +324,35 @@ class Findings {
     }
     if (const double early_s = host.last_s - facts.last_arrival_s; early_s > kLateS) {
       add("ended_early", fmt::format("ends {:.1f} s before the last camera{}", early_s, of_host()));
+    }
+  }
+
+  // Two streams of one kind whose stamps step at one time, one as far up as the other down, have
+  // changed places.
+  void add_swaps() {
+    const std::vector<CameraDiagnosis>& all = diagnosis_.cameras;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        if (all[i].stream != all[j].stream) continue;
+        for (const StampJump& a : all[i].facts.jumps) {
+          for (const StampJump& b : all[j].facts.jumps) {
+            const double at_s = all[i].facts.first_arrival_s + a.at_s;
+            const double apart_s = at_s - (all[j].facts.first_arrival_s + b.at_s);
+            const double tolerance_ms = kSwapShare * all[i].facts.period_ms;
+            if (std::abs(apart_s) > kSwapS || std::abs(a.step_ms + b.step_ms) > tolerance_ms) {
+              continue;
+            }
+            findings_.push_back(
+                {.camera = all[i].camera,
+                 .stream = all[i].stream,
+                 .kind = "swapped",
+                 .text = fmt::format("{} and {} change places {:.1f} s after the first frame: each "
+                                     "goes on with the stamps of the other",
+                                     called_camera(all[i].camera), called_camera(all[j].camera),
+                                     a.at_s)});
+          }
+        }
+      }
     }
   }
 
@@ -346,6 +428,12 @@ std::vector<std::string> cannot_know(const Diagnosis& diagnosis) {
       "whether the exposures coincide: no stamp shows a constant delay (trigger cabling, exposure "
       "time, latency). Film one flash with all cameras once.",
       "which frames belong together: cameras with one period may still be whole periods apart."};
+  if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),
+                  [](const CameraDiagnosis& c) { return c.facts.stamped_by_host; })) {
+    texts.emplace_back(
+        "what the cameras' clocks say: header stamps are of a computer, which made them when a "
+        "driver had the frame. Record the metadata topics, or with hardware stamps.");
+  }
   const std::string host = diagnosis.cameras.empty() ? "" : diagnosis.cameras.front().host;
   if (std::any_of(diagnosis.cameras.begin(), diagnosis.cameras.end(),
                   [&host](const CameraDiagnosis& camera) { return camera.host != host; })) {
@@ -368,7 +456,7 @@ Diagnosis diagnose(const std::vector<CameraStream>& streams, const DiagnoseOptio
     diagnosis.cameras.push_back({.camera = stream.camera,
                                  .host = options.one_host ? "" : stream.host,
                                  .stream = stream.stream,
-                                 .facts = stream_facts(stream.frames),
+                                 .facts = stream_facts(stream),
                                  .standing = {}});
   }
   const std::vector<std::string> kinds = kinds_of(streams);

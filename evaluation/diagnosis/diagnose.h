@@ -35,7 +35,7 @@
 #include <vector>
 
 #include "evaluation/statistics/statistics.h"
-#include "recording/rs_csv.h"
+#include "recording/recorded_streams.h"
 
 namespace simbench::evaluation {
 
@@ -45,6 +45,14 @@ struct StampJump {
   double at_s = 0;        // after the stream's first arrival
   double step_ms = 0;     // positive: stamps fell behind the arrivals
   int periods = 0;        // 0: no whole number of them
+};
+
+// A time in which many frames came late.
+struct DelayBurst {
+  double at_s = 0;  // after the stream's first arrival
+  double for_s = 0;
+  std::int64_t late = 0;  // frames
+  double most_ms = 0;     // later than usual
 };
 
 struct StreamFacts {
@@ -66,13 +74,19 @@ struct StreamFacts {
   std::int64_t skipped_pulses = 0;    // periods that the counter did not count
   std::int64_t counter_restarts = 0;  // the counter stood still or went back
   std::int64_t counter_jumps = 0;     // it went up by more frames than the time allows
+  std::int64_t repeated_stamps = 0;   // frames with the stamp of the frame before
   std::int64_t backward_stamps = 0;
   std::int64_t backward_arrivals = 0;
   std::int64_t future_stamps = 0;  // frames that arrived earlier than their stamp allows
   double future_ms = 0;            // by how much, at most
   std::int64_t wraps = 0;          // of the 32-bit microsecond register
   bool global_time = false;        // stamps count from 1970: they are no camera's
+  // Of the recording: CameraStream has what they mean.
+  bool counted = true;
+  bool stamped_by_host = false;
+  double least_delay_ms = kNan;  // of arrivals after stamps, if a host made those; 1 % are below
   std::vector<StampJump> jumps;
+  std::vector<DelayBurst> bursts;
   // Arrivals with jumps taken out, and the period each belongs to; for comparisons of phase.
   std::vector<double> arrivals_ms;
   std::vector<std::int64_t> periods;
@@ -80,8 +94,8 @@ struct StreamFacts {
   double span_s() const { return last_arrival_s - first_arrival_s; }
 };
 
-// `frames`: as recorded, not unwrapped, in order of delivery.
-StreamFacts stream_facts(std::span<const StampedFrame> frames);
+// Frames as recorded, not unwrapped, in order of delivery.
+StreamFacts stream_facts(const CameraStream& stream);
 
 // Two streams of one camera compared, such as depth and colour.
 //

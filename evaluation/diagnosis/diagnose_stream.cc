@@ -24,6 +24,11 @@ constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods
 constexpr double kMostPeriods = 1000;
 constexpr std::size_t kLongestSpan = 30;  // frames
 constexpr double kLeastFutureMs = 5;
+constexpr double kLeastBurstMs = 10;
+constexpr double kBurstSpreads = 5;  // of the upper tenth's distance from the median
+constexpr std::int64_t kLeastBurstFrames = 5;
+constexpr double kBurstPauseS = 0.5;  // a longer one ends a burst
+constexpr double kMostLate = 0.05;    // more late frames are how the camera is
 constexpr std::size_t kLeastBatchFrames = 5;
 constexpr std::size_t kFewBatches = 8;
 constexpr std::size_t kBatches = 16;
@@ -130,6 +135,7 @@ void note_intervals(std::span<const StampedFrame> frames, StreamFacts& facts) {
     facts.periods.push_back(facts.periods.back() + std::llround(whole));
     deviations.push_back(deviation);
     if (interval < 0) ++facts.backward_stamps;
+    if (frames[i].sensor == frames[i - 1].sensor) ++facts.repeated_stamps;
     if (whole > 0 && std::abs(deviation) < kOnGrid * facts.period_ms) ++on_grid;
     note_counter(frames[i - 1], frames[i], whole, facts);
   }
@@ -173,8 +179,40 @@ void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>&
   }
 }
 
-// Finds offsets that, less their drift, lie below nearly all others.
-void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts) {
+// Frames that came later than usual, close together, where few others did.
+void note_bursts(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
+                 StreamFacts& facts) {
+  const double usual = quantile(offsets, 0.5);
+  const double high = quantile(offsets, 0.9);
+  const double limit =
+      usual + std::max({kLeastBurstMs, facts.period_ms / 4, kBurstSpreads * (high - usual)});
+  const auto since_start_s = [&frames](std::size_t i) {
+    return difference_ms(frames[i].arrival.count(), frames.front().arrival.count()) * 1e-3;
+  };
+  DelayBurst burst;
+  std::int64_t all_late = 0;
+  std::vector<DelayBurst> bursts;
+  const auto end_burst = [&] {
+    if (burst.late >= kLeastBurstFrames) bursts.push_back(burst);
+    burst = {};
+  };
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    if (offsets[i] <= limit) continue;
+    ++all_late;
+    const double at_s = since_start_s(i);
+    if (burst.late > 0 && at_s - (burst.at_s + burst.for_s) > kBurstPauseS) end_burst();
+    if (burst.late++ == 0) burst.at_s = at_s;
+    burst.for_s = at_s - burst.at_s;
+    burst.most_ms = std::max(burst.most_ms, offsets[i] - usual);
+  }
+  end_burst();
+  const bool rare = static_cast<double>(all_late) < kMostLate * static_cast<double>(offsets.size());
+  if (rare) facts.bursts = std::move(bursts);
+}
+
+// Offsets of arrivals from stamps, less their drift: those that lie below nearly all others are
+// stamps of the future, those far above are late frames.
+void note_delays(std::span<const StampedFrame> frames, StreamFacts& facts) {
   const auto size = static_cast<std::ptrdiff_t>(frames.size());
   if (size < 2 * kJumpWindow) return;
   std::vector<double> offsets(frames.size());
@@ -195,6 +233,16 @@ void note_future_stamps(std::span<const StampedFrame> frames, StreamFacts& facts
     ++facts.future_stamps;
     facts.future_ms = std::max(facts.future_ms, lowest - offset);
   }
+  note_bursts(frames, offsets, facts);
+}
+
+void note_least_delay(std::span<const StampedFrame> frames, StreamFacts& facts) {
+  std::vector<double> delays;
+  delays.reserve(frames.size());
+  for (const StampedFrame& frame : frames) {
+    delays.push_back(difference_ms(frame.arrival.count(), frame.sensor.count()));
+  }
+  facts.least_delay_ms = quantile(std::move(delays), 0.01);
 }
 
 // Medians of batches of frames, which a late frame hardly moves, between jumps. Each stretch
@@ -273,8 +321,11 @@ std::int64_t register_difference(const StampedFrame& a, const StampedFrame& b) {
 
 }  // namespace
 
-StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
+StreamFacts stream_facts(const CameraStream& stream) {
+  const std::span<const StampedFrame> recorded = stream.frames;
   StreamFacts facts;
+  facts.counted = stream.counted;
+  facts.stamped_by_host = stream.stamped_by_host;
   facts.frames = static_cast<std::int64_t>(recorded.size());
   if (recorded.empty()) return facts;
   facts.wraps = count_wraps(recorded);
@@ -295,7 +346,8 @@ StreamFacts stream_facts(std::span<const StampedFrame> recorded) {
                       difference_ms(frame.sensor.count(), frames.front().sensor.count()));
   }
   note_jumps(frames, offsets, facts);
-  note_future_stamps(frames, facts);
+  note_delays(frames, facts);
+  if (facts.stamped_by_host) note_least_delay(frames, facts);
   note_host_period(facts);
   return facts;
 }

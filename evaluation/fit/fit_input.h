@@ -22,7 +22,7 @@
 
 #include "recording/event.h"
 #include "recording/recording.h"
-#include "recording/rs_csv.h"
+#include "recording/recorded_streams.h"
 
 namespace simbench::evaluation {
 

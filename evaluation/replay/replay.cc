@@ -9,11 +9,10 @@
 #include <optional>
 #include <span>
 #include <thread>
-#include <tuple>
 #include <utility>
 
-#include "algorithms/gathering/genlock_order.h"
 #include "algorithms/registry.h"
+#include "evaluation/replay/rig_frames.h"
 #include "evaluation/run/jobs.h"
 #include "evaluation/scoring/pulse_spread.h"
 #include "evaluation/scoring/results.h"
@@ -22,17 +21,6 @@
 
 namespace simbench::evaluation {
 namespace {
-
-// T_int: "less than half a frame interval is sufficient" (paper).
-constexpr std::int64_t kIntervalsPerPeriod = 2;
-
-// A frame: the place of its camera in the rig and its place in the camera's recording.
-struct FrameId {
-  std::uint32_t source = 0;
-  std::uint32_t frame = 0;
-};
-
-using Members = std::vector<const CameraReplay*>;
 
 // Running means of the terms of AMD and RMDV.
 class SetScore {
@@ -53,76 +41,6 @@ class SetScore {
   std::vector<std::int64_t> workspace_;
 };
 
-std::optional<Nanoseconds> rig_period(const Members& members) {
-  std::vector<double> periods;
-  for (const CameraReplay* camera : members) {
-    const Nanoseconds period = median_period(camera->frames);
-    if (period >= Microseconds(1)) periods.push_back(to_ms(period));
-  }
-  return periods.empty() ? std::nullopt : std::optional(from_ms(median(periods)));
-}
-
-DeviceTime device_time_of(const StampedFrame& frame) {
-  return DeviceTime(std::chrono::round<Microseconds>(frame.sensor));
-}
-
-// The frames of each pulse that every camera delivered, by GenLock order; source after source.
-std::vector<FrameId> complete_pulses(const Members& members, Nanoseconds period) {
-  struct Indexed {
-    std::int64_t index;
-    FrameId id;
-  };
-  std::vector<Indexed> all;
-  for (std::uint32_t source = 0; source < members.size(); ++source) {
-    GenlockOrder order(period, GenlockOrder::Variant::kReanchored);
-    const std::vector<StampedFrame>& frames = members[source]->frames;
-    for (std::uint32_t i = 0; i < frames.size(); ++i) {
-      all.push_back({order.next(device_time_of(frames[i])), {source, i}});
-    }
-  }
-  std::sort(all.begin(), all.end(), [](const Indexed& a, const Indexed& b) {
-    return std::tie(a.index, a.id.source, a.id.frame) < std::tie(b.index, b.id.source, b.id.frame);
-  });
-  // Two frames of a camera with one index: the first counts.
-  const auto same = [](const Indexed& a, const Indexed& b) {
-    return a.index == b.index && a.id.source == b.id.source;
-  };
-  all.erase(std::unique(all.begin(), all.end(), same), all.end());
-  std::vector<FrameId> complete;
-  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-    while (end < all.size() && all[end].index == all[begin].index) ++end;
-    if (end - begin != members.size()) continue;
-    for (std::size_t i = begin; i < end; ++i) complete.push_back(all[i].id);
-  }
-  return complete;
-}
-
-// All frames in order of arrival. A camera's own frames stay in their order of delivery, even where
-// the host's clock went back.
-std::vector<FrameId> order_of_arrival(const Members& members) {
-  struct Arrival {
-    Nanoseconds latest;
-    FrameId id;
-  };
-  std::vector<Arrival> all;
-  for (std::uint32_t source = 0; source < members.size(); ++source) {
-    Nanoseconds latest = Nanoseconds::min();
-    const std::vector<StampedFrame>& frames = members[source]->frames;
-    for (std::uint32_t i = 0; i < frames.size(); ++i) {
-      latest = std::max(latest, frames[i].arrival);
-      all.push_back({latest, {source, i}});
-    }
-  }
-  std::sort(all.begin(), all.end(), [](const Arrival& a, const Arrival& b) {
-    return std::tie(a.latest, a.id.source, a.id.frame) <
-           std::tie(b.latest, b.id.source, b.id.frame);
-  });
-  std::vector<FrameId> order;
-  order.reserve(all.size());
-  for (const Arrival& arrival : all) order.push_back(arrival.id);
-  return order;
-}
-
 class ScoringSink : public FrameSetSink {
  public:
   void on_set(std::span<const GatherFrame> set) override {
@@ -137,26 +55,15 @@ class ScoringSink : public FrameSetSink {
   SetScore score_;
 };
 
-// What the estimators' stamps of one kind of stream are scored by.
-struct Rig {
-  Members members;
-  std::vector<std::size_t> cameras;  // their indices
-  Nanoseconds period{};
-  std::vector<FrameId> complete;  // frames of complete pulses
-  std::vector<FrameId> order;     // of arrival
-};
-
 // One estimator's stamps of every frame, by camera; none of a camera that is in no rig.
 using AllStamps = std::vector<std::vector<GlobalTime>>;
 
-GatheringReplay replay_gatherer(const GatheringEntry& entry, const Rig& rig,
+GatheringReplay replay_gatherer(const GatheringEntry& entry, const RigFrames& rig,
                                 const AllStamps& stamps) {
-  const GatheringSetup setup = {.sources = static_cast<std::uint32_t>(rig.members.size()),
-                                .period = rig.period,
-                                .interval = rig.period / kIntervalsPerPeriod};
-  const auto gatherer = entry.make(check_parameters(entry.info.parameters, {}), setup);
+  const auto gatherer =
+      entry.make(check_parameters(entry.info.parameters, {}), gathering_setup(rig));
   ScoringSink sink;
-  for (const FrameId& id : rig.order) {
+  for (const RigFrame& id : rig.order) {
     gatherer->push({.source = id.source,
                     .stamp = stamps[rig.cameras[id.source]][id.frame],
                     .sensor = device_time_of(rig.members[id.source]->frames[id.frame]),
@@ -170,10 +77,10 @@ GatheringReplay replay_gatherer(const GatheringEntry& entry, const Rig& rig,
           .rmdv_ms = sink.score().rmdv_ms()};
 }
 
-SetScore genlock_score(const Rig& rig, const AllStamps& all) {
+SetScore genlock_score(const RigFrames& rig, const AllStamps& all) {
   SetScore score;
   std::vector<std::int64_t> stamps;
-  for (const FrameId& id : rig.complete) {
+  for (const RigFrame& id : rig.complete) {
     stamps.push_back(nanoseconds_of(all[rig.cameras[id.source]][id.frame]));
     if (stamps.size() < rig.members.size()) continue;
     score.add(stamps);
@@ -182,7 +89,7 @@ SetScore genlock_score(const Rig& rig, const AllStamps& all) {
   return score;
 }
 
-RigRow rig_row(const std::string& device_time, const Rig& rig, const AllStamps& stamps) {
+RigRow rig_row(const std::string& device_time, const RigFrames& rig, const AllStamps& stamps) {
   const SetScore score = genlock_score(rig, stamps);
   RigRow row;
   row.device_time = device_time;
@@ -195,7 +102,7 @@ RigRow rig_row(const std::string& device_time, const Rig& rig, const AllStamps& 
   return row;
 }
 
-Nanoseconds first_arrival_range(const Members& members) {
+Nanoseconds first_arrival_range(const RigMembers& members) {
   const auto [first, last] = std::minmax_element(
       members.begin(), members.end(), [](const CameraReplay* a, const CameraReplay* b) {
         return a->frames.front().arrival < b->frames.front().arrival;
@@ -203,22 +110,7 @@ Nanoseconds first_arrival_range(const Members& members) {
   return (*last)->frames.front().arrival - (*first)->frames.front().arrival;
 }
 
-// `cameras`: indices of those (two or more) that have one kind of stream. Returns nothing if none
-// has a frame period (of at least a microsecond) to match frames by.
-std::optional<Rig> rig_of(const std::vector<CameraReplay>& all,
-                          const std::vector<std::size_t>& cameras) {
-  Rig rig;
-  rig.cameras = cameras;
-  for (const std::size_t index : cameras) rig.members.push_back(&all[index]);
-  const std::optional<Nanoseconds> period = rig_period(rig.members);
-  if (!period) return std::nullopt;
-  rig.period = *period;
-  rig.complete = complete_pulses(rig.members, rig.period);
-  rig.order = order_of_arrival(rig.members);
-  return rig;
-}
-
-RigReplay rig_replay(const std::string& stream, const Rig& rig) {
+RigReplay rig_replay(const std::string& stream, const RigFrames& rig) {
   const Nanoseconds range = first_arrival_range(rig.members);
   RigReplay replay;
   replay.stream = stream;
@@ -364,7 +256,7 @@ class StampProgress {
 // Runs the estimators, each on all cameras, a job each.
 class EstimatorJobs {
  public:
-  EstimatorJobs(Replay& replay, const std::vector<Rig>& rigs, const Progress& progress)
+  EstimatorJobs(Replay& replay, const std::vector<RigFrames>& rigs, const Progress& progress)
       : replay_(replay), rigs_(rigs), entries_(replayed_estimators()), in_rig_(cameras_in_rigs()) {
     std::uint64_t frames = 0;
     for (CameraReplay& camera : replay.cameras) {
@@ -396,7 +288,7 @@ class EstimatorJobs {
 
   std::vector<bool> cameras_in_rigs() const {
     std::vector<bool> in_rig(replay_.cameras.size(), false);
-    for (const Rig& rig : rigs_) {
+    for (const RigFrames& rig : rigs_) {
       for (const std::size_t camera : rig.cameras) in_rig[camera] = true;
     }
     return in_rig;
@@ -451,7 +343,7 @@ class EstimatorJobs {
   }
 
   Replay& replay_;
-  const std::vector<Rig>& rigs_;
+  const std::vector<RigFrames>& rigs_;
   const std::vector<const DeviceTimeEntry*> entries_;
   const std::vector<bool> in_rig_;
   std::optional<StampProgress> progress_;
@@ -460,15 +352,16 @@ class EstimatorJobs {
 };
 
 // Fills in Replay::rigs but for their rows, and what they are scored by.
-std::vector<Rig> find_rigs(const std::map<std::string, Nanoseconds>& anchors, Replay& replay) {
-  std::vector<Rig> rigs;
+std::vector<RigFrames> find_rigs(const std::map<std::string, Nanoseconds>& anchors,
+                                 Replay& replay) {
+  std::vector<RigFrames> rigs;
   for (const auto& [stream, anchor] : anchors) {
     std::vector<std::size_t> members;
     for (std::size_t i = 0; i < replay.cameras.size(); ++i) {
       if (replay.cameras[i].stream == stream) members.push_back(i);
     }
     if (members.size() < 2) continue;
-    std::optional<Rig> rig = rig_of(replay.cameras, members);
+    std::optional<RigFrames> rig = rig_of(replay.cameras, members);
     if (!rig) {
       replay.warnings.push_back(stream +
                                 ": no camera has a frame period, so the cameras are not compared");
@@ -533,7 +426,7 @@ Replay run_replay(std::vector<CameraStream> streams, const Progress& progress) {
   }
   const std::map<std::string, Nanoseconds> anchors = anchors_of(replay.cameras);
   for (CameraReplay& camera : replay.cameras) camera.anchor = anchors.at(camera.stream);
-  const std::vector<Rig> rigs = find_rigs(anchors, replay);
+  const std::vector<RigFrames> rigs = find_rigs(anchors, replay);
   EstimatorJobs(replay, rigs, progress).run();
   return replay;
 }

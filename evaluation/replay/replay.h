@@ -42,7 +42,7 @@
 #include "algorithms/ports/time.h"
 #include "algorithms/registry.h"
 #include "evaluation/run/evaluate.h"
-#include "recording/rs_csv.h"
+#include "recording/recorded_streams.h"
 
 namespace simbench::evaluation {
 

@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "bags/recorded_files.h"
 #include "hardware/camera/camera.h"
 #include "recording/recording_folder.h"
-#include "recording/rs_csv.h"
 
 namespace simbench::hardware {
 namespace {
@@ -183,19 +183,26 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_folder(const CaptureName& 
   return finished(std::move(choice), keeper.zero_ns(), name.folder, wanted);
 }
 
+// "Depth 0" of the SDK's files, "depth" and "color" of ROS.
+bool is_depth(const CameraStream& stream) {
+  return stream.stream.starts_with("Depth") || stream.stream.starts_with("depth");
+}
+bool is_colour(const CameraStream& stream) {
+  return stream.stream.starts_with("Colo") || stream.stream.starts_with("colo");
+}
+
 // The kind as which a CSV's stream is played. Infrared images are exposed with the depth images, so
 // they stand for depth if a camera has none.
 std::optional<StreamKind> stream_kind(const CameraStream& stream,
                                       const std::vector<CameraStream>& streams) {
-  if (stream.stream.starts_with("Colo")) return StreamKind::kColour;
+  if (is_colour(stream)) return StreamKind::kColour;
   for (const CameraStream& other : streams) {
-    if (other.camera != stream.camera || other.stream.starts_with("Colo")) continue;
-    const bool better = other.stream.starts_with("Depth") && !stream.stream.starts_with("Depth");
+    if (other.camera != stream.camera || is_colour(other)) continue;
+    const bool better = is_depth(other) && !is_depth(stream);
     if (better) return std::nullopt;
   }
   for (const CameraStream& other : streams) {  // the first of its kind
-    if (other.camera == stream.camera && !other.stream.starts_with("Colo") &&
-        other.stream.starts_with("Depth") == stream.stream.starts_with("Depth")) {
+    if (other.camera == stream.camera && !is_colour(other) && is_depth(other) == is_depth(stream)) {
       return &other == &stream ? std::optional(StreamKind::kDepth) : std::nullopt;
     }
   }
@@ -212,11 +219,9 @@ PlayedFrame played(const StampedFrame& frame, StreamKind kind) {
           .stream = kind};
 }
 
-std::vector<std::shared_ptr<const PlayedCamera>> load_csv(const std::string& path,
-                                                          const std::vector<RigCamera>& wanted) {
-  CsvRecordingReader reader;
-  reader.read_file(path);
-  const std::vector<CameraStream> streams = reader.take();
+std::vector<std::shared_ptr<const PlayedCamera>> load_file(const std::string& path,
+                                                           const std::vector<RigCamera>& wanted) {
+  const auto [streams, notes] = bags::read_recorded_files({path}, {});
   std::vector<std::string> names;
   for (const CameraStream& stream : streams) {
     if (std::find(names.begin(), names.end(), stream.camera) == names.end()) {
@@ -224,7 +229,7 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_csv(const std::string& pat
     }
   }
   Choice choice = choose(path, wanted, names);
-  choice.cameras[choice.of_wanted.front()]->notes = reader.notes();
+  choice.cameras[choice.of_wanted.front()]->notes = notes;
   std::optional<std::int64_t> zero_ns;
   for (const CameraStream& stream : streams) {
     for (const StampedFrame& frame : stream.frames) {
@@ -249,15 +254,16 @@ std::vector<std::shared_ptr<const PlayedCamera>> load_played_cameras(
   if (!std::filesystem::exists(status)) {
     throw CameraError(wanted.front().serial,
                       fmt::format("{}: no such recording, allowed a folder that `simbench "
-                                  "record` wrote or a CSV file",
+                                  "record` wrote, a bag or a CSV file",
                                   name.folder));
   }
   try {
-    return std::filesystem::is_directory(status) ? load_folder(name, wanted)
-                                                 : load_csv(name.folder, wanted);
+    return std::filesystem::is_directory(status) && !bags::is_bag(name.folder)
+               ? load_folder(name, wanted)
+               : load_file(name.folder, wanted);
   } catch (const RecordingFolderError& error) {
     throw CameraError(wanted.front().serial, error.what());
-  } catch (const CsvError& error) {
+  } catch (const RecordedFileError& error) {
     throw CameraError(wanted.front().serial, error.what());
   }
 }

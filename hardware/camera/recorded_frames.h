@@ -1,7 +1,8 @@
 // The frames of a recording as they are played: when each is due, and what it carries.
 //
 // A recording is a folder of recording/recording_folder.h (its first capture, or the one that
-// "FOLDER#PIPELINE" or "FOLDER#PIPELINE/SEED" names) or a CSV of recording/rs_csv.h. It is read
+// "FOLDER#PIPELINE" or "FOLDER#PIPELINE/SEED" names) or a file of
+// real cameras (bags/recorded_files.h). It is read
 // once for all its wanted cameras; only their frames are kept, 32 bytes each.
 //
 // Due times count from the recording's zero, which all its cameras share:

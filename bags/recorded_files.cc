@@ -1,0 +1,156 @@
+#include "bags/recorded_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "bags/rosbag2_folder.h"
+#include "recording/text_fields.h"
+#include "scenarios/input_file.h"
+
+namespace simbench::bags {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostTopicsShown = 30;
+
+std::uint64_t size_of(const std::string& path) {
+  std::error_code none;
+  const std::uintmax_t size = fs::file_size(path, none);
+  return none ? 0 : size;
+}
+
+std::vector<std::string> files_of(const std::string& path) {
+  return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
+}
+
+// The part of a recording that goes on in its next file.
+void append(BagScan& scan, BagScan next) {
+  for (CameraStream& stream : next.streams) {
+    const auto known = std::ranges::find_if(scan.streams, [&stream](const CameraStream& s) {
+      return s.camera == stream.camera && s.stream == stream.stream;
+    });
+    if (known == scan.streams.end()) {
+      scan.streams.push_back(std::move(stream));
+      continue;
+    }
+    const std::uint64_t before =
+        known->origin.messages.empty() ? 0 : known->origin.messages.back() + 1;
+    for (const std::uint64_t message : stream.origin.messages) {
+      known->origin.messages.push_back(before + message);
+    }
+    const std::size_t frames_before = known->frames.size();
+    for (StampedFrame frame : stream.frames) {
+      if (!stream.counted) frame.counter += frames_before;
+      known->frames.push_back(frame);
+    }
+  }
+  for (TopicScan& topic : next.topics) {
+    const auto known = std::ranges::find_if(scan.topics, [&topic](const TopicScan& t) {
+      return t.topic.name == topic.topic.name && t.topic.publisher == topic.topic.publisher;
+    });
+    if (known == scan.topics.end()) {
+      scan.topics.push_back(std::move(topic));
+    } else if (topic.messages > 0) {
+      known->append(topic);
+    }
+  }
+  scan.notes.insert(scan.notes.end(), next.notes.begin(), next.notes.end());
+  scan.facts.messages += next.facts.messages;
+  scan.facts.lost_bytes += next.facts.lost_bytes;
+  scan.facts.indexed = scan.facts.indexed && next.facts.indexed;
+}
+
+// What a bag without cameras has, and how its topics are read all the same.
+[[noreturn]] void fail_without_cameras(const std::string& path, const BagScan& scan) {
+  std::string topics;
+  for (std::size_t i = 0; i < std::min(scan.topics.size(), kMostTopicsShown); ++i) {
+    const BagTopic& topic = scan.topics[i].topic;
+    topics += fmt::format("{}{} ({})", i > 0 ? ", " : "", printable_name(topic.name),
+                          topic.type.empty() ? "unknown type" : printable_name(topic.type));
+  }
+  if (scan.topics.size() > kMostTopicsShown) topics += ", ...";
+  throw BagError(fmt::format(
+      "{}: found no frames of a camera; its topics: {}. --topics NAME,... reads any whose messages "
+      "begin with a header",
+      path, topics));
+}
+
+// Two cameras of different files with one name are told apart by their files.
+void tell_apart(std::vector<RecordedStreams>& recordings, const std::vector<std::string>& names) {
+  std::map<std::string, std::set<std::size_t>> users;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    for (const CameraStream& stream : recordings[i].streams) users[stream.camera].insert(i);
+  }
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    for (CameraStream& stream : recordings[i].streams) {
+      if (users[stream.camera].size() > 1) stream.camera = names[i] + "/" + stream.camera;
+    }
+  }
+}
+
+}  // namespace
+
+bool is_bag(const std::string& path) {
+  if (fs::is_directory(path)) return is_rosbag2_folder(path);
+  try {
+    return bag_format(path).has_value();
+  } catch (const FileError& error) {
+    throw BagError(path + ": cannot be read: " + error.what());
+  }
+}
+
+BagScan scan_recording(const std::string& path, const std::string& name, const ScanOptions& options,
+                       const ReadProgress& progress) {
+  std::optional<BagScan> all;
+  for (const std::string& file : files_of(path)) {
+    BagScan scan = scan_bag(file, name, options, progress);
+    if (!all) {
+      all = std::move(scan);
+    } else {
+      append(*all, std::move(scan));
+    }
+  }
+  if (!all) throw BagError(path + ": found no bag in this folder");
+  return std::move(*all);
+}
+
+RecordedStreams read_recorded_files(const std::vector<std::string>& files,
+                                    const FileOptions& options, const ReadProgress& progress) {
+  check_given_once(files);
+  const std::vector<std::string> names = camera_names(files);
+  std::uint64_t total = 0;
+  for (const std::string& file : files) total += size_of(file);
+  std::uint64_t before = 0;
+  CsvRecordingReader csv =
+      options.columns ? CsvRecordingReader(*options.columns) : CsvRecordingReader();
+  std::vector<RecordedStreams> recordings(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const ReadProgress counted = [&](std::uint64_t done, std::uint64_t) {
+      if (progress) progress(std::min(before + done, total), total);
+    };
+    if (is_bag(files[i])) {
+      BagScan scan = scan_recording(files[i], names[i], {.topics = options.topics}, counted);
+      if (scan.streams.empty()) fail_without_cameras(files[i], scan);
+      recordings[i] = {std::move(scan.streams), std::move(scan.notes)};
+    } else {
+      csv.read_file(files[i], names[i], counted);
+    }
+    before += size_of(files[i]);
+  }
+  tell_apart(recordings, names);
+  RecordedStreams all{csv.take(), csv.notes()};
+  for (RecordedStreams& recording : recordings) {
+    std::ranges::move(recording.streams, std::back_inserter(all.streams));
+    std::ranges::move(recording.notes, std::back_inserter(all.notes));
+  }
+  return all;
+}
+
+}  // namespace simbench::bags

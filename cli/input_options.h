@@ -1,0 +1,40 @@
+// The options of commands that take recordings of real cameras: --topics, --columns.
+//
+//   InputOptions inputs;
+//   add_input_options(command, inputs);
+//   const RecordedStreams rig = app::recorded_streams({"rig.bag"}, file_options(inputs));
+#ifndef SIMBENCH_CLI_INPUT_OPTIONS_H_
+#define SIMBENCH_CLI_INPUT_OPTIONS_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bags/recorded_files.h"
+#include "cli/command.h"
+#include "recording/recorded_streams.h"
+
+namespace simbench::cli {
+
+struct InputOptions {
+  std::vector<std::string> topics;
+  std::string columns;
+};
+
+// What a command says of its inputs in the help's list of arguments.
+inline constexpr const char* kInputsText =
+    "A recording folder; or bags (RealSense, ROS 1, ROS 2) and CSV files";
+
+void add_input_options(Command& command, InputOptions& options);
+
+// Throws CsvError for columns that make no sense.
+bags::FileOptions file_options(const InputOptions& options);
+
+// The streams of the inputs (app/recorded_streams.h), with progress and with their notes printed.
+// Nothing after Ctrl-C.
+std::optional<RecordedStreams> read_inputs(const std::vector<std::string>& inputs,
+                                           const InputOptions& options);
+
+}  // namespace simbench::cli
+
+#endif  // SIMBENCH_CLI_INPUT_OPTIONS_H_
