@@ -146,7 +146,9 @@ class Group {
       if (!agree(other, candidate)) return Follows::kOwnClock;
     }
     if (candidates_.size() == 1) return Follows::kUnknown;
-    return others || more_hosts_than_one() ? Follows::kHostOrOwn : Follows::kOwnClock;
+    if (more_hosts_than_one()) return Follows::kHostOrOwn;
+    // On one clock: it agrees with others that are too uncertain to be a standard.
+    return others ? Follows::kUnknown : Follows::kOwnClock;
   }
 
   bool more_hosts_than_one() const {

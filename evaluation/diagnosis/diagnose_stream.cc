@@ -23,6 +23,7 @@ constexpr std::ptrdiff_t kLeastJumpWindow = 5;
 constexpr double kWholePeriod = 0.15;  // how far from a whole number of periods a slip may be
 constexpr double kMostPeriods = 1000;
 constexpr std::size_t kLongestSpan = 30;  // frames
+constexpr double kPassingS = 5;  // a step that is undone sooner is lateness
 constexpr double kLeastFutureMs = 5;
 constexpr double kLeastBurstMs = 10;
 constexpr double kBurstSpreads = 5;  // of the upper tenth's distance from the median
@@ -112,14 +113,14 @@ std::optional<double> stream_period(std::span<const StampedFrame> frames) {
   return means.empty() ? interval : median(std::move(means));
 }
 
-// From the ends, which are enough to find stamps of another unit.
+// From the ends, which are enough to find stamps of another unit; without jumps.
 void note_drift(std::span<const StampedFrame> frames, StreamFacts& facts) {
   constexpr std::size_t kFramesForDrift = 30;
   const StampedFrame& first = frames.front();
   const StampedFrame& last = frames.back();
   const double device_ms = difference_ms(last.sensor.count(), first.sensor.count());
   if (frames.size() < kFramesForDrift || !(device_ms > 0)) return;
-  const double host_ms = difference_ms(last.arrival.count(), first.arrival.count());
+  const double host_ms = facts.arrivals_ms.back() - facts.arrivals_ms.front();
   facts.drift_ppm = (host_ms / device_ms - 1) * 1e6;
 }
 
@@ -147,35 +148,62 @@ double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::p
   return median(std::vector<double>(values.begin() + begin, values.begin() + end));
 }
 
-// Finds lasting steps of `offsets` (arrival - sensor stamp) and removes them from the arrivals.
-void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
-                StreamFacts& facts) {
+// Steps of `offsets` (arrival - sensor stamp) that hold on for some frames.
+std::vector<StampJump> find_jumps(std::span<const StampedFrame> frames,
+                                  const std::vector<double>& offsets, double period_ms) {
   const auto size = static_cast<std::ptrdiff_t>(offsets.size());
-  double taken_out = 0;
+  std::vector<StampJump> jumps;
   std::ptrdiff_t settled = 0;  // no jump before this frame
   for (std::ptrdiff_t i = 0; i < size; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::ptrdiff_t before = std::min(kJumpWindow, i - settled);
     const std::ptrdiff_t after = std::min(kJumpWindow, size - i);
     const bool candidate = before >= kLeastJumpWindow && after >= kLeastJumpWindow &&
-                           std::abs(offsets[at] - offsets[at - 1]) > facts.period_ms / 2;
-    if (candidate) {
-      const double step = median_of(offsets, i, i + after) - median_of(offsets, i - before, i);
-      if (std::abs(step) > facts.period_ms / 2) {
-        const double periods = step / facts.period_ms;
-        const bool whole = std::abs(periods - std::round(periods)) < kWholePeriod;
-        const bool few = std::abs(periods) < kMostPeriods;
-        facts.jumps.push_back(
-            {.frame = at,
-             .at_s =
-                 difference_ms(frames[at].arrival.count(), frames.front().arrival.count()) * 1e-3,
-             .step_ms = step,
-             .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
-        taken_out += step;
-        settled = i;
-      }
+                           std::abs(offsets[at] - offsets[at - 1]) > period_ms / 2;
+    if (!candidate) continue;
+    const double step = median_of(offsets, i, i + after) - median_of(offsets, i - before, i);
+    if (std::abs(step) <= period_ms / 2) continue;
+    const double periods = step / period_ms;
+    const bool whole = std::abs(periods - std::round(periods)) < kWholePeriod;
+    const bool few = std::abs(periods) < kMostPeriods;
+    jumps.push_back(
+        {.frame = at,
+         .at_s = difference_ms(frames[at].arrival.count(), frames.front().arrival.count()) * 1e-3,
+         .step_ms = step,
+         .periods = whole && few ? static_cast<int>(std::round(periods)) : 0});
+    settled = i;
+  }
+  return jumps;
+}
+
+// Frames that come late for a while and then in time again: a busy host, not two jumps.
+void drop_passing(std::vector<StampJump>& jumps, double period_ms) {
+  for (std::size_t i = 0; i + 1 < jumps.size();) {
+    const StampJump& up = jumps[i];
+    const StampJump& down = jumps[i + 1];
+    const bool passes = up.step_ms > 0 && down.at_s - up.at_s < kPassingS &&
+                        std::abs(up.step_ms + down.step_ms) < period_ms / 2;
+    const auto begin = jumps.begin() + static_cast<std::ptrdiff_t>(i);
+    if (passes) {
+      jumps.erase(begin, begin + 2);
+    } else {
+      ++i;
     }
-    facts.arrivals_ms[at] -= taken_out;
+  }
+}
+
+// Notes lasting jumps and removes them from the arrivals.
+void note_jumps(std::span<const StampedFrame> frames, const std::vector<double>& offsets,
+                StreamFacts& facts) {
+  facts.jumps = find_jumps(frames, offsets, facts.period_ms);
+  drop_passing(facts.jumps, facts.period_ms);
+  double taken_out = 0;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < facts.arrivals_ms.size(); ++i) {
+    while (next < facts.jumps.size() && facts.jumps[next].frame == i) {
+      taken_out += facts.jumps[next++].step_ms;
+    }
+    facts.arrivals_ms[i] -= taken_out;
   }
 }
 
@@ -336,7 +364,6 @@ StreamFacts stream_facts(const CameraStream& stream) {
   const std::optional<double> period_ms = stream_period(frames);
   if (!period_ms) return facts;
   facts.period_ms = *period_ms;
-  note_drift(frames, facts);
   note_intervals(frames, facts);
 
   std::vector<double> offsets;
@@ -346,6 +373,7 @@ StreamFacts stream_facts(const CameraStream& stream) {
                       difference_ms(frame.sensor.count(), frames.front().sensor.count()));
   }
   note_jumps(frames, offsets, facts);
+  note_drift(frames, facts);
   note_delays(frames, facts);
   if (facts.stamped_by_host) note_least_delay(frames, facts);
   note_host_period(facts);
