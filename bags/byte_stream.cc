@@ -14,27 +14,36 @@ namespace {
 constexpr std::size_t kInflateBuffer = std::size_t{64} << 10;
 constexpr int kLargestZstdWindowLog = 26;  // 64 MB
 
-// Discards what a decompressor gives: it has no other way to get on.
-std::uint64_t read_over(ByteStream& stream, std::uint64_t count, std::vector<char>& buffer) {
-  std::uint64_t done = 0;
-  while (done < count) {
-    const std::size_t most =
-        static_cast<std::size_t>(std::min<std::uint64_t>(count - done, buffer.size()));
-    const std::size_t size = stream.read(buffer.data(), most);
-    if (size == 0) break;
-    done += size;
-  }
-  return done;
-}
-
-// What decompressors have in common: compressed bytes in a buffer, and the way over unwanted ones.
+// What decompressors have in common: compressed bytes in one buffer, plain ones in another, so that
+// reading and skipping a few bytes costs little.
 class Inflater : public ByteStream {
  public:
   explicit Inflater(ByteStream& compressed)
-      : compressed_(compressed), input_(kInflateBuffer), over_(kInflateBuffer) {}
-  std::uint64_t skip(std::uint64_t count) override { return read_over(*this, count, over_); }
+      : compressed_(compressed), input_(kInflateBuffer), plain_(kInflateBuffer) {}
+
+  std::size_t read(char* to, std::size_t most) override {
+    if (most == 0 || !refill()) return 0;
+    const std::size_t size = std::min(most, plain_end_ - plain_begin_);
+    std::memcpy(to, plain_.data() + plain_begin_, size);
+    plain_begin_ += size;
+    return size;
+  }
+
+  std::uint64_t skip(std::uint64_t count) override {
+    std::uint64_t done = 0;
+    while (done < count && refill()) {
+      const auto size = static_cast<std::size_t>(
+          std::min<std::uint64_t>(count - done, plain_end_ - plain_begin_));
+      plain_begin_ += size;
+      done += size;
+    }
+    return done;
+  }
 
  protected:
+  // Returns 1 to `most` plain bytes; 0 only at the end.
+  virtual std::size_t inflate(char* to, std::size_t most) = 0;
+
   // False at the end of the compressed bytes.
   bool fill() {
     if (begin_ < end_) return true;
@@ -47,11 +56,21 @@ class Inflater : public ByteStream {
   void consume(std::size_t size) { begin_ += size; }
 
  private:
+  // False at the end of the plain bytes.
+  bool refill() {
+    if (plain_begin_ < plain_end_) return true;
+    plain_begin_ = 0;
+    plain_end_ = inflate(plain_.data(), plain_.size());
+    return plain_end_ > 0;
+  }
+
   ByteStream& compressed_;
   std::vector<char> input_;
-  std::vector<char> over_;
+  std::vector<char> plain_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
+  std::size_t plain_begin_ = 0;
+  std::size_t plain_end_ = 0;
 };
 
 class Lz4Inflater final : public Inflater {
@@ -64,8 +83,8 @@ class Lz4Inflater final : public Inflater {
     context_.reset(context);
   }
 
-  std::size_t read(char* to, std::size_t most) override {
-    while (most > 0) {
+  std::size_t inflate(char* to, std::size_t most) override {
+    while (true) {
       if (!fill()) {
         if (wanted_ == 0) return 0;
         throw InflateError("LZ4: the compressed bytes end too early");
@@ -82,7 +101,6 @@ class Lz4Inflater final : public Inflater {
       wanted_ = result;
       if (given > 0) return given;
     }
-    return 0;
   }
 
  private:
@@ -101,9 +119,9 @@ class ZstdInflater final : public Inflater {
     ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, kLargestZstdWindowLog);
   }
 
-  std::size_t read(char* to, std::size_t most) override {
+  std::size_t inflate(char* to, std::size_t most) override {
     ZSTD_outBuffer output{to, most, 0};
-    while (most > 0) {
+    while (true) {
       // Plain bytes may be left inside that need no further compressed ones.
       const bool more = fill();
       ZSTD_inBuffer input{next(), left(), 0};
@@ -118,7 +136,6 @@ class ZstdInflater final : public Inflater {
       if (wanted_ == 0) return 0;
       throw InflateError("zstd: the compressed bytes end too early");
     }
-    return 0;
   }
 
  private:
@@ -138,8 +155,8 @@ class Bzip2Inflater final : public Inflater {
   Bzip2Inflater(const Bzip2Inflater&) = delete;
   Bzip2Inflater& operator=(const Bzip2Inflater&) = delete;
 
-  std::size_t read(char* to, std::size_t most) override {
-    while (most > 0 && !ended_) {
+  std::size_t inflate(char* to, std::size_t most) override {
+    while (!ended_) {
       const bool more = fill();
       stream_.next_in = next();
       stream_.avail_in = static_cast<unsigned>(left());

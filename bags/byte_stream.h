@@ -1,6 +1,6 @@
 // Bytes in order, of a file or of a compressed part of one, of which most are skipped.
 //
-// Memory: a buffer of 16 kB for a file; for compressed bytes 64 kB, and what the format looks back
+// Memory: a buffer of 16 kB for a file; for compressed bytes 128 kB, and what the format looks back
 // to (LZ4 64 kB, bzip2 4 MB, zstd up to 64 MB, a frame that needs more is refused).
 //
 //   FileBytes file("rig.bag");

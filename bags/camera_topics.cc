@@ -38,7 +38,8 @@ std::string joined(const std::vector<std::string_view>& parts, std::size_t count
 }
 
 bool is_of_sdk(std::string_view name) {
-  return name.starts_with("/device_") && (name.ends_with("/info") || name.find("/sensor_") != name.npos);
+  return name.starts_with("/device_") &&
+         (name.ends_with("/info") || name.find("/sensor_") != name.npos);
 }
 
 CameraTopic sdk_topic(std::string_view name) {

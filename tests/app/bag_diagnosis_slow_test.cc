@@ -26,11 +26,38 @@ constexpr int kFrames = 6000;  // 200 s
 constexpr Nanoseconds kPeriod = Nanoseconds(33'333'333);
 constexpr std::int64_t kRegisterNs = (std::int64_t{1} << 32) * 1000;
 
-evaluation::Diagnosis diagnosed(const Rig& rig) {
-  const TemporaryFolder folder;
-  const RecordedStreams read = app::recorded_streams(write_sdk_bags(rig, folder.path()));
-  return evaluation::diagnose(read.streams, {.one_host = true});
+bool are_equal(const CameraStream& a, const CameraStream& b) {
+  return std::ranges::equal(a.frames, b.frames, [](const StampedFrame& x, const StampedFrame& y) {
+    return x.counter == y.counter && x.sensor == y.sensor && x.arrival == y.arrival;
+  });
 }
+
+// The bags of a rig; writing them is what takes the time, so a rig that differs in few cameras
+// shares the others'.
+class RigBags {
+ public:
+  explicit RigBags(Rig rig) : rig_(std::move(rig)) {
+    for (const CameraStream& camera : rig_) files_.push_back(write_sdk_bag(camera, folder_.path()));
+  }
+
+  // Of a rig that has the same cameras.
+  evaluation::Diagnosis diagnosed(const Rig& rig) const {
+    const TemporaryFolder changed;
+    std::vector<std::string> files = files_;
+    for (std::size_t i = 0; i < rig.size(); ++i) {
+      if (!are_equal(rig[i], rig_[i])) files[i] = write_sdk_bag(rig[i], changed.path());
+    }
+    const RecordedStreams read = app::recorded_streams(files);
+    return evaluation::diagnose(read.streams, {.one_host = true});
+  }
+
+  const Rig& rig() const { return rig_; }
+
+ private:
+  const TemporaryFolder folder_;
+  const Rig rig_;
+  std::vector<std::string> files_;
+};
 
 // "kind camera" of each finding; the register's wrap is no fault.
 std::set<std::string> faults(const evaluation::Diagnosis& diagnosis) {
@@ -117,7 +144,8 @@ void repeat_stamps(Rig& rig) {
 
 TEST(BagDiagnosisTest, CleanRigsHaveNoFault) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const evaluation::Diagnosis diagnosis = diagnosed(simulated_rig(seed, 6, kFrames));
+    const RigBags bags(simulated_rig(seed, 6, kFrames));
+    const evaluation::Diagnosis diagnosis = bags.diagnosed(bags.rig());
     EXPECT_THAT(faults(diagnosis), testing::IsEmpty()) << "seed " << seed;
     EXPECT_EQ(diagnosis.verdict.status, evaluation::SyncStatus::kWorks)
         << "seed " << seed << ": " << diagnosis.verdict.reason;
@@ -137,19 +165,22 @@ TEST(BagDiagnosisTest, EachOfTenFaultsIsFoundWhereItIs) {
       {"free-running", run_free, {"free_running camera2"}, {"camera2"}},
       {"half the rate", halve_rate, {"divided_rate camera2"}, {"camera2"}},
       {"slipped period", slip, {"period_slip camera2"}, {"camera2"}},
-      {"swapped topics", swap_topics, {"swapped camera1", "swapped camera4"}, {"camera1", "camera4"}},
+      {"swapped topics",
+       swap_topics,
+       {"swapped camera1", "swapped camera4"},
+       {"camera1", "camera4"}},
       {"clock step", step_clock, {"clock_step camera0", "clock_step camera5"}, {}},
       {"wrap", wrap, {}, {"none"}},
       {"jitter burst", hold_up, {"late_burst camera2"}, {"camera2"}},
       {"late start", start_late, {"late_start camera2"}, {"camera2"}},
       {"duplicated stamps", repeat_stamps, {"repeated_stamps camera2"}, {"camera2"}},
   };
-  for (std::uint64_t seed = 31; seed <= 33; ++seed) {
-    const Rig clean = simulated_rig(seed, 6, kFrames);
+  for (std::uint64_t seed = 31; seed <= 32; ++seed) {
+    const RigBags bags(simulated_rig(seed, 6, kFrames));
     for (const Fault& fault : kinds) {
-      Rig rig = clean;
+      Rig rig = bags.rig();
       fault.inject(rig);
-      const evaluation::Diagnosis diagnosis = diagnosed(rig);
+      const evaluation::Diagnosis diagnosis = bags.diagnosed(rig);
       const std::set<std::string> found = faults(diagnosis);
       for (const std::string& expected : fault.found) {
         EXPECT_THAT(found, testing::Contains(expected)) << fault.name << ", seed " << seed;

@@ -2,7 +2,7 @@
 // camera.
 //
 //   std::vector<CameraStream> rig = simulated_rig("6cam_2host_30fps", 1, 2400);
-//   const std::vector<std::string> files = write_sdk_bags(rig, folder.path());
+//   const std::string file = write_sdk_bag(rig.front(), folder.path());
 #ifndef SIMBENCH_TESTS_APP_RIG_BAGS_H_
 #define SIMBENCH_TESTS_APP_RIG_BAGS_H_
 
@@ -54,21 +54,16 @@ inline std::string sdk_bag(const CameraStream& stream, bags::RosbagWriter::Chunk
     const auto tell = [&](const char* name, std::int64_t value) {
       writer.add_message(metadata, log, bags::ros1_key_value(name, std::to_string(value)));
     };
-    tell("Frame Counter", static_cast<std::int64_t>(frame.counter));
     tell("Sensor Timestamp", frame.sensor.count() / 1000);
     tell("Time Of Arrival", (kStart + frame.arrival).count() / 1'000'000);
   }
   return writer.bag();
 }
 
-inline std::vector<std::string> write_sdk_bags(const std::vector<CameraStream>& streams,
-                                               const std::string& folder) {
-  std::vector<std::string> files;
-  for (const CameraStream& stream : streams) {
-    files.push_back(folder + "/" + stream.camera + ".bag");
-    bags::write_bytes(files.back(), sdk_bag(stream, bags::RosbagWriter::Chunks::kLz4));
-  }
-  return files;
+inline std::string write_sdk_bag(const CameraStream& stream, const std::string& folder) {
+  const std::string file = folder + "/" + stream.camera + ".bag";
+  bags::write_bytes(file, sdk_bag(stream, bags::RosbagWriter::Chunks::kLz4));
+  return file;
 }
 
 }  // namespace simbench
