@@ -6,12 +6,19 @@
 #include <optional>
 #include <utility>
 
+#include "app/answer.h"
+#include "app/fitted_ranking.h"
+#include "app/interrupt.h"
 #include "app/recorded_streams.h"
+#include "app/results.h"
 #include "cli/command.h"
 #include "cli/commands/commands.h"
 #include "cli/input_options.h"
+#include "cli/progress.h"
 #include "evaluation/fit/fit_check.h"
+#include "evaluation/run/evaluate.h"
 #include "recording/recording_folder.h"
+#include "reports/results/results_answer.h"
 #include "reports/rigs/fit_report.h"
 #include "reports/text/output_file.h"
 #include "sim/rig/simulation.h"
@@ -31,10 +38,17 @@ Examples:
   simbench fit monday -o model.json
   simbench --scenario model.json
   simbench fit monday --pipeline two_way_hull --seed 3 -o model.json
+  simbench fit *.bag -o model.json --rank              what would a better algorithm give?
   simbench fit left.csv right.csv --one-host --base my_rig.json -o model.json --format json
 
 Exit status: 0 ok, 1 internal error, 2 bad usage or input,
 130 interrupted.)";
+
+constexpr const char* kRankingLimits =
+    "  Spreads and sets rest on the recording. Absolute errors also rest on the base: no stamp "
+    "shows "
+    "the\n  constant part of the delay. So do host clocks, unless the recording has their "
+    "exchanges.";
 
 struct FitOptions {
   std::vector<std::string> inputs;
@@ -44,6 +58,10 @@ struct FitOptions {
   std::string pipeline;
   std::optional<std::uint64_t> seed;
   bool one_host = false;
+  bool rank = false;
+  bool verbose = false;
+  std::uint64_t seeds = 8;
+  unsigned jobs = 0;
   std::string format;
 };
 
@@ -134,6 +152,26 @@ std::optional<FitTask> task_of(const FitOptions& options) {
   return task_of_files(options);
 }
 
+// The model under every pipeline; nothing after Ctrl-C.
+std::optional<std::string> ranking_text(const scenarios::Scenario& model,
+                                        const FitOptions& options) {
+  const app::Ranking ranking = app::ranking_of(model);
+  for (const std::string& text : ranking.left_out) print_note("not ranked: " + text);
+  const auto results = watched<evaluation::Results>(
+      [&](const evaluation::Progress& progress) {
+        return evaluation::evaluate(
+            ranking.scenario, [&] { return app::simulated_world(ranking.scenario); },
+            {.seeds = options.seeds, .jobs = options.jobs}, progress);
+      },
+      {.unit = "run"});
+  if (!results) return std::nullopt;
+  print_warnings(results->warnings);
+  return app::results_text(
+      *results, ranking.scenario, options.format,
+      options.verbose ? app::Detail::kAll : app::Detail::kScreen,
+      reports::results_answer(*results, app::ranked_by(ranking.scenario), nullptr));
+}
+
 int run_fit(const FitOptions& options) {
   const reports::OutputFile output(options.output);
   reports::FitReport report;
@@ -155,7 +193,17 @@ int run_fit(const FitOptions& options) {
   }
   output.write(report.study.model.text);
   output.publish();
-  print_result(options.format == "json" ? reports::fit_json(report) : reports::fit_table(report));
+  const scenarios::Scenario& model = report.study.model.scenario;
+  if (!options.rank) {
+    print_result(options.format == "json" ? reports::fit_json(report) : reports::fit_table(report));
+    return kOk;
+  }
+  const std::optional<std::string> ranking = ranking_text(model, options);
+  if (!ranking) return kInterrupted;
+  print_result(options.format == "json"
+                   ? *ranking
+                   : fmt::format("{}\nWhat every algorithm would give on this rig\n{}\n\n{}",
+                                 reports::fit_table(report), kRankingLimits, *ranking));
   return kOk;
 }
 
@@ -181,6 +229,13 @@ void add_fit_command(CommandLine& line) {
   add_input_options(command, options->files);
   command.flag("--one-host", options->one_host,
                "One computer stamped all arrivals, even if the files name several hosts");
+  command.flag(
+      "--rank", options->rank,
+      "Then simulate the model under every pipeline of the leaderboard that it can run, and\n"
+      "rank them (with --format json: print the ranking alone)");
+  command.flag("--verbose", options->verbose, "With --rank: all rows, all metrics");
+  command.count("--seeds", options->seeds, "With --rank: runs of each pipeline. Default: 8");
+  command.jobs(options->jobs);
   command.format(options->format, {"table", "json"});
   command.footer(kFitExamples);
   command.runs([options] { return run_fit(*options); });

@@ -1,0 +1,29 @@
+// What every algorithm would give on a rig: the model that was fitted to a recording, under all
+// pipelines of the leaderboard that it can run.
+//
+// Of a rig with one host the boards of host synchronisation are left out: there is nothing to
+// synchronise. An algorithm that needs what the model lacks (hardware stamps, pulses, polls of the
+// cameras' clocks) is left out and named.
+//
+//   const Ranking ranking = ranking_of(study.model.scenario);
+//   evaluate(ranking.scenario, simulated_world(ranking.scenario), {.seeds = 8}, progress);
+#ifndef SIMBENCH_APP_FITTED_RANKING_H_
+#define SIMBENCH_APP_FITTED_RANKING_H_
+
+#include <string>
+#include <vector>
+
+#include "scenarios/scenario.h"
+
+namespace simbench::app {
+
+struct Ranking {
+  scenarios::Scenario scenario;         // prints a leaderboard
+  std::vector<std::string> left_out{};  // "host.pps: needs a pulse per second (...)"
+};
+
+Ranking ranking_of(const scenarios::Scenario& fitted);
+
+}  // namespace simbench::app
+
+#endif  // SIMBENCH_APP_FITTED_RANKING_H_
