@@ -1,5 +1,5 @@
-// Streams of stamped frames: what is known of a rig from its files alone, without a truth and without
-// the events of its hosts.
+// Streams of stamped frames: what is known of a rig from its files alone, without a truth and
+// without the events of its hosts.
 //
 //   for (const CameraStream& stream : app::recorded_streams({"rig.bag"}).streams) ...
 //
@@ -51,7 +51,8 @@ struct RecordedStreams {
   std::vector<std::string> notes;  // for the user: what was left out
 };
 
-// A file that cannot be read as such streams. what() is the message for the user and names the file.
+// A file that cannot be read as such streams. what() is the message for the user and names the
+// file.
 class RecordedFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -127,22 +127,47 @@ char separator_of(std::string_view line) {
 }
 
 bool is_header_again(const std::vector<std::string_view>& cells, const Header& header,
-                     const CsvColumns& columns) {
-  const std::size_t position = header.position[static_cast<std::size_t>(CsvField::kSensor)];
+                     const CsvColumns& columns, bool usual) {
+  const CsvField field = usual ? CsvField::kStream : CsvField::kSensor;
+  const std::size_t position = usual ? 0 : header.position[static_cast<std::size_t>(field)];
   return position < cells.size() &&
-         plain_name(cells[position]) == plain_name(columns.of(CsvField::kSensor).name);
+         plain_name(cells[position]) == plain_name(columns.of(field).name);
 }
 
 bool is_motion(std::string_view stream) {
   return stream == "Gyro" || stream == "Accel" || stream == "Pose";
 }
 
+// The number times a power of ten, digit by digit: a double would lose some. Nothing if the text is
+// no plain decimal number.
+std::optional<std::string> shifted(std::string_view text, int exponent) {
+  const bool negative = text.starts_with('-');
+  if (negative) text.remove_prefix(1);
+  const std::size_t point = std::min(text.find('.'), text.size());
+  std::string digits(text.substr(0, point));
+  std::string fraction(text.substr(std::min(point + 1, text.size())));
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (digits.empty() || !std::ranges::all_of(digits, is_digit) ||
+      !std::ranges::all_of(fraction, is_digit)) {
+    return std::nullopt;
+  }
+  for (; exponent > 0; --exponent) {
+    digits += fraction.empty() ? '0' : fraction.front();
+    fraction.erase(0, fraction.empty() ? 0 : 1);
+  }
+  for (; exponent < 0; ++exponent) {
+    fraction.insert(0, 1, digits.empty() ? '0' : digits.back());
+    if (!digits.empty()) digits.pop_back();
+  }
+  return (negative ? "-" : "") + (digits.empty() ? "0" : digits) + "." + fraction + "0";
+}
+
 Nanoseconds stamp_of(std::string_view cell, const CsvColumns::Column& column, const Place& place) {
   std::optional<Nanoseconds> stamp;
   if (column.exponent == 0) {
     stamp = parse_ms(cell, kLargestStampMs);
-  } else if (!cell.empty() && cell.find_first_of("eE") == std::string_view::npos) {
-    stamp = parse_ms(std::string(cell) + "e" + std::to_string(column.exponent), kLargestStampMs);
+  } else if (const auto ms = shifted(cell, column.exponent)) {
+    stamp = parse_ms(*ms, kLargestStampMs);
   }
   if (stamp) return *stamp;
   place.fail(column.name + ": found " + quoted_bytes(cell) + ", allowed: a number of " +
@@ -216,7 +241,8 @@ void CsvRecordingReader::File::read_line(std::string_view line) {
   line = trimmed(line);
   if (line.empty()) return;
   split(line, header_ ? header_->separator : is_usual() ? ',' : separator_of(line), cells_);
-  if ((!header_ || is_header_again(cells_, *header_, columns_)) && take_header(line)) return;
+  if ((!header_ || is_header_again(cells_, *header_, columns_, is_usual())) && take_header(line))
+    return;
   check_cells();
   if (is_motion_line()) return;
   const std::string_view camera = has(CsvField::kCamera) ? cell(CsvField::kCamera) : name_;

@@ -28,11 +28,11 @@ namespace {
 
 constexpr const char* kFitExamples = R"(
 Takes a recording folder (simbench record, or a real rig's), or the bags and CSV files that
-`simbench replay` takes. Writes a scenario file: the recording gives the drift of each camera, the distribution and
-correlation of the delivery delay and the dropped frames; with exchanges between hosts also the
-network's latency and the hosts' rates. A base scenario gives the rest. Prints the evidence of each
-value, what stamps cannot show, and how the simulated model compares with the recording, also with a
-half to which it was not fitted.
+`simbench replay` takes. Writes a scenario file: the recording gives the drift of each camera, the
+distribution and correlation of the delivery delay and the dropped frames; with exchanges between
+hosts also the network's latency and the hosts' rates. A base scenario gives the rest. Prints the
+evidence of each value, what stamps cannot show, and how the simulated model compares with the
+recording, also with a half to which it was not fitted.
 
 Examples:
   simbench fit monday -o model.json

@@ -37,13 +37,13 @@ class SetKeeper final : public FrameSetSink {
 };
 
 // The streams of one kind as a replay has them, and which streams they are.
-struct Chosen {
+struct ChosenStreams {
   std::vector<CameraReplay> cameras;
   std::vector<std::size_t> streams;
 };
 
-Chosen chosen_streams(const std::vector<CameraStream>& streams, const std::string& kind) {
-  Chosen chosen;
+ChosenStreams chosen_streams(const std::vector<CameraStream>& streams, const std::string& kind) {
+  ChosenStreams chosen;
   std::optional<Nanoseconds> anchor;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const CameraStream& stream = streams[i];
@@ -74,7 +74,7 @@ GatheredSets gathered_sets(const std::vector<CameraStream>& streams, const std::
       !runs_on_recordings(gathering.info)) {
     throw std::invalid_argument("an algorithm that a recording cannot feed");
   }
-  const Chosen chosen = chosen_streams(streams, kind);
+  const ChosenStreams chosen = chosen_streams(streams, kind);
   if (chosen.cameras.size() < 2) return {};
   std::vector<std::size_t> all(chosen.cameras.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;

@@ -176,6 +176,59 @@ TEST(RsCsv, ALastLineWithoutItsEndIsLeftOutWithANote) {
       ElementsAre("cut.csv:3: the last line has no line end and may be cut; it was left out"));
 }
 
+TEST(RsCsv, ColumnsOfAnyNameAndUnit) {
+  CsvRecordingReader reader(
+      CsvColumns::parse("sensor=t cam:us,arrival=Host Time:s,counter=seq,camera=id"));
+  reader.read_text(
+      "id;seq;note;T cam;host time\nfront;7;a,b;1000.5;1790000000.123456789\n"
+      "back;8;;2000;1790000000.2\n",
+      "log.csv");
+  const std::vector<CameraStream> streams = reader.take();
+  ASSERT_EQ(streams.size(), 2U);
+  EXPECT_EQ(streams[0].camera, "front");
+  EXPECT_EQ(streams[0].stream, "frame");
+  EXPECT_TRUE(streams[0].counted);
+  EXPECT_EQ(streams[0].frames[0].counter, 7U);
+  EXPECT_EQ(streams[0].frames[0].sensor, Nanoseconds(1'000'500));
+  EXPECT_EQ(streams[0].frames[0].arrival, Nanoseconds(1'790'000'000'123'456'789));
+}
+
+TEST(RsCsv, WithoutACounterFramesCountAsTheyCome) {
+  CsvRecordingReader reader(CsvColumns::parse("sensor=s:ns,arrival=a:ns"));
+  reader.read_text("s\ta\n1\t10\n2\t20\n", "log.csv");
+  const std::vector<CameraStream> streams = reader.take();
+  EXPECT_FALSE(streams[0].counted);
+  EXPECT_EQ(streams[0].frames[1].counter, 1U);
+  EXPECT_EQ(streams[0].frames[1].sensor, Nanoseconds(2));
+}
+
+TEST(RsCsv, ColumnsThatAreNotThereAreNamed) {
+  const auto message_of = [](const std::string& columns, const std::string& text) -> std::string {
+    try {
+      CsvRecordingReader reader(CsvColumns::parse(columns));
+      reader.read_text(text, "log.csv");
+    } catch (const CsvError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message_of("sensor=s,arrival=b", "s,a\n1,2\n"),
+              HasSubstr("log.csv:1: found no column 'b' in the header 's,a'"));
+  EXPECT_THAT(message_of("sensor=s", ""), HasSubstr("at least sensor=COLUMN and arrival=COLUMN"));
+  EXPECT_THAT(message_of("sensor=s:h,arrival=a", ""), HasSubstr("units ns, us, ms, s"));
+  EXPECT_THAT(message_of("time=s,arrival=a", ""), HasSubstr("fields stream, index"));
+  EXPECT_THAT(message_of("sensor=s,sensor=t,arrival=a", ""), HasSubstr("found 'sensor=t'"));
+  EXPECT_THAT(message_of("sensor=s:us,arrival=a", "s,a\n1x,2\n"), HasSubstr("s: found '1x'"));
+  // Without them, the message says how.
+  CsvRecordingReader usual;
+  try {
+    usual.read_text("s,a\n1,2\n", "log.csv");
+    ADD_FAILURE() << "accepted";
+  } catch (const CsvError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--columns sensor=COLUMN,arrival=COLUMN"));
+  }
+}
+
 TEST(RsCsv, FilesAreNamedByWhatTellsThemApart) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(camera_names({"a/front/cam.csv", "a/back/cam.csv", "top.csv"}),

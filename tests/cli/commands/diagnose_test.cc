@@ -80,7 +80,7 @@ TEST_F(DiagnoseCommand, TakesARecordingFolder) {
   EXPECT_THAT(empty.err, HasSubstr("empty"));
   const ProgramResult both = run({"diagnose", "rig", file("rig.csv", recording(0))});
   EXPECT_EQ(both.status, 2);
-  EXPECT_THAT(both.err, HasSubstr("allowed one recording folder or CSV files"));
+  EXPECT_THAT(both.err, HasSubstr("allowed one recording folder, or files"));
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(FitCommand, BadInputIsOneLineAndLeavesTheEarlierFile) {
   refused({file("x.csv", recording(150)), "--seed", "1"}, "--pipeline and --seed choose");
   std::filesystem::create_directory(folder() / "empty");
   refused({"empty"}, "empty");
-  refused({"empty", "x.csv"}, "allowed one recording folder or CSV files");
+  refused({"empty", "x.csv"}, "allowed one recording folder, or files");
   EXPECT_THAT(names_in("empty"), ElementsAre());
 }
 

@@ -218,7 +218,8 @@ TEST_F(RecordCommand, FolderAndFilesAreNotMixed) {
   ASSERT_EQ(record_small().status, 0);
   const ProgramResult mixed = run({"replay", file("a.csv", ""), "rec"});
   EXPECT_EQ(mixed.status, 2);
-  EXPECT_THAT(mixed.err, HasSubstr("rec: is a folder, allowed: one recording folder, or files"));
+  EXPECT_THAT(mixed.err,
+              HasSubstr("rec: found among 2 inputs, allowed one recording folder, or files"));
   const ProgramResult other = run({"replay", "."});
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr(".: is no recording, it has no manifest.json"));

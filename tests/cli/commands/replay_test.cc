@@ -85,7 +85,7 @@ TEST_F(ReplayCommand, WhatOnlyAFolderTakesIsRefusedForFiles) {
   const std::string name = file("a.csv", recording(0));
   const ProgramResult markdown = run({"replay", name, "--format", "markdown"});
   EXPECT_EQ(markdown.status, 2);
-  EXPECT_THAT(markdown.err, HasSubstr("--format: found 'markdown', allowed with CSV files: "));
+  EXPECT_THAT(markdown.err, HasSubstr("--format: found 'markdown', allowed with files: "));
   const ProgramResult pipelines = run({"replay", name, "--pipelines", "oracle"});
   EXPECT_EQ(pipelines.status, 2);
   EXPECT_THAT(pipelines.err, HasSubstr("--pipelines: only a recording folder has pipelines"));
