@@ -59,12 +59,12 @@ class McapReader {
   DamageNotes notes_;
   McapChannels channels_{};
   BagFacts facts_{.format = BagFormat::kMcap};
-  std::uint64_t end_ = 0;        // of the records
-  std::uint64_t limit_ = 0;      // of the chunk that is being read, or end_
-  std::uint64_t told_ = 0;       // to `progress`
-  std::uint64_t unknown_ = 0;    // messages of channels that are nowhere described
+  std::uint64_t end_ = 0;      // of the records
+  std::uint64_t limit_ = 0;    // of the chunk that is being read, or end_
+  std::uint64_t told_ = 0;     // to `progress`
+  std::uint64_t unknown_ = 0;  // messages of channels that are nowhere described
   std::set<std::string> compressions_{};
-  std::string refused_{};        // the first chunk of an unknown compression
+  std::string refused_{};  // the first chunk of an unknown compression
   std::vector<char> head_{};
 };
 
@@ -249,7 +249,8 @@ std::optional<std::uint64_t> McapReader::next_record(std::uint64_t from, std::ui
   while (from < limit && limit - from >= kMcapRecordHead) {
     tell_progress(from);
     file_.seek(from);
-    const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(limit - from, window.size()));
+    const auto most =
+        static_cast<std::size_t>(std::min<std::uint64_t>(limit - from, window.size()));
     std::size_t size = 0;
     while (size < most) {
       const std::size_t more = file_.read(window.data() + size, most - size);

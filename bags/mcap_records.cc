@@ -25,7 +25,8 @@ std::uint16_t u16(FieldBytes& fields) {
 
 // As much of a record's content as its names can be in.
 std::string record_start(ByteStream& content, std::uint64_t length) {
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(length, kMostRecordRead)), '\0');
+  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(length, kMostRecordRead)),
+                    '\0');
   std::size_t done = 0;
   while (done < bytes.size()) {
     const std::size_t size = content.read(bytes.data() + done, bytes.size() - done);

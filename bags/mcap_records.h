@@ -88,9 +88,9 @@ class McapChannels {
 
 // The end of a file, if its writer closed it.
 struct McapSummary {
-  bool closed = false;   // a footer and the last magic bytes
-  bool damaged = false;  // there is a summary, but its checksum is another
-  std::uint64_t data_end = 0;  // where the footer begins, or the end of the file
+  bool closed = false;                      // a footer and the last magic bytes
+  bool damaged = false;                     // there is a summary, but its checksum is another
+  std::uint64_t data_end = 0;               // where the footer begins, or the end of the file
   std::optional<std::uint64_t> messages{};  // by its statistics
 };
 // Also takes the summary's channels. Throws FileError.
