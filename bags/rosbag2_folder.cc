@@ -108,7 +108,7 @@ std::vector<std::string> rosbag2_files(const std::string& folder) {
       // Whoever has unpacked it need not touch metadata.yaml.
       if (!fs::exists(file.parent_path() / file.stem())) {
         throw BagError(file.string() + ": is compressed as a whole; unpack it: zstd -d " +
-                       file.string());
+                       file.string() + " -o " + (file.parent_path() / file.stem()).string());
       }
       file.replace_extension();
     }
