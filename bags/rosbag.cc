@@ -11,6 +11,7 @@
 
 #include "bags/bag.h"
 #include "bags/byte_stream.h"
+#include "bags/damage_notes.h"
 #include "bags/rosbag_records.h"
 #include "recording/text_fields.h"
 
@@ -20,7 +21,6 @@ namespace {
 constexpr std::uint64_t kFirstRecord = 13;  // after "#ROSBAG V2.0\n"
 constexpr std::size_t kMostConnectionData = std::size_t{1} << 20;
 constexpr std::size_t kMostChunks = 2'000'000;
-constexpr std::size_t kMostNotes = 20;
 constexpr std::uint64_t kProgressStep = std::uint64_t{1} << 20;
 
 // What the index says of a chunk.
@@ -33,7 +33,7 @@ struct IndexedChunk {
 class RosbagReading {
  public:
   RosbagReading(const std::string& path, BagSink& sink, const ReadProgress& progress)
-      : path_(path), file_(path), sink_(sink), progress_(progress) {
+      : path_(path), file_(path), sink_(sink), progress_(progress), notes_(path) {
     facts_.format = BagFormat::kRosbag;
   }
 
@@ -51,11 +51,7 @@ class RosbagReading {
     std::size_t head = kLeaveOut;
   };
 
-  void note(std::uint64_t position, std::string_view text) {
-    if (notes_++ < kMostNotes) {
-      facts_.notes.push_back(fmt::format("{}: at byte {}: {}", path_, position, text));
-    }
-  }
+  void note(std::uint64_t position, const std::string& text) { notes_.add(position, text); }
 
   void read_bag_header();
   void read_index();
@@ -81,6 +77,7 @@ class RosbagReading {
   BagSink& sink_;
   const ReadProgress& progress_;
   BagFacts facts_;
+  DamageNotes notes_;
   std::map<std::uint32_t, Connection> connections_;
   std::vector<IndexedChunk> chunks_;  // by position
   std::uint64_t index_at_ = 0;        // 0: none
@@ -90,7 +87,6 @@ class RosbagReading {
   std::string head_;
   std::string connection_data_;
   std::map<std::string, std::uint64_t> compressions_;
-  std::size_t notes_ = 0;
   std::uint32_t topics_ = 0;
 };
 
@@ -345,13 +341,10 @@ void RosbagReading::finish() {
     facts_.lost_messages =
         indexed_messages_ > facts_.messages ? indexed_messages_ - facts_.messages : 0;
   } else if (index_at_ == 0) {
-    facts_.notes.push_back(path_ +
-                           ": has no index, as of a recorder that was killed; its messages were "
-                           "found without one");
+    notes_.add(
+        "has no index, as of a recorder that was killed; its messages were found without one");
   }
-  if (notes_ > kMostNotes) {
-    facts_.notes.push_back(fmt::format("{}: {} more damaged places", path_, notes_ - kMostNotes));
-  }
+  facts_.notes = notes_.take();
   if (topics_ == 0) throw BagError(path_ + ": found no topic in this bag");
 }
 

@@ -1,9 +1,26 @@
+// The files of a folder that rosbag2 recorded: a bag may be split into several.
+//
+//   for (const std::string& file : rosbag2_files("rosbag2_2024_05_01")) read_bag(file, sink);
+//
+// Errors: BagError for a folder without bags, and for files that rosbag2 compressed whole.
+// Source: rosbag2's metadata.yaml, relative_file_paths.
 #ifndef SIMBENCH_BAGS_ROSBAG2_FOLDER_H_
 #define SIMBENCH_BAGS_ROSBAG2_FOLDER_H_
+
 #include <string>
 #include <vector>
+
+#include "bags/bag.h"
+
 namespace simbench::bags {
+
+// Whether the folder has what rosbag2 writes, and is no recording folder of simbench.
 bool is_rosbag2_folder(const std::string& folder);
+
+// In the order of metadata.yaml; without one, of the numbers in their names. Files that
+// metadata.yaml names and that are missing are returned, too: reading them says so.
 std::vector<std::string> rosbag2_files(const std::string& folder);
+
 }  // namespace simbench::bags
+
 #endif  // SIMBENCH_BAGS_ROSBAG2_FOLDER_H_

@@ -14,8 +14,8 @@
 #include "cli/commands/commands.h"
 #include "cli/help.h"
 #include "cli/process.h"
-#include "recording/recording_folder.h"
 #include "recording/recorded_streams.h"
+#include "recording/recording_folder.h"
 #include "recording/version.h"
 #include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
@@ -87,7 +87,8 @@ const std::vector<CommandGroup>& command_groups() {
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},
       {"Recordings",
        {cli::add_inspect_command, cli::add_record_command, cli::add_replay_command,
-        cli::add_diagnose_command, cli::add_export_command, cli::add_stability_command, cli::add_fit_command, cli::add_convert_ibl_command}},
+        cli::add_diagnose_command, cli::add_export_command, cli::add_stability_command,
+        cli::add_fit_command, cli::add_convert_ibl_command}},
       {"Real rigs",
        {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
         cli::add_relay_command}},

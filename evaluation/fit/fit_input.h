@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "recording/event.h"
-#include "recording/recording.h"
 #include "recording/recorded_streams.h"
+#include "recording/recording.h"
 
 namespace simbench::evaluation {
 

@@ -1,0 +1,101 @@
+// The records of MCAP (mcap.dev/spec), as far as a reader of stamps needs them, and its summary.
+//
+// A record is an opcode, a length of eight bytes, and so many bytes of content. Numbers are
+// little-endian, texts begin with their length: as ROS 1 serialises, so FieldBytes reads them.
+//
+//   FileBytes file("rig.mcap");
+//   McapChannels channels;
+//   const McapSummary summary = read_mcap_summary(file, channels);
+//   if (summary.messages) ...
+#ifndef SIMBENCH_BAGS_MCAP_RECORDS_H_
+#define SIMBENCH_BAGS_MCAP_RECORDS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bags/bag.h"
+#include "bags/byte_stream.h"
+
+namespace simbench::bags {
+
+enum class McapOp : std::uint8_t {
+  kInvalid = 0,
+  kHeader = 1,
+  kFooter = 2,
+  kSchema = 3,
+  kChannel = 4,
+  kMessage = 5,
+  kChunk = 6,
+  kStatistics = 11,
+  kDataEnd = 15,  // the last one that the specification defines
+};
+
+inline constexpr std::uint64_t kMcapMagicSize = 8;
+inline constexpr std::uint64_t kMcapRecordHead = 9;  // opcode and length
+inline constexpr std::uint64_t kMcapMessageHead = 22;
+
+struct McapRecord {
+  McapOp op = McapOp::kInvalid;
+  std::uint64_t length = 0;  // of the content
+};
+// False if the end comes first.
+bool read_mcap_record(ByteStream& from, McapRecord& record);
+
+struct McapChunkHead {
+  std::uint64_t plain_size = 0;
+  std::string compression{};       // "", "lz4", "zstd"
+  std::uint64_t head_size = 0;     // of the content before the records
+  std::uint64_t records_size = 0;  // in the file
+};
+// Nothing if the fields contradict the record's length. `file` stands at the content.
+std::optional<McapChunkHead> read_mcap_chunk_head(FileBytes& file, std::uint64_t length);
+
+// The channels and schemas seen so far. The first of an id counts; names and their sum are bounded.
+class McapChannels {
+ public:
+  static constexpr std::uint32_t kNoTopic = static_cast<std::uint32_t>(-1);
+
+  struct Channel {
+    BagTopic topic{};
+    std::uint16_t schema = 0;
+    std::uint32_t number = kNoTopic;  // of the sink
+    std::size_t wanted = 0;           // what the sink asked for
+  };
+
+  // Takes the content of a Schema or Channel record; false if it makes no sense.
+  bool take(const McapRecord& record, ByteStream& content);
+  Channel* find(std::uint16_t id);
+  // Tells the sink of the channel's topic.
+  void announce(Channel& channel, BagSink& sink);
+  // Tells it of those that have no messages, too.
+  void announce_all(BagSink& sink);
+  bool empty() const { return channels_.empty(); }
+
+ private:
+  bool take_schema(std::string_view bytes);
+  bool take_channel(std::string_view bytes);
+  bool has_room(std::size_t size);
+
+  std::map<std::uint16_t, std::string> schemas_{};  // names
+  std::map<std::uint16_t, Channel> channels_{};
+  std::uint32_t announced_ = 0;
+  std::size_t text_bytes_ = 0;
+};
+
+// The end of a file, if its writer closed it.
+struct McapSummary {
+  bool closed = false;                      // a footer and the last magic bytes
+  bool damaged = false;                     // there is a summary, but its checksum is another
+  std::uint64_t data_end = 0;               // where the footer begins, or the end of the file
+  std::optional<std::uint64_t> messages{};  // by its statistics
+};
+// Also takes the summary's channels. Throws FileError.
+McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels);
+
+}  // namespace simbench::bags
+
+#endif  // SIMBENCH_BAGS_MCAP_RECORDS_H_

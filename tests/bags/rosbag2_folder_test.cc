@@ -1,0 +1,62 @@
+#include "bags/rosbag2_folder.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/scratch_folder.h"
+
+namespace simbench::bags {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string folder_refusal(const ScratchFolder& folder) {
+  try {
+    rosbag2_files(folder.path().string());
+  } catch (const BagError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Rosbag2Folder, TakesTheOrderOfItsMetadata) {
+  const ScratchFolder folder;
+  folder.write("metadata.yaml",
+               "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n"
+               "    - rig_1.db3\n    - \"old/rig_0.db3\"\n  duration:\n    nanoseconds: 1\n");
+  folder.write("rig_0.db3", "");
+  EXPECT_THAT(rosbag2_files(folder.path().string()),
+              ElementsAre(folder / "rig_1.db3", folder / "rig_0.db3"));
+  folder.write("metadata.yaml", "  relative_file_paths: [a.mcap, 'b.mcap']\n");
+  EXPECT_THAT(rosbag2_files(folder.path().string()),
+              ElementsAre(folder / "a.mcap", folder / "b.mcap"));
+}
+
+TEST(Rosbag2Folder, WithoutMetadataNumbersCount) {
+  const ScratchFolder folder;
+  for (const char* name : {"rig_10.mcap", "rig_9.mcap", "rig_1.mcap", "notes.txt"}) {
+    folder.write(name, "");
+  }
+  EXPECT_THAT(rosbag2_files(folder.path().string()),
+              ElementsAre(folder / "rig_1.mcap", folder / "rig_9.mcap", folder / "rig_10.mcap"));
+}
+
+TEST(Rosbag2Folder, AFileThatIsCompressedAsAWholeSaysHowToUnpackIt) {
+  const ScratchFolder folder;
+  const std::string file = folder.write("rig_0.db3.zstd", "");
+  EXPECT_THAT(folder_refusal(folder), HasSubstr("zstd -d " + file + " -o "));
+  folder.write("metadata.yaml", "relative_file_paths:\n- rig_0.db3.zstd\n");
+  EXPECT_THAT(folder_refusal(folder), HasSubstr("zstd -d " + file + " -o "));
+  folder.write("rig_0.db3", "");
+  EXPECT_THAT(rosbag2_files(folder.path().string()), ElementsAre(folder / "rig_0.db3"));
+}
+
+TEST(Rosbag2Folder, AFolderWithoutBagsIsRefused) {
+  const ScratchFolder folder;
+  EXPECT_THAT(folder_refusal(folder), HasSubstr("found no bag, allowed: a folder with .db3"));
+}
+
+}  // namespace
+}  // namespace simbench::bags
