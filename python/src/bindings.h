@@ -1,0 +1,17 @@
+// What the Python module `_simbench` is made of: each file of python/src adds its part.
+//
+// The public interface is written in Python (python/simbench); these functions and classes are what
+// it stands on. They convert and call what the commands call, and compute nothing themselves.
+#ifndef SIMBENCH_PYTHON_SRC_BINDINGS_H_
+#define SIMBENCH_PYTHON_SRC_BINDINGS_H_
+
+#include <pybind11/pybind11.h>
+
+namespace simbench::python {
+
+void bind_algorithms(pybind11::module_& module);
+void bind_results(pybind11::module_& module);
+
+}  // namespace simbench::python
+
+#endif  // SIMBENCH_PYTHON_SRC_BINDINGS_H_
