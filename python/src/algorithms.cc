@@ -1,7 +1,3 @@
 #include "python/src/bindings.h"
 
-namespace simbench::python {
-
 void bind_algorithms(pybind11::module_& module) { static_cast<void>(module); }
-
-}  // namespace simbench::python

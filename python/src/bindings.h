@@ -7,11 +7,12 @@
 
 #include <pybind11/pybind11.h>
 
-namespace simbench::python {
-
 void bind_algorithms(pybind11::module_& module);
+void bind_clocks(pybind11::module_& module);
+void bind_errors(pybind11::module_& module);
+void bind_recordings(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
-
-}  // namespace simbench::python
+void bind_rows(pybind11::module_& module);
+void bind_scenarios(pybind11::module_& module);
 
 #endif  // SIMBENCH_PYTHON_SRC_BINDINGS_H_
