@@ -21,6 +21,7 @@ from .results import Comparison, Result, compare, load, run
 from .rigs import Diagnosis, Replay, diagnose, replay
 from .tables import table as _table
 
+_simbench.use_programs(os.path.dirname(os.path.abspath(__file__)))
 __version__: str = _simbench.version
 
 __all__ = [

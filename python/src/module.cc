@@ -1,7 +1,5 @@
 #include <pybind11/pybind11.h>
-#include <pybind11/stl/filesystem.h>
 
-#include <filesystem>
 #include <string>
 
 #include "app/program_pipelines.h"
@@ -12,9 +10,10 @@ PYBIND11_MODULE(_simbench, module) {
   module.doc() = "What the package simbench stands on; use the package.";
   module.attr("version") = std::string(simbench::version());
   module.attr("commit") = std::string(simbench::commit());
-  const auto file = module.attr("__spec__").attr("origin").cast<std::string>();
-  simbench::app::use_programs(
-      {.library_folder = std::filesystem::path(file).parent_path().string()});
+  // Real programs find the preloaded library in the package's folder.
+  module.def("use_programs", [](const std::string& folder) {
+    simbench::app::use_programs({.library_folder = folder});
+  });
   bind_errors(module);
   bind_rows(module);
   bind_scenarios(module);
