@@ -5,22 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/bad_input.h"
 #include "app/program_pipelines.h"
 #include "cli/command.h"
 #include "cli/command_table.h"
 #include "cli/commands/commands.h"
 #include "cli/help.h"
 #include "cli/process.h"
-#include "recording/recorded_streams.h"
-#include "recording/recording_folder.h"
 #include "recording/version.h"
-#include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 #include "reports/text/program_name.h"
-#include "scenarios/document.h"
 #include "scenarios/loader.h"
 
 namespace simbench {
@@ -86,9 +84,8 @@ const std::vector<CommandGroup>& command_groups() {
        {cli::add_report_command, cli::add_trace_command, cli::add_figure_command}},
       {"Compare results", {cli::add_compare_command, cli::add_gate_command}},
       {"Recordings",
-       {cli::add_inspect_command, cli::add_record_command, cli::add_replay_command,
-        cli::add_diagnose_command, cli::add_export_command, cli::add_stability_command,
-        cli::add_fit_command, cli::add_convert_ibl_command}},
+       {cli::add_record_command, cli::add_replay_command, cli::add_diagnose_command,
+        cli::add_stability_command, cli::add_fit_command, cli::add_convert_ibl_command}},
       {"Real rigs",
        {cli::add_keygen_command, cli::add_node_command, cli::add_validate_model_command,
         cli::add_relay_command}},
@@ -132,11 +129,6 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
   return line.action();
 }
 
-int bad_input(const std::exception& error) {
-  cli::print_error(error.what());
-  return ExitStatus::kBadInput;
-}
-
 }  // namespace
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
@@ -152,19 +144,11 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   try {
     if (extras.farm == nullptr) cli::become_mpi_program(arguments);
     return parse_and_run(arguments, extras);
-  } catch (const scenarios::InputError& error) {
-    return bad_input(error);
-  } catch (const reports::OutputError& error) {
-    return bad_input(error);
-  } catch (const RecordedFileError& error) {
-    return bad_input(error);
-  } catch (const RecordingFolderError& error) {
-    return bad_input(error);
-  } catch (const std::filesystem::filesystem_error& error) {
-    cli::print_error(fmt::format("{}: {}", scenarios::shown_text(error.path1().string()),
-                                 error.code().message()));
-    return ExitStatus::kBadInput;
   } catch (const std::exception& error) {
+    if (const std::optional<std::string> text = app::bad_input(error)) {
+      cli::print_error(*text);
+      return ExitStatus::kBadInput;
+    }
     cli::print_internal_error(
         fmt::format("{}\n(simbench {}, commit {})", error.what(), version(), commit()));
     return ExitStatus::kInternalError;
