@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "evaluation/replay/replay.h"
+#include "recording/rs_csv.h"
 #include "tests/data/test_data.h"
 #include "tests/read_fault.h"
 #include "tests/scratch_folder.h"
