@@ -65,7 +65,7 @@ void write_mcap(const std::string& path, McapOptions options, std::uint64_t coun
   const std::uint16_t id = mcap.channel("/left", "sensor_msgs/msg/Image", "cdr");
   for (std::uint64_t i = 0; i < count; ++i) {
     mcap.message(id, i, data);
-    if (i % 64 == 0) out << mcap.take_finished();
+    out << mcap.take_finished();
   }
   out << mcap.close();
 }
