@@ -137,6 +137,7 @@ TEST(SqliteBag, EveryCutIsSurvived) {
     const std::string file = content(path);
     std::size_t most = 0;
     for (std::size_t cut = 16; cut < file.size(); cut += 61) {
+      std::filesystem::remove(path);
       put(path, file.substr(0, cut));
       KeptBag bag;
       try {
@@ -161,6 +162,7 @@ TEST(SqliteBag, EveryFlippedByteIsSurvived) {
   for (std::size_t i = 16; i < file.size(); i += 3) {
     std::string damaged = file;
     damaged[i] = static_cast<char>(damaged[i] ^ (i % 2 == 0 ? 0xff : 0x10));
+    std::filesystem::remove(path);
     put(path, damaged);
     KeptBag bag;
     try {
