@@ -5,8 +5,8 @@
 // synchronise. An algorithm that needs what the model lacks (hardware stamps, pulses, polls of the
 // cameras' clocks) is left out and named.
 //
-//   const Ranking ranking = ranking_of(study.model.scenario);
-//   evaluate(ranking.scenario, simulated_world(ranking.scenario), {.seeds = 8}, progress);
+//   const Ranking ranking = ranking_of(scenario);
+//   evaluate(ranking.scenario, [&] { return simulated_world(ranking.scenario); }, {}, progress);
 #ifndef SIMBENCH_APP_FITTED_RANKING_H_
 #define SIMBENCH_APP_FITTED_RANKING_H_
 

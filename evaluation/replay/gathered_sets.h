@@ -1,8 +1,9 @@
 // The sets of frames that a gatherer finds in a recording, for who wants to take them out of it.
 //
-//   const auto sets = gathered_sets(streams, "depth", *find_device_time("two_way_hull"),
-//                                   *find_gathering("yoon2021"));
-//   for (const GatheredFrame& frame : sets[0].frames) use(streams[frame.stream], frame.frame);
+//   const GatheredSets found = gathered_sets(reader.take(), "depth",
+//                                            *find_device_time("hull_offline"),
+//                                            *find_gathering("yoon2021"));
+//   for (const GatheredFrame& frame : found.sets[0].frames) use(frame.stream, frame.frame);
 //
 // Errors: std::invalid_argument for an algorithm that needs polls or the truth. Complexity: that of
 // the two algorithms, and O(n log n) in the frames.

@@ -1,7 +1,8 @@
 // The frames of the cameras that have one kind of stream, as gatherers and GenLock order get them.
 //
-//   const std::optional<RigFrames> rig = rig_of(replay.cameras, {0, 1, 2});
-//   for (const RigFrame& frame : rig->order) gatherer->push(...);
+//   const Replay all = run_replay(reader.take());
+//   const std::optional<RigFrames> rig = rig_of(all.cameras, {0, 1, 2});
+//   for (const RigFrame& frame : rig->order) use(frame.source, frame.frame);
 //
 // Complexity: O(n log n) in the frames.
 #ifndef SIMBENCH_EVALUATION_REPLAY_RIG_FRAMES_H_
