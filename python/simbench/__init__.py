@@ -1,0 +1,1 @@
+from .algorithms import Frame, Parameter, Sample, device_time, gathering, host_sync, pipeline
