@@ -137,7 +137,9 @@ std::string text_of(Run& run, const std::string& format, const std::string& deta
   const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
                             : detail == "all"  ? app::Detail::kAll
                                                : app::Detail::kScreen;
-  return app::results_text(run.results(), run.scenario.value_or(Scenario{}), format, shown, answer);
+  static const Scenario kUnknown;
+  return app::results_text(run.results(), run.scenario ? *run.scenario : kUnknown, format, shown,
+                           answer);
 }
 
 std::string html_of(Run& run, const py::object& on_progress) {
