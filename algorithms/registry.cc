@@ -1,5 +1,6 @@
 #include "algorithms/registry.h"
 
+#include <cstddef>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
@@ -58,6 +59,7 @@ class Stage {
     for (const std::vector<Entry>& file : own) {
       for (const Entry& entry : file) add(entry);
     }
+    own_ = entries_.size();
   }
 
   void add(Entry entry) {
@@ -66,6 +68,17 @@ class Stage {
                                   "\" is registered twice");
     }
     entries_.push_back(std::move(entry));
+  }
+
+  void replace(Entry entry) {
+    const Entry* const former = find(entry.info.name);
+    if (former == nullptr) return add(std::move(entry));
+    const auto place = static_cast<std::size_t>(former - entries_.data());
+    if (place < own_) {
+      throw std::invalid_argument(name_ + " algorithm \"" + entry.info.name +
+                                  "\" is one of simbench's own; choose another name");
+    }
+    entries_[place] = std::move(entry);
   }
 
   const Entry* find(const std::string& name) const {
@@ -80,6 +93,7 @@ class Stage {
  private:
   std::string name_;
   std::vector<Entry> entries_;
+  std::size_t own_ = 0;  // the first so many are simbench's own
 };
 
 Stage<HostSyncEntry>& host_sync_stage() {
@@ -106,6 +120,10 @@ Stage<GatheringEntry>& gathering_stage() {
 void register_host_sync(HostSyncEntry entry) { host_sync_stage().add(std::move(entry)); }
 void register_device_time(DeviceTimeEntry entry) { device_time_stage().add(std::move(entry)); }
 void register_gathering(GatheringEntry entry) { gathering_stage().add(std::move(entry)); }
+
+void replace_host_sync(HostSyncEntry entry) { host_sync_stage().replace(std::move(entry)); }
+void replace_device_time(DeviceTimeEntry entry) { device_time_stage().replace(std::move(entry)); }
+void replace_gathering(GatheringEntry entry) { gathering_stage().replace(std::move(entry)); }
 
 const std::vector<HostSyncEntry>& host_sync_algorithms() { return host_sync_stage().entries(); }
 const std::vector<DeviceTimeEntry>& device_time_algorithms() {

@@ -10,8 +10,9 @@
 //       .make = [](const simbench::Parameters& p) { return std::make_unique<Mine>(p); }});
 //
 // Parameters are looked up in the scenario under /algorithms/<family>/<parameter>.
-// Registration is not thread-safe: do it before running anything. A name may be registered once
-// per stage; a second registration throws std::invalid_argument.
+// Registration is not thread-safe: do it while nothing runs. A name may be registered once per
+// stage; a second registration throws std::invalid_argument. Where definitions come again, as from
+// a cell of a notebook, replace_...() takes the place of one that was registered from outside.
 #ifndef SIMBENCH_ALGORITHMS_REGISTRY_H_
 #define SIMBENCH_ALGORITHMS_REGISTRY_H_
 
@@ -66,6 +67,12 @@ struct GatheringEntry {
 void register_host_sync(HostSyncEntry entry);
 void register_device_time(DeviceTimeEntry entry);
 void register_gathering(GatheringEntry entry);
+
+// The same, but in place of an entry of that name. Throws std::invalid_argument if it is one of
+// simbench's own.
+void replace_host_sync(HostSyncEntry entry);
+void replace_device_time(DeviceTimeEntry entry);
+void replace_gathering(GatheringEntry entry);
 
 // In order of registration, simbench's own first.
 const std::vector<HostSyncEntry>& host_sync_algorithms();

@@ -5,8 +5,8 @@
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
-// A second SIGINT ends the program at once. A program that has signal handlers of its own raises the
-// flag in their place.
+// A second SIGINT ends the program at once. A program that has signal handlers of its own raises
+// the flag in their place.
 #ifndef SIMBENCH_APP_INTERRUPT_H_
 #define SIMBENCH_APP_INTERRUPT_H_
 

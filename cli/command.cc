@@ -10,6 +10,9 @@
 #include <optional>
 #include <utility>
 
+#include "cli/command_line.h"
+#include "cli/process.h"
+
 namespace simbench::cli {
 namespace {
 
@@ -51,6 +54,14 @@ std::string check_name(CLI::Option& option) {
     return option.get_validator(0)->get_name();
   } catch (const CLI::OptionNotFound&) {
     return "";
+  }
+}
+
+// Registers the algorithms of these files, or goes on as a program that can.
+void import_python(const CommandLine& line, const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    if (line.extras.import_algorithms == nullptr) become_python_program(line.arguments);
+    line.extras.import_algorithms(file);
   }
 }
 
@@ -191,6 +202,12 @@ void Command::sets(std::vector<std::string>& values) {
       ->allow_extra_args(false);
 }
 
+void Command::python() {
+  python_files_ = std::make_shared<std::vector<std::string>>();
+  texts("--python", "FILE", *python_files_,
+        "Add the algorithms of this Python file (docs/python.md); repeatable");
+}
+
 void Command::jobs(unsigned& value, const std::string& text) {
   whole_number("--jobs", "N", value, 1, 4096, text);
 }
@@ -230,9 +247,12 @@ void Command::json_flag(const std::string& text, std::function<void()> action) {
 void Command::footer(const std::string& text) { command_->footer(text); }
 
 void Command::runs(Action action, const std::function<void()>& check) {
-  command_->callback([&line = line_, action = std::move(action), check] {
+  command_->callback([&line = line_, action = std::move(action), check, files = python_files_] {
     if (check) check();
-    line.action = action;
+    line.action = [&line, action, files] {
+      if (files) import_python(line, *files);
+      return action();
+    };
   });
 }
 

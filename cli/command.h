@@ -20,6 +20,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,8 @@ class Command {
                  const std::string& others = "host_sync+device_time+gathering");
   // --set /json/pointer=value, repeatable; parsed by overrides_of().
   void sets(std::vector<std::string>& values);
+  // --python: files whose algorithms there are besides; before runs().
+  void python();
   // --first-seed, --seed and the like.
   template <class Number>
   Option seed(const std::string& names, Number& value, const std::string& text);
@@ -119,6 +122,7 @@ class Command {
 
   CommandLine& line_;
   CLI::App* command_;
+  std::shared_ptr<std::vector<std::string>> python_files_;  // null without --python
 };
 
 std::vector<scenarios::Override> overrides_of(const std::vector<std::string>& values);

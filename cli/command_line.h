@@ -14,6 +14,8 @@
 #ifndef SIMBENCH_CLI_COMMAND_LINE_H_
 #define SIMBENCH_CLI_COMMAND_LINE_H_
 
+#include <string>
+
 namespace simbench {
 
 namespace evaluation {
@@ -31,6 +33,9 @@ struct CommandLineExtras {
   // For `simbench reconstruct` (reconstruction/experiment.h); null: simbench-reconstruct in place
   // of this program.
   const reconstruction::Reconstruction* reconstruction = nullptr;
+  // For `--python FILE`: registers the algorithms of that file; throws scenarios::InputError. Null:
+  // the Python package simbench in place of this program (python/).
+  void (*import_algorithms)(const std::string& file) = nullptr;
 };
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras = {});

@@ -37,6 +37,30 @@ constexpr std::initializer_list<Launcher> kLaunchers = {
     {"PMI_SIZE", "PMI_RANK"},
     {"SLURM_NTASKS", "PMIX_RANK"}};
 
+// Its first argument is a folder to look for the package in, or nothing.
+constexpr const char* kStartPackage = R"(
+import sys
+beside = sys.argv.pop(1)
+if beside: sys.path.insert(0, beside)
+try:
+    from simbench.__main__ import main
+except ImportError as error:
+    print(f"error: --python: {sys.executable} has no package simbench ({error}); `pip install .` in "
+          "simbench's folder installs it, SIMBENCH_PYTHON names another interpreter",
+          file=sys.stderr)
+    sys.exit(2)
+sys.exit(main(["simbench", *sys.argv[1:]]))
+)";
+
+// The words must outlive it.
+std::vector<char*> argv_of(std::vector<std::string>& words) {
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  return argv;
+}
+
 }  // namespace
 
 void keep_freed_memory() {
@@ -61,12 +85,25 @@ std::filesystem::path sibling_program(const std::string& name) {
 
 int become_sibling(const std::string& name, std::vector<std::string> arguments) {
   const std::string program = sibling_program(name);
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  ::execv(program.c_str(), argv.data());
+  ::execv(program.c_str(), argv_of(arguments).data());
   return errno;
+}
+
+void become_python_program(std::vector<std::string> arguments) {
+  if (mpi_rank()) {
+    throw scenarios::InputError("--python: not under mpirun; allowed: on the cores of one machine");
+  }
+  const char* const named = std::getenv("SIMBENCH_PYTHON");
+  const std::string interpreter = named == nullptr || *named == '\0' ? "python3" : named;
+  const std::filesystem::path beside = sibling_program("../python");
+  const bool has_package = std::filesystem::exists(beside / "simbench" / "__init__.py");
+  std::vector<std::string> words = {interpreter, "-c", kStartPackage,
+                                    has_package ? beside.string() : ""};
+  words.insert(words.end(), arguments.begin() + 1, arguments.end());
+  ::execvp(interpreter.c_str(), argv_of(words).data());
+  throw scenarios::InputError(
+      fmt::format("--python: the interpreter {} cannot be started: {}; SIMBENCH_PYTHON names another",
+                  interpreter, std::strerror(errno)));
 }
 
 std::optional<long> mpi_rank() {

@@ -2,7 +2,8 @@
 //
 // simbench-mpi and simbench-reconstruct lie beside simbench. They are the same command line with
 // more libraries, which only their users need. `mpirun -n 64 simbench sweep ...` goes on as
-// simbench-mpi, `simbench reconstruct` as simbench-reconstruct.
+// simbench-mpi, `simbench reconstruct` as simbench-reconstruct. `simbench run --python FILE ...` goes
+// on as the interpreter of Python with the package simbench, which has the command line in it.
 #ifndef SIMBENCH_CLI_PROCESS_H_
 #define SIMBENCH_CLI_PROCESS_H_
 
@@ -31,6 +32,12 @@ std::filesystem::path sibling_program(const std::string& name);
 // Goes on as that program, with these arguments (argv, its own name included). Returns only if it
 // cannot be started: the error number.
 int become_sibling(const std::string& name, std::vector<std::string> arguments);
+
+// Goes on as `python3 -m simbench` with these arguments (argv). SIMBENCH_PYTHON names another
+// interpreter; the package that lies beside this program (../python, as a build has it) is preferred
+// to an installed one. Throws scenarios::InputError if there is no interpreter; Python says, with
+// exit status 2, if it has no simbench.
+[[noreturn]] void become_python_program(std::vector<std::string> arguments);
 
 // The rank of this process if an MPI launcher started more than one; else nothing. Reads the
 // environment of OpenMPI and of launchers with PMI or PMIx (MPICH, Intel MPI, Slurm's srun --mpi).

@@ -98,6 +98,7 @@ void add_clocks_command(CommandLine& line) {
   command.jobs(clocks_options.jobs);
   command.pipelines(clocks_options.pipelines, "a host_sync alone");
   command.sets(options->sets);
+  command.python();
   add_program_options(command, options->programs);
   command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});
   command.text("-o,--output", "DIR", options->output,

@@ -132,6 +132,7 @@ void add_record_command(CommandLine& line) {
   command.count("--repeats", options->repeats, "Captures of each pipeline. Default: 1");
   add_program_options(command, options->programs);
   command.sets(options->sets);
+  command.python();
   add_backend_options(command, options->backend);
   command.text("--collect", "SESSION", options->backend.collect_session,
                "On a rig: instead of a new capture, fetch what the nodes have of this session");

@@ -223,6 +223,7 @@ void add_run_command(CommandLine& line) {
   command.jobs(evaluation.jobs);
   command.pipelines(evaluation.pipelines);
   command.sets(options->sets);
+  command.python();
   add_program_options(command, options->programs);
   add_backend_options(command, options->backend);
   command.format(options->format, {"table", "markdown", "latex", "csv", "tidy", "json"});

@@ -219,6 +219,7 @@ void add_sweep_command(CommandLine& line) {
   command.seed("--first-seed", request.first_seed, "The first seed. Default: 1");
   command.pipelines(request.pipelines);
   command.sets(options->sets);
+  command.python();
   command.jobs(options->jobs, "Threads. Default: one for every core; under MPI one for every rank");
   command.text("-o,--output", "DIR", options->output,
                "The folder of the sweep. An unfinished sweep in it is continued");

@@ -159,6 +159,7 @@ void add_trace_command(CommandLine& line) {
                "The pipeline to run. Default: yoon2021_both, else the scenario's first");
   add_program_options(command, options->programs);
   command.sets(options->sets);
+  command.python();
   command.format(options->format, {"chrome", "csv"});
   command.json_messages();
   add_window_options(command, *options);

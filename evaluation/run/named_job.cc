@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <exception>
+
 #include "recording/recording.h"
 #include "recording/version.h"
 #include "scenarios/loader.h"
@@ -17,7 +19,8 @@ void run_named(const JobName& name, const std::function<void()>& action) {
   } catch (const RecordingCancelled&) {
     throw;
   } catch (const scenarios::InputError& error) {
-    throw scenarios::InputError(fmt::format("{}: {}", text(), error.what()));
+    // With the cause inside, for users who want more than its text.
+    std::throw_with_nested(scenarios::InputError(fmt::format("{}: {}", text(), error.what())));
   } catch (const std::exception& error) {
     throw JobFailed(
         fmt::format("{}: {} (simbench {}, commit {})", text(), error.what(), version(), commit()));

@@ -67,7 +67,7 @@ class SweepWorker {
     try {
       return clock_period_ ? clock_score(run, seed) : scores(json::array({run}), seed);
     } catch (const scenarios::InputError& error) {
-      throw scenarios::InputError(with_place(run, seed, error));
+      std::throw_with_nested(scenarios::InputError(with_place(run, seed, error)));
     } catch (const std::exception& error) {
       throw std::runtime_error(with_place(run, seed, error));
     }

@@ -15,6 +15,7 @@ import os
 from typing import Any
 
 from . import _simbench
+from .algorithms import Frame, Parameter, Sample, device_time, gathering, host_sync, pipeline
 from .clock_runs import Clocks, clocks
 from .errors import Error, InputError, MissingPackage, OutputError
 from .results import Comparison, Result, compare, load, run
@@ -25,8 +26,9 @@ _simbench.use_programs(os.path.dirname(os.path.abspath(__file__)))
 __version__: str = _simbench.version
 
 __all__ = [
-    "Clocks", "Comparison", "Diagnosis", "Error", "InputError", "MissingPackage", "OutputError",
-    "Replay", "Result", "clocks", "compare", "describe", "diagnose", "list_scenarios", "load",
+    "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "MissingPackage",
+    "OutputError", "Parameter", "Replay", "Result", "Sample", "clocks", "compare", "describe",
+    "device_time", "diagnose", "gathering", "host_sync", "list_scenarios", "load", "pipeline",
     "replay", "run",
 ]  # fmt: skip
 

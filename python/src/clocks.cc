@@ -52,11 +52,10 @@ std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t du
   evaluation::check_clock_options(run->scenario, options);
   options.cancel = &app::InterruptHandler::flag();
   using evaluation::ClockResults;
-  run->results =
-      watched<ClockResults>(on_progress, [&](const evaluation::Progress& progress) {
-        return evaluation::evaluate_clocks(
-            run->scenario, [&] { return app::simulated_clocks(run->scenario); }, options, progress);
-      });
+  run->results = watched<ClockResults>(on_progress, [&](const evaluation::Progress& progress) {
+    return evaluation::evaluate_clocks(
+        run->scenario, [&] { return app::simulated_clocks(run->scenario); }, options, progress);
+  });
   run->provenance.finished = std::chrono::system_clock::now();
   run->notes = scenarios::warnings(run->scenario);
   const std::vector<std::string>& more = run->results.results.warnings;
@@ -76,8 +75,7 @@ std::string series_csv(const ClockRun& run) {
 }
 
 std::string clock_html(const ClockRun& run) {
-  const reports::Document document =
-      reports::clock_document(run.results, run.scenario.summary);
+  const reports::Document document = reports::clock_document(run.results, run.scenario.summary);
   return html(reports::clock_answer(run.results.results)) + html(document.blocks);
 }
 
@@ -94,9 +92,7 @@ void bind_clocks(pybind11::module_& module) {
       .def("json", [](const ClockRun& run) { return reports::clock_json(run.results); })
       .def("series_csv", &python::series_csv)
       .def("text",
-           [](const ClockRun& run) {
-             return app::clock_text(run.results, run.scenario, "table");
-           })
+           [](const ClockRun& run) { return app::clock_text(run.results, run.scenario, "table"); })
       .def("html", &python::clock_html)
       .def("save", &python::save_clocks);
   module.def("run_clocks", &python::run_clocks);

@@ -6,16 +6,25 @@
 #include "app/bad_input.h"
 #include "evaluation/run/evaluate.h"
 #include "python/src/bindings.h"
+#include "python/src/python_algorithm.h"
 #include "recording/recording.h"
 #include "reports/text/output_file.h"
 
 namespace py = pybind11;
 
+using simbench::python::python_exception_in;
+using simbench::python::SharedObject;
+
 namespace {
 
-void raise(const char* name, const std::string& text) {
+// `cause`: the exception in an algorithm of the user's; null: none.
+void raise(const char* name, const std::string& text, const SharedObject& cause = nullptr) {
   const py::object type = py::module_::import("simbench.errors").attr(name);
-  PyErr_SetString(type.ptr(), text.c_str());
+  const py::object error = type(text);
+  if (cause)
+    PyException_SetCause(error.ptr(),
+                         py::reinterpret_borrow<py::object>(cause.get()).release().ptr());
+  PyErr_SetObject(type.ptr(), error.ptr());
 }
 
 // Throws what is not the bench's own, for the next translator.
@@ -36,7 +45,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const std::exception& error) {
     const std::optional<std::string> text = simbench::app::bad_input(error);
     if (!text) throw;
-    raise("InputError", *text);
+    raise("InputError", *text, python_exception_in(error));
   }
 }
 

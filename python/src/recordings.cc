@@ -47,8 +47,8 @@ void stop_if_interrupted() {
 }
 
 RecordedStreams streams_of(const std::vector<std::string>& files, const py::object& on_progress) {
-  return watched<RecordedStreams>(
-      on_progress, [&](const Progress&) { return app::recorded_streams(files); });
+  return watched<RecordedStreams>(on_progress,
+                                  [&](const Progress&) { return app::recorded_streams(files); });
 }
 
 std::shared_ptr<ReplayedFiles> replay_files(const std::vector<std::string>& files,
@@ -85,8 +85,8 @@ std::vector<std::size_t> places_of(const evaluation::CameraReplay& camera,
     for (const auto& each : camera.rows) {
       if (!each.needs_polls) known.push_back(each.device_time);
     }
-    throw scenarios::InputError(fmt::format("device_times: found '{}', allowed: {}", name,
-                                            fmt::join(known, ", ")));
+    throw scenarios::InputError(
+        fmt::format("device_times: found '{}', allowed: {}", name, fmt::join(known, ", ")));
   }
   return places;
 }
@@ -112,13 +112,14 @@ Rows replayed_frames(const ReplayedFiles& of, const std::vector<std::string>& de
     std::optional<evaluation::GlobalStamps> stamps;
     if (!places.empty()) stamps.emplace(camera);
     for (const StampedFrame& frame : camera.frames) {
-      cells.insert(cells.end(), {static_cast<std::int64_t>(i),
-                                 static_cast<std::int64_t>(frame.counter), frame.sensor.count(),
-                                 frame.arrival.count()});
+      cells.insert(cells.end(),
+                   {static_cast<std::int64_t>(i), static_cast<std::int64_t>(frame.counter),
+                    frame.sensor.count(), frame.arrival.count()});
       if (!stamps) continue;
       const std::vector<std::optional<GlobalTime>>& global = stamps->next();
       for (const std::size_t place : places) {
-        const double ms = global[place] ? to_ms(global[place]->time_since_epoch()) : evaluation::kNan;
+        const double ms =
+            global[place] ? to_ms(global[place]->time_since_epoch()) : evaluation::kNan;
         cells.push_back(std::bit_cast<std::int64_t>(ms));
       }
     }

@@ -1,4 +1,6 @@
 // Runs, archives and comparisons for the package.
+#include "app/results.h"
+
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -8,7 +10,6 @@
 
 #include "app/answer.h"
 #include "app/interrupt.h"
-#include "app/results.h"
 #include "evaluation/run/ad_hoc_pipelines.h"
 #include "evaluation/run/evaluate.h"
 #include "evaluation/run/run_detail.h"
@@ -136,7 +137,9 @@ std::string text_of(Run& run, const std::string& format, const std::string& deta
   const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
                             : detail == "all"  ? app::Detail::kAll
                                                : app::Detail::kScreen;
-  return app::results_text(run.results(), run.scenario.value_or(Scenario{}), format, shown, answer);
+  static const Scenario kUnknown;
+  return app::results_text(run.results(), run.scenario ? *run.scenario : kUnknown, format, shown,
+                           answer);
 }
 
 std::string html_of(Run& run, const py::object& on_progress) {
@@ -194,9 +197,10 @@ void check_frames(const Run& run, const std::string& pipeline, std::uint64_t see
                                  results.first_seed, results.first_seed + results.seed_count - 1));
   }
   if (!run.recorded && row->ground_truth != evaluation::GroundTruth::kSimulation) {
-    throw InputError(fmt::format("{}: found captures of a rig, allowed: a simulated run, which can "
-                                 "be repeated, or the rig's recording folder",
-                                 run.archive.path));
+    throw InputError(
+        fmt::format("{}: found captures of a rig, allowed: a simulated run, which can "
+                    "be repeated, or the rig's recording folder",
+                    run.archive.path));
   }
 }
 
@@ -219,12 +223,11 @@ void check_same(const Run& run, const evaluation::RunDetail& detail) {
 py::tuple frames(const Run& run, const std::string& pipeline, std::uint64_t seed,
                  const py::object& on_progress) {
   check_frames(run, pipeline, seed);
-  evaluation::RunDetail detail =
-      watched<evaluation::RunDetail>(on_progress, [&](const Progress&) {
-        const auto choices = evaluation::choose_pipelines(*run.scenario, {pipeline});
-        const auto source = source_of(run, choices);
-        return evaluation::run_detail(*run.scenario, choices.front(), seed, *source);
-      });
+  evaluation::RunDetail detail = watched<evaluation::RunDetail>(on_progress, [&](const Progress&) {
+    const auto choices = evaluation::choose_pipelines(*run.scenario, {pipeline});
+    const auto source = source_of(run, choices);
+    return evaluation::run_detail(*run.scenario, choices.front(), seed, *source);
+  });
   check_same(run, detail);
   const std::size_t cameras = detail.camera_count;
   const std::size_t kept = detail.cameras.size();
@@ -266,13 +269,12 @@ void bind_run(py::module_& module) {
       .def_property_readonly("path", [](const Run& run) { return run.archive.path; })
       .def_property_readonly("first_seed", [](const Run& run) { return run.results().first_seed; })
       .def_property_readonly("seed_count", [](const Run& run) { return run.results().seed_count; })
-      .def_property_readonly("is_clock_run",
-                             [](const Run& run) {
-                               return run.results().kind == evaluation::ResultKind::kClockRuns;
-                             })
-      .def_property_readonly("notes", [](const Run& run) { return run.notes; })
       .def_property_readonly(
-          "ranked_name", [](const Run& run) { return reports::ranked_name(ranking(run)); })
+          "is_clock_run",
+          [](const Run& run) { return run.results().kind == evaluation::ResultKind::kClockRuns; })
+      .def_property_readonly("notes", [](const Run& run) { return run.notes; })
+      .def_property_readonly("ranked_name",
+                             [](const Run& run) { return reports::ranked_name(ranking(run)); })
       .def_property_readonly("scenario_json",
                              [](const Run& run) { return run.archive.scenario_json; })
       .def("csv", [](const Run& run) { return reports::csv(run.results()); })

@@ -101,9 +101,8 @@ std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_b
     if (ranked_by == RankedBy::kAmd && row->published && row->published->amd_ms > 0) {
       line.published_ms = row->published->amd_ms;
     }
-    line.word = row == best
-                    ? kBest
-                    : evaluation::standing_name(evaluation::standing_by(*row, ranked_by));
+    line.word =
+        row == best ? kBest : evaluation::standing_name(evaluation::standing_by(*row, ranked_by));
     rows.push_back(std::move(line));
   }
   return rows;

@@ -20,8 +20,8 @@ namespace simbench::reports {
 
 // A line of the figure. The series is in milliseconds.
 struct OverviewRow {
-  const evaluation::Row* row = nullptr;         // of the results
-  const evaluation::Series* series = nullptr;   // of the row: what is drawn
+  const evaluation::Row* row = nullptr;        // of the results
+  const evaluation::Series* series = nullptr;  // of the row: what is drawn
   std::optional<double> published_ms{};
   std::string word{};  // "best", "limit", "reference" or ""
 };

@@ -1,0 +1,184 @@
+"""The host of a synchronisation algorithm in Python: its clocks and its network.
+
+An `async def` function that @simbench.host_sync decorates gets a Host. What takes time on a real
+host is awaited and takes time in the simulator too. Times are whole nanoseconds; timeouts and
+sleeps are milliseconds.
+
+    @simbench.host_sync("cristian", questions=16)
+    async def cristian(host, settings):
+        replies = [await host.channel(0).exchange(timeout_ms=100) for _ in range(settings.questions)]
+        best = min((r for r in replies if r), key=lambda r: r.delay_ns)
+        await host.clock.step(best.offset_ns)
+"""
+
+import types
+from typing import NamedTuple, Optional
+
+_NEVER_MS = 365 * 86400e3
+
+
+class Message(NamedTuple):
+    """A message as Channel.receive() returns it."""
+
+    bytes: bytes
+    received_ns: int  # on the system clock, from the point of the stack that stamps
+    received_steady_ns: int
+    received_hardware_ns: Optional[int]  # of the network card, if it stamps
+
+
+class Reply(NamedTuple):
+    """An exchange with the master, as Channel.exchange() returns it.
+
+    The question left at t1 and its answer came at t4, on the own system clock; the master had the
+    question at t2 and sent its answer at t3, on the master's.
+    """
+
+    bytes: bytes  # those of the question
+    t1_ns: int
+    t2_ns: int
+    t3_ns: int
+    t4_ns: int
+
+    @property
+    def offset_ns(self) -> int:
+        """The master's clock less the own, if both ways took the same time."""
+        return ((self.t2_ns - self.t1_ns) + (self.t3_ns - self.t4_ns)) // 2
+
+    @property
+    def delay_ns(self) -> int:
+        """Both ways together."""
+        return (self.t4_ns - self.t1_ns) - (self.t3_ns - self.t2_ns)
+
+
+class CrossStamp(NamedTuple):
+    """The network card's clock between two readings of the system clock."""
+
+    before_ns: int
+    hardware_ns: int
+    after_ns: int
+
+
+@types.coroutine
+def _ask(*request):
+    return (yield request)
+
+
+def _ns(ms: float) -> int:
+    return round(ms * 1e6)
+
+
+class Clock:
+    """The system clock of a host."""
+
+    async def now(self) -> int:
+        """Its reading."""
+        return await _ask("now")
+
+    async def set(self, time_ns: float) -> None:
+        """Sets it."""
+        await _ask("set", round(time_ns))
+
+    async def step(self, offset_ns: float) -> None:
+        """Reads it and sets it later by the offset."""
+        await _ask("step", round(offset_ns))
+
+    async def adjust_frequency(self, ppb: float) -> None:
+        """Its rate against the oscillator, in place of the former one."""
+        await _ask("adjust_frequency", float(ppb))
+
+    async def slew(self, offset_ns: float, max_rate_ppb: float = 500_000) -> None:
+        """Adds the offset gradually, in place of an unfinished slew."""
+        await _ask("slew", round(offset_ns), float(max_rate_ppb))
+
+
+class NetworkCard:
+    """The clock of the network card."""
+
+    async def cross_stamp(self) -> CrossStamp:
+        """Reads it between two readings of the system clock."""
+        return await _ask("cross_stamp")
+
+    async def step(self, offset_ns: float) -> None:
+        """Adds the offset at once."""
+        await _ask("step_card", round(offset_ns))
+
+    async def adjust_frequency(self, ppb: float) -> None:
+        """Its rate against its own oscillator."""
+        await _ask("adjust_card", float(ppb))
+
+
+class Channel:
+    """Messages to and from one host: datagrams, which may be lost, or a stream."""
+
+    __slots__ = ("_at", "_can_exchange")
+
+    def __init__(self, peer: int, stream: bool, can_exchange: bool):
+        self._at = (peer, stream)
+        self._can_exchange = can_exchange
+
+    async def send(self, message: bytes) -> int:
+        """Sends it and returns its number, for transmit_stamp()."""
+        return await _ask("send", *self._at, bytes(message))
+
+    async def receive(self, timeout_ms: float = _NEVER_MS) -> Optional[Message]:
+        """The next message, or None after the timeout."""
+        return await _ask("receive", *self._at, _ns(timeout_ms))
+
+    async def exchange(self, message: bytes = b"", timeout_ms: float = 1000) -> Optional[Reply]:
+        """Asks the master for its time. None if no answer comes in time.
+
+        Late and duplicated answers are ignored, and the exchange is in the recording.
+        """
+        if not self._can_exchange:
+            raise TypeError("exchange() asks the master's own answerer, which runs only where "
+                            "host_sync has no server=; use send() and receive()")
+        return await _ask("exchange", *self._at, bytes(message), _ns(timeout_ms))
+
+    async def transmit_stamp(self, message: int, timeout_ms: float = 10) -> Optional[int]:
+        """When that message left, if the host stamps."""
+        return await _ask("transmit_stamp", *self._at, message, _ns(timeout_ms))
+
+    async def hardware_transmit_stamp(self, message: int, timeout_ms: float = 10) -> Optional[int]:
+        """When it passed the network card, on the card's clock, if that stamps."""
+        return await _ask("hardware_transmit_stamp", *self._at, message, _ns(timeout_ms))
+
+
+class Host:
+    """A host of the rig: 0 is the master, the others are its slaves."""
+
+    def __init__(self, port, can_exchange: bool):
+        self._port = port
+        self._can_exchange = can_exchange
+        self.id: int = port.id
+        self.clock = Clock()
+        self.card: Optional[NetworkCard] = NetworkCard() if port.has_card() else None
+
+    def channel(self, peer: int, stream: bool = False) -> Channel:
+        """The channel to a host: of a slave to the master, 0; of the master to a slave."""
+        return Channel(peer, stream, self._can_exchange)
+
+    async def sleep_for(self, interval_ms: float) -> None:
+        """Waits on the steady clock."""
+        await _ask("sleep_for", _ns(interval_ms))
+
+    async def sleep_until(self, at_ns: float) -> None:
+        """Waits until the system clock reads that, also where it is set meanwhile."""
+        await _ask("sleep_until", round(at_ns))
+
+    @property
+    def steady_ns(self) -> int:
+        """The host's oscillator, which nothing sets. Reading it costs nothing."""
+        return self._port.steady_ns()
+
+    def random(self) -> float:
+        """A number from 0 to 1, the same in every run of a seed, as those of Python are not."""
+        return self._port.random()
+
+    @property
+    def stored_frequency(self):
+        """(ppb, its likely error) of the clock service's last run, or None."""
+        return self._port.stored_frequency()
+
+    def failed(self, why: str) -> None:
+        """Reports that the clock could not be synchronised, and what would help."""
+        self._port.failed(why)

@@ -1,0 +1,391 @@
+#include "python/src/host_requests.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/deferred.hpp>
+#include <boost/asio/experimental/parallel_group.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+namespace simbench::python {
+namespace {
+
+namespace asio = boost::asio;
+
+// Times within it can be subtracted.
+constexpr std::int64_t kFarthestNs = 4'000'000'000'000'000'000;
+constexpr std::int64_t kLongestNs = 86'400 * 365 * kSecondNs;  // of a wait
+
+struct OperationName {
+  HostOperation operation;
+  std::size_t arguments;
+};
+
+const std::map<std::string, OperationName, std::less<>>& operations() {
+  static const std::map<std::string, OperationName, std::less<>> all = {
+      {"now", {HostOperation::kNow, 0}},
+      {"set", {HostOperation::kSet, 1}},
+      {"step", {HostOperation::kStep, 1}},
+      {"adjust_frequency", {HostOperation::kAdjustFrequency, 1}},
+      {"slew", {HostOperation::kSlew, 2}},
+      {"sleep_for", {HostOperation::kSleepFor, 1}},
+      {"sleep_until", {HostOperation::kSleepUntil, 1}},
+      {"send", {HostOperation::kSend, 3}},
+      {"receive", {HostOperation::kReceive, 3}},
+      {"exchange", {HostOperation::kExchange, 4}},
+      {"transmit_stamp", {HostOperation::kTransmitStamp, 4}},
+      {"hardware_transmit_stamp", {HostOperation::kHardwareTransmitStamp, 4}},
+      {"cross_stamp", {HostOperation::kCrossStamp, 0}},
+      {"step_card", {HostOperation::kStepCard, 1}},
+      {"adjust_card", {HostOperation::kAdjustCard, 1}}};
+  return all;
+}
+
+Bytes bytes_of(const py::handle& object) {
+  char* data = nullptr;
+  Py_ssize_t size = 0;
+  if (PyBytes_AsStringAndSize(object.ptr(), &data, &size) != 0) throw py::error_already_set();
+  Bytes bytes(static_cast<std::size_t>(size));
+  std::memcpy(bytes.data(), data, bytes.size());
+  return bytes;
+}
+
+py::bytes python_bytes(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::int64_t time_ns(const py::handle& object) {
+  const auto ns = object.cast<std::int64_t>();
+  if (std::abs(ns) <= kFarthestNs) return ns;
+  throw py::value_error("found " + std::to_string(ns) + " ns, allowed: within 4e18 of 0");
+}
+
+std::int64_t interval_ns(const py::handle& object) {
+  return std::clamp<std::int64_t>(object.cast<std::int64_t>(), 0, kLongestNs);
+}
+
+}  // namespace
+
+Host& HostPort::get() const {
+  if (host == nullptr) throw std::runtime_error("the host's run is over");
+  return *host;
+}
+
+HostRequest host_request(const py::handle& request, const HostPort& port) {
+  const bool is_request = py::isinstance<py::tuple>(request) && py::len(request) > 0 &&
+                          py::isinstance<py::str>(request[py::int_(0)]);
+  const auto tuple = is_request ? py::reinterpret_borrow<py::tuple>(request) : py::tuple(0);
+  const auto found = is_request ? operations().find(tuple[0].cast<std::string>())
+                                : operations().end();
+  if (found == operations().end() || tuple.size() != found->second.arguments + 1) {
+    throw py::type_error(
+        "awaits something that is no operation of its host; asyncio does not run here: "
+        "await host.sleep_for(), host.clock.now(), host.channel(peer).receive() and the like");
+  }
+  HostRequest made{.operation = found->second.operation};
+  const auto channel = [&] {
+    made.peer = tuple[1].cast<PeerId>();
+    made.transport = tuple[2].cast<bool>() ? Transport::kStream : Transport::kDatagram;
+    if (!port.peers.contains(made.peer)) {
+      throw py::value_error("channel: found host " + std::to_string(made.peer) +
+                            ", allowed: of a slave the master, 0; of the master its slaves");
+    }
+  };
+  switch (made.operation) {
+    case HostOperation::kNow:
+    case HostOperation::kCrossStamp:
+      break;
+    case HostOperation::kSet:
+    case HostOperation::kStep:
+    case HostOperation::kSleepUntil:
+    case HostOperation::kStepCard:
+      made.ns = time_ns(tuple[1]);
+      break;
+    case HostOperation::kSleepFor:
+      made.ns = interval_ns(tuple[1]);
+      break;
+    case HostOperation::kAdjustFrequency:
+    case HostOperation::kAdjustCard:
+      made.ppb = tuple[1].cast<double>();
+      break;
+    case HostOperation::kSlew:
+      made.ns = time_ns(tuple[1]);
+      made.ppb = tuple[2].cast<double>();
+      break;
+    case HostOperation::kSend:
+      channel();
+      made.bytes = bytes_of(tuple[3]);
+      break;
+    case HostOperation::kReceive:
+      channel();
+      made.ns = interval_ns(tuple[3]);
+      break;
+    case HostOperation::kExchange:
+      channel();
+      made.bytes = bytes_of(tuple[3]);
+      made.ns = interval_ns(tuple[4]);
+      break;
+    case HostOperation::kTransmitStamp:
+    case HostOperation::kHardwareTransmitStamp:
+      channel();
+      made.message = tuple[3].cast<MessageId>();
+      made.ns = interval_ns(tuple[4]);
+      break;
+  }
+  const bool is_on_card = made.operation == HostOperation::kCrossStamp ||
+                          made.operation == HostOperation::kStepCard ||
+                          made.operation == HostOperation::kAdjustCard;
+  if (is_on_card && port.get().hardware_clock() == nullptr) {
+    throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
+  }
+  const bool receives = made.operation == HostOperation::kReceive ||
+                        made.operation == HostOperation::kExchange;
+  if (receives && port.receiving.contains({made.peer, made.transport})) {
+    throw py::value_error("another coroutine of this host waits on this channel");
+  }
+  return made;
+}
+
+namespace {
+
+// A question and its answer: 24 bytes, then what the algorithm adds, which comes back.
+//
+//   0   8  index of the question, from 1; 0: the client has done
+//   8   8  answer: when the question was received, the server's clock, ns; else 0
+//   16  8  answer: the server's clock before the answer was sent, ns; else 0
+struct Question {
+  std::uint64_t index = 0;
+  std::int64_t t2 = 0;
+  std::int64_t t3 = 0;
+};
+static_assert(sizeof(Question) == 24);
+
+// `added`: what follows, from that byte on.
+Bytes encoded(const Question& question, const Bytes& added, std::size_t from = 0) {
+  Bytes bytes(sizeof question + added.size() - from);
+  std::memcpy(bytes.data(), &question, sizeof question);
+  std::copy(added.begin() + static_cast<std::ptrdiff_t>(from), added.end(),
+            bytes.begin() + std::ptrdiff_t{sizeof question});
+  return bytes;
+}
+
+std::optional<Question> decoded(const Bytes& bytes) {
+  if (bytes.size() < sizeof(Question)) return std::nullopt;
+  Question question;
+  std::memcpy(&question, bytes.data(), sizeof question);
+  return question;
+}
+
+// One receive at a time on a channel, and none after the run.
+class Receiving {
+ public:
+  Receiving(std::shared_ptr<HostPort> port, const HostRequest& request)
+      : port_(std::move(port)), place_(request.peer, request.transport) {
+    port_->receiving.insert(place_);
+  }
+  Receiving(const Receiving&) = delete;
+  Receiving& operator=(const Receiving&) = delete;
+  ~Receiving() { port_->receiving.erase(place_); }
+
+ private:
+  std::shared_ptr<HostPort> port_;
+  std::pair<PeerId, Transport> place_;
+};
+
+Task<HostAnswer> exchanged(HostRequest request, std::shared_ptr<HostPort> port) {
+  const Receiving receiving(port, request);
+  Host& host = *port->host;
+  MessageChannel& channel = host.open_channel(request.peer, request.transport);
+  const SteadyTime deadline = host.steady_clock().now() + Nanoseconds(request.ns);
+  const Question question{.index = ++port->index};
+  HostTime t1 = co_await host.clock().now();
+  Bytes bytes = encoded(question, request.bytes);
+  const MessageId id = co_await channel.send(std::move(bytes));
+  const SteadyTime sent = host.steady_clock().now();
+  const std::optional<HostTime> left = co_await channel.transmit_stamp(id, sent + kStampTimeout);
+  if (left) t1 = *left;
+  for (;;) {
+    std::optional<ReceivedMessage> received = co_await channel.receive(deadline);
+    if (!received) co_return std::monostate{};
+    const std::optional<Question> answer = decoded(received->bytes);
+    if (!answer || answer->index != question.index) continue;
+    ++port->exchanges;
+    const HostTime t2{Nanoseconds(answer->t2)};
+    const HostTime t3{Nanoseconds(answer->t3)};
+    host.report_exchange(
+        {.peer = request.peer, .t1 = t1, .t2 = t2, .t3 = t3, .t4 = received->received});
+    received->bytes.erase(received->bytes.begin(),
+                          received->bytes.begin() + std::ptrdiff_t{sizeof(Question)});
+    co_return ExchangeReply{std::move(received->bytes), t1, t2, t3, received->received};
+  }
+}
+
+template <class Time>
+HostAnswer answer_of(const std::optional<Time>& time) {
+  if (!time) return std::monostate{};
+  return nanoseconds_of(*time);
+}
+
+Task<HostAnswer> messaged(HostRequest request, std::shared_ptr<HostPort> port) {
+  Host& host = *port->host;
+  if (request.operation == HostOperation::kExchange) {
+    co_return co_await exchanged(std::move(request), std::move(port));
+  }
+  MessageChannel& channel = host.open_channel(request.peer, request.transport);
+  const SteadyTime deadline = host.steady_clock().now() + Nanoseconds(request.ns);
+  if (request.operation == HostOperation::kSend) {
+    const MessageId id = co_await channel.send(std::move(request.bytes));
+    co_return static_cast<std::int64_t>(id);
+  }
+  if (request.operation == HostOperation::kReceive) {
+    const Receiving receiving(port, request);
+    std::optional<ReceivedMessage> received = co_await channel.receive(deadline);
+    if (!received) co_return std::monostate{};
+    co_return std::move(*received);
+  }
+  if (request.operation == HostOperation::kTransmitStamp) {
+    const std::optional<HostTime> left = co_await channel.transmit_stamp(request.message, deadline);
+    co_return answer_of(left);
+  }
+  const std::optional<HardwareTime> left =
+      co_await channel.hardware_transmit_stamp(request.message, deadline);
+  co_return answer_of(left);
+}
+
+}  // namespace
+
+Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port) {
+  Host& host = *port->host;
+  const Nanoseconds ns(request.ns);
+  switch (request.operation) {
+    case HostOperation::kNow: {
+      const HostTime now = co_await host.clock().now();
+      co_return nanoseconds_of(now);
+    }
+    case HostOperation::kSet:
+      co_await host.clock().set(HostTime(ns));
+      break;
+    case HostOperation::kStep: {
+      const HostTime now = co_await host.clock().now();
+      co_await host.clock().set(now + ns);
+      break;
+    }
+    case HostOperation::kAdjustFrequency:
+      co_await host.clock().adjust_frequency(request.ppb);
+      break;
+    case HostOperation::kSlew:
+      co_await host.clock().slew(ns, request.ppb);
+      break;
+    case HostOperation::kSleepFor:
+      co_await host.sleep_for(ns);
+      co_return std::monostate{};
+    case HostOperation::kSleepUntil:
+      co_await host.sleep_until(HostTime(ns));
+      co_return std::monostate{};
+    case HostOperation::kCrossStamp: {
+      const CrossStamp stamp = co_await host.hardware_clock()->cross_stamp();
+      co_return stamp;
+    }
+    case HostOperation::kStepCard:
+      co_await host.hardware_clock()->step(ns);
+      co_return std::monostate{};
+    case HostOperation::kAdjustCard:
+      co_await host.hardware_clock()->adjust_frequency(request.ppb);
+      co_return std::monostate{};
+    default: {
+      HostAnswer answer = co_await messaged(std::move(request), std::move(port));
+      co_return answer;
+    }
+  }
+  // The clock has been adjusted for the first time: from now on it counts as synchronised.
+  if (host.id() != 0) port->outcome.synchronised(port->exchanges);
+  co_return std::monostate{};
+}
+
+py::object python_value(const HostAnswer& answer) {
+  const auto record = [](const char* type, const auto&... values) {
+    return py::module_::import("simbench.host").attr(type)(values...);
+  };
+  if (const auto* number = std::get_if<std::int64_t>(&answer)) return py::int_(*number);
+  if (const auto* message = std::get_if<ReceivedMessage>(&answer)) {
+    std::optional<std::int64_t> hardware;
+    if (message->received_hardware) hardware = nanoseconds_of(*message->received_hardware);
+    return record("Message", python_bytes(message->bytes), nanoseconds_of(message->received),
+                  nanoseconds_of(message->received_steady), hardware);
+  }
+  if (const auto* reply = std::get_if<ExchangeReply>(&answer)) {
+    return record("Reply", python_bytes(reply->bytes), nanoseconds_of(reply->t1),
+                  nanoseconds_of(reply->t2), nanoseconds_of(reply->t3), nanoseconds_of(reply->t4));
+  }
+  if (const auto* stamp = std::get_if<CrossStamp>(&answer)) {
+    return record("CrossStamp", nanoseconds_of(stamp->before), nanoseconds_of(stamp->hardware),
+                  nanoseconds_of(stamp->after));
+  }
+  return py::none();
+}
+
+namespace {
+
+Task<void> answer_on(Host& host, PeerId client, Transport transport) {
+  MessageChannel& channel = host.open_channel(client, transport);
+  for (;;) {
+    std::optional<ReceivedMessage> received =
+        co_await channel.receive(host.steady_clock().now() + kIdle);
+    if (!received) continue;
+    std::optional<Question> question = decoded(received->bytes);
+    if (!question) continue;
+    if (question->index == 0) co_return;
+    question->t2 = nanoseconds_of(received->received);
+    const HostTime now = co_await host.clock().now();
+    question->t3 = nanoseconds_of(now);
+    Bytes answer = encoded(*question, received->bytes, sizeof(Question));
+    co_await channel.send(std::move(answer));
+  }
+}
+
+}  // namespace
+
+Task<void> answer_questions(Host& host, PeerId client) {
+  const asio::any_io_executor executor = co_await asio::this_coro::executor;
+  const auto spawned = [&](Transport transport) {
+    return asio::co_spawn(executor, answer_on(host, client, transport), asio::deferred);
+  };
+  auto both = asio::experimental::make_parallel_group(spawned(Transport::kDatagram),
+                                                      spawned(Transport::kStream));
+  const auto [order, first, second] =
+      co_await both.async_wait(asio::experimental::wait_for_one(), asio::use_awaitable);
+  const std::exception_ptr& failure = order[0] == 0 ? first : second;
+  if (failure) std::rethrow_exception(failure);
+}
+
+Task<void> say_done(Host& host, PeerId server) {
+  MessageChannel& channel = host.open_channel(server, Transport::kStream);
+  Bytes bytes = encoded({}, {});
+  co_await channel.send(std::move(bytes));
+}
+
+void bind_host_port(py::module_& module) {
+  py::class_<HostPort, std::shared_ptr<HostPort>>(module, "HostPort")
+      .def_property_readonly("id", [](const HostPort& port) { return port.get().id(); })
+      .def("steady_ns",
+           [](const HostPort& port) { return nanoseconds_of(port.get().steady_clock().now()); })
+      .def("random", [](const HostPort& port) { return port.get().random_uniform(); })
+      .def("has_card", [](const HostPort& port) { return port.get().hardware_clock() != nullptr; })
+      .def("stored_frequency",
+           [](const HostPort& port) -> std::optional<std::pair<double, double>> {
+             const std::optional<StoredFrequency> stored = port.get().stored_frequency();
+             if (!stored) return std::nullopt;
+             return std::pair(stored->ppb, stored->error_ppb);
+           })
+      .def("failed", [](HostPort& port, const std::string& why) {
+        port.get();
+        port.outcome.failed(port.exchanges, why);
+      });
+}
+
+}  // namespace simbench::python

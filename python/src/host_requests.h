@@ -1,0 +1,103 @@
+// What a coroutine in Python asks of its host, and the answers.
+//
+// A coroutine yields a tuple, its name first, for each operation that takes time; simbench/host.py
+// has them. The driver (host_sync.cc) awaits the operation and sends the answer back.
+//
+//   const HostRequest request = host_request(tuple, port);   // with the GIL
+//   const HostAnswer answer = co_await answered(request, port);
+//   const py::object value = python_value(answer);           // with the GIL
+#ifndef SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_
+#define SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "algorithms/host_sync/outcome.h"
+#include "algorithms/ports/host.h"
+
+namespace simbench::python {
+
+namespace py = pybind11;
+
+// The host of a run as Python sees it, shared by the coroutines of that host. It outlives the run
+// if the algorithm keeps it, but has no host then.
+struct HostPort {
+  HostPort(Host& of_run, std::set<PeerId> peers_of_run)
+      : host(&of_run), peers(std::move(peers_of_run)), outcome(of_run) {}
+
+  Host& get() const;  // throws std::runtime_error after the run
+
+  Host* host;
+  std::set<PeerId> peers;  // to which it may open a channel
+  OutcomeReport outcome;
+  std::uint32_t exchanges = 0;
+  // The last index of a question to a peer.
+  std::uint64_t index = 0;
+  // On which a coroutine waits; one at a time may.
+  std::set<std::pair<PeerId, Transport>> receiving{};
+};
+
+enum class HostOperation : std::uint8_t {
+  kNow,
+  kSet,
+  kStep,
+  kAdjustFrequency,
+  kSlew,
+  kSleepFor,
+  kSleepUntil,
+  kSend,
+  kReceive,
+  kExchange,
+  kTransmitStamp,
+  kHardwareTransmitStamp,
+  kCrossStamp,
+  kStepCard,
+  kAdjustCard,
+};
+
+struct HostRequest {
+  HostOperation operation = HostOperation::kNow;
+  std::int64_t ns = 0;  // a time, an offset, an interval or a timeout
+  double ppb = 0;
+  PeerId peer = 0;
+  Transport transport = Transport::kDatagram;
+  MessageId message = 0;
+  Bytes bytes{};
+};
+
+// An exchange with the answerer (answer_questions()); t1 and t4 on the own clock.
+struct ExchangeReply {
+  Bytes bytes;
+  HostTime t1{};
+  HostTime t2{};
+  HostTime t3{};
+  HostTime t4{};
+};
+
+// Nothing: the operation has no value, or its deadline has passed.
+using HostAnswer =
+    std::variant<std::monostate, std::int64_t, ReceivedMessage, ExchangeReply, CrossStamp>;
+
+// Throws py::error_already_set or std::exception for a request that is none.
+HostRequest host_request(const py::handle& request, const HostPort& port);
+Task<HostAnswer> answered(HostRequest request, std::shared_ptr<HostPort> port);
+py::object python_value(const HostAnswer& answer);
+
+// The other end of kExchange: answers the questions of a client with the own clock's times, until
+// it says that it has done (or for ever).
+Task<void> answer_questions(Host& host, PeerId client);
+Task<void> say_done(Host& host, PeerId server);
+
+// Parts of simbench/host.py that take no time.
+void bind_host_port(py::module_& module);
+
+}  // namespace simbench::python
+
+#endif  // SIMBENCH_PYTHON_SRC_HOST_REQUESTS_H_

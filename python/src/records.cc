@@ -1,0 +1,120 @@
+#include "python/src/records.h"
+
+#include <structmember.h>
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+namespace simbench::python {
+
+PyTypeObject* SampleRecord::type = nullptr;
+PyTypeObject* FrameRecordObject::type = nullptr;
+
+namespace {
+
+constexpr PyMemberDef whole(const char* name, std::size_t at, const char* text) {
+  return {name, T_LONGLONG, static_cast<Py_ssize_t>(at), READONLY, text};
+}
+constexpr PyMemberDef small(const char* name, std::size_t at, const char* text) {
+  return {name, T_UINT, static_cast<Py_ssize_t>(at), READONLY, text};
+}
+
+std::array<PyMemberDef, 5> sample_members = {
+    whole("sensor_ns", offsetof(SampleRecord, sensor_ns),
+          "middle of the exposure on the camera's clock, unwrapped, a multiple of 1000"),
+    whole("arrival_ns", offsetof(SampleRecord, arrival_ns), "delivery on the host's system clock"),
+    whole("arrival_steady_ns", offsetof(SampleRecord, arrival_steady_ns),
+          "the same instant on the host's steady clock"),
+    small("exposure_us", offsetof(SampleRecord, exposure_us), "length of the exposure"),
+    PyMemberDef{}};
+
+std::array<PyMemberDef, 5> frame_members = {
+    small("source", offsetof(FrameRecordObject, source), "number of the camera's stream, from 0"),
+    whole("stamp_ns", offsetof(FrameRecordObject, stamp_ns), "global stamp"),
+    whole("arrival_ns", offsetof(FrameRecordObject, arrival_ns),
+          "when its host had it, on the global scale"),
+    whole("sensor_ns", offsetof(FrameRecordObject, sensor_ns),
+          "the camera's own stamp, unwrapped"),
+    PyMemberDef{}};
+
+// For tests of an algorithm by itself.
+PyObject* new_sample(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  static std::array<const char*, 5> names = {"sensor_ns", "arrival_ns", "arrival_steady_ns",
+                                             "exposure_us", nullptr};
+  SampleRecord values{};
+  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "LL|LI",
+                                  const_cast<char**>(names.data()), &values.sensor_ns,
+                                  &values.arrival_ns, &values.arrival_steady_ns,
+                                  &values.exposure_us) == 0) {
+    return nullptr;
+  }
+  PyObject* const object = type->tp_alloc(type, 0);
+  if (object == nullptr) return nullptr;
+  auto& record = *reinterpret_cast<SampleRecord*>(object);
+  record.sensor_ns = values.sensor_ns;
+  record.arrival_ns = values.arrival_ns;
+  record.arrival_steady_ns = values.arrival_steady_ns;
+  record.exposure_us = values.exposure_us;
+  return object;
+}
+
+PyObject* new_frame(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  static std::array<const char*, 5> names = {"source", "stamp_ns", "arrival_ns", "sensor_ns",
+                                             nullptr};
+  FrameRecordObject values{};
+  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "IL|LL", const_cast<char**>(names.data()),
+                                  &values.source, &values.stamp_ns, &values.arrival_ns,
+                                  &values.sensor_ns) == 0) {
+    return nullptr;
+  }
+  PyObject* const object = type->tp_alloc(type, 0);
+  if (object == nullptr) return nullptr;
+  auto& record = *reinterpret_cast<FrameRecordObject*>(object);
+  record.source = values.source;
+  record.stamp_ns = values.stamp_ns;
+  record.arrival_ns = values.arrival_ns;
+  record.sensor_ns = values.sensor_ns;
+  return object;
+}
+
+PyObject* show_sample(PyObject* object) {
+  const auto& record = *reinterpret_cast<SampleRecord*>(object);
+  return PyUnicode_FromFormat(
+      "Sample(sensor_ns=%lld, arrival_ns=%lld, arrival_steady_ns=%lld, exposure_us=%u)",
+      record.sensor_ns, record.arrival_ns, record.arrival_steady_ns, record.exposure_us);
+}
+
+PyObject* show_frame(PyObject* object) {
+  const auto& record = *reinterpret_cast<FrameRecordObject*>(object);
+  return PyUnicode_FromFormat("Frame(source=%u, stamp_ns=%lld, arrival_ns=%lld, sensor_ns=%lld)",
+                              record.source, record.stamp_ns, record.arrival_ns,
+                              record.sensor_ns);
+}
+
+PyTypeObject* made_type(py::module_& module, const char* name, std::size_t size, const char* text,
+                        PyMemberDef* members, newfunc make, reprfunc show) {
+  std::array<PyType_Slot, 5> slots = {{{Py_tp_doc, const_cast<char*>(text)},
+                                       {Py_tp_members, members},
+                                       {Py_tp_new, reinterpret_cast<void*>(make)},
+                                       {Py_tp_repr, reinterpret_cast<void*>(show)},
+                                       {0, nullptr}}};
+  PyType_Spec spec = {name, static_cast<int>(size), 0, Py_TPFLAGS_DEFAULT, slots.data()};
+  PyObject* const type = PyType_FromSpec(&spec);
+  if (type == nullptr) throw py::error_already_set();
+  module.add_object(std::strrchr(name, '.') + 1, type);
+  return reinterpret_cast<PyTypeObject*>(type);
+}
+
+}  // namespace
+
+void bind_records(py::module_& module) {
+  SampleRecord::type = made_type(module, "simbench.Sample", sizeof(SampleRecord),
+                                 "A frame of one camera, as stamp() gets it.",
+                                 sample_members.data(), &new_sample, &show_sample);
+  FrameRecordObject::type = made_type(module, "simbench.Frame", sizeof(FrameRecordObject),
+                                      "A frame of any camera, as push() of a gatherer gets it.",
+                                      frame_members.data(), &new_frame, &show_frame);
+}
+
+}  // namespace simbench::python
