@@ -1,6 +1,7 @@
 // device_time in Python: a class with stamp(sample), or with stamp_all(...) of the whole recording.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <cmath>
 #include <cstddef>
