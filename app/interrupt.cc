@@ -85,6 +85,8 @@ InterruptHandler::~InterruptHandler() { sigaction(SIGINT, &previous_, nullptr); 
 
 bool InterruptHandler::raised() { return interrupt_flag; }
 
+void InterruptHandler::set(bool raised) { interrupt_flag = raised; }
+
 const std::atomic<bool>& InterruptHandler::flag() { return interrupt_flag; }
 
 std::unique_ptr<RecordingSource> interruptible(std::unique_ptr<RecordingSource> source) {

@@ -5,7 +5,8 @@
 //   evaluate(scenario, [&] { return simulated_world(scenario); }, options, progress);
 //   if (InterruptHandler::raised()) return kInterrupted;
 //
-// A second SIGINT ends the program at once.
+// A second SIGINT ends the program at once. A program that has signal handlers of its own raises
+// the flag in their place.
 #ifndef SIMBENCH_APP_INTERRUPT_H_
 #define SIMBENCH_APP_INTERRUPT_H_
 
@@ -30,6 +31,8 @@ class InterruptHandler {
   static bool raised();
   // The flag itself, for work that polls one.
   static const std::atomic<bool>& flag();
+  // In place of a signal, for a program with handlers of its own; set(false) before the next work.
+  static void set(bool raised);
 
  private:
   struct sigaction previous_ = {};

@@ -30,8 +30,9 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-// As built, and as installed.
-std::string find_shim() {
+// As built, as installed, or where the caller says.
+std::string find_shim(const std::string& folder) {
+  if (!folder.empty()) return folder + "/libsimbench_shim.so";
   for (const char* place : {"../lib/libsimbench_shim.so", "../lib/simbench/libsimbench_shim.so"}) {
     const std::filesystem::path path = (own_folder() / place).lexically_normal();
     if (std::filesystem::exists(path)) return path.string();
@@ -100,7 +101,7 @@ evaluation::ProgramEntry entry_of(const scenarios::Scenario& scenario,
                                 .hosts = static_cast<std::size_t>(scenario.hosts.count)};
   std::string problem;
   try {
-    settings.shim = find_shim();
+    settings.shim = find_shim(options.library_folder);
     find(settings.programs, settings.paths);
   } catch (const sim::ProgramError& missing) {
     problem = missing.what();
@@ -128,7 +129,7 @@ std::unique_ptr<HostSync> make_node_programs(const scenarios::Pipeline& pipeline
       .log_folder = logs.empty() ? "" : logs + "/" + pipeline.name,
       .interface = interface};
   try {
-    settings.shim = find_shim();
+    settings.shim = find_shim(options.library_folder);
     find(settings.programs, settings.paths);
     return std::make_unique<hardware::NodePrograms>(std::move(settings));
   } catch (const sim::ProgramError& missing) {

@@ -25,6 +25,9 @@ struct ProgramOptions {
   // Where the hosts' folders stay, in PIPELINE/seed1/host0, with what the programs printed; empty:
   // nowhere.
   std::string log_folder{};
+  // Where the preloaded library is, of a program that is a module of an interpreter; empty: beside
+  // this program.
+  std::string library_folder{};
 };
 
 // The programs of a pipeline on the host of a node (hardware/node/node_programs.h), whose programs'

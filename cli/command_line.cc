@@ -5,22 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/bad_input.h"
 #include "app/program_pipelines.h"
 #include "cli/command.h"
 #include "cli/command_table.h"
 #include "cli/commands/commands.h"
 #include "cli/help.h"
 #include "cli/process.h"
-#include "recording/recording_folder.h"
-#include "recording/rs_csv.h"
 #include "recording/version.h"
-#include "reports/text/output_file.h"
 #include "reports/text/plain_text.h"
 #include "reports/text/program_name.h"
-#include "scenarios/document.h"
 #include "scenarios/loader.h"
 
 namespace simbench {
@@ -131,11 +129,6 @@ int parse_and_run(const std::vector<std::string>& arguments, const CommandLineEx
   return line.action();
 }
 
-int bad_input(const std::exception& error) {
-  cli::print_error(error.what());
-  return ExitStatus::kBadInput;
-}
-
 }  // namespace
 
 int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
@@ -151,19 +144,11 @@ int run_command_line(int argc, char** argv, const CommandLineExtras& extras) {
   try {
     if (extras.farm == nullptr) cli::become_mpi_program(arguments);
     return parse_and_run(arguments, extras);
-  } catch (const scenarios::InputError& error) {
-    return bad_input(error);
-  } catch (const reports::OutputError& error) {
-    return bad_input(error);
-  } catch (const CsvError& error) {
-    return bad_input(error);
-  } catch (const RecordingFolderError& error) {
-    return bad_input(error);
-  } catch (const std::filesystem::filesystem_error& error) {
-    cli::print_error(fmt::format("{}: {}", scenarios::shown_text(error.path1().string()),
-                                 error.code().message()));
-    return ExitStatus::kBadInput;
   } catch (const std::exception& error) {
+    if (const std::optional<std::string> text = app::bad_input(error)) {
+      cli::print_error(*text);
+      return ExitStatus::kBadInput;
+    }
     cli::print_internal_error(
         fmt::format("{}\n(simbench {}, commit {})", error.what(), version(), commit()));
     return ExitStatus::kInternalError;

@@ -3,6 +3,7 @@ include(GNUInstallDirs)
 
 option(SIMBENCH_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SIMBENCH_BUILD_BENCH "Build the benchmark programs" ${PROJECT_IS_TOP_LEVEL})
+option(SIMBENCH_BUILD_PYTHON "Build the Python package (tools/setup --with-python)" OFF)
 option(SIMBENCH_BUILD_FUZZ "Build the fuzzers, which need clang's libFuzzer (preset asan)" OFF)
 set(SIMBENCH_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize= (empty: none)")
 

@@ -1,1 +1,43 @@
+"""simbench: how well cameras on hosts over a network are synchronised, and what limits it.
+
+    import simbench
+    r = simbench.run("18cam_6host_45fps", pipelines=["yoon2021_both"], seeds=8)
+    r.table                       # a row a pipeline
+    r.frames("yoon2021_both")     # every frame: stamps, truth, error
+    r.plot()
+
+All of it is what the command `simbench` computes, with the same numbers. docs/python.md explains it.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from . import _simbench
 from .algorithms import Frame, Parameter, Sample, device_time, gathering, host_sync, pipeline
+from .clock_runs import Clocks, clocks
+from .errors import Error, InputError, MissingPackage, OutputError
+from .results import Comparison, Result, compare, load, run
+from .rigs import Diagnosis, Replay, diagnose, replay
+from .tables import table as _table
+
+_simbench.use_programs(os.path.dirname(os.path.abspath(__file__)))
+__version__: str = _simbench.version
+
+__all__ = [
+    "Clocks", "Comparison", "Diagnosis", "Error", "Frame", "InputError", "MissingPackage",
+    "OutputError", "Parameter", "Replay", "Result", "Sample", "clocks", "compare", "describe",
+    "device_time", "diagnose", "gathering", "host_sync", "list_scenarios", "load", "pipeline",
+    "replay", "run",
+]  # fmt: skip
+
+
+def list_scenarios() -> Any:
+    """The built-in scenarios: scenario, summary. A pandas DataFrame; else a list of dicts."""
+    return _table(_simbench.list_scenarios())
+
+
+def describe(scenario: "str | os.PathLike[str]") -> Any:
+    """Every parameter of a scenario: pointer, value, unit, meaning, source. As list_scenarios()."""
+    return _table(_simbench.describe(os.fspath(scenario)))

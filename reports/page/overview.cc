@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "reports/results/results_answer.h"
@@ -21,6 +22,7 @@ using evaluation::Row;
 using evaluation::Series;
 
 constexpr std::size_t kMostOverviewRows = 24;
+constexpr const char* kBest = "best";
 
 // Whole decades around all that is drawn.
 struct LogAxis {
@@ -41,27 +43,6 @@ struct LogAxis {
   }
 };
 
-std::vector<const Row*> overview_rows(const Results& results, RankedBy ranked_by) {
-  std::vector<const Row*> rows;
-  for (const Row& row : results.rows) {
-    if (evaluation::ranked_series(row, ranked_by).median > 0) rows.push_back(&row);
-  }
-  std::ranges::stable_sort(rows, {}, [ranked_by](const Row* row) {
-    return evaluation::ranked_series(*row, ranked_by).median;
-  });
-  return rows;
-}
-
-bool has_published(const Row& row, RankedBy ranked_by) {
-  return ranked_by == RankedBy::kAmd && row.published && row.published->amd_ms > 0;
-}
-
-// "best", "limit", "reference" or "".
-std::string word_of(const Row& row, RankedBy ranked_by, bool is_best) {
-  if (is_best) return "best";
-  return evaluation::standing_name(evaluation::standing_by(row, ranked_by));
-}
-
 // A name that may break behind its underscores and nowhere else.
 std::string breakable(const std::string& name) {
   std::string text;
@@ -72,24 +53,24 @@ std::string breakable(const std::string& name) {
   return text;
 }
 
-std::string row_html(const Row& row, RankedBy ranked_by, const LogAxis& axis, bool is_best) {
-  const Series& series = evaluation::ranked_series(row, ranked_by);
-  const std::string word = word_of(row, ranked_by, is_best);
-  const char* const style = is_best ? "best" : word.empty() ? "" : "limit";
+std::string row_html(const OverviewRow& row, const LogAxis& axis) {
+  const Series& series = *row.series;
+  const char* const style = row.word == kBest ? "best" : row.word.empty() ? "" : "limit";
   const double from = axis.at(series.p05);
   std::string marks = fmt::format(
       "<i class=\"band\" style=\"left:{:.2f}%;width:{:.2f}%\"></i>"
       "<i class=\"dot\" style=\"left:{:.2f}%\"></i>",
       from, std::max(axis.at(series.p95) - from, 0.2), axis.at(series.median));
-  if (has_published(row, ranked_by)) {
+  if (row.published_ms) {
     marks +=
         fmt::format("<i class=\"published\" style=\"left:{:.2f}%\" title=\"published: {}\"></i>",
-                    axis.at(row.published->amd_ms), time_text(row.published->amd_ms));
+                    axis.at(*row.published_ms), time_text(*row.published_ms));
   }
   return fmt::format(
       "<tr class=\"{}\"><th scope=\"row\">{}{}</th><td class=\"track\">{}</td><td>{}</td></tr>\n",
-      style, breakable(row.pipeline), word.empty() ? "" : fmt::format(" <small>{}</small>", word),
-      marks, time_text(series.median));
+      style, breakable(row.row->pipeline),
+      row.word.empty() ? "" : fmt::format(" <small>{}</small>", row.word), marks,
+      time_text(series.median));
 }
 
 std::string axis_html(const LogAxis& axis) {
@@ -104,24 +85,45 @@ std::string axis_html(const LogAxis& axis) {
 
 }  // namespace
 
+std::vector<OverviewRow> overview_rows(const Results& results, RankedBy ranked_by) {
+  std::vector<const Row*> drawn;
+  std::vector<OverviewRow> rows;
+  for (const Row& row : results.rows) {
+    if (evaluation::ranked_series(row, ranked_by).median > 0) drawn.push_back(&row);
+  }
+  std::ranges::stable_sort(drawn, {}, [ranked_by](const Row* row) {
+    return evaluation::ranked_series(*row, ranked_by).median;
+  });
+  const Row* const best = evaluation::best_of(drawn, ranked_by);
+  rows.reserve(drawn.size());
+  for (const Row* row : drawn) {
+    OverviewRow line{.row = row, .series = &evaluation::ranked_series(*row, ranked_by)};
+    if (ranked_by == RankedBy::kAmd && row->published && row->published->amd_ms > 0) {
+      line.published_ms = row->published->amd_ms;
+    }
+    line.word =
+        row == best ? kBest : evaluation::standing_name(evaluation::standing_by(*row, ranked_by));
+    rows.push_back(std::move(line));
+  }
+  return rows;
+}
+
 std::string overview_html(const Results& results, RankedBy ranked_by) {
-  std::vector<const Row*> rows = overview_rows(results, ranked_by);
+  std::vector<OverviewRow> rows = overview_rows(results, ranked_by);
   if (rows.empty()) return "";
   const std::size_t all = rows.size();
   rows.resize(std::min(rows.size(), kMostOverviewRows));
   LogAxis axis;
   bool any_published = false;
-  for (const Row* row : rows) {
-    const Series& series = evaluation::ranked_series(*row, ranked_by);
-    for (const double ms : {series.p05, series.median, series.p95}) axis.include(ms);
-    if (!has_published(*row, ranked_by)) continue;
-    axis.include(row->published->amd_ms);
+  for (const OverviewRow& row : rows) {
+    for (const double ms : {row.series->p05, row.series->median, row.series->p95}) axis.include(ms);
+    if (!row.published_ms) continue;
+    axis.include(*row.published_ms);
     any_published = true;
   }
   axis.widen();
-  const Row* const best = evaluation::best_of(rows, ranked_by);
   std::string body;
-  for (const Row* row : rows) body += row_html(*row, ranked_by, axis, row == best);
+  for (const OverviewRow& row : rows) body += row_html(row, axis);
   const std::string what = capitalised(ranked_name(ranked_by));
   return fmt::format(
       "<figure class=\"overview\"><table><caption>{} of each pipeline</caption>\n<tbody>\n"

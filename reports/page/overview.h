@@ -9,12 +9,26 @@
 #ifndef SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
 #define SIMBENCH_REPORTS_PAGE_OVERVIEW_H_
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "evaluation/answer/answer.h"
 #include "evaluation/scoring/results.h"
 
 namespace simbench::reports {
+
+// A line of the figure. The series is in milliseconds.
+struct OverviewRow {
+  const evaluation::Row* row = nullptr;        // of the results
+  const evaluation::Series* series = nullptr;  // of the row: what is drawn
+  std::optional<double> published_ms{};
+  std::string word{};  // "best", "limit", "reference" or ""
+};
+
+// In their order; none if no pipeline has a value above 0.
+std::vector<OverviewRow> overview_rows(const evaluation::Results& results,
+                                       evaluation::RankedBy ranked_by);
 
 // "" if no pipeline has a value above 0.
 std::string overview_html(const evaluation::Results& results, evaluation::RankedBy ranked_by);

@@ -1,0 +1,278 @@
+"""Runs: simulated now, read from an archive, or scored from a recording folder."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+
+from . import _simbench
+from .errors import InputError, MissingPackage
+from .progress import Progress
+from .tables import array, notebook_html, page_text, records, table
+
+Path = Union[str, "os.PathLike[str]"]
+_MOST_SEEDS = 1_000_000
+_MOST_JOBS = 4096
+_MOST_PLOTTED = 24
+
+
+def _warn(notes: Sequence[str]) -> None:
+    for note in notes:
+        warnings.warn(note, stacklevel=3)
+
+
+def _whole(name: str, value: Any, low: int, high: int) -> int:
+    if isinstance(value, bool) or not hasattr(value, "__index__") or not low <= value <= high:
+        raise InputError(
+            f"{name}: found {value!r}, allowed: a whole number from {low} to {high}"
+        )
+    return int(value)
+
+
+def request_of(
+    function: str,
+    scenario: Path,
+    pipelines: Optional[Sequence[str]],
+    seeds: int,
+    first_seed: int,
+    sets: Optional[Mapping[str, Any]],
+    jobs: int,
+) -> _simbench.RunRequest:
+    """What the libraries are asked for, checked. `function`: who is called, for the manifest."""
+    if isinstance(pipelines, str):
+        raise InputError(f"pipelines: found the text {pipelines!r}, allowed: a list of names")
+    request = _simbench.RunRequest()
+    request.scenario = os.fspath(scenario)
+    request.pipelines = list(pipelines or [])
+    request.sets = [(pointer, json.dumps(value)) for pointer, value in (sets or {}).items()]
+    request.seeds = _whole("seeds", seeds, 1, _MOST_SEEDS)
+    request.first_seed = _whole("first_seed", first_seed, 0, 2**53)
+    request.jobs = _whole("jobs", jobs, 0, _MOST_JOBS)
+    request.command = ["python", f"simbench.{function}", request.scenario]
+    request.command += [f"--pipelines={','.join(request.pipelines)}"] if pipelines else []
+    request.command += [f"--seeds={seeds}", f"--first-seed={first_seed}"]
+    request.command += [f"--set={pointer}={value}" for pointer, value in request.sets]
+    return request
+
+
+class Result:
+    """The results of all pipelines over all seeds: what `simbench run` prints and writes."""
+
+    def __init__(self, run: _simbench.Run, progress: Optional[bool] = None) -> None:
+        self._run = run
+        self._progress = progress
+        self._html: Optional[str] = None
+
+    @property
+    def scenario(self) -> str:
+        """The scenario's name."""
+        return self._run.scenario
+
+    @property
+    def notes(self) -> List[str]:
+        """What is doubtful about the results, a line each; mostly empty."""
+        return self._run.notes
+
+    @property
+    def table(self) -> Any:
+        """A row a pipeline, with the columns of `simbench run --format csv`: the median of each
+        metric and of some the 5 and 95 % quantiles, the published values.
+
+        A pandas DataFrame; without pandas a list of dicts.
+        """
+        return table(records(self._run.csv()))
+
+    @property
+    def seeds(self) -> Any:
+        """Every value: scenario, pipeline, seed, metric, unit, value. As `table`."""
+        return table(records(self._run.tidy_csv()))
+
+    @property
+    def data(self) -> Dict[str, Any]:
+        """All of it, as results.json has it."""
+        return json.loads(self._run.json())
+
+    @property
+    def answer(self) -> str:
+        """The answer in one paragraph, as `simbench run --quiet` prints it."""
+        return self.text(detail="answer")
+
+    def text(self, format: str = "table", detail: str = "screen") -> str:
+        """What `simbench run` prints. `format`: table, markdown, latex, csv, tidy or json; `detail`
+        of a table: answer, screen or all."""
+        for name, found, allowed in (
+            ("format", format, ("table", "markdown", "latex", "csv", "tidy", "json")),
+            ("detail", detail, ("answer", "screen", "all")),
+        ):
+            if found not in allowed:
+                raise InputError(f"{name}: found {found!r}, allowed: {', '.join(allowed)}")
+        with Progress(self._progress, "run") as shown:
+            return self._run.text(format, detail, shown.callback)
+
+    def frames(self, pipeline: str, seed: Optional[int] = None) -> Any:
+        """Every frame of one run: a structured NumPy array, read-only, in the memory of the
+        libraries.
+
+        Fields: camera, host, counter, pulse (-1: none or unknown), evaluated, in_warm_up; sensor_ms
+        and frame_ms on the device's clock; backend_ms and arrival_ms on the host's; global_ms, the
+        pipeline's stamp; reference_ms, what it should be, and error_ms, the difference;
+        exposure_start_ms and exposure_end_ms in true time. Hosts' times count from one zero. NaN:
+        it does not exist.
+
+        The run is repeated (some 10 ms for 18 cameras), so a Result holds no frames. At most 18
+        cameras are kept; a warning says so.
+        """
+        if seed is None:
+            seed = self._run.first_seed
+        with Progress(self._progress, "run") as shown:
+            rows, kept, cameras = self._run.frames(pipeline, seed, shown.callback)
+        if kept < cameras:
+            _warn([f"frames of the first {kept} of {cameras} cameras"])
+        return array(rows)
+
+    def plot(self, ax: Any = None) -> Any:
+        """The first figure of the report: each pipeline's median, band and published value on a
+        logarithmic axis. Returns matplotlib's axes; `ax`: where to draw."""
+        try:
+            from matplotlib import pyplot
+        except ImportError as error:
+            raise MissingPackage(
+                "plot() needs matplotlib, which is missing: " + str(error)
+            ) from None
+        rows = self._run.overview()
+        if not rows:
+            raise InputError(f"{self.scenario}: found no pipeline with a value above 0 to draw")
+        hidden = len(rows) - _MOST_PLOTTED
+        rows = rows[:_MOST_PLOTTED]
+        if ax is None:
+            _, ax = pyplot.subplots(figsize=(8, 1 + 0.32 * len(rows)), layout="constrained")
+        for place, row in enumerate(rows):
+            colour = {"best": "tab:green", "": "tab:blue"}.get(row["word"], "tab:gray")
+            ax.plot([row["p05_ms"], row["p95_ms"]], [place, place], color=colour, lw=4, alpha=0.4)
+            ax.plot(row["median_ms"], place, "o", color=colour)
+            if row["published_ms"] is not None:
+                ax.plot(row["published_ms"], place, "D", color="black", fillstyle="none")
+        names = [f"{row['pipeline']} ({row['word']})" if row["word"] else row["pipeline"] for row in rows]
+        ax.set_yticks(range(len(rows)), names)
+        ax.invert_yaxis()
+        ax.set_xscale("log")
+        ax.set_xlabel(f"{self._run.ranked_name}, ms: median and 5-95 % of {self._run.seed_count} seeds")
+        more = f" (the first {_MOST_PLOTTED} of {_MOST_PLOTTED + hidden})" if hidden > 0 else ""
+        published = ", diamonds: published" if any(r["published_ms"] is not None for r in rows) else ""
+        ax.set_title(f"{self.scenario}{more}{published}", fontsize="medium")
+        ax.grid(True, axis="x", alpha=0.3)
+        return ax
+
+    def save(self, folder: Path) -> None:
+        """Writes the archive that `simbench run --output` writes."""
+        self._run.save(os.fspath(folder))
+
+    def __repr__(self) -> str:
+        return page_text(self.text)
+
+    def _repr_html_(self) -> str:
+        if self._html is None:
+            with Progress(self._progress, "run") as shown:
+                self._html = notebook_html(self._run.html(shown.callback))
+        return self._html
+
+
+class Comparison:
+    """Two results, or pipelines of one, compared seed by seed: what `simbench compare` prints."""
+
+    def __init__(self, comparison: _simbench.Comparison) -> None:
+        self._comparison = comparison
+
+    @property
+    def table(self) -> Any:
+        """A row a pipeline and metric, with its verdict. A pandas DataFrame; else a list of dicts."""
+        return table(records(self._comparison.csv()))
+
+    @property
+    def data(self) -> Dict[str, Any]:
+        """All of it, as `simbench compare --format json` prints it."""
+        return json.loads(self._comparison.json())
+
+    def __repr__(self) -> str:
+        return page_text(self._comparison.text)
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self._comparison.html())
+
+
+def run(
+    scenario: Path,
+    pipelines: Optional[Sequence[str]] = None,
+    seeds: int = 32,
+    *,
+    set: Optional[Mapping[str, Any]] = None,
+    first_seed: int = 1,
+    jobs: int = 0,
+    keep_pulses: bool = True,
+    progress: Optional[bool] = None,
+) -> Result:
+    """Runs pipelines of a scenario over many seeds, as `simbench run` does.
+
+    scenario: a name (list_scenarios()) or the path of a JSON file.
+    pipelines: names of the scenario's, or "host_sync+device_time+gathering"; None: all.
+    set: changes of the scenario, {"/trigger/rate_hz": 30}.
+    jobs: threads; 0: one for every core.
+    keep_pulses: keep what Result.save() needs, 24 bytes for each pulse of each run.
+    progress: show it; None: where tqdm is installed and somebody looks.
+
+    Raises InputError, KeyboardInterrupt at Ctrl-C. Doubts about the scenario become warnings.
+    """
+    request = request_of("run", scenario, pipelines, seeds, first_seed, set, jobs)
+    request.keep_pulses = bool(keep_pulses)
+    with Progress(progress, "run") as shown:
+        result = Result(_simbench.simulate(request, shown.callback), progress)
+    _warn(result.notes)
+    return result
+
+
+def load(folder: Path, *, progress: Optional[bool] = None) -> Result:
+    """Reads the archive of a run: a folder of `simbench run --output`, or a results.json."""
+    path = os.fspath(folder)
+    result = Result(_simbench.load_archive(path), progress)
+    if result._run.is_clock_run:
+        raise InputError(
+            f"{path}: found an archive of `simbench clocks`, allowed: one of `simbench run`"
+        )
+    return result
+
+
+def _as_run(of: Union[Result, Path]) -> _simbench.Run:
+    return of._run if isinstance(of, Result) else _simbench.load_archive(os.fspath(of))
+
+
+def compare(
+    a: Union[Result, Path],
+    b: Union[Result, Path, None] = None,
+    *,
+    baseline: Optional[str] = None,
+    pipelines: Optional[Sequence[str]] = None,
+    smallest_effect: float = 0.05,
+    by_index: bool = False,
+    different_scenarios: bool = False,
+) -> Comparison:
+    """Compares b with a, pipeline by pipeline; or, with a alone, every pipeline with `baseline`, or
+    the second of two `pipelines` with the first. Results or folders of archives."""
+    options = _simbench.ComparisonOptions()
+    options.smallest_effect = smallest_effect
+    options.by_index = by_index
+    options.different_scenarios = different_scenarios
+    names = list(pipelines or [])
+    if b is not None:
+        if baseline is not None:
+            raise InputError("baseline: found two results, allowed: one, whose pipelines are compared")
+        options.pipelines = names
+        return Comparison(_simbench.compare_runs(_as_run(a), _as_run(b), options))
+    if baseline is not None and not names:
+        return Comparison(_simbench.compare_baseline(_as_run(a), baseline, options))
+    if baseline is None and len(names) == 2:
+        return Comparison(_simbench.compare_two(_as_run(a), names[0], names[1], options))
+    raise InputError(
+        "found one result, allowed with it: either two pipelines or a baseline; or a second result"
+    )

@@ -1,0 +1,84 @@
+"""Tables of the libraries as Python has them: pandas, NumPy, or plain lists."""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+from typing import Any
+
+from . import _simbench
+from .errors import MissingPackage
+
+#: Columns of words; all others are numbers.
+_WORDS = frozenset(
+    "pipeline host_sync device_time gathering scenario metric measure unit ground_truth verified "
+    "notes changed camera stream pipeline_a pipeline_b verdict metric_id a b kind".split()
+)
+_COUNTS = frozenset(_simbench.counts()) | {"seed", "host", "scored_seeds"}
+
+
+def _cell(column: str, text: str) -> Any:
+    if column in _WORDS:
+        return text
+    if text == "":
+        return float("nan")
+    try:
+        return int(text) if column in _COUNTS else float(text)
+    except ValueError:
+        return text
+
+
+def records(text: str) -> list[dict[str, Any]]:
+    """The lines of a CSV text as the libraries write it; what does not exist is NaN."""
+    return [
+        {column: _cell(column, cell) for column, cell in line.items()}
+        for line in csv.DictReader(io.StringIO(text))
+    ]
+
+
+def table(rows: list[dict[str, Any]]) -> Any:
+    """A pandas DataFrame of the rows; without pandas the rows themselves."""
+    try:
+        import pandas
+    except ImportError:
+        return rows
+    return pandas.DataFrame(rows)
+
+
+def array(rows: _simbench.Rows) -> Any:
+    """A structured NumPy array in the memory of the rows, which it keeps alive."""
+    try:
+        import numpy
+    except ImportError as error:
+        raise MissingPackage("frames() needs NumPy, which is missing: " + str(error)) from None
+    names, formats, offsets = zip(*rows.fields)
+    dtype = numpy.dtype(
+        {"names": names, "formats": formats, "offsets": offsets, "itemsize": rows.row_bytes}
+    )
+    return numpy.frombuffer(rows, dtype=dtype)
+
+
+_STYLE = (
+    "<style>.simbench th,.simbench td{text-align:left;padding:2px 8px}"
+    ".simbench th,.simbench h2{font-weight:bold;font-size:1em}</style>"
+)
+
+
+def notebook_html(body: str) -> str:
+    """The reports' HTML for a notebook, which has a style of its own."""
+    return f'<div class="simbench">{_STYLE}{body}</div>'
+
+
+def paragraphs(lines: list[str]) -> str:
+    return "".join(f"<p>{html.escape(line)}</p>" for line in lines)
+
+
+def page_text(text_of: Any) -> str:
+    """What text_of() returns, for a terminal of this width."""
+    import shutil
+    import sys
+
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    _simbench.set_page_width(width)
+    return str(text_of()).rstrip("\n")

@@ -1,0 +1,99 @@
+// Runs of the hosts' clocks alone for the package.
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/interrupt.h"
+#include "app/results.h"
+#include "evaluation/clock_run/clock_evaluation.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
+#include "python/src/bindings.h"
+#include "python/src/run.h"
+#include "python/src/work.h"
+#include "recording/version.h"
+#include "reports/clocks/clock_answer.h"
+#include "reports/clocks/clock_report.h"
+#include "reports/results/csv.h"
+#include "scenarios/loader.h"
+
+namespace py = pybind11;
+
+namespace simbench::python {
+namespace {
+
+struct ClockRun {
+  evaluation::ClockResults results{};
+  scenarios::Scenario scenario{};
+  reports::Provenance provenance{};
+  std::vector<std::string> notes{};
+};
+
+std::shared_ptr<ClockRun> run_clocks(const RunRequest& request, std::uint64_t duration_s,
+                                     std::uint64_t from_s, const py::object& on_progress) {
+  auto run = std::make_shared<ClockRun>();
+  run->provenance.command = request.command;
+  run->provenance.started = std::chrono::system_clock::now();
+  std::vector<scenarios::Override> overrides;
+  for (const auto& [pointer, value] : request.sets) overrides.push_back({pointer, value});
+  run->scenario = scenarios::load_scenario(
+      request.scenario,
+      evaluation::with_ad_hoc_pipelines(request.scenario, overrides, request.pipelines,
+                                        evaluation::AdHoc::kHostSyncToo));
+  evaluation::ClockOptions options{.duration_s = duration_s,
+                                   .from_s = from_s,
+                                   .first_seed = request.first_seed,
+                                   .seeds = request.seeds,
+                                   .jobs = request.jobs,
+                                   .pipelines = request.pipelines};
+  evaluation::check_clock_options(run->scenario, options);
+  options.cancel = &app::InterruptHandler::flag();
+  using evaluation::ClockResults;
+  run->results = watched<ClockResults>(on_progress, [&](const evaluation::Progress& progress) {
+    return evaluation::evaluate_clocks(
+        run->scenario, [&] { return app::simulated_clocks(run->scenario); }, options, progress);
+  });
+  run->provenance.finished = std::chrono::system_clock::now();
+  run->notes = scenarios::warnings(run->scenario);
+  const std::vector<std::string>& more = run->results.results.warnings;
+  run->notes.insert(run->notes.end(), more.begin(), more.end());
+  return run;
+}
+
+void save_clocks(const ClockRun& run, const std::string& folder) {
+  reports::OutputFolder output(folder, reports::clock_archive_files());
+  reports::write_clock_archive(output, run.results, run.scenario, run.provenance);
+}
+
+std::string series_csv(const ClockRun& run) {
+  std::ostringstream text;
+  reports::write_series_csv(run.results, text);
+  return text.str();
+}
+
+std::string clock_html(const ClockRun& run) {
+  const reports::Document document = reports::clock_document(run.results, run.scenario.summary);
+  return html(reports::clock_answer(run.results.results)) + html(document.blocks);
+}
+
+}  // namespace
+}  // namespace simbench::python
+
+void bind_clocks(pybind11::module_& module) {
+  using namespace simbench;
+  using python::ClockRun;
+  py::class_<ClockRun, std::shared_ptr<ClockRun>>(module, "ClockRun")
+      .def_readonly("notes", &ClockRun::notes)
+      .def("csv", [](const ClockRun& run) { return reports::clock_csv(run.results); })
+      .def("tidy_csv", [](const ClockRun& run) { return reports::tidy_csv(run.results.results); })
+      .def("json", [](const ClockRun& run) { return reports::clock_json(run.results); })
+      .def("series_csv", &python::series_csv)
+      .def("text",
+           [](const ClockRun& run) { return app::clock_text(run.results, run.scenario, "table"); })
+      .def("html", &python::clock_html)
+      .def("save", &python::save_clocks);
+  module.def("run_clocks", &python::run_clocks);
+}

@@ -1,0 +1,320 @@
+// Runs, archives and comparisons for the package.
+#include "app/results.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/answer.h"
+#include "app/interrupt.h"
+#include "evaluation/run/ad_hoc_pipelines.h"
+#include "evaluation/run/evaluate.h"
+#include "evaluation/run/run_detail.h"
+#include "python/src/bindings.h"
+#include "python/src/frames.h"
+#include "python/src/run.h"
+#include "python/src/work.h"
+#include "recording/version.h"
+#include "reports/clocks/clock_report.h"
+#include "reports/comparison/comparison.h"
+#include "reports/page/overview.h"
+#include "reports/results/csv.h"
+#include "reports/results/json.h"
+#include "reports/results/results_answer.h"
+#include "reports/results/summary_document.h"
+#include "scenarios/loader.h"
+
+namespace py = pybind11;
+
+namespace simbench::python {
+namespace {
+
+using evaluation::Progress;
+using evaluation::Results;
+using scenarios::InputError;
+using scenarios::Scenario;
+
+std::vector<scenarios::Override> overrides(const Sets& sets) {
+  std::vector<scenarios::Override> all;
+  all.reserve(sets.size());
+  for (const auto& [pointer, value] : sets) all.push_back({pointer, value});
+  return all;
+}
+
+std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_progress) {
+  auto run = std::make_shared<Run>();
+  run->provenance.emplace();
+  run->provenance->command = request.command;
+  run->provenance->started = std::chrono::system_clock::now();
+  run->scenario = scenarios::load_scenario(
+      request.scenario, evaluation::with_ad_hoc_pipelines(request.scenario, overrides(request.sets),
+                                                          request.pipelines));
+  const Scenario& scenario = *run->scenario;
+  evaluation::check_pipelines(scenario);
+  run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
+    return evaluation::evaluate(
+        scenario, [&] { return app::simulated_world(scenario); },
+        {.first_seed = request.first_seed,
+         .seeds = request.seeds,
+         .jobs = request.jobs,
+         .pipelines = request.pipelines,
+         .keep_pulses = request.keep_pulses,
+         .share_captures = true},
+        progress);
+  });
+  run->provenance->finished = std::chrono::system_clock::now();
+  run->archive.path = scenario.name;
+  run->archive.version = version();
+  run->archive.commit = commit();
+  run->archive.scenario_json = scenario.resolved_json();
+  run->notes = scenarios::warnings(scenario);
+  const std::vector<std::string>& more = run->results().warnings;
+  run->notes.insert(run->notes.end(), more.begin(), more.end());
+  if (!request.keep_pulses) run->provenance.reset();
+  return run;
+}
+
+std::shared_ptr<Run> load_archive(const std::string& path) {
+  auto run = std::make_shared<Run>();
+  run->archive = reports::read_archive(path);
+  if (!run->archive.scenario_json.empty()) {
+    run->scenario =
+        scenarios::load_scenario_text(run->archive.scenario_json, path + "/manifest.json");
+  }
+  run->notes = run->results().warnings;
+  return run;
+}
+
+std::shared_ptr<Run> score_recording(const std::string& folder,
+                                     const std::vector<std::string>& pipelines,
+                                     const py::object& on_progress) {
+  auto run = std::make_shared<Run>();
+  run->recorded = std::make_shared<app::RecordedRun>(folder);
+  const app::RecordedRun& recorded = *run->recorded;
+  run->scenario = recorded.scenario();
+  run->notes = recorded.missing();
+  const std::vector<std::string> chosen = recorded.chosen(pipelines);
+  run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {
+    return recorded.evaluate(chosen, false, progress);
+  });
+  run->archive.path = folder;
+  run->archive.version = version();
+  run->archive.commit = commit();
+  run->archive.scenario_json = recorded.scenario().resolved_json();
+  for (const auto& more : {run->results().warnings, app::capture_notes(run->results())}) {
+    run->notes.insert(run->notes.end(), more.begin(), more.end());
+  }
+  return run;
+}
+
+evaluation::RankedBy ranking(const Run& run) {
+  if (run.results().kind == evaluation::ResultKind::kClockRuns) {
+    return evaluation::RankedBy::kClockSpread;
+  }
+  return run.scenario ? app::ranked_by(*run.scenario) : evaluation::RankedBy::kAmd;
+}
+
+// As the commands have it: a recorded run's has no budget, which needs other worlds.
+const reports::AnswerText& answer_of(Run& run, const py::object& on_progress) {
+  if (!run.answer && (run.recorded || !run.scenario)) {
+    run.answer = reports::results_answer(run.results(), ranking(run), nullptr);
+  }
+  if (!run.answer) {
+    run.answer = watched<reports::AnswerText>(on_progress, [&](const Progress& progress) {
+      return app::run_answer(run.results(), *run.scenario, progress);
+    });
+  }
+  return *run.answer;
+}
+
+// The text of `simbench run`, as long as `detail` says: "answer", "screen" or "all".
+std::string text_of(Run& run, const std::string& format, const std::string& detail,
+                    const py::object& on_progress) {
+  const reports::AnswerText& answer = answer_of(run, on_progress);
+  const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
+                            : detail == "all"  ? app::Detail::kAll
+                                               : app::Detail::kScreen;
+  static const Scenario kUnknown;
+  return app::results_text(run.results(), run.scenario ? *run.scenario : kUnknown, format, shown,
+                           answer);
+}
+
+std::string html_of(Run& run, const py::object& on_progress) {
+  const bool leaderboard =
+      run.scenario && run.scenario->evaluation.table == scenarios::TableKind::kLeaderboard;
+  return reports::html(answer_of(run, on_progress)) +
+         reports::html(reports::summary_blocks(run.results(), leaderboard));
+}
+
+py::list overview_of(const Run& run) {
+  py::list rows;
+  for (const auto& row : reports::overview_rows(run.results(), ranking(run))) {
+    rows.append(py::dict(py::arg("pipeline") = row.row->pipeline, py::arg("word") = row.word,
+                         py::arg("median_ms") = row.series->median,
+                         py::arg("p05_ms") = row.series->p05, py::arg("p95_ms") = row.series->p95,
+                         py::arg("published_ms") = row.published_ms));
+  }
+  return rows;
+}
+
+void save(const Run& run, const std::string& folder) {
+  if (!run.provenance) {
+    throw reports::OutputError(
+        fmt::format("{}: found results without their pulses, allowed: those of simbench.run(..., "
+                    "keep_pulses=True)",
+                    folder));
+  }
+  reports::OutputFolder output(folder, reports::clock_archive_files());
+  reports::write_archive(output, run.results(), *run.scenario, *run.provenance);
+}
+
+// Where the frames of a run come from: the recording, or the run repeated.
+std::unique_ptr<RecordingSource> source_of(const Run& run,
+                                           const std::vector<evaluation::PipelineChoice>& choices) {
+  if (run.recorded) return run.recorded->source(choices);
+  return app::simulated_world(*run.scenario);
+}
+
+void check_frames(const Run& run, const std::string& pipeline, std::uint64_t seed) {
+  const Results& results = run.results();
+  if (!run.scenario) {
+    throw InputError(fmt::format(
+        "{}: found no manifest, which names the scenario; allowed: the folder of an archive",
+        run.archive.path));
+  }
+  const evaluation::Row* const row = evaluation::find_row(results.rows, pipeline);
+  if (row == nullptr) {
+    std::vector<std::string> names;
+    for (const auto& each : results.rows) names.push_back(each.pipeline);
+    throw InputError(fmt::format("{}: found no pipeline '{}', allowed: {}", run.archive.path,
+                                 pipeline, fmt::join(names, ", ")));
+  }
+  if (seed < results.first_seed || seed - results.first_seed >= results.seed_count) {
+    throw InputError(fmt::format("{}: found no seed {}, allowed: {} to {}", run.archive.path, seed,
+                                 results.first_seed, results.first_seed + results.seed_count - 1));
+  }
+  if (!run.recorded && row->ground_truth != evaluation::GroundTruth::kSimulation) {
+    throw InputError(
+        fmt::format("{}: found captures of a rig, allowed: a simulated run, which can "
+                    "be repeated, or the rig's recording folder",
+                    run.archive.path));
+  }
+}
+
+// A repeated run is the one that was scored, unless another version of simbench scored it.
+void check_same(const Run& run, const evaluation::RunDetail& detail) {
+  const evaluation::Row& row = *evaluation::find_row(run.results().rows, detail.pipeline);
+  const double was = row.amd_ms.values.at(detail.seed - run.results().first_seed);
+  const double is = detail.score.amd_ms;
+  constexpr double kSame = 1e-9;
+  if (std::isnan(was) && std::isnan(is)) return;
+  if (std::abs(was - is) <= kSame * std::max(std::abs(was), std::abs(is))) return;
+  throw InputError(fmt::format(
+      "{}, {}, seed {}: its AMD is {} ms, but this version of simbench finds {} ms (it is of "
+      "version {}, commit {})",
+      run.archive.path, detail.pipeline, detail.seed, was, is, run.archive.version,
+      run.archive.commit));
+}
+
+// With the number of the rig's cameras, of which the first are there.
+py::tuple frames(const Run& run, const std::string& pipeline, std::uint64_t seed,
+                 const py::object& on_progress) {
+  check_frames(run, pipeline, seed);
+  evaluation::RunDetail detail = watched<evaluation::RunDetail>(on_progress, [&](const Progress&) {
+    const auto choices = evaluation::choose_pipelines(*run.scenario, {pipeline});
+    const auto source = source_of(run, choices);
+    return evaluation::run_detail(*run.scenario, choices.front(), seed, *source);
+  });
+  check_same(run, detail);
+  const std::size_t cameras = detail.camera_count;
+  const std::size_t kept = detail.cameras.size();
+  return py::make_tuple(frame_rows(std::move(detail)), kept, cameras);
+}
+
+using Compared = std::shared_ptr<reports::Comparison>;
+
+Compared compare_runs(const Run& a, const Run& b, const reports::ComparisonOptions& options) {
+  return std::make_shared<reports::Comparison>(
+      reports::compare_archives(a.archive, b.archive, options));
+}
+
+Compared compare_baseline(const Run& run, const std::string& baseline,
+                          const reports::ComparisonOptions& options) {
+  return std::make_shared<reports::Comparison>(
+      reports::compare_with_baseline(run.archive, baseline, options));
+}
+
+Compared compare_two(const Run& run, const std::string& a, const std::string& b,
+                     const reports::ComparisonOptions& options) {
+  return std::make_shared<reports::Comparison>(
+      reports::compare_pipelines(run.archive, a, b, options));
+}
+
+void bind_run(py::module_& module) {
+  py::class_<RunRequest>(module, "RunRequest")
+      .def(py::init<>())
+      .def_readwrite("scenario", &RunRequest::scenario)
+      .def_readwrite("pipelines", &RunRequest::pipelines)
+      .def_readwrite("sets", &RunRequest::sets)
+      .def_readwrite("seeds", &RunRequest::seeds)
+      .def_readwrite("first_seed", &RunRequest::first_seed)
+      .def_readwrite("jobs", &RunRequest::jobs)
+      .def_readwrite("keep_pulses", &RunRequest::keep_pulses)
+      .def_readwrite("command", &RunRequest::command);
+  py::class_<Run, std::shared_ptr<Run>>(module, "Run")
+      .def_property_readonly("scenario", [](const Run& run) { return run.results().scenario; })
+      .def_property_readonly("path", [](const Run& run) { return run.archive.path; })
+      .def_property_readonly("first_seed", [](const Run& run) { return run.results().first_seed; })
+      .def_property_readonly("seed_count", [](const Run& run) { return run.results().seed_count; })
+      .def_property_readonly(
+          "is_clock_run",
+          [](const Run& run) { return run.results().kind == evaluation::ResultKind::kClockRuns; })
+      .def_property_readonly("notes", [](const Run& run) { return run.notes; })
+      .def_property_readonly("ranked_name",
+                             [](const Run& run) { return reports::ranked_name(ranking(run)); })
+      .def_property_readonly("scenario_json",
+                             [](const Run& run) { return run.archive.scenario_json; })
+      .def("csv", [](const Run& run) { return reports::csv(run.results()); })
+      .def("tidy_csv", [](const Run& run) { return reports::tidy_csv(run.results()); })
+      .def("json", [](const Run& run) { return reports::json(run.results()); })
+      .def("text", &text_of)
+      .def("html", &html_of)
+      .def("overview", &overview_of)
+      .def("save", &save)
+      .def("frames", &frames);
+  module.def("simulate", &simulate);
+  module.def("load_archive", &load_archive);
+  module.def("score_recording", &score_recording);
+  module.def("is_recording_folder", &app::is_recording_folder);
+}
+
+void bind_comparison(py::module_& module) {
+  using reports::Comparison;
+  using reports::ComparisonOptions;
+  py::class_<ComparisonOptions>(module, "ComparisonOptions")
+      .def(py::init<>())
+      .def_readwrite("smallest_effect", &ComparisonOptions::smallest_effect)
+      .def_readwrite("by_index", &ComparisonOptions::by_index)
+      .def_readwrite("different_scenarios", &ComparisonOptions::different_scenarios)
+      .def_readwrite("pipelines", &ComparisonOptions::pipelines);
+  py::class_<Comparison, Compared>(module, "Comparison")
+      .def("csv", [](const Comparison& of) { return reports::comparison_csv(of); })
+      .def("json", [](const Comparison& of) { return reports::comparison_json(of); })
+      .def("text", [](const Comparison& of) { return plain(reports::comparison_document(of)); })
+      .def("html",
+           [](const Comparison& of) { return html(reports::comparison_document(of).blocks); });
+  module.def("compare_runs", &compare_runs);
+  module.def("compare_baseline", &compare_baseline);
+  module.def("compare_two", &compare_two);
+}
+
+}  // namespace
+}  // namespace simbench::python
+
+void bind_results(pybind11::module_& module) {
+  simbench::python::bind_run(module);
+  simbench::python::bind_comparison(module);
+}

@@ -1,0 +1,46 @@
+// A run as Python has it: simulated now, read from an archive, or scored from a recording folder.
+#ifndef SIMBENCH_PYTHON_SRC_RUN_H_
+#define SIMBENCH_PYTHON_SRC_RUN_H_
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/recordings.h"
+#include "reports/archive/archive.h"
+#include "reports/text/answer_text.h"
+#include "scenarios/scenario.h"
+
+namespace simbench::python {
+
+// --set /json/pointer=value, the value as JSON.
+using Sets = std::vector<std::pair<std::string, std::string>>;
+
+struct RunRequest {
+  std::string scenario;
+  std::vector<std::string> pipelines;
+  Sets sets;
+  std::uint64_t seeds = 32;
+  std::uint64_t first_seed = 1;
+  unsigned jobs = 0;
+  bool keep_pulses = true;
+  std::vector<std::string> command;  // for the archive
+};
+
+struct Run {
+  reports::Archive archive{};                       // with the results
+  std::optional<scenarios::Scenario> scenario{};    // nothing: unknown, of a results.json alone
+  std::shared_ptr<app::RecordedRun> recorded{};     // of a recording folder
+  std::optional<reports::Provenance> provenance{};  // of a run that can be saved
+  std::optional<reports::AnswerText> answer{};      // once it was asked for
+  std::vector<std::string> notes{};
+
+  const evaluation::Results& results() const { return archive.results; }
+};
+
+}  // namespace simbench::python
+
+#endif  // SIMBENCH_PYTHON_SRC_RUN_H_

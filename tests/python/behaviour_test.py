@@ -1,0 +1,163 @@
+"""What the package does besides numbers: errors, progress, threads, Ctrl-C, missing packages."""
+
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import command
+import simbench
+
+LONG = "simbench.run('leaderboard_lan', seeds=1000, progress=False)"
+
+
+class ErrorsTest(unittest.TestCase):
+    def check(self, arguments, function):
+        said = command.simbench(*arguments, status=2)
+        with self.assertRaises(simbench.InputError) as raised:
+            function()
+        self.assertIn(str(raised.exception), said)
+
+    def test_the_message_is_the_commands(self):
+        run = ["run", "--scenario", "3cam_1host_30fps"]
+        self.check(["run", "--scenario", "none"], lambda: simbench.run("none"))
+        self.check(
+            [*run, "--pipelines", "none"], lambda: simbench.run("3cam_1host_30fps", ["none"])
+        )
+        self.check(
+            [*run, "--set", "/trigger/rate_hz=-1"],
+            lambda: simbench.run("3cam_1host_30fps", set={"/trigger/rate_hz": -1}),
+        )
+        self.check(["compare", "/none", "/none"], lambda: simbench.compare("/none", "/none"))
+
+    def test_values_out_of_range_are_refused(self):
+        for name, value in (("seeds", 0), ("seeds", 1.5), ("jobs", -1), ("pipelines", "oracle")):
+            with self.assertRaisesRegex(simbench.InputError, f"{name}: found .*, allowed: "):
+                simbench.run("3cam_1host_30fps", **{name: value})
+
+    def test_kinds_of_errors(self):
+        self.assertTrue(issubclass(simbench.InputError, ValueError))
+        self.assertTrue(issubclass(simbench.OutputError, OSError))
+        result = simbench.run("3cam_1host_30fps", ["oracle"], seeds=1, keep_pulses=False)
+        with self.assertRaisesRegex(simbench.OutputError, "keep_pulses"):
+            result.save("/tmp/never_written")
+
+    def test_doubts_are_warnings(self):
+        with self.assertWarnsRegex(UserWarning, "exposure"):
+            result = simbench.run(
+                "3cam_1host_30fps", ["oracle"], seeds=1, set={"/cameras/exposure_ms": 36}
+            )
+        self.assertIn("exposure", result.notes[0])
+
+
+class ThreadsTest(unittest.TestCase):
+    def test_other_threads_go_on(self):
+        ticks = 0
+        stop = threading.Event()
+
+        def tick():
+            nonlocal ticks
+            while not stop.wait(0.001):
+                ticks += 1
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        simbench.run("18cam_6host_45fps", seeds=32)
+        stop.set()
+        thread.join()
+        self.assertGreater(ticks, 50)
+
+    def test_runs_beside_each_other_are_the_same(self):
+        data = [None] * 4
+
+        def run(place):
+            data[place] = simbench.run("3cam_1host_30fps", seeds=4).seeds
+
+        threads = [threading.Thread(target=run, args=(place,)) for place in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for other in data[1:]:
+            self.assertTrue(other.equals(data[0]))
+
+    def test_control_c_ends_a_run(self):
+        code = f"""
+import simbench, time
+print("ready", flush=True)
+start = time.monotonic()
+try:
+    {LONG}
+except KeyboardInterrupt:
+    print("interrupted")
+print(len(simbench.run("3cam_1host_30fps", ["oracle"], seeds=2).table))
+"""
+        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(output, "interrupted\n1\n")
+        self.assertEqual(process.returncode, 0)
+
+
+class ProgressTest(unittest.TestCase):
+    def test_progress_counts_to_the_end(self):
+        seen = []
+        request = simbench.results.request_of("run", "18cam_6host_45fps", None, 16, 1, None, 0)
+        simbench._simbench.simulate(request, lambda done, total: seen.append((done, total)))
+        self.assertEqual(seen[-1][0], seen[-1][1])
+        self.assertEqual(seen, sorted(seen))
+
+    def test_an_exception_of_the_report_ends_the_run(self):
+        def refuse(done, total):
+            raise RuntimeError("enough")
+
+        request = simbench.results.request_of("run", "18cam_6host_45fps", None, 500, 1, None, 0)
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            simbench._simbench.simulate(request, refuse)
+
+    def test_nobody_looks_nothing_is_shown(self):
+        code = "import simbench; simbench.run('18cam_6host_45fps', seeds=400)"
+        self.assertEqual(command.python(code).stderr, "")
+
+    def test_a_bar_where_wanted(self):
+        code = (
+            "import simbench, simbench.progress\n"
+            "simbench.progress._PATIENCE_S = 0\n"
+            "simbench.run('18cam_6host_45fps', seeds=300, progress=True)"
+        )
+        self.assertRegex(command.python(code).stderr, r"\d+/\d+")
+
+
+class MissingPackagesTest(unittest.TestCase):
+    def run_without(self, packages, code):
+        block = f"import sys\nfor name in {packages!r}: sys.modules[name] = None\n"
+        done = command.python(block + "import simbench\n" + code)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_lists_without_pandas(self):
+        out = self.run_without(
+            ["pandas"],
+            "r = simbench.run('3cam_1host_30fps', ['oracle'], seeds=2)\n"
+            "print(type(r.table).__name__, r.table[0]['pipeline'], len(r.seeds) > 2)\n"
+            "print(len(r.frames('oracle')) > 0)",
+        )
+        self.assertEqual(out, "list oracle True\nTrue\n")
+
+    def test_frames_and_plot_say_what_is_missing(self):
+        out = self.run_without(
+            ["numpy", "pandas", "matplotlib", "tqdm"],
+            "r = simbench.run('3cam_1host_30fps', ['oracle'], seeds=2)\n"
+            "for wanted in (lambda: r.frames('oracle'), r.plot):\n"
+            "    try: wanted()\n"
+            "    except simbench.MissingPackage as error: print(error)",
+        )
+        self.assertRegex(out, r"^frames\(\) needs NumPy, .*\nplot\(\) needs matplotlib, .*\n$")
+
+
+if __name__ == "__main__":
+    unittest.main()

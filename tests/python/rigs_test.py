@@ -1,0 +1,86 @@
+"""Recordings of real cameras from Python give what the commands give."""
+
+import json
+import os
+import tempfile
+import unittest
+import warnings
+
+import command
+import numpy
+import simbench
+
+def quietly(function, *arguments, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return function(*arguments, **options)
+
+
+class RigsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.files = []
+        for camera in range(2):
+            path = os.path.join(cls.folder.name, f"camera{camera}.csv")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("Stream Type,Index,F#,HW Timestamp (ms),Host Timestamp(ms)\n")
+                for frame in range(1, 1001):
+                    sensor = 1000 * camera + 33.333 * frame
+                    arrival = 33.333 * frame + 20 + 0.01 * (frame * (7 + camera) % 13)
+                    file.write(f"Depth,0,{frame},{sensor:.3f},{arrival:.3f}\n")
+            cls.files.append(path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_replay_is_the_commands(self):
+        replay = quietly(simbench.replay, self.files)
+        expected = json.loads(command.simbench("replay", *self.files, "--format", "json"))
+        self.assertEqual(replay.data, expected)
+        self.assertEqual(len(replay.table), len(expected["rows"]))
+
+    def test_frames_of_a_replay_have_the_files_stamps(self):
+        replay = quietly(simbench.replay, self.files)
+        frames = replay.frames(["raw_arrival"])
+        self.assertEqual(len(frames), 2000)
+        second = frames[frames["camera"] == 1]
+        numpy.testing.assert_array_equal(second["counter"], numpy.arange(1, 1001))
+        self.assertEqual(second["sensor_ns"][0], 1_033_333_000)
+        numpy.testing.assert_allclose(second["global_ms_raw_arrival"], second["arrival_ns"] / 1e6)
+        self.assertFalse(frames.flags.owndata)
+        with self.assertRaisesRegex(simbench.InputError, "found 'none', allowed: "):
+            replay.frames(["none"])
+
+    def test_diagnosis_is_the_commands(self):
+        found = quietly(simbench.diagnose, self.files)
+        expected = json.loads(command.simbench("diagnose", *self.files, "--format", "json"))
+        self.assertEqual(found.data, expected)
+        self.assertEqual(found.verdict, expected["verdict"]["status"])
+        self.assertEqual(len(found.table), 2)
+        page = os.path.join(self.folder.name, "rig.html")
+        found.save_html(page)
+        with open(page, encoding="utf-8") as file:
+            self.assertIn(found.reason, file.read())
+
+    def test_a_recording_folder_is_scored(self):
+        folder = os.path.join(self.folder.name, "monday")
+        command.simbench("record", "--scenario", "3cam_1host_30fps", "--output", folder)
+        result = quietly(simbench.replay, folder)
+        expected = json.loads(command.simbench("replay", folder, "--format", "json"))
+        self.assertEqual(
+            command.without_performance(result.data), command.without_performance(expected)
+        )
+        self.assertGreater(len(result.frames("raw_arrival")), 100)
+
+    def test_errors_are_the_commands(self):
+        missing = os.path.join(self.folder.name, "none.csv")
+        said = command.simbench("diagnose", missing, status=2)
+        with self.assertRaises(simbench.InputError) as raised:
+            simbench.diagnose(missing)
+        self.assertIn(str(raised.exception), said)
+
+
+if __name__ == "__main__":
+    unittest.main()
