@@ -39,8 +39,7 @@ py::list pipelines_of(const std::string& scenario,
   overrides.reserve(sets.size());
   for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
   py::list all;
-  for (const auto& pipeline :
-       simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
+  for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
     all.append(py::make_tuple(pipeline.name, pipeline.host_sync, pipeline.device_time,
                               pipeline.gathering));
   }
