@@ -10,10 +10,14 @@ import traceback
 import unittest
 from unittest import mock
 
-import numpy
-
 import command
 import simbench
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+needs_numpy = unittest.skipIf(numpy is None, "stamp_all() needs NumPy")
 
 WORLD = "3cam_1host_30fps"
 RIG = "18cam_6host_45fps_lan"
@@ -72,6 +76,7 @@ class SameRuleTest(unittest.TestCase):
 
         self.check(WORLD, "oracle+test_relative+yoon2021", "oracle+sensor_normalised+yoon2021")
 
+    @needs_numpy
     def test_stamp_all_is_raw_arrival(self):
         @simbench.device_time("test_all")
         class All:
@@ -246,6 +251,7 @@ class ErrorsTest(unittest.TestCase):
 
                 self.fails(stamp, "returned .*; expected the global stamp")
 
+    @needs_numpy
     def test_what_stamp_all_returns_is_checked(self):
         for make, text in (
             (lambda a: a[1:], "of shape"),
@@ -322,7 +328,7 @@ class ErrorsTest(unittest.TestCase):
             raise KeyError("lost")
 
         async def sleeps(host, settings):
-            await asyncio.sleep(1)
+            await asyncio.sleep(0)
 
         async def nonsense(host, settings):
             await host.clock.adjust_frequency(1e12)
