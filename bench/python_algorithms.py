@@ -3,8 +3,8 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 bench/python_algorithms.py
 
-Each figure is the difference of two runs on one thread that differ in one algorithm, divided by the
-frames or the runs; the least of some repetitions. docs/benchmarks.md has measured ones.
+Each figure is a difference in CPU time of two runs on one thread that differ in one algorithm, by
+frame or run; the least of some repetitions counts. docs/benchmarks.md has measured ones.
 """
 
 import collections
@@ -20,7 +20,7 @@ SCENARIO = "18cam_6host_45fps"
 CAMERAS = 18
 FRAMES = 4000
 SEEDS = 2
-REPETITIONS = 5
+REPETITIONS = 9
 
 
 @simbench.device_time("bench_stamp")
@@ -99,12 +99,12 @@ def silent():
 def seconds(pipeline, frames, seeds):
     arguments = ["simbench", "run", "--scenario", SCENARIO, "--pipelines", pipeline, "--jobs", "1",
                  "--seeds", str(seeds), "--set", f"/timeline/frames={frames}", "--format", "csv"]
-    begin = time.perf_counter()
+    begin = time.process_time()
     with silent():
         status = _simbench.command_line(arguments)
     if status != 0:
         sys.exit(f"{' '.join(arguments)}: exit status {status}")
-    return time.perf_counter() - begin
+    return time.process_time() - begin
 
 
 def least(pipeline, frames=FRAMES, seeds=SEEDS):
