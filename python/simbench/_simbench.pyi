@@ -96,3 +96,28 @@ def diagnose_files(
 def run_clocks(
     request: RunRequest, duration_s: int, from_s: int, report: _Report
 ) -> ClockRun: ...
+
+class Frame:
+    source: int
+    stamp_ns: int
+    arrival_ns: int
+    sensor_ns: int
+
+class Sample:
+    sensor_ns: int
+    arrival_ns: int
+    arrival_steady_ns: Optional[int]
+    exposure_us: int
+
+class HostPort:
+    id: int
+    steady_ns: int
+    random: Any
+    has_card: Any
+    stored_frequency: Any
+    failed: Any
+
+def command_line(arguments: List[str]) -> int: ...
+def register_device_time(definition: Dict[str, Any]) -> None: ...
+def register_gathering(definition: Dict[str, Any]) -> None: ...
+def register_host_sync(definition: Dict[str, Any]) -> None: ...
