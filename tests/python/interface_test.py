@@ -52,11 +52,12 @@ class InterfaceTest(unittest.TestCase):
             if isinstance(node, ast.FunctionDef):
                 stated[node.name] = set()
             elif isinstance(node, ast.ClassDef):
-                stated[node.name] = {
+                names = (
                     each.name if isinstance(each, ast.FunctionDef) else each.target.id
                     for each in node.body
                     if isinstance(each, (ast.FunctionDef, ast.AnnAssign))
-                }
+                )
+                stated[node.name] = {name for name in names if not name.startswith("_")}
         there = {name for name in vars(module) if not name.startswith("_")}
         self.assertEqual(there - {"version", "commit"}, set(stated))
         for name, members in stated.items():
