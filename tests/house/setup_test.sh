@@ -24,6 +24,10 @@ provide() {
     libeigen3-dev) prove "$1/include/eigen3/Eigen/Dense" ;;
     nlohmann-json3-dev) prove "$1/include/nlohmann/json.hpp" ;;
     libsodium-dev) prove "$1/include/sodium.h" ;;
+    libsqlite3-dev) prove "$1/include/sqlite3.h" ;;
+    liblz4-dev) prove "$1/include/lz4frame.h" ;;
+    libzstd-dev) prove "$1/include/zstd.h" ;;
+    libbz2-dev) prove "$1/include/bzlib.h" ;;
     libcli11-dev) prove "$1/include/CLI/CLI.hpp" ;;
     libfmt-dev) prove "$1/include/fmt/core.h" ;;
     libvalijson-dev) prove "$1/include/valijson/validator.hpp" ;;
