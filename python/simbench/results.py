@@ -178,12 +178,13 @@ class Result:
                 ax.plot(row["published_ms"], place, "D", color="black", fillstyle="none")
         names = [f"{row['pipeline']} ({row['word']})" if row["word"] else row["pipeline"] for row in rows]
         ax.set_yticks(range(len(rows)), names)
-        ax.invert_yaxis()
+        ax.set_ylim(len(rows) - 0.4, -0.6)
         ax.set_xscale("log")
         ax.set_xlabel(f"{self._run.ranked_name}, ms: median and 5-95 % of {self._run.seed_count} seeds")
         more = f" (the first {_MOST_PLOTTED} of {_MOST_PLOTTED + hidden})" if hidden > 0 else ""
         published = ", diamonds: published" if any(r["published_ms"] is not None for r in rows) else ""
-        ax.set_title(f"{self.scenario}{more}{published}", fontsize="medium")
+        changed = " (changed)" if self.data.get("changed") else ""
+        ax.set_title(f"{self.scenario}{changed}{more}{published}", fontsize="medium")
         ax.grid(True, axis="x", alpha=0.3)
         return ax
 
