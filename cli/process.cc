@@ -101,9 +101,9 @@ void become_python_program(std::vector<std::string> arguments) {
                                     has_package ? beside.string() : ""};
   words.insert(words.end(), arguments.begin() + 1, arguments.end());
   ::execvp(interpreter.c_str(), argv_of(words).data());
-  throw scenarios::InputError(
-      fmt::format("--python: the interpreter {} cannot be started: {}; SIMBENCH_PYTHON names another",
-                  interpreter, std::strerror(errno)));
+  throw scenarios::InputError(fmt::format(
+      "--python: the interpreter {} cannot be started: {}; SIMBENCH_PYTHON names another",
+      interpreter, std::strerror(errno)));
 }
 
 std::optional<long> mpi_rank() {

@@ -2,8 +2,8 @@
 //
 // simbench-mpi and simbench-reconstruct lie beside simbench. They are the same command line with
 // more libraries, which only their users need. `mpirun -n 64 simbench sweep ...` goes on as
-// simbench-mpi, `simbench reconstruct` as simbench-reconstruct. `simbench run --python FILE ...` goes
-// on as the interpreter of Python with the package simbench, which has the command line in it.
+// simbench-mpi, `simbench reconstruct` as simbench-reconstruct. `simbench run --python FILE ...`
+// goes on as the interpreter of Python with the package simbench, which has the command line in it.
 #ifndef SIMBENCH_CLI_PROCESS_H_
 #define SIMBENCH_CLI_PROCESS_H_
 
@@ -34,9 +34,9 @@ std::filesystem::path sibling_program(const std::string& name);
 int become_sibling(const std::string& name, std::vector<std::string> arguments);
 
 // Goes on as `python3 -m simbench` with these arguments (argv). SIMBENCH_PYTHON names another
-// interpreter; the package that lies beside this program (../python, as a build has it) is preferred
-// to an installed one. Throws scenarios::InputError if there is no interpreter; Python says, with
-// exit status 2, if it has no simbench.
+// interpreter; the package that lies beside this program (../python, as a build has it) is
+// preferred to an installed one. Throws scenarios::InputError if there is no interpreter; Python
+// says, with exit status 2, if it has no simbench.
 [[noreturn]] void become_python_program(std::vector<std::string> arguments);
 
 // The rank of this process if an MPI launcher started more than one; else nothing. Reads the

@@ -94,11 +94,14 @@ def _build_module():
 
 
 def _package_files():
-    """Name in the wheel and path of each file."""
-    suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    for name in sorted(os.listdir(PACKAGE)):
-        if name.endswith((".py", ".pyi", suffix)) or name in ("py.typed", "libsimbench_shim.so"):
-            yield f"simbench/{name}", os.path.realpath(os.path.join(PACKAGE, name))
+    """Name in the wheel and path of each file: the interface, the module, and the library that is
+    preloaded into real programs."""
+    source = os.path.join(ROOT, "python", "simbench")
+    for name in sorted(os.listdir(source)):
+        if name.endswith((".py", ".pyi")) or name == "py.typed":
+            yield f"simbench/{name}", os.path.join(source, name)
+    for name in ("_simbench" + sysconfig.get_config_var("EXT_SUFFIX"), "libsimbench_shim.so"):
+        yield f"simbench/{name}", os.path.realpath(os.path.join(PACKAGE, name))
 
 
 def _file_bytes(path):

@@ -260,6 +260,7 @@ void add_describe_command(CommandLine& line) {
   command.text("prefix", "/POINTER", options->prefix,
                "Only parameters of the scenario whose pointers begin so");
   command.sets(options->sets);
+  command.python();
   command.format(options->format, {"table", "names", "json"});
   command.footer(kDescribeExamples);
   command.runs([options] { return describe(*options); });

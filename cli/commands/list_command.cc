@@ -284,6 +284,7 @@ void add_list_command(CommandLine& line) {
                "by name");
   command.text("--scenario", "SCENARIO", options->scenario,
                "The scenario whose pipelines to list. Default: " + options->scenario);
+  command.python();
   command.format(options->format, {"text", "names", "json"});
   command.footer(kListExamples);
   const auto check = [options] {

@@ -42,6 +42,7 @@ void add_validate_command(CommandLine& line) {
   auto files = std::make_shared<std::vector<std::string>>();
   Command command(line, "validate", "Check scenario files without running them");
   command.texts("files", "FILE...", *files, "Scenario files").required();
+  command.python();
   command.footer(kValidateExamples);
   command.runs([files] { return validate_all(*files); });
 }

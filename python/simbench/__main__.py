@@ -27,8 +27,9 @@ def import_algorithms(file: str) -> None:
     try:
         spec.loader.exec_module(module)
     except Exception as error:
-        text = "".join(traceback.format_exception_only(type(error), error)).strip()
-        raise ImportError(f"--python {file}:{_line(error, file)}: {text}") from error
+        text = error.msg if isinstance(error, SyntaxError) else str(error)
+        name = type(error).__name__
+        raise ImportError(f"--python {file}:{_line(error, file)}: {name}: {text}") from error
 
 
 def _line(error: BaseException, file: str) -> int:

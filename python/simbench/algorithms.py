@@ -118,10 +118,10 @@ def _definition(name: str, decorated: Any, kind: str, method: Callable, paramete
             "parameters": [_parameter(*item) for item in parameters.items()]}
 
 
-def _check_call(owner: Any, kind: str, function: Callable, shape: str, *positional: Any,
-                **named: Any) -> None:
+def _check_call(owner: Any, kind: str, function: Callable, shape: str, positional: Sequence[Any],
+                named: Sequence[str] = ()) -> None:
     try:
-        inspect.signature(function).bind(*positional, **named)
+        inspect.signature(function).bind(*positional, **dict.fromkeys(named))
     except TypeError as error:
         _refuse(owner, kind, f"{shape} cannot be called: {error}")
 
@@ -138,7 +138,7 @@ def _maker(cls: type, kind: str, parameters: dict, **further: Any) -> Callable:
 
         return with_attributes
     names = {**further, **parameters}
-    _check_call(cls, kind, cls.__init__, f"__init__(self, {', '.join(names)})", None, **names)
+    _check_call(cls, kind, cls.__init__, f"__init__(self, {', '.join(names)})", [None], names)
     return cls
 
 
@@ -175,7 +175,7 @@ def device_time(name: str, **parameters: Any) -> Callable[[type], type]:
         method = _method(cls, kind, methods[0])
         definition = _definition(name, cls, kind, method, parameters)
         if methods[0] == "stamp":
-            _check_call(cls, kind, method, "stamp(self, sample)", None, None)
+            _check_call(cls, kind, method, "stamp(self, sample)", [None] * 2)
         else:
             definition["columns"] = _columns(cls, kind, method)
         defaults = {item["name"]: item["default"] for item in definition["parameters"]}
@@ -183,7 +183,7 @@ def device_time(name: str, **parameters: Any) -> Callable[[type], type]:
         for hook in ("on_poll", "on_adjustment"):
             definition[hook] = hasattr(cls, hook)
             if definition[hook]:
-                _check_call(cls, kind, _method(cls, kind, hook), f"{hook}(self, value)", None, None)
+                _check_call(cls, kind, _method(cls, kind, hook), f"{hook}(self, value)", [None] * 2)
         if definition["on_poll"]:
             definition["needs"] = ["polls"]
         for trait in ("from_first_frame", "relative"):
@@ -217,7 +217,7 @@ def gathering(name: str, **parameters: Any) -> Callable[[type], type]:
         if not hasattr(cls, "push"):
             _refuse(cls, kind, "found no method, allowed: push(self, frame)")
         method = _method(cls, kind, "push")
-        _check_call(cls, kind, method, "push(self, frame)", None, None)
+        _check_call(cls, kind, method, "push(self, frame)", [None] * 2)
         definition = _definition(name, cls, kind, method, parameters)
         defaults = {item["name"]: item["default"] for item in definition["parameters"]}
         definition["make"] = _maker(cls, kind, defaults, setup=None)
@@ -269,7 +269,7 @@ def _function(name: str, function: Callable, parameters: dict, arguments: int, s
     if not inspect.iscoroutinefunction(function):
         raise TypeError(f"host_sync {name}: found {function!r}, allowed: an async def function")
     _check_call(function, f"{kind} {function.__name__}", function,
-                f"{function.__name__}({shape})", *[None] * arguments)
+                f"{function.__name__}({shape})", [None] * arguments)
     return _definition(name, function, kind, function, parameters)
 
 

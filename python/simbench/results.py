@@ -8,6 +8,7 @@ import warnings
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _simbench
+from .algorithms import Pipeline
 from .errors import InputError, MissingPackage
 from .progress import Progress
 from .tables import array, notebook_html, page_text, records, table
@@ -34,7 +35,7 @@ def _whole(name: str, value: Any, low: int, high: int) -> int:
 def request_of(
     function: str,
     scenario: Path,
-    pipelines: Optional[Sequence[str]],
+    pipelines: Optional[Sequence[Union[str, Pipeline]]],
     seeds: int,
     first_seed: int,
     sets: Optional[Mapping[str, Any]],
@@ -45,8 +46,13 @@ def request_of(
         raise InputError(f"pipelines: found the text {pipelines!r}, allowed: a list of names")
     request = _simbench.RunRequest()
     request.scenario = os.fspath(scenario)
-    request.pipelines = list(pipelines or [])
+    request.pipelines = [getattr(pipeline, "name", pipeline) for pipeline in pipelines or []]
     request.sets = [(pointer, json.dumps(value)) for pointer, value in (sets or {}).items()]
+    request.sets += [
+        ("/pipelines/-", json.dumps(_stages(pipeline, request)))
+        for pipeline in pipelines or []
+        if isinstance(pipeline, Pipeline)
+    ]
     request.seeds = _whole("seeds", seeds, 1, _MOST_SEEDS)
     request.first_seed = _whole("first_seed", first_seed, 0, 2**53)
     request.jobs = _whole("jobs", jobs, 0, _MOST_JOBS)
@@ -55,6 +61,22 @@ def request_of(
     request.command += [f"--seeds={seeds}", f"--first-seed={first_seed}"]
     request.command += [f"--set={pointer}={value}" for pointer, value in request.sets]
     return request
+
+
+def _stages(pipeline: Pipeline, request: _simbench.RunRequest) -> Dict[str, Any]:
+    """A pipeline by its stages, as scenarios have it: those that it names, the others of its base."""
+    known = _simbench.pipelines_of(request.scenario, request.sets)
+    base = pipeline.base or known[0][0]
+    for name, host_sync, device_time, gathering in known:
+        if name == base:
+            return {
+                "name": pipeline.name,
+                "host_sync": pipeline.host_sync or host_sync,
+                "device_time": pipeline.device_time or device_time,
+                "gathering": pipeline.gathering or gathering,
+            }
+    names = ", ".join(name for name, *_ in known)
+    raise InputError(f"pipeline {pipeline.name}: base: found {base!r}, allowed: {names}")
 
 
 class Result:
@@ -156,12 +178,13 @@ class Result:
                 ax.plot(row["published_ms"], place, "D", color="black", fillstyle="none")
         names = [f"{row['pipeline']} ({row['word']})" if row["word"] else row["pipeline"] for row in rows]
         ax.set_yticks(range(len(rows)), names)
-        ax.invert_yaxis()
+        ax.set_ylim(len(rows) - 0.4, -0.6)
         ax.set_xscale("log")
         ax.set_xlabel(f"{self._run.ranked_name}, ms: median and 5-95 % of {self._run.seed_count} seeds")
         more = f" (the first {_MOST_PLOTTED} of {_MOST_PLOTTED + hidden})" if hidden > 0 else ""
         published = ", diamonds: published" if any(r["published_ms"] is not None for r in rows) else ""
-        ax.set_title(f"{self.scenario}{more}{published}", fontsize="medium")
+        changed = " (changed)" if self.data.get("changed") else ""
+        ax.set_title(f"{self.scenario}{changed}{more}{published}", fontsize="medium")
         ax.grid(True, axis="x", alpha=0.3)
         return ax
 
@@ -204,7 +227,7 @@ class Comparison:
 
 def run(
     scenario: Path,
-    pipelines: Optional[Sequence[str]] = None,
+    pipelines: Optional[Sequence[Union[str, Pipeline]]] = None,
     seeds: int = 32,
     *,
     set: Optional[Mapping[str, Any]] = None,
@@ -216,7 +239,8 @@ def run(
     """Runs pipelines of a scenario over many seeds, as `simbench run` does.
 
     scenario: a name (list_scenarios()) or the path of a JSON file.
-    pipelines: names of the scenario's, or "host_sync+device_time+gathering"; None: all.
+    pipelines: names of the scenario's, "host_sync+device_time+gathering", or simbench.pipeline();
+        None: all.
     set: changes of the scenario, {"/trigger/rate_hz": 30}.
     jobs: threads; 0: one for every core.
     keep_pulses: keep what Result.save() needs, 24 bytes for each pulse of each run.

@@ -1,4 +1,6 @@
 // Algorithms in Python and the command line with them, for the package.
+#include "python/src/algorithms.h"
+
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -7,7 +9,6 @@
 
 #include "cli/command_line.h"
 #include "cli/process.h"
-#include "python/src/algorithms.h"
 #include "python/src/bindings.h"
 #include "python/src/host_requests.h"
 #include "python/src/python_algorithm.h"

@@ -1,6 +1,9 @@
 // device_time in Python: a class with stamp(sample), or with stamp_all(...) of the whole recording.
+#include "algorithms/device_time/device_time.h"
+
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <cmath>
 #include <cstddef>
@@ -9,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/device_time/device_time.h"
 #include "algorithms/device_time/estimator_bank.h"
 #include "algorithms/ports/assert.h"
 #include "algorithms/registry.h"

@@ -1,4 +1,6 @@
 // gathering in Python: a class with push(frame), which returns sets of frames.
+#include "algorithms/gathering/gathering.h"
+
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/gathering/gathering.h"
 #include "algorithms/registry.h"
 #include "python/src/algorithms.h"
 #include "python/src/python_algorithm.h"
@@ -112,13 +113,13 @@ class PythonGatherer final : public Gatherer {
                                     " in two sets; expected each frame at most once");
     }
     frame.is_used = true;
-    set_.push_back({.source = frame.source,
-                    .stamp = GlobalTime(Nanoseconds(frame.stamp_ns)),
-                    .arrival = GlobalTime(Nanoseconds(frame.arrival_ns)),
-                    .sensor = std::chrono::time_point_cast<Microseconds>(
-                        std::chrono::time_point<time_base::Device, Nanoseconds>(
-                            Nanoseconds(frame.sensor_ns))),
-                    .tag = frame.tag});
+    set_.push_back(
+        {.source = frame.source,
+         .stamp = GlobalTime(Nanoseconds(frame.stamp_ns)),
+         .arrival = GlobalTime(Nanoseconds(frame.arrival_ns)),
+         .sensor = std::chrono::time_point_cast<Microseconds>(
+             std::chrono::time_point<time_base::Device, Nanoseconds>(Nanoseconds(frame.sensor_ns))),
+         .tag = frame.tag});
   }
 
   std::shared_ptr<const PythonAlgorithm> algorithm_;
@@ -136,8 +137,8 @@ class PythonGatherer final : public Gatherer {
 void register_python_gathering(const py::dict& definition) {
   const auto algorithm = std::make_shared<const PythonAlgorithm>(algorithm_of(definition));
   replace_gathering({.info = algorithm->info,
-                     .make = [algorithm](const Parameters& parameters, const GatheringSetup& setup)
-                         -> std::unique_ptr<Gatherer> {
+                     .make = [algorithm](const Parameters& parameters,
+                                         const GatheringSetup& setup) -> std::unique_ptr<Gatherer> {
                        const py::gil_scoped_acquire gil;
                        return std::make_unique<PythonGatherer>(algorithm, parameters, setup);
                      }});

@@ -80,8 +80,8 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
   const bool is_request = py::isinstance<py::tuple>(request) && py::len(request) > 0 &&
                           py::isinstance<py::str>(request[py::int_(0)]);
   const auto tuple = is_request ? py::reinterpret_borrow<py::tuple>(request) : py::tuple(0);
-  const auto found = is_request ? operations().find(tuple[0].cast<std::string>())
-                                : operations().end();
+  const auto found =
+      is_request ? operations().find(tuple[0].cast<std::string>()) : operations().end();
   if (found == operations().end() || tuple.size() != found->second.arguments + 1) {
     throw py::type_error(
         "awaits something that is no operation of its host; asyncio does not run here: "
@@ -143,8 +143,8 @@ HostRequest host_request(const py::handle& request, const HostPort& port) {
   if (is_on_card && port.get().hardware_clock() == nullptr) {
     throw py::value_error("the host's network card has no clock (/hosts/nic/hardware_stamps)");
   }
-  const bool receives = made.operation == HostOperation::kReceive ||
-                        made.operation == HostOperation::kExchange;
+  const bool receives =
+      made.operation == HostOperation::kReceive || made.operation == HostOperation::kExchange;
   if (receives && port.receiving.contains({made.peer, made.transport})) {
     throw py::value_error("another coroutine of this host waits on this channel");
   }
@@ -226,7 +226,7 @@ Task<HostAnswer> exchanged(HostRequest request, std::shared_ptr<HostPort> port) 
 }
 
 template <class Time>
-HostAnswer answer_of(const std::optional<Time>& time) {
+HostAnswer answer_with(const std::optional<Time>& time) {
   if (!time) return std::monostate{};
   return nanoseconds_of(*time);
 }
@@ -250,11 +250,11 @@ Task<HostAnswer> messaged(HostRequest request, std::shared_ptr<HostPort> port) {
   }
   if (request.operation == HostOperation::kTransmitStamp) {
     const std::optional<HostTime> left = co_await channel.transmit_stamp(request.message, deadline);
-    co_return answer_of(left);
+    co_return answer_with(left);
   }
   const std::optional<HardwareTime> left =
       co_await channel.hardware_transmit_stamp(request.message, deadline);
-  co_return answer_of(left);
+  co_return answer_with(left);
 }
 
 }  // namespace

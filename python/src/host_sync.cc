@@ -3,6 +3,8 @@
 // A C++ coroutine drives each: it lets Python run until that awaits an operation of its host, then
 // awaits the operation itself, without the interpreter's lock, and sends back its value or raises
 // its error there.
+#include "algorithms/ports/host_sync.h"
+
 #include <pybind11/pybind11.h>
 
 #include <memory>
@@ -13,7 +15,6 @@
 #include <vector>
 
 #include "algorithms/host_sync/join.h"
-#include "algorithms/ports/host_sync.h"
 #include "algorithms/registry.h"
 #include "clocks/disciplined_clock.h"
 #include "python/src/algorithms.h"
@@ -104,8 +105,7 @@ class PythonCoroutine {
   }
 
   std::optional<py::object> thrown(const py::object& exception) {
-    PyObject* const result =
-        PyObject_CallMethod(coroutine_.get(), "throw", "O", exception.ptr());
+    PyObject* const result = PyObject_CallMethod(coroutine_.get(), "throw", "O", exception.ptr());
     if (result != nullptr) return py::reinterpret_steal<py::object>(result);
     if (PyErr_ExceptionMatches(PyExc_StopIteration) == 0) throw_python_failure(*algorithm_);
     PyErr_Clear();

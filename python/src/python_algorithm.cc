@@ -1,6 +1,7 @@
 #include "python/src/python_algorithm.h"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,9 +36,7 @@ SharedObject python_exception_in(const std::exception& error) {
 namespace {
 
 ParameterSpec spec_of(const py::handle& parameter) {
-  const auto text = [&](const char* key) {
-    return parameter[key].cast<std::string>();
-  };
+  const auto text = [&](const char* key) { return parameter[key].cast<std::string>(); };
   ParameterSpec spec;
   spec.name = text("name");
   spec.meaning = text("meaning");
@@ -57,10 +56,12 @@ ParameterSpec spec_of(const py::handle& parameter) {
 }
 
 Need need_of(const std::string& name) {
-  static const std::map<std::string, Need> needs = {
-      {"hardware_stamps", Need::kHardwareStamps}, {"pps", Need::kPps},
-      {"gnss", Need::kGnss},                      {"trigger_line", Need::kTriggerLine},
-      {"frames", Need::kFrames},                  {"polls", Need::kPolls}};
+  static const std::map<std::string, Need> needs = {{"hardware_stamps", Need::kHardwareStamps},
+                                                    {"pps", Need::kPps},
+                                                    {"gnss", Need::kGnss},
+                                                    {"trigger_line", Need::kTriggerLine},
+                                                    {"frames", Need::kFrames},
+                                                    {"polls", Need::kPolls}};
   const auto found = needs.find(name);
   if (found != needs.end()) return found->second;
   throw py::value_error(
@@ -92,7 +93,7 @@ int line_of(const PythonAlgorithm& algorithm, const py::handle& traceback) {
 }
 
 // "ZeroDivisionError: division by zero"
-std::string text_of(const py::handle& exception) {
+std::string exception_text(const py::handle& exception) {
   const std::string type = py::str(py::type::handle_of(exception).attr("__name__"));
   PyObject* const text = PyObject_Str(exception.ptr());
   if (text == nullptr) {
@@ -145,8 +146,8 @@ py::dict keywords_of(const PythonAlgorithm& algorithm, const Parameters& paramet
       } else if (number == std::floor(number) && std::abs(number) < 9e15) {
         keywords[key] = py::int_(static_cast<std::int64_t>(number));
       } else {
-        throw ParameterError(name, fmt::format("parameter \"{}\" is {}; allowed: a whole number",
-                                               name, number));
+        throw ParameterError(
+            name, fmt::format("parameter \"{}\" is {}; allowed: a whole number", name, number));
       }
     }
   }
@@ -155,8 +156,7 @@ py::dict keywords_of(const PythonAlgorithm& algorithm, const Parameters& paramet
 
 py::object make_instance(const PythonAlgorithm& algorithm, const Parameters& parameters) {
   const py::dict keywords = keywords_of(algorithm, parameters);
-  PyObject* const made =
-      PyObject_Call(algorithm.make.get(), py::tuple(0).ptr(), keywords.ptr());
+  PyObject* const made = PyObject_Call(algorithm.make.get(), py::tuple(0).ptr(), keywords.ptr());
   if (made == nullptr) throw_python_failure(algorithm);
   return py::reinterpret_steal<py::object>(made);
 }
@@ -177,10 +177,9 @@ void throw_python_failure(const PythonAlgorithm& algorithm) {
   py::error_already_set raised;  // takes the error over
   const py::object exception = raised.value();
   if (raised.trace()) PyException_SetTraceback(exception.ptr(), raised.trace().ptr());
-  throw PythonFailure(
-      fmt::format("{}: {}", prefix(algorithm, line_of(algorithm, raised.trace())),
-                  text_of(exception)),
-      shared(exception));
+  throw PythonFailure(fmt::format("{}: {}", prefix(algorithm, line_of(algorithm, raised.trace())),
+                                  exception_text(exception)),
+                      shared(exception));
 }
 
 void throw_misuse(const PythonAlgorithm& algorithm, const std::string& text) {

@@ -54,13 +54,13 @@ SharedObject python_exception_in(const std::exception& error);
 
 struct PythonAlgorithm {
   AlgorithmInfo info;
-  std::string kind;                   // "class MeanOfLast"
-  std::string method;                 // "stamp"
+  std::string kind;    // "class MeanOfLast"
+  std::string method;  // "stamp"
   std::string file;
-  int line = 0;                       // of the method
-  std::vector<std::string> whole;     // parameters that are whole numbers
-  SharedObject make;                  // called with the parameters; returns the object
-  SharedObject traits;                // what the decorator knows besides
+  int line = 0;                    // of the method
+  std::vector<std::string> whole;  // parameters that are whole numbers
+  SharedObject make;               // called with the parameters; returns the object
+  SharedObject traits;             // what the decorator knows besides
 };
 
 // From a decorator's dictionary: name, summary, parameters, needs, kind, method, file, line, make.

@@ -34,8 +34,7 @@ std::array<PyMemberDef, 5> frame_members = {
     whole("stamp_ns", offsetof(FrameRecordObject, stamp_ns), "global stamp"),
     whole("arrival_ns", offsetof(FrameRecordObject, arrival_ns),
           "when its host had it, on the global scale"),
-    whole("sensor_ns", offsetof(FrameRecordObject, sensor_ns),
-          "the camera's own stamp, unwrapped"),
+    whole("sensor_ns", offsetof(FrameRecordObject, sensor_ns), "the camera's own stamp, unwrapped"),
     PyMemberDef{}};
 
 // For tests of an algorithm by itself.
@@ -43,9 +42,8 @@ PyObject* new_sample(PyTypeObject* type, PyObject* arguments, PyObject* keywords
   static std::array<const char*, 5> names = {"sensor_ns", "arrival_ns", "arrival_steady_ns",
                                              "exposure_us", nullptr};
   SampleRecord values{};
-  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "LL|LI",
-                                  const_cast<char**>(names.data()), &values.sensor_ns,
-                                  &values.arrival_ns, &values.arrival_steady_ns,
+  if (PyArg_ParseTupleAndKeywords(arguments, keywords, "LL|LI", const_cast<char**>(names.data()),
+                                  &values.sensor_ns, &values.arrival_ns, &values.arrival_steady_ns,
                                   &values.exposure_us) == 0) {
     return nullptr;
   }
@@ -88,8 +86,7 @@ PyObject* show_sample(PyObject* object) {
 PyObject* show_frame(PyObject* object) {
   const auto& record = *reinterpret_cast<FrameRecordObject*>(object);
   return PyUnicode_FromFormat("Frame(source=%u, stamp_ns=%lld, arrival_ns=%lld, sensor_ns=%lld)",
-                              record.source, record.stamp_ns, record.arrival_ns,
-                              record.sensor_ns);
+                              record.source, record.stamp_ns, record.arrival_ns, record.sensor_ns);
 }
 
 PyTypeObject* made_type(py::module_& module, const char* name, std::size_t size, const char* text,

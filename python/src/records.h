@@ -23,8 +23,7 @@ namespace simbench::python {
 struct SampleRecord {
   static PyTypeObject* type;
 
-  PyObject_HEAD
-  long long sensor_ns;
+  PyObject_HEAD long long sensor_ns;
   long long arrival_ns;
   long long arrival_steady_ns;
   unsigned int exposure_us;
@@ -33,8 +32,7 @@ struct SampleRecord {
 struct FrameRecordObject {
   static PyTypeObject* type;
 
-  PyObject_HEAD
-  unsigned int source;
+  PyObject_HEAD unsigned int source;
   long long stamp_ns;
   long long arrival_ns;
   long long sensor_ns;

@@ -118,7 +118,7 @@ evaluation::RankedBy ranking(const Run& run) {
 }
 
 // As the commands have it: a recorded run's has no budget, which needs other worlds.
-const reports::AnswerText& answer_of(Run& run, const py::object& on_progress) {
+const reports::AnswerText& known_answer(Run& run, const py::object& on_progress) {
   if (!run.answer && (run.recorded || !run.scenario)) {
     run.answer = reports::results_answer(run.results(), ranking(run), nullptr);
   }
@@ -131,9 +131,9 @@ const reports::AnswerText& answer_of(Run& run, const py::object& on_progress) {
 }
 
 // The text of `simbench run`, as long as `detail` says: "answer", "screen" or "all".
-std::string text_of(Run& run, const std::string& format, const std::string& detail,
-                    const py::object& on_progress) {
-  const reports::AnswerText& answer = answer_of(run, on_progress);
+std::string run_text(Run& run, const std::string& format, const std::string& detail,
+                     const py::object& on_progress) {
+  const reports::AnswerText& answer = known_answer(run, on_progress);
   const app::Detail shown = detail == "answer" ? app::Detail::kAnswer
                             : detail == "all"  ? app::Detail::kAll
                                                : app::Detail::kScreen;
@@ -145,7 +145,7 @@ std::string text_of(Run& run, const std::string& format, const std::string& deta
 std::string html_of(Run& run, const py::object& on_progress) {
   const bool leaderboard =
       run.scenario && run.scenario->evaluation.table == scenarios::TableKind::kLeaderboard;
-  return reports::html(answer_of(run, on_progress)) +
+  return reports::html(known_answer(run, on_progress)) +
          reports::html(reports::summary_blocks(run.results(), leaderboard));
 }
 
@@ -280,7 +280,7 @@ void bind_run(py::module_& module) {
       .def("csv", [](const Run& run) { return reports::csv(run.results()); })
       .def("tidy_csv", [](const Run& run) { return reports::tidy_csv(run.results()); })
       .def("json", [](const Run& run) { return reports::json(run.results()); })
-      .def("text", &text_of)
+      .def("text", &run_text)
       .def("html", &html_of)
       .def("overview", &overview_of)
       .def("save", &save)

@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "evaluation/scoring/metrics.h"
 #include "python/src/bindings.h"
@@ -30,6 +32,20 @@ py::list describe(const std::string& scenario) {
   return lines;
 }
 
+// The pipelines of a scenario with these changes: name, host_sync, device_time, gathering.
+py::list pipelines_of(const std::string& scenario,
+                      const std::vector<std::pair<std::string, std::string>>& sets) {
+  std::vector<simbench::scenarios::Override> overrides;
+  overrides.reserve(sets.size());
+  for (const auto& [pointer, value] : sets) overrides.push_back({pointer, value});
+  py::list all;
+  for (const auto& pipeline : simbench::scenarios::load_scenario(scenario, overrides).pipelines) {
+    all.append(py::make_tuple(pipeline.name, pipeline.host_sync, pipeline.device_time,
+                              pipeline.gathering));
+  }
+  return all;
+}
+
 // The metrics that are whole numbers.
 py::list counts() {
   py::list names;
@@ -44,6 +60,7 @@ py::list counts() {
 void bind_scenarios(pybind11::module_& module) {
   module.def("list_scenarios", &list_scenarios);
   module.def("describe", &describe);
+  module.def("pipelines_of", &pipelines_of);
   module.def("counts", &counts);
   module.def("set_page_width", &simbench::reports::set_page_width);
 }

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -73,6 +75,18 @@ TEST(Registry, FindsByName) {
   EXPECT_EQ(find_gathering("yoon"), nullptr);
   EXPECT_EQ(find_device_time("yoon2021"), nullptr) << "names belong to a stage";
   EXPECT_EQ(find_host_sync("regression_30"), nullptr);
+}
+
+TEST(Registry, ReplacesAUsersAlgorithmButNoneOfItsOwn) {
+  const std::string name = "registry_test_replaced";
+  replace_device_time(constant(name));
+  const std::size_t count = device_time_algorithms().size();
+  DeviceTimeEntry other = constant(name);
+  other.info.summary = "another";
+  replace_device_time(other);
+  EXPECT_EQ(device_time_algorithms().size(), count);
+  EXPECT_EQ(find_device_time(name)->info.summary, "another");
+  EXPECT_THROW(replace_device_time(constant("raw_arrival")), std::invalid_argument);
 }
 
 TEST(Registry, TakesAUsersAlgorithmOnce) {
