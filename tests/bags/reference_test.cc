@@ -5,19 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "bags/bag.h"
 #include "tests/bags/bag_writers.h"
+#include "tests/bags/rosbag_writer.h"
+#include "tests/data/test_data.h"
 #include "tests/scratch_folder.h"
 
 namespace simbench::bags {
 namespace {
 
-// What `node mcap.mjs` prints; a failure of it is a failure here.
-std::string node_mcap(const std::string& arguments) {
-  const std::string command = "node " SIMBENCH_SOURCE_DIR
-                              "/tests/bags/npm/mcap.mjs " SIMBENCH_BAG_PACKAGES " " +
-                              arguments + " 2>&1";
+// What a script of npm/ prints; a failure of it is a failure here.
+std::string node(const std::string& script, const std::string& arguments) {
+  const std::string command = "NODE_NO_WARNINGS=1 node " SIMBENCH_SOURCE_DIR "/tests/bags/npm/" +
+                              script + " " SIMBENCH_BAG_PACKAGES " " + arguments + " 2>&1";
   std::string printed;
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return "no shell";
@@ -28,6 +32,8 @@ std::string node_mcap(const std::string& arguments) {
   EXPECT_EQ(pclose(pipe), 0) << command << "\n" << printed << "(tools/setup check installs it)";
   return printed;
 }
+
+std::string node_mcap(const std::string& arguments) { return node("mcap.mjs", arguments); }
 
 std::string csv_of(const std::string& path) {
   KeptBag bag(0);
@@ -74,6 +80,47 @@ TEST(BagReference, McapCoreReadsWhatTheTestsWrite) {
       EXPECT_EQ(std::count(read.begin(), read.end(), '\n'), 40);
       EXPECT_EQ(node_mcap("read " + path), read) << compression << " " << chunk_bytes;
     }
+  }
+}
+
+// "topic,s,ns,size" of each message.
+std::string rosbag_csv_of(const std::string& path) {
+  KeptBag bag(0);
+  read_bag(path, bag);
+  std::string csv;
+  for (const KeptBag::Message& message : bag.messages) {
+    csv += bag.topics.at(message.topic).name + "," +
+           std::to_string(message.log_time_ns / 1'000'000'000) + "," +
+           std::to_string(message.log_time_ns % 1'000'000'000) + "," +
+           std::to_string(message.size) + "\n";
+  }
+  return csv;
+}
+
+// That reader goes by time, ours by the file, so messages are compared in an order of their own.
+std::vector<std::string> sorted_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  std::ranges::sort(lines);
+  return lines;
+}
+
+TEST(BagReference, FoxgloveRosbagReadsTheSame) {
+  const ScratchFolder folder;
+  for (const auto chunks :
+       {RosbagWriter::Chunks::kNone, RosbagWriter::Chunks::kLz4, RosbagWriter::Chunks::kBzip2}) {
+    RosbagWriter writer(chunks, 500);
+    const auto topic = writer.add_topic("/cam/image_raw", "sensor_msgs/Image");
+    for (int i = 0; i < 30; ++i) {
+      writer.add_message(topic, std::chrono::milliseconds(100 + 33 * i), std::string(20 + i, 'x'));
+    }
+    const std::string path = folder.write("rig.bag", writer.bag());
+    EXPECT_EQ(sorted_lines(node("read_rosbag.mjs", path)), sorted_lines(rosbag_csv_of(path)));
+  }
+  for (const char* camera : {"camera0", "camera1"}) {
+    const std::string path = test_data_path(std::string("realsense_bag/") + camera + ".bag");
+    EXPECT_EQ(sorted_lines(node("read_rosbag.mjs", path)), sorted_lines(rosbag_csv_of(path)));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <bzlib.h>
 #include <lz4frame.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -82,7 +83,10 @@ class RosbagWriter {
   void add_message(std::uint32_t topic, Nanoseconds log_time, std::string_view bytes) {
     if (!begun_.contains(topic)) chunk_ += connections_[topic];
     begun_[topic] = true;
-    ++counts_[topic];
+    entries_[topic] +=
+        ros1_time(log_time) + little_endian(static_cast<std::uint32_t>(chunk_.size()));
+    begin_ = messages_in_chunk_ == 0 ? log_time : std::min(begin_, log_time);
+    end_ = messages_in_chunk_++ == 0 ? log_time : std::max(end_, log_time);
     ++messages_;
     chunk_ += record(field("conn", little_endian(topic)) + field("op", "\x02") +
                          field("time", ros1_time(log_time)),
@@ -123,6 +127,7 @@ class RosbagWriter {
  private:
   static constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
   static constexpr std::size_t kFirstChunk = 4096 + 13;
+  static constexpr std::size_t kEntry = 12;  // of the index: a time, an offset
 
   void end_chunk() {
     if (chunk_.empty()) return;
@@ -132,20 +137,22 @@ class RosbagWriter {
                         field("size", little_endian(static_cast<std::uint32_t>(chunk_.size()))),
                     packed());
     std::string counts;
-    for (const auto& [topic, count] : counts_) {
+    for (const auto& [topic, entries] : entries_) {
+      const auto count = static_cast<std::uint32_t>(entries.size() / kEntry);
       counts += little_endian(topic) + little_endian(count);
-      // Index records, whose entries no reader of ours needs.
-      body_ += record(field("conn", little_endian(topic)) + field("count", little_endian(0U)) +
+      body_ += record(field("conn", little_endian(topic)) + field("count", little_endian(count)) +
                           field("op", "\x04") + field("ver", little_endian(1U)),
-                      "");
+                      entries);
     }
-    infos_ += record(field("chunk_pos", little_endian(position)) +
-                         field("count", little_endian(static_cast<std::uint32_t>(counts_.size()))) +
-                         field("end_time", ros1_time({})) + field("op", "\x06") +
-                         field("start_time", ros1_time({})) + field("ver", little_endian(1U)),
-                     counts);
+    infos_ +=
+        record(field("chunk_pos", little_endian(position)) +
+                   field("count", little_endian(static_cast<std::uint32_t>(entries_.size()))) +
+                   field("end_time", ros1_time(end_)) + field("op", "\x06") +
+                   field("start_time", ros1_time(begin_)) + field("ver", little_endian(1U)),
+               counts);
+    messages_in_chunk_ = 0;
     chunk_.clear();
-    counts_.clear();
+    entries_.clear();
   }
 
   const char* name() const {
@@ -177,7 +184,10 @@ class RosbagWriter {
   std::size_t chunk_bytes_;
   std::vector<std::string> connections_;
   std::map<std::uint32_t, bool> begun_;
-  std::map<std::uint32_t, std::uint32_t> counts_;
+  std::map<std::uint32_t, std::string> entries_;  // of the chunk, by topic
+  Nanoseconds begin_{};
+  Nanoseconds end_{};
+  std::uint64_t messages_in_chunk_ = 0;
   std::vector<std::uint64_t> positions_;
   std::string chunk_;
   std::string body_;
