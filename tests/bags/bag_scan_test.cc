@@ -10,6 +10,7 @@
 #include "bags/frame_track.h"
 #include "bags/recorded_files.h"
 #include "recording/temporary_folder.h"
+#include "tests/bags/bag_writers.h"
 #include "tests/bags/memory_file.h"
 #include "tests/bags/rosbag_writer.h"
 
@@ -142,6 +143,37 @@ TEST(BagScanTest, APublisherThatWasRestartedIsOne) {
   const BagScan scan = scanned(writer);
   ASSERT_EQ(scan.streams.size(), 1U);
   EXPECT_EQ(scan.streams[0].frames.size(), 20U);
+}
+
+// The same frames in both formats of ROS 2.
+TEST(BagScanTest, RosTwoHasNoCounterAndTheSameStamps) {
+  TemporaryFolder folder;
+  McapWriter mcap({.compression = "zstd", .chunk_bytes = 500});
+  const std::uint16_t channel = mcap.channel("/left/image_raw", "sensor_msgs/msg/Image", "cdr");
+  SqliteBagWriter sqlite(folder.file("rig_0.db3"));
+  const std::int64_t topic = sqlite.topic("/left/image_raw", "sensor_msgs/msg/Image", "cdr");
+  for (int i = 0; i < 10; ++i) {
+    const auto stamp_ns = static_cast<std::uint64_t>(stamp_of(i).count());
+    const std::string bytes =
+        cdr_header(static_cast<std::uint32_t>(stamp_ns / 1'000'000'000),
+                   static_cast<std::uint32_t>(stamp_ns % 1'000'000'000), "cam") +
+        std::string(64, 'x');
+    mcap.message(channel, stamp_ns + 5'000'000, bytes);
+    sqlite.message(topic, static_cast<std::int64_t>(stamp_ns + 5'000'000), bytes);
+  }
+  sqlite.close();
+  write_bytes(folder.file("rig.mcap"), mcap.close());
+  for (const std::string name : {"rig.mcap", "rig_0.db3"}) {
+    const BagScan scan = scan_bag(folder.file(name), "rig", {});
+    ASSERT_EQ(scan.streams.size(), 1U) << name;
+    const CameraStream& left = scan.streams[0];
+    EXPECT_FALSE(left.counted);
+    EXPECT_TRUE(left.stamped_by_host);
+    ASSERT_EQ(left.frames.size(), 10U);
+    EXPECT_EQ(left.frames[7].counter, 7U);
+    EXPECT_EQ(left.frames[7].sensor, stamp_of(7));
+    EXPECT_EQ(left.frames[7].arrival, stamp_of(7) + milliseconds(5));
+  }
 }
 
 TEST(BagScanTest, StampsThatAreAllZeroAreNone) {
