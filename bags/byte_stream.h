@@ -57,7 +57,7 @@ class FileBytes final : public ByteStream {
   std::size_t buffered() const { return end_ - begin_; }
 
   InputFile file_;
-  std::array<char, std::size_t{16} << 10> buffer_;
+  std::array<char, std::size_t{16} << 10> buffer_{};
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::uint64_t position_ = 0;  // of the next byte that read() gives

@@ -185,7 +185,7 @@ bool McapReader::read_inner(ByteStream& plain) {
   for (;;) {
     char first = 0;
     if (plain.read(&first, 1) == 0) return true;
-    std::array<char, 8> length;
+    std::array<char, 8> length{};
     if (!plain.read_exactly(length.data(), length.size())) return false;
     record.op = static_cast<McapOp>(static_cast<std::uint8_t>(first));
     record.length = FieldBytes({length.data(), length.size()}, Encoding::kRos1).u64();
@@ -204,7 +204,7 @@ bool McapReader::read_inner(ByteStream& plain) {
 }
 
 bool McapReader::read_message(ByteStream& from, std::uint64_t length) {
-  std::array<char, kMcapMessageHead> fixed;
+  std::array<char, kMcapMessageHead> fixed{};
   if (length < fixed.size() || !from.read_exactly(fixed.data(), fixed.size())) return false;
   FieldBytes fields({fixed.data(), fixed.size()}, Encoding::kRos1);
   const unsigned low = fields.u8();
@@ -280,7 +280,7 @@ bool McapReader::is_plausible(std::uint64_t at, std::uint64_t limit) {
   if (record.op == McapOp::kChunk) return read_mcap_chunk_head(file_, record.length).has_value();
   if (record.length > limit - content || record.length < 4) return false;
   if (record.op == McapOp::kMessage) {
-    std::array<char, 2> id;
+    std::array<char, 2> id{};
     if (record.length < kMcapMessageHead || !file_.read_exactly(id.data(), id.size())) return false;
     const unsigned number = static_cast<std::uint8_t>(id[0]) |
                             static_cast<unsigned>(static_cast<std::uint8_t>(id[1])) << 8;

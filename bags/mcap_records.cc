@@ -76,7 +76,7 @@ bool checksum_holds(FileBytes& file, std::uint64_t from, std::uint64_t to, std::
 }  // namespace
 
 bool read_mcap_record(ByteStream& from, McapRecord& record) {
-  std::array<char, kMcapRecordHead> head;
+  std::array<char, kMcapRecordHead> head{};
   if (!from.read_exactly(head.data(), head.size())) return false;
   record.op = static_cast<McapOp>(static_cast<std::uint8_t>(head[0]));
   std::uint64_t length = 0;
@@ -89,7 +89,7 @@ bool read_mcap_record(ByteStream& from, McapRecord& record) {
 
 std::optional<McapChunkHead> read_mcap_chunk_head(FileBytes& file, std::uint64_t length) {
   if (length < kChunkFixed) return std::nullopt;
-  std::array<char, kChunkFixed + kMostCompressionName> bytes;
+  std::array<char, kChunkFixed + kMostCompressionName> bytes{};
   const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(length, bytes.size()));
   if (!file.read_exactly(bytes.data(), most)) {
     // A file that is cut right behind the head still has all of it, if the name is short.
@@ -177,7 +177,7 @@ McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels) {
   constexpr std::uint64_t kEnd = kMcapRecordHead + kFooterSize + kMcapMagicSize;
   if (file.size() < kMcapMagicSize + kEnd) return summary;
   const std::uint64_t footer = file.size() - kEnd;
-  std::array<char, kEnd> bytes;
+  std::array<char, kEnd> bytes{};
   file.seek(footer);
   if (!file.read_exactly(bytes.data(), bytes.size())) return summary;
   const std::string_view end(bytes.data(), bytes.size());
@@ -208,7 +208,7 @@ McapSummary read_mcap_summary(FileBytes& file, McapChannels& channels) {
       LimitedBytes part(file, record.length);
       channels.take(record, part);
     } else if (record.op == McapOp::kStatistics && record.length >= 8) {
-      std::array<char, 8> count;
+      std::array<char, 8> count{};
       if (file.read_exactly(count.data(), count.size())) {
         summary.messages = FieldBytes({count.data(), count.size()}, Encoding::kRos1).u64();
       }

@@ -288,10 +288,8 @@ bool RosbagReading::read_message(const RecordHeader& record, ByteStream& stream)
   if (stream.skip(rest) != rest) return false;
   ++facts_.messages;
   if (asked == kLeaveOut) return true;
-  sink_.on_message({.topic = known->second.topic,
-                    .log_time = *time,
-                    .size = record.data_size(),
-                    .head = std::string_view(head_)});
+  sink_.on_message(
+      {.topic = known->second.topic, .log_time = *time, .size = record.data_size(), .head = head_});
   return true;
 }
 

@@ -373,7 +373,7 @@ bool SqliteBagReader::read_head(std::int64_t id, const Topic& topic, std::uint64
 
 void SqliteBagReader::inflate_head(std::size_t wanted, std::uint64_t& size, std::size_t& got) {
   compressed_ = true;
-  std::array<char, 18> frame;  // the longest header of a frame
+  std::array<char, 18> frame{};  // the longest header of a frame
   const int most = std::min(static_cast<int>(frame.size()), sqlite3_blob_bytes(blob_.get()));
   if (sqlite3_blob_read(blob_.get(), frame.data(), most, 0) == SQLITE_OK) {
     const unsigned long long plain =

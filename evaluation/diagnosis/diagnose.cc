@@ -248,20 +248,8 @@ class Findings {
     }
   }
 
-  void add_stamps() {
+  void add_jumps() {
     const StreamFacts& facts = camera_->facts;
-    if (facts.repeated_stamps > 0) {
-      add("repeated_stamps", fmt::format("{} with the stamp of the frame before",
-                                         counted(facts.repeated_stamps, "frame")));
-    }
-    for (const DelayBurst& burst : facts.bursts) {
-      add("late_burst",
-          fmt::format(
-              "from {:.1f} s on, for {:.2f} s, {} came up to {:.1f} ms later than usual: the "
-              "host or its bus was busy",
-              burst.at_s, burst.for_s, counted(static_cast<std::uint64_t>(burst.late), "frame"),
-              burst.most_ms));
-    }
     std::size_t shown = 0;
     for (const StampJump& jump : facts.jumps) {
       if (const CameraDiagnosis* other = swapped_with(*camera_, jump)) {
@@ -287,6 +275,23 @@ class Findings {
                         jump.at_s, jump.step_ms));
       }
     }
+  }
+
+  void add_stamps() {
+    const StreamFacts& facts = camera_->facts;
+    if (facts.repeated_stamps > 0) {
+      add("repeated_stamps", fmt::format("{} with the stamp of the frame before",
+                                         counted(facts.repeated_stamps, "frame")));
+    }
+    for (const DelayBurst& burst : facts.bursts) {
+      add("late_burst",
+          fmt::format(
+              "from {:.1f} s on, for {:.2f} s, {} came up to {:.1f} ms later than usual: the "
+              "host or its bus was busy",
+              burst.at_s, burst.for_s, counted(static_cast<std::uint64_t>(burst.late), "frame"),
+              burst.most_ms));
+    }
+    add_jumps();
     if (facts.interval_jitter_ms > kUnsteady * facts.period_ms) {
       add("unsteady",
           fmt::format("unsteady: its intervals differ from whole periods of {1:.3f} ms by {0:.3f} "
