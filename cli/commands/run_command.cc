@@ -188,8 +188,9 @@ std::optional<reports::AnswerText> answer_for_people(const evaluation::Results& 
 int run(RunOptions options) {
   check_budget_options(options);
   app::RunArchive archive(options.command);
-  const scenarios::Scenario scenario = load_with_programs(
-      options.scenario, options.sets, options.programs, options.evaluation.pipelines);
+  const scenarios::Scenario scenario =
+      load_with_programs(options.scenario, options.sets, options.programs,
+                         options.evaluation.pipelines, evaluation::AdHoc::kHostSyncToo);
   evaluation::check_pipelines(scenario);
   print_warnings(scenarios::warnings(scenario));
   if (is_hardware(options.backend)) return run_on_rig(options, scenario, std::move(archive));

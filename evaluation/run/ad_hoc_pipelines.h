@@ -1,7 +1,7 @@
 // Pipelines that a user states by their algorithms, beside those of the scenario:
 //
 //   two_way_hull+hull_switch_10s+yoon2021     host_sync+device_time+gathering
-//   chrony                                    a host_sync alone, for runs of the hosts' clocks
+//   chrony                                    a host_sync alone, where the command allows it
 //
 // They become pipelines of the scenario, named by that text, so that archives, recordings and
 // workers have them. A name that the scenario has is that pipeline.

@@ -50,8 +50,9 @@ std::shared_ptr<Run> simulate(const RunRequest& request, const py::object& on_pr
   run->provenance->command = request.command;
   run->provenance->started = std::chrono::system_clock::now();
   run->scenario = scenarios::load_scenario(
-      request.scenario, evaluation::with_ad_hoc_pipelines(request.scenario, overrides(request.sets),
-                                                          request.pipelines));
+      request.scenario,
+      evaluation::with_ad_hoc_pipelines(request.scenario, overrides(request.sets),
+                                        request.pipelines, evaluation::AdHoc::kHostSyncToo));
   const Scenario& scenario = *run->scenario;
   evaluation::check_pipelines(scenario);
   run->archive.results = watched<Results>(on_progress, [&](const Progress& progress) {

@@ -23,6 +23,12 @@ class ResultsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.result = simbench.run(SCENARIO, PIPELINES, seeds=8)
 
+    def test_a_host_sync_alone_has_the_first_pipelines_other_stages(self):
+        r = simbench.run("18cam_6host_45fps", pipelines=["yoon2021_both", "two_way_hull"],
+                         seeds=1, set={"/trigger/rate_hz": 30})
+        stages = [(row["device_time"], row["gathering"]) for _, row in r.table.iterrows()]
+        self.assertEqual(stages[0], stages[1])
+
     def test_all_numbers_are_the_commands(self):
         expected = json.loads(command.simbench(*RUN, "--format", "json"))
         self.assertEqual(
