@@ -1,8 +1,10 @@
 """What the package does besides numbers: errors, progress, threads, Ctrl-C, missing packages."""
 
+import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -41,8 +43,10 @@ class ErrorsTest(unittest.TestCase):
         self.assertTrue(issubclass(simbench.InputError, ValueError))
         self.assertTrue(issubclass(simbench.OutputError, OSError))
         result = simbench.run("3cam_1host_30fps", ["oracle"], seeds=1, keep_pulses=False)
-        with self.assertRaisesRegex(simbench.OutputError, "keep_pulses"):
-            result.save("/tmp/never_written")
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(simbench.OutputError, "keep_pulses"):
+                result.save(os.path.join(folder, "never_written"))
+            self.assertEqual(os.listdir(folder), [])
 
     def test_doubts_are_warnings(self):
         with self.assertWarnsRegex(UserWarning, "exposure"):
