@@ -14,8 +14,8 @@
 //   const BagScan scan = scan_bag("rig.bag", "rig", {});
 //   for (const CameraStream& stream : scan.streams) ...
 //
-// Memory: 80 bytes a frame while it reads, then 32. Sources: docs/reference/d455.md section 8;
-// realsense-ros, the topic metadata.
+// Memory: 80 bytes a frame while it reads, then 32. Source: docs/reference/bags.md
+// sections 2 and 3.
 #ifndef SIMBENCH_BAGS_BAG_SCAN_H_
 #define SIMBENCH_BAGS_BAG_SCAN_H_
 

@@ -6,7 +6,7 @@
 // it: metadata, then the raw image, other images, camera info, points. A base that ends in the name
 // of a stream (depth, color, infra1, ...) is a stream of the camera before it; else it is the
 // camera. The SDK's bags have /device_0/sensor_0/Depth_0/image/data, .../metadata and
-// /device_0/info.
+// /device_0/info. Source: docs/reference/bags.md sections 2 and 3.
 //
 //   const CameraTopic topic = camera_topic(bag_topic);
 //   if (topic.kind == TopicKind::kImage) use(camera_of(topic.base).camera);
