@@ -20,14 +20,19 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTopicsShown = 30;
 
-std::uint64_t size_of(const std::string& path) {
-  std::error_code none;
-  const std::uintmax_t size = fs::file_size(path, none);
-  return none ? 0 : size;
-}
-
 std::vector<std::string> files_of(const std::string& path) {
   return fs::is_directory(path) ? rosbag2_files(path) : std::vector<std::string>{path};
+}
+
+// Of a file, or of all bags of a folder.
+std::uint64_t size_of(const std::string& path) {
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files_of(path)) {
+    std::error_code none;
+    const std::uintmax_t size = fs::file_size(file, none);
+    if (!none) bytes += size;
+  }
+  return bytes;
 }
 
 // The part of a recording that goes on in its next file.
@@ -109,8 +114,13 @@ bool is_bag(const std::string& path) {
 BagScan scan_recording(const std::string& path, const std::string& name, const ScanOptions& options,
                        const ReadProgress& progress) {
   std::optional<BagScan> all;
+  const std::uint64_t total = size_of(path);
+  std::uint64_t before = 0;
   for (const std::string& file : files_of(path)) {
-    BagScan scan = scan_bag(file, name, options, progress);
+    BagScan scan = scan_bag(file, name, options, [&](std::uint64_t done, std::uint64_t) {
+      if (progress) progress(before + done, total);
+    });
+    before += size_of(file);
     if (!all) {
       all = std::move(scan);
     } else {
