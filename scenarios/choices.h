@@ -72,6 +72,13 @@ constexpr bool waits_for_trigger(SyncMode mode) {
   return mode != SyncMode::kDefault && mode != SyncMode::kMaster;
 }
 
+// Which clock the sensor and frame stamps of the cameras are of.
+enum class StampClock : std::uint8_t { kCamera, kHost };
+constexpr auto words_of(StampClock) {
+  using enum StampClock;
+  return std::to_array<Word<StampClock>>({{kCamera, "camera"}, {kHost, "host"}});
+}
+
 // How the cameras of a USB controller share its bandwidth.
 enum class UsbSharing : std::uint8_t { kDedicated, kFair, kFifo };
 constexpr auto words_of(UsbSharing) {

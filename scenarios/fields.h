@@ -190,13 +190,17 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(ClockPoll, interval_ms, request_
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AutoExposure, step_interval_exponential_ms, min_ms, max_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationError, delay_error_sigma_ms,
                                    camera_delay_error_sigma_ms, poll_asymmetry_error_sigma_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlModel, adjust_frame, insert_frame, frame_length,
+                                   start_at, granularity_us, shortest_ms, longest_ms,
+                                   latency_frames, delay_ms, delay_exponential_ms, loss_probability,
+                                   start_jitter_sigma_us, frame_jitter_sigma_us)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     Cameras, count, cameras_per_host, host_of_camera, skew_of_camera_ppm, model, sync_mode,
     common_start, start_spread_ms, streams, oscillator, clock_epoch_max_ms, latency_camera_max_ms,
     exposure_ms, exposure_camera_periods, exposure_host_periods, trigger_to_exposure_us,
     genlock_guard_fraction, slave_free_run_after_periods, sensor_stamp_jitter_sigma_us,
     drop_probability, unstable_start_ms, unstable_start_jitter_sigma_ms, clock_poll, auto_exposure,
-    calibration)
+    calibration, frame_control, stamp_clock)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackendStamp, host_uptime_h, resolution_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Usb, bandwidth_mb_per_s, sharing,
                                                 cameras_per_controller, buffered_frames,
@@ -215,11 +219,15 @@ inline void to_json(nlohmann::json& out, const Pipeline& pipeline) {
          {"device_time", pipeline.device_time},
          {"gathering", pipeline.gathering}};
   if (pipeline.programs) out["host_sync"] = {{"program", *pipeline.programs}};
+  if (!pipeline.capture_alignment.empty()) {
+    out["capture_alignment"] = pipeline.capture_alignment;
+  }
 }
 inline void from_json(const nlohmann::json& in, Pipeline& pipeline) {
   in.at("name").get_to(pipeline.name);
   in.at("device_time").get_to(pipeline.device_time);
   in.at("gathering").get_to(pipeline.gathering);
+  pipeline.capture_alignment = in.value("capture_alignment", "");
   const nlohmann::json& host_sync = in.at("host_sync");
   if (host_sync.is_string()) {
     host_sync.get_to(pipeline.host_sync);

@@ -297,6 +297,24 @@ struct CalibrationError {
   bool operator==(const CalibrationError&) const = default;
 };
 
+// What a program may change about the frames of each camera (algorithms/ports/frame_control.h), and
+// how well the camera obeys (sim/camera/steered_sensor.h).
+struct FrameControlModel {
+  bool adjust_frame = false;  // the controls that the cameras have
+  bool insert_frame = false;
+  bool frame_length = false;
+  bool start_at = false;
+  double granularity_us = 0;  // of the lengths of frames
+  double shortest_ms = 0;
+  double longest_ms = 0;
+  std::int64_t latency_frames = 0;
+  double delay_ms = 0;  // of a control, until the camera has it
+  double delay_exponential_ms = 0;
+  double loss_probability = 0;       // per control
+  double start_jitter_sigma_us = 0;  // of a start at a time
+  double frame_jitter_sigma_us = 0;  // of each exposure, which the next frames do not inherit
+};
+
 struct Cameras {
   std::int64_t count = 0;
   std::int64_t cameras_per_host = 0;         // camera j is on host j / cameras_per_host, unless
@@ -324,6 +342,8 @@ struct Cameras {
   ClockPoll clock_poll;
   AutoExposure auto_exposure;
   CalibrationError calibration{};
+  std::optional<FrameControlModel> frame_control{};
+  StampClock stamp_clock{};  // of the sensor and frame stamps
 
   // Null if the cameras do not have that stream.
   const Stream* stream(StreamKind kind) const;
@@ -422,6 +442,7 @@ struct Pipeline {
   std::string device_time;
   std::string gathering;
   std::optional<HostPrograms> programs{};
+  std::string capture_alignment{};  // empty: none
 };
 
 // A parameter of an algorithm, which the algorithm's registration checks.

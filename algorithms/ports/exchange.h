@@ -1,4 +1,5 @@
-// What a host synchronisation reports: its exchanges, and how each slave's session ended.
+// What a host synchronisation reports: its exchanges, and how each slave's session ended; and what
+// a capture alignment does.
 //
 // A recording holds the exchanges (Host::report_exchange), so that other estimators can be run on
 // them afterwards. Stamps that an algorithm does not have are absent.
@@ -32,6 +33,15 @@ struct SyncOutcome {
   bool synchronised = false;
   std::uint32_t passes = 0;
   std::string message;  // empty, or why it failed and what would help
+};
+
+// What a capture alignment thinks it has reached with a camera (capture_alignment.h). The newest
+// report of a camera counts.
+struct AlignmentReport {
+  std::uint32_t camera = 0;
+  bool aligned = false;
+  std::uint32_t controls = 0;  // that were sent to it until now
+  std::string message;         // empty, or why it is not aligned and what would help
 };
 
 }  // namespace simbench

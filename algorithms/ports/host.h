@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "algorithms/ports/exchange.h"
@@ -64,6 +65,8 @@ class SteadyClock {
 enum class Transport : std::uint8_t {
   kStream,    // in order, complete, with Nagle and delayed ACK where the host has them
   kDatagram,  // may be lost, duplicated, reordered
+  // Likewise, of the stage capture_alignment: a channel of its own between the same hosts.
+  kAlignment,
 };
 
 using MessageId = std::uint64_t;
@@ -143,6 +146,8 @@ struct FrameArrival {
   DeviceStamp sensor;
   HostTime arrival{};
   SteadyTime arrival_steady{};
+  // The same instant as `sensor` on the host's steady clock, if the camera stamps with that.
+  std::optional<SteadyTime> sensor_steady{};
 };
 
 class FrameFeed {
@@ -159,6 +164,8 @@ struct StoredFrequency {
   double error_ppb = 0;
 };
 
+class FrameControl;
+
 class Host {
  public:
   virtual ~Host() = default;
@@ -170,6 +177,9 @@ class Host {
   virtual HardwareClock* hardware_clock() { return nullptr; }
   virtual PulseInput* pulse_input(PulseLine /*line*/) { return nullptr; }
   virtual FrameFeed* frame_feed() { return nullptr; }
+  // The controls of its cameras, in the order of their numbers; none where cameras have none
+  // (frame_control.h).
+  virtual std::span<FrameControl* const> frame_controls() { return {}; }
   // What the clock service's last run on this host left behind; nothing on its first run, and on
   // real hosts, whose clock services begin anew with each capture.
   virtual std::optional<StoredFrequency> stored_frequency() { return std::nullopt; }
@@ -182,6 +192,9 @@ class Host {
   // Reports an exchange, or how the synchronisation of a host ended, to the recording.
   virtual void report_exchange(const Exchange& exchange) = 0;
   virtual void report_outcome(const SyncOutcome& outcome) = 0;
+  // Reports what a capture alignment thinks it has reached; a host without cameras that can be
+  // steered has nothing to report.
+  virtual void report_alignment(const AlignmentReport& /*report*/) {}
 };
 
 }  // namespace simbench

@@ -99,6 +99,14 @@ constexpr std::int64_t nanoseconds_of(std::chrono::time_point<Base, Duration> t)
   return std::chrono::duration_cast<Nanoseconds>(t.time_since_epoch()).count();
 }
 
+// The steady time that the register of a camera stands for, where the camera stamps with its host's
+// steady clock: the one nearest to `near`, in whole microseconds. Within half a wrap.
+constexpr SteadyTime steady_of(DeviceStamp stamp, SteadyTime near) {
+  const std::int64_t near_us = floor_div(near.time_since_epoch().count(), 1000);
+  const auto behind = static_cast<std::int32_t>(stamp.us - static_cast<std::uint32_t>(near_us));
+  return SteadyTime(Nanoseconds(1000 * (near_us + behind)));
+}
+
 // The offset of `a` against `b`, two readings of different bases at one instant.
 template <class BaseA, class DurationA, class BaseB, class DurationB>
 constexpr Nanoseconds offset_between(std::chrono::time_point<BaseA, DurationA> a,

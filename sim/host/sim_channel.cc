@@ -13,6 +13,11 @@ namespace {
 
 constexpr ComponentKey kStreamSendCost("host: cost of sending on a stream");
 constexpr ComponentKey kDatagramSendCost("host: cost of sending a datagram");
+constexpr ComponentKey kAlignmentSendCost("host: cost of sending to align captures");
+ComponentKey send_cost_key(Transport transport) {
+  if (transport == Transport::kAlignment) return kAlignmentSendCost;
+  return transport == Transport::kStream ? kStreamSendCost : kDatagramSendCost;
+}
 constexpr ComponentKey kHardwareReceipt("host: hardware receive stamp");
 constexpr ComponentKey kLateWakeUp("host: late wake-up");
 
@@ -33,8 +38,7 @@ SimChannel::SimChannel(SimHost& host, PeerId peer, Transport transport)
 Nanoseconds SimChannel::occupancy(MessageId id) const {
   const HostWorld& world = host_.world();
   RandomStream draw(world.run_seed,
-                    transport_ == Transport::kStream ? kStreamSendCost : kDatagramSendCost,
-                    direction_of(host_.id(), peer_), id);
+send_cost_key(transport_), direction_of(host_.id(), peer_), id);
   return from_ms(send_cost_ms_ + draw.exponential(world.hosts.send_cost_exponential_ms));
 }
 

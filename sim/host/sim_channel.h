@@ -67,7 +67,9 @@ class SimChannel final : public MessageChannel, private Endpoint {
   MessageKey key_from_peer(MessageId id) const;
   // The key of the message's own draws.
   std::uint64_t key_of(MessageId id) const {
-    return 2 * id + (transport_ == Transport::kStream ? 1 : 0);
+    constexpr std::uint64_t kOfAlignment = std::uint64_t{1} << 62;
+    return 2 * id + (transport_ == Transport::kStream ? 1 : 0) +
+           (transport_ == Transport::kAlignment ? kOfAlignment : 0);
   }
 
   SimHost& host_;

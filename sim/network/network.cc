@@ -11,9 +11,11 @@ namespace {
 
 constexpr ComponentKey kDatagramDraws("network: datagram");
 constexpr ComponentKey kStreamDraws("network: stream");
+constexpr ComponentKey kAlignmentDraws("network: capture alignment");
 constexpr ComponentKey kAckDraws("network: acknowledgement");
 
 KeyedStreams draws_of(std::uint64_t run_seed, Transport kind) {
+  if (kind == Transport::kAlignment) return KeyedStreams(run_seed, kAlignmentDraws);
   return KeyedStreams(run_seed, kind == Transport::kDatagram ? kDatagramDraws : kStreamDraws);
 }
 
@@ -207,7 +209,7 @@ void Network::pass_switch(SegmentId id, TrueTime at) {
 }
 
 void Network::travel(SegmentId id, TrueTime at) {
-  if (paths_[segments_[id].path].transport == Transport::kDatagram) {
+  if (paths_[segments_[id].path].transport != Transport::kStream) {
     travel_as_datagram(id, at);
   } else {
     travel_on_stream(id, at);
@@ -280,7 +282,7 @@ void Network::travel_on_stream(SegmentId id, TrueTime at) {
 void Network::arrive(SegmentId id) {
   Segment segment = release(id);
   Path& path = paths_[segment.path];
-  if (path.transport == Transport::kDatagram && outages_.unreachable(path.to, engine_.now())) {
+  if (path.transport != Transport::kStream && outages_.unreachable(path.to, engine_.now())) {
     return;
   }
   MessageId message_id = segment.first;

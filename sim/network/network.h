@@ -237,7 +237,7 @@ class Network : private EventHandler {
   std::vector<Port> switch_ports_;
   std::vector<Port> trunk_ports_;  // of switch s: 2 s towards s - 1, 2 s + 1 towards s + 1
   std::deque<Path> paths_;
-  std::unordered_map<std::uint64_t, PathId> path_ids_[2];  // by transport, then direction
+  std::unordered_map<std::uint64_t, PathId> path_ids_[3];  // by transport, then direction
   Slots<Segment> segments_;
   Slots<GroupMessage> group_messages_;
   Groups groups_;

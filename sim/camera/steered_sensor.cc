@@ -1,0 +1,127 @@
+#include "sim/camera/steered_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace simbench::sim {
+namespace {
+
+constexpr std::size_t kReadoutsKept = 64;  // more than any latency
+
+}  // namespace
+
+SteeredSensor::SteeredSensor(const SteeredSensorSettings& settings, OscillatorModel oscillator,
+                             RandomStream draws, TrueTime start, TrueTime oscillator_zero)
+    : settings_(settings),
+      oscillator_(std::move(oscillator)),
+      draws_(std::move(draws)),
+      zero_(oscillator_zero.time_since_epoch()),
+      phase_(draws_.uniform()),
+      exposure_(settings.limits.exposure) {
+  lengths_[0] = settings_.limits.nearest(settings_.limits.frame_length);
+  restart(start, start);
+}
+
+double SteeredSensor::device_ns(TrueTime at) const {
+  return static_cast<double>(at.time_since_epoch().count()) + oscillator_.deviation_ns(at + zero_);
+}
+
+// Two steps of a fixed point, whose error falls by the frequency error at each.
+TrueTime SteeredSensor::true_time(double device, TrueTime near) const {
+  TrueTime at = near;
+  for (int step = 0; step < 3; ++step) at += from_ns(device - device_ns(at));
+  return at;
+}
+
+Nanoseconds SteeredSensor::exposure_of(std::int64_t frame) const {
+  const auto inserted = inserted_.find(frame);
+  return inserted != inserted_.end() ? inserted->second : exposure_;
+}
+
+// From the readout of that frame to the next, into which the next exposure has to fit.
+Nanoseconds SteeredSensor::length_after(std::int64_t frame) const {
+  const auto single = single_.find(frame);
+  const Nanoseconds wanted =
+      single != single_.end() ? single->second : std::prev(lengths_.upper_bound(frame))->second;
+  const Nanoseconds step = settings_.limits.granularity;
+  const Nanoseconds least = exposure_of(frame + 1) + step;
+  if (wanted >= least) return wanted;
+  return step * -floor_div(-least.count(), step.count());
+}
+
+void SteeredSensor::plan_next() {
+  if (settings_.is_ideal) return plan_ideal();
+  const Nanoseconds length = length_after(frame_);
+  next_readout_device_ns_ = readout_device_ns_ + to_ns(length);
+  next_readout_ = true_time(next_readout_device_ns_, readout_ + length);
+  next_exposure_ = next_readout_ - exposure_of(frame_ + 1);
+}
+
+// The middle of the exposure, of all its rows, is due at an instant, and comes with the granule
+// that is nearest.
+void SteeredSensor::plan_ideal() {
+  const Nanoseconds after_middle = (exposure_ - settings_.readout) / 2;
+  const auto since_first =
+      static_cast<double>((next_readout_ - after_middle - settings_.first_due).count());
+  const double slot = std::floor(since_first / settings_.period_ns + 0.5) + 1;
+  const double due_ns = std::max(slot, 0.0) * settings_.period_ns;
+  const TrueTime due = settings_.first_due + from_ns(due_ns) + after_middle;
+  const auto step = static_cast<double>(settings_.limits.granularity.count());
+  const double granule = std::round(device_ns(due) / step - phase_) + phase_;
+  next_readout_device_ns_ = granule * step;
+  next_readout_ = true_time(next_readout_device_ns_, due);
+  next_exposure_ = next_readout_ - exposure_;
+}
+
+// Frames from now on begin anew with an exposure at that time.
+void SteeredSensor::restart(TrueTime at, TrueTime made_until) {
+  next_exposure_ = std::max(at, made_until);
+  next_readout_ = next_exposure_ + exposure_of(frame_ + 1);
+  next_readout_device_ns_ = device_ns(next_readout_);
+  if (settings_.is_ideal) plan_ideal();
+}
+
+Exposure SteeredSensor::expose(Nanoseconds exposure) {
+  ++frame_;
+  exposure_ = exposure;
+  readout_ = next_readout_;
+  readout_device_ns_ = next_readout_device_ns_;
+  readouts_.push_back(readout_);
+  if (readouts_.size() > kReadoutsKept) readouts_.pop_front();
+  single_.erase(single_.begin(), single_.lower_bound(frame_));
+  inserted_.erase(inserted_.begin(), inserted_.lower_bound(frame_));
+  const TrueTime read = readout_ + from_ns(draws_.normal(settings_.jitter_sigma_ns));
+  const Exposure made{kNoPulse, read - exposure_of(frame_), read + settings_.readout};
+  plan_next();
+  return made;
+}
+
+Nanoseconds SteeredSensor::length_by(const FrameCommand& command, std::int64_t frame) const {
+  const bool is_relative = command.kind == FrameControlKind::kAdjustFrame;
+  const Nanoseconds usual = std::prev(lengths_.upper_bound(frame))->second;
+  return settings_.limits.nearest(is_relative ? usual + command.length : command.length);
+}
+
+void SteeredSensor::latch(const FrameCommand& command, TrueTime at, TrueTime made_until) {
+  if (settings_.is_ideal) return;
+  if (command.kind == FrameControlKind::kStartAt) return restart(command.at, made_until);
+  const auto begun = std::upper_bound(readouts_.begin(), readouts_.end(), at);
+  const std::int64_t in_progress = frame_ - (readouts_.end() - begun);
+  const auto latency = static_cast<std::int64_t>(settings_.limits.latency_frames);
+  std::int64_t frame = std::max(in_progress + latency, frame_);
+  const Nanoseconds length = length_by(command, frame);
+  if (frame == frame_ && readout_ + length - exposure_ < made_until) ++frame;
+  if (command.kind == FrameControlKind::kFrameLength) {
+    lengths_[frame] = length;
+  } else {
+    single_[frame] = length;
+  }
+  if (command.kind == FrameControlKind::kInsertFrame) {
+    inserted_[frame + 1] = length - settings_.limits.granularity;
+  }
+  if (frame == frame_) plan_next();
+}
+
+}  // namespace simbench::sim
