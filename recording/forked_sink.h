@@ -53,6 +53,9 @@ class ForkedSink final : public RecordingSink {
   void on_outcome(const SyncOutcome& outcome) override {
     each([&](RecordingSink& sink) { sink.on_outcome(outcome); });
   }
+  void on_alignment(const AlignmentReport& report) override {
+    each([&](RecordingSink& sink) { sink.on_alignment(report); });
+  }
 
  private:
   struct Branch {

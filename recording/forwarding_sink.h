@@ -38,6 +38,7 @@ class ForwardingSink : public RecordingSink {
     sink_.on_exchange(host, exchange);
   }
   void on_outcome(const SyncOutcome& outcome) override { sink_.on_outcome(outcome); }
+  void on_alignment(const AlignmentReport& report) override { sink_.on_alignment(report); }
 
  protected:
   RecordingSink& sink() { return sink_; }

@@ -34,6 +34,7 @@
 
 namespace simbench {
 
+class CaptureAlignment;
 class HostSync;
 class WorldObserver;
 
@@ -116,6 +117,8 @@ class RecordingSink {
   virtual void on_poll(const DevicePoll& poll) = 0;
   virtual void on_exchange(std::uint32_t host, const Exchange& exchange) = 0;
   virtual void on_outcome(const SyncOutcome& outcome) = 0;
+  // Captures whose exposures are steered only; whoever does not care may ignore them.
+  virtual void on_alignment(const AlignmentReport& /*report*/) {}
 };
 
 // Which capture to make: the pipeline decides which host_sync runs and which load is drawn.
@@ -123,6 +126,8 @@ struct RecordingRequest {
   std::uint64_t seed = 1;
   std::string pipeline;           // by name, one of the scenario's
   HostSync* host_sync = nullptr;  // the algorithm to run; outlives the call; null: none runs
+  // What steers the exposures, likewise; null: nothing does.
+  CaptureAlignment* capture_alignment = nullptr;
   // Notified of what only a simulated world can show (world_observer.h); outlives the call. Never
   // changes the recording.
   WorldObserver* observer = nullptr;

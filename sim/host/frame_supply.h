@@ -1,23 +1,28 @@
 // Where the frames come from that programs on the hosts read: the capture, which delivers them when
-// it is asked to.
+// it is asked to; and where their commands to cameras go.
 //
 //   FrameSupply supply;
-//   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); });
+//   supply.connect([&] { capture.catch_up(); }, [&] { expect_frame(); }, steer_camera);
 //   supply.catch_up();
 #ifndef SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
 #define SIMBENCH_SIM_HOST_FRAME_SUPPLY_H_
 
+#include <cstdint>
 #include <functional>
 #include <utility>
+
+#include "sim/camera/steered_sensor.h"
 
 namespace simbench::sim {
 
 class FrameSupply {
  public:
   // Until then there are no frames.
-  void connect(std::function<void()> catch_up, std::function<void()> expect) {
+  using Steer = std::function<void(std::uint32_t camera, const FrameCommand& command)>;
+  void connect(std::function<void()> catch_up, std::function<void()> expect, Steer steer) {
     catch_up_ = std::move(catch_up);
     expect_ = std::move(expect);
+    steer_ = std::move(steer);
   }
 
   // A program has opened the feed of its host's frames.
@@ -33,9 +38,15 @@ class FrameSupply {
     if (expect_) expect_();
   }
 
+  // A command reaches a camera now.
+  void steer(std::uint32_t camera, const FrameCommand& command) const {
+    if (steer_) steer_(camera, command);
+  }
+
  private:
   std::function<void()> catch_up_;
   std::function<void()> expect_;
+  Steer steer_;
   bool is_open_ = false;
 };
 

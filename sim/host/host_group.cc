@@ -80,6 +80,11 @@ HostGroup::HostGroup(const scenarios::Scenario& scenario, std::uint64_t run_seed
     make_clock(scenario.hosts, run_seed, initial_clocks);
     hosts_.emplace_back(world, id, clocks_.back(), cameras[id] > 0);
   }
+  if (!scenario.cameras.frame_control) return;
+  for (std::int64_t camera = 0; camera < scenario.cameras.count; ++camera) {
+    hosts_[static_cast<std::size_t>(scenario.host_of(camera))].add_frame_control(
+        static_cast<std::uint32_t>(camera), scenario);
+  }
 }
 
 void HostGroup::make_clock(const scenarios::Hosts& parameters, std::uint64_t run_seed,

@@ -1,9 +1,12 @@
 #include "sim/host/sim_host.h"
 
+#include <algorithm>
+
 #include "algorithms/ports/assert.h"
 #include "sim/host/host_clocks.h"
 #include "sim/host/pulse_lines.h"
 #include "sim/host/sim_channel.h"
+#include "sim/host/sim_frame_control.h"
 #include "sim/host/sim_multicast.h"
 
 namespace simbench::sim {
@@ -79,6 +82,23 @@ FrameFeed* SimHost::frame_feed() {
   return frame_feed_.get();
 }
 
+void SimHost::add_frame_control(std::uint32_t camera, const scenarios::Scenario& scenario) {
+  controls_.push_back(std::make_unique<SimFrameControl>(*this, camera, scenario));
+  control_ports_.push_back(controls_.back().get());
+}
+
+SimFrameControl* SimHost::frame_control(std::uint32_t camera) const {
+  for (const auto& control : controls_) {
+    if (control->camera() == camera) return control.get();
+  }
+  return nullptr;
+}
+
+bool SimHost::awaits_frame() const {
+  if (frame_feed_ != nullptr && frame_feed_->is_awaited()) return true;
+  return std::ranges::any_of(controls_, [](const auto& control) { return control->is_awaited(); });
+}
+
 std::optional<StoredFrequency> SimHost::stored_frequency() {
   return world_.drift_files.read(id_, true_now());
 }
@@ -133,6 +153,8 @@ void SimHost::on_adjustment(const ClockAdjustment& adjustment) {
 void SimHost::report_exchange(const Exchange& exchange) { world_.sink.on_exchange(id_, exchange); }
 
 void SimHost::report_outcome(const SyncOutcome& outcome) { world_.sink.on_outcome(outcome); }
+
+void SimHost::report_alignment(const AlignmentReport& report) { world_.sink.on_alignment(report); }
 
 std::optional<TrueTime> SimHost::next_look(SteadyTime deadline) const {
   const SteadyTime now = steady_port_.now();

@@ -36,9 +36,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "algorithms/ports/host.h"
 #include "recording/recording.h"
@@ -59,6 +61,7 @@
 namespace simbench::sim {
 
 class SimChannel;
+class SimFrameControl;
 class SimHost;
 class SimMulticast;
 
@@ -114,6 +117,7 @@ class SimHost final : public Host {
   HardwareClock* hardware_clock() override;
   PulseInput* pulse_input(PulseLine line) override;
   FrameFeed* frame_feed() override;
+  std::span<FrameControl* const> frame_controls() override { return control_ports_; }
   std::optional<StoredFrequency> stored_frequency() override;
   MessageChannel& open_channel(PeerId peer, Transport transport) override;
   Task<void> sleep_for(Nanoseconds interval) override;
@@ -121,6 +125,14 @@ class SimHost final : public Host {
   double random_uniform() override { return algorithm_draws_.uniform(); }
   void report_exchange(const Exchange& exchange) override;
   void report_outcome(const SyncOutcome& outcome) override;
+  void report_alignment(const AlignmentReport& report) override;
+
+  // One of the host's cameras, whose frames can be controlled.
+  void add_frame_control(std::uint32_t camera, const scenarios::Scenario& scenario);
+  // Null: the camera's frames cannot be.
+  SimFrameControl* frame_control(std::uint32_t camera) const;
+  // Whether a coroutine waits for a frame.
+  bool awaits_frame() const;
 
   // The feed if a program has opened it.
   SimFrameFeed* opened_frame_feed() const { return frame_feed_.get(); }
@@ -185,6 +197,8 @@ class SimHost final : public Host {
   std::unique_ptr<SimPulseInput> pps_;
   std::unique_ptr<SimPulseInput> trigger_;
   std::unique_ptr<SimFrameFeed> frame_feed_;
+  std::vector<std::unique_ptr<SimFrameControl>> controls_;
+  std::vector<FrameControl*> control_ports_;  // the same
   std::map<std::pair<PeerId, Transport>, std::unique_ptr<SimChannel>> channels_;
   std::unique_ptr<SimMulticast> multicast_;
   boost::intrusive::list<Sleeper, boost::intrusive::constant_time_size<false>> sleepers_;

@@ -1,6 +1,7 @@
 #include "sim/rig/capture_reports.h"
 
 #include "sim/host/host_group.h"
+#include "sim/host/sim_frame_control.h"
 #include "sim/host/sim_host.h"
 
 namespace simbench::sim {
@@ -29,15 +30,15 @@ ObservedFrame observed_frame(const CameraFrame& frame, Nanoseconds shift) {
 FrameFeeds::FrameFeeds(const scenarios::Scenario& scenario, HostGroup& hosts)
     : hosts_(hosts),
       scored_(scenario.evaluation.stream),
-      traffic_share_(scenario.network.capture_traffic_share) {}
+      traffic_share_(scenario.network.capture_traffic_share),
+      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::StampClock::kHost) {}
 
 bool FrameFeeds::is_open() const { return hosts_.frames().is_open(); }
 
 bool FrameFeeds::is_awaited() const {
   if (!is_open()) return false;
   for (std::size_t host = 0; host < hosts_.size(); ++host) {
-    const SimFrameFeed* feed = hosts_.host(host).opened_frame_feed();
-    if (feed != nullptr && feed->is_awaited()) return true;
+    if (hosts_.host(host).awaits_frame()) return true;
   }
   return false;
 }
@@ -47,14 +48,19 @@ void FrameFeeds::on_delivery(const FrameRecord& record, const CameraStream& stre
     hosts_.network().send_capture_traffic(stream.host, traffic_share_ * stream.bytes, at);
   }
   if (record.stream != scored_) return;
-  SimFrameFeed* feed = hosts_.host(stream.host).opened_frame_feed();
-  if (feed == nullptr) return;
-  feed->push({.camera = record.camera,
-              .counter = record.counter,
-              .exposure_us = record.exposure_us,
-              .sensor = record.sensor,
-              .arrival = record.arrival,
-              .arrival_steady = record.arrival_steady});
+  SimHost& host = hosts_.host(stream.host);
+  SimFrameFeed* const feed = host.opened_frame_feed();
+  SimFrameControl* const control = host.frame_control(record.camera);
+  if (feed == nullptr && control == nullptr) return;
+  FrameArrival frame{.camera = record.camera,
+                     .counter = record.counter,
+                     .exposure_us = record.exposure_us,
+                     .sensor = record.sensor,
+                     .arrival = record.arrival,
+                     .arrival_steady = record.arrival_steady};
+  if (stamps_on_host_) frame.sensor_steady = steady_of(record.sensor, record.arrival_steady);
+  if (feed != nullptr) feed->push(frame);
+  if (control != nullptr) control->push(frame);
 }
 
 void CaptureReports::start(TrueTime at) const {

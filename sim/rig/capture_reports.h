@@ -46,6 +46,7 @@ class FrameFeeds {
   HostGroup& hosts_;
   StreamKind scored_;
   double traffic_share_;
+  bool stamps_on_host_;
 };
 
 class CaptureReports {

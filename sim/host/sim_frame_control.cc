@@ -1,0 +1,111 @@
+#include "sim/host/sim_frame_control.h"
+
+#include "algorithms/ports/assert.h"
+#include "sim/engine/random.h"
+#include "sim/host/sim_host.h"
+
+namespace simbench::sim {
+namespace {
+
+constexpr ComponentKey kControl("camera: control of its frames");
+constexpr std::size_t kFramesKept = 1024;
+constexpr Nanoseconds kBeforeStart = std::chrono::milliseconds(10);
+
+RandomStream control_draws(std::uint64_t run_seed, std::uint32_t camera, std::uint64_t number) {
+  return RandomStream(run_seed, kControl, camera, number);
+}
+
+}  // namespace
+
+FrameControlLimits frame_limits(const scenarios::Scenario& scenario) {
+  const scenarios::FrameControlModel& model = *scenario.cameras.frame_control;
+  return {.frame_length = from_ms(scenario.trigger.period_ms()),
+          .shortest = from_ms(model.shortest_ms),
+          .longest = from_ms(model.longest_ms),
+          .granularity = from_us(model.granularity_us),
+          .exposure = from_ms(scenario.cameras.exposure_ms),
+          .latency_frames = static_cast<std::uint32_t>(model.latency_frames),
+          .allowed = {model.adjust_frame, model.insert_frame, model.frame_length, model.start_at}};
+}
+
+SimFrameControl::SimFrameControl(SimHost& host, std::uint32_t camera,
+                                 const scenarios::Scenario& scenario)
+    : host_(host),
+      camera_(camera),
+      model_(*scenario.cameras.frame_control),
+      limits_(frame_limits(scenario)),
+      steady_length_(limits_.nearest(limits_.frame_length)),
+      delivered_(host.world().context, host.name("next frame of a camera")) {}
+
+Task<std::optional<FrameArrival>> SimFrameControl::next_frame(SteadyTime deadline) {
+  SIMBENCH_ASSERT(!delivered_.waiting(), "one wait at a time on a camera's frames");
+  host_.world().frames.open();
+  for (;;) {
+    host_.world().frames.catch_up();
+    if (!frames_.empty()) break;
+    if (host_.is_past(deadline)) co_return std::nullopt;
+    host_.world().frames.expect();
+    co_await delivered_.wait(host_.next_look(deadline));
+  }
+  const FrameArrival frame = frames_.front();
+  frames_.pop_front();
+  co_return frame;
+}
+
+void SimFrameControl::push(const FrameArrival& frame) {
+  if (frames_.size() == kFramesKept) frames_.pop_front();
+  frames_.push_back(frame);
+  delivered_.notify();
+}
+
+FrameControlReply SimFrameControl::send(FrameControlKind kind, Nanoseconds value,
+                                        Nanoseconds length) {
+  std::string refused = refusal_of(limits_, kind, length);
+  if (!refused.empty()) return {.refused = std::move(refused)};
+  const Nanoseconds made = limits_.nearest(length);
+  if (kind == FrameControlKind::kFrameLength) steady_length_ = made;
+  RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
+  const bool is_lost = draws.chance(model_.loss_probability);
+  const double delay_ms = model_.delay_ms + draws.exponential(model_.delay_exponential_ms);
+  if (!is_lost) {
+    const FrameCommand command{.kind = kind, .length = value};
+    host_.world().context.engine().call_at(
+        host_.true_now() + from_ms(delay_ms),
+        [this, command] { host_.world().frames.steer(camera_, command); });
+  }
+  return {.length = made};
+}
+
+Task<FrameControlReply> SimFrameControl::adjust_frame(Nanoseconds by) {
+  co_return send(FrameControlKind::kAdjustFrame, by, steady_length_ + by);
+}
+
+Task<FrameControlReply> SimFrameControl::insert_frame(Nanoseconds length) {
+  co_return send(FrameControlKind::kInsertFrame, length, length);
+}
+
+Task<FrameControlReply> SimFrameControl::set_frame_length(Nanoseconds length) {
+  co_return send(FrameControlKind::kFrameLength, length, length);
+}
+
+Task<FrameControlReply> SimFrameControl::start_at(HostTime at) {
+  const auto kind = FrameControlKind::kStartAt;
+  if (std::string refused = refusal_of(limits_, kind, {}); !refused.empty()) {
+    co_return FrameControlReply{.refused = std::move(refused)};
+  }
+  const HostTime now = host_.system_clock().read(host_.true_now());
+  if (at <= now) {
+    co_return FrameControlReply{.refused = "found a start " + std::to_string(to_ms(now - at)) +
+                                           " ms ago, allowed: one to come"};
+  }
+  RandomStream draws = control_draws(host_.world().run_seed, camera_, sent_++);
+  const bool is_lost = draws.chance(model_.loss_probability);
+  const Nanoseconds late = from_us(draws.normal(model_.start_jitter_sigma_us));
+  if (at > now + kBeforeStart) co_await host_.sleep_until(at - kBeforeStart);
+  const TrueTime due = host_.system_clock().when(at, host_.true_now());
+  if (!is_lost) host_.world().frames.steer(camera_, {.kind = kind, .at = due + late});
+  co_await host_.sleep_until(at);
+  co_return FrameControlReply{};
+}
+
+}  // namespace simbench::sim

@@ -1,0 +1,65 @@
+// The control of a simulated camera's frames, for the programs of its host.
+//
+// A control takes its delay to the camera, on the engine, and may be lost; when it comes, the
+// world's camera latches it (sim/camera/steered_sensor.h). The draws of a control are keyed by the
+// camera and the number of the control. What the camera cannot do is refused before it is sent.
+//
+// start_at() follows the host's system clock: it waits until shortly before the time, and reads off
+// then at what instant the clock will show it.
+//
+// Frames come as they are delivered, through the rig (FrameSupply): at the instant of the delivery,
+// while a coroutine waits.
+//
+//   SimFrameControl control(host, 3, scenario.cameras, frame_length);
+//   const FrameControlReply reply = co_await control.adjust_frame(from_ms(2));
+#ifndef SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
+#define SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "algorithms/ports/frame_control.h"
+#include "scenarios/scenario.h"
+#include "sim/camera/steered_sensor.h"
+#include "sim/engine/virtual_executor.h"
+
+namespace simbench::sim {
+
+class SimHost;
+
+// The limits of the cameras of a scenario, which has frame_control.
+FrameControlLimits frame_limits(const scenarios::Scenario& scenario);
+
+class SimFrameControl final : public FrameControl {
+ public:
+  // `host` must outlive the control.
+  SimFrameControl(SimHost& host, std::uint32_t camera, const scenarios::Scenario& scenario);
+
+  std::uint32_t camera() const override { return camera_; }
+  const FrameControlLimits& limits() const override { return limits_; }
+  Task<std::optional<FrameArrival>> next_frame(SteadyTime deadline) override;
+  Task<FrameControlReply> adjust_frame(Nanoseconds by) override;
+  Task<FrameControlReply> insert_frame(Nanoseconds length) override;
+  Task<FrameControlReply> set_frame_length(Nanoseconds length) override;
+  Task<FrameControlReply> start_at(HostTime at) override;
+
+  void push(const FrameArrival& frame);
+  bool is_awaited() const { return delivered_.waiting(); }
+
+ private:
+  FrameControlReply send(FrameControlKind kind, Nanoseconds value, Nanoseconds length);
+
+  SimHost& host_;
+  std::uint32_t camera_;
+  scenarios::FrameControlModel model_;
+  FrameControlLimits limits_;
+  Nanoseconds steady_length_;  // of the frames, as the last control set it
+  std::uint64_t sent_ = 0;
+  WaitPoint delivered_;
+  std::deque<FrameArrival> frames_;
+};
+
+}  // namespace simbench::sim
+
+#endif  // SIMBENCH_SIM_HOST_SIM_FRAME_CONTROL_H_
