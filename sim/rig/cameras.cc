@@ -97,11 +97,14 @@ Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTi
 
 // Nothing aligns their frames at the start.
 void Cameras::add_sensors(TrueTime start, Steering steering) {
+  const scenarios::FrameControlModel& model = *scenario_.cameras.frame_control;
   const double period_ns = 1e9 / scenario_.trigger.pulse_rate_hz();
   SteeredSensorSettings settings{
       .limits = frame_limits(scenario_),
       .readout = streams_.front().readout,
-      .jitter_sigma_ns = scenario_.cameras.frame_control->frame_jitter_sigma_us * 1e3,
+      .jitter_sigma_ns = model.frame_jitter_sigma_us * 1e3,
+      .insert_stretches = model.insert_stretches,
+      .insert_noise_sigma_ns = model.insert_noise_sigma_us * 1e3,
       .is_ideal = steering == Steering::kIdeal,
       .first_due = TrueTime{} + from_ms(scenario_.trigger.start_delay_ms),
       .period_ns = period_ns};
