@@ -21,6 +21,7 @@
   FILE(ntp)                      \
   FILE(w32time)                  \
   FILE(chrony)
+#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) FILE(limits)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
   FILE(hull)                       \
@@ -41,6 +42,9 @@ namespace simbench {
 
 #define SIMBENCH_DECLARE(file) std::vector<HostSyncEntry> host_sync_##file();
 SIMBENCH_HOST_SYNC(SIMBENCH_DECLARE)
+#undef SIMBENCH_DECLARE
+#define SIMBENCH_DECLARE(file) std::vector<CaptureAlignmentEntry> capture_alignment_##file();
+SIMBENCH_CAPTURE_ALIGNMENT(SIMBENCH_DECLARE)
 #undef SIMBENCH_DECLARE
 #define SIMBENCH_DECLARE(file) std::vector<DeviceTimeEntry> device_time_##file();
 SIMBENCH_DEVICE_TIME(SIMBENCH_DECLARE)
@@ -102,6 +106,13 @@ Stage<HostSyncEntry>& host_sync_stage() {
 #undef SIMBENCH_ENTRIES
   return stage;
 }
+Stage<CaptureAlignmentEntry>& capture_alignment_stage() {
+#define SIMBENCH_ENTRIES(file) capture_alignment_##file(),
+  static Stage<CaptureAlignmentEntry> stage("capture_alignment",
+                                            {SIMBENCH_CAPTURE_ALIGNMENT(SIMBENCH_ENTRIES)});
+#undef SIMBENCH_ENTRIES
+  return stage;
+}
 Stage<DeviceTimeEntry>& device_time_stage() {
 #define SIMBENCH_ENTRIES(file) device_time_##file(),
   static Stage<DeviceTimeEntry> stage("device_time", {SIMBENCH_DEVICE_TIME(SIMBENCH_ENTRIES)});
@@ -118,14 +129,23 @@ Stage<GatheringEntry>& gathering_stage() {
 }  // namespace
 
 void register_host_sync(HostSyncEntry entry) { host_sync_stage().add(std::move(entry)); }
+void register_capture_alignment(CaptureAlignmentEntry entry) {
+  capture_alignment_stage().add(std::move(entry));
+}
 void register_device_time(DeviceTimeEntry entry) { device_time_stage().add(std::move(entry)); }
 void register_gathering(GatheringEntry entry) { gathering_stage().add(std::move(entry)); }
 
 void replace_host_sync(HostSyncEntry entry) { host_sync_stage().replace(std::move(entry)); }
+void replace_capture_alignment(CaptureAlignmentEntry entry) {
+  capture_alignment_stage().replace(std::move(entry));
+}
 void replace_device_time(DeviceTimeEntry entry) { device_time_stage().replace(std::move(entry)); }
 void replace_gathering(GatheringEntry entry) { gathering_stage().replace(std::move(entry)); }
 
 const std::vector<HostSyncEntry>& host_sync_algorithms() { return host_sync_stage().entries(); }
+const std::vector<CaptureAlignmentEntry>& capture_alignment_algorithms() {
+  return capture_alignment_stage().entries();
+}
 const std::vector<DeviceTimeEntry>& device_time_algorithms() {
   return device_time_stage().entries();
 }
@@ -133,6 +153,9 @@ const std::vector<GatheringEntry>& gathering_algorithms() { return gathering_sta
 
 const HostSyncEntry* find_host_sync(const std::string& name) {
   return host_sync_stage().find(name);
+}
+const CaptureAlignmentEntry* find_capture_alignment(const std::string& name) {
+  return capture_alignment_stage().find(name);
 }
 const DeviceTimeEntry* find_device_time(const std::string& name) {
   return device_time_stage().find(name);

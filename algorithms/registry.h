@@ -1,9 +1,9 @@
 // The algorithms a scenario can name: simbench's own, and those that a user registers.
 //
 // A registered algorithm is a name, a line about it, its parameters and a factory. Pipelines name
-// one algorithm per stage; `simbench list algorithms` prints them all. An algorithm of your own,
-// from your own repository, needs find_package(simbench), one registration and a call of
-// run_command_line (cli/command_line.h):
+// one algorithm per stage (of capture_alignment, none if they like); `simbench list algorithms`
+// prints them all. An algorithm of your own, from your own repository, needs
+// find_package(simbench), one registration and a call of run_command_line (cli/command_line.h):
 //
 //   simbench::register_device_time({
 //       .info = {.name = "mine", .family = "mine", .summary = "...", .source = "...", ...},
@@ -25,6 +25,7 @@
 #include "algorithms/device_time/device_time.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/parameters.h"
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
 
 namespace simbench {
@@ -37,6 +38,7 @@ enum class Need : std::uint8_t {
   kGnss,            // PulseStamp::gnss on that line
   kTriggerLine,     // Host::pulse_input(PulseLine::kTrigger)
   kFrames,          // Host::frame_feed()
+  kFrameControl,    // Host::frame_controls()
   kPolls,           // polls of the cameras' clocks in the recording
   kTruth,           // the truth: simulation only
 };
@@ -54,6 +56,10 @@ struct HostSyncEntry {
   AlgorithmInfo info;
   std::function<std::unique_ptr<HostSync>(const Parameters&)> make;
 };
+struct CaptureAlignmentEntry {
+  AlgorithmInfo info;
+  std::function<std::unique_ptr<CaptureAlignment>(const Parameters&)> make;
+};
 struct DeviceTimeEntry {
   AlgorithmInfo info;
   // Empty for "oracle", which needs the truth that only evaluation has.
@@ -65,22 +71,26 @@ struct GatheringEntry {
 };
 
 void register_host_sync(HostSyncEntry entry);
+void register_capture_alignment(CaptureAlignmentEntry entry);
 void register_device_time(DeviceTimeEntry entry);
 void register_gathering(GatheringEntry entry);
 
 // The same, but in place of an entry of that name. Throws std::invalid_argument if it is one of
 // simbench's own.
 void replace_host_sync(HostSyncEntry entry);
+void replace_capture_alignment(CaptureAlignmentEntry entry);
 void replace_device_time(DeviceTimeEntry entry);
 void replace_gathering(GatheringEntry entry);
 
 // In order of registration, simbench's own first.
 const std::vector<HostSyncEntry>& host_sync_algorithms();
+const std::vector<CaptureAlignmentEntry>& capture_alignment_algorithms();
 const std::vector<DeviceTimeEntry>& device_time_algorithms();
 const std::vector<GatheringEntry>& gathering_algorithms();
 
 // By name; null if there is none.
 const HostSyncEntry* find_host_sync(const std::string& name);
+const CaptureAlignmentEntry* find_capture_alignment(const std::string& name);
 const DeviceTimeEntry* find_device_time(const std::string& name);
 const GatheringEntry* find_gathering(const std::string& name);
 

@@ -193,7 +193,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CalibrationError, delay_error_sigma_ms,
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameControlModel, adjust_frame, insert_frame, frame_length,
                                    start_at, granularity_us, shortest_ms, longest_ms,
                                    latency_frames, delay_ms, delay_exponential_ms, loss_probability,
-                                   start_jitter_sigma_us, frame_jitter_sigma_us)
+                                   insert_stretches, insert_noise_sigma_us, start_jitter_sigma_us,
+                                   frame_jitter_sigma_us)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     Cameras, count, cameras_per_host, host_of_camera, skew_of_camera_ppm, model, sync_mode,
     common_start, start_spread_ms, streams, oscillator, clock_epoch_max_ms, latency_camera_max_ms,

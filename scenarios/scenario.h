@@ -310,9 +310,11 @@ struct FrameControlModel {
   std::int64_t latency_frames = 0;
   double delay_ms = 0;  // of a control, until the camera has it
   double delay_exponential_ms = 0;
-  double loss_probability = 0;       // per control
-  double start_jitter_sigma_us = 0;  // of a start at a time
-  double frame_jitter_sigma_us = 0;  // of each exposure, which the next frames do not inherit
+  double loss_probability = 0;        // per control
+  std::int64_t insert_stretches = 1;  // an inserted frame has its length so many times
+  double insert_noise_sigma_us = 0;   // of the length of an inserted frame
+  double start_jitter_sigma_us = 0;   // of a start at a time
+  double frame_jitter_sigma_us = 0;   // of each exposure, which the next frames do not inherit
 };
 
 struct Cameras {

@@ -19,6 +19,8 @@ bool have_same_capture(const scenarios::Scenario& scenario, const PipelineChoice
   if (a.pipeline.programs || b.pipeline.programs) return false;
   return a.host_sync.info.name == b.host_sync.info.name &&
          a.host_sync_parameters.all() == b.host_sync_parameters.all() &&
+         a.pipeline.capture_alignment == b.pipeline.capture_alignment &&
+         a.capture_alignment_parameters.all() == b.capture_alignment_parameters.all() &&
          (a.pipeline.name == b.pipeline.name || !meets_load(scenario, a));
 }
 

@@ -1,6 +1,7 @@
 // One capture for several pipelines: which of them can share it, and their scores side by side.
 //
-// A capture follows from the scenario, the seed, the host synchronisation with its parameters, and
+// A capture follows from the scenario, the seed, the host synchronisation with its parameters,
+// what steers the exposures with its own, and
 // the load that is drawn for the pipeline (scenarios::Scenario::draws_load(), keyed by its name).
 // So pipelines share one if they differ in device_time and gathering alone, and either the scenario
 // draws no load, or their host synchronisation never meets it (HostSync::is_idle()), or they have

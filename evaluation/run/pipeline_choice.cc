@@ -40,6 +40,7 @@ void append_infos(const std::vector<Entry>& entries, std::vector<const Algorithm
 std::vector<const AlgorithmInfo*> all_algorithms() {
   std::vector<const AlgorithmInfo*> infos;
   append_infos(host_sync_algorithms(), infos);
+  append_infos(capture_alignment_algorithms(), infos);
   append_infos(device_time_algorithms(), infos);
   append_infos(gathering_algorithms(), infos);
   return infos;
@@ -134,6 +135,8 @@ void check_can_be_made(const Scenario& scenario, const PipelineChoice& choice) {
   const AlgorithmInfo* info = &choice.host_sync.info;
   try {
     choice.host_sync.make(choice.host_sync_parameters);
+    info = &choice.capture_alignment.info;
+    if (choice.is_steered()) choice.capture_alignment.make(choice.capture_alignment_parameters);
     info = &choice.device_time.info;
     if (choice.device_time.make) choice.device_time.make(choice.device_time_parameters);
     info = &choice.gathering.info;
@@ -159,6 +162,10 @@ std::string lacking(const Scenario& scenario, Need need) {
       return lines.gnss ? "" : "a GNSS receiver (/hosts/pulse_lines/gnss is false)";
     case Need::kTriggerLine:
       return lines.trigger ? "" : "the trigger wired in (/hosts/pulse_lines/trigger is false)";
+    case Need::kFrameControl:
+      return scenario.cameras.frame_control
+                 ? ""
+                 : "cameras whose frames can be controlled (there is no /cameras/frame_control)";
     case Need::kPolls:
       return scenario.cameras.clock_poll.is_on()
                  ? ""
@@ -232,9 +239,19 @@ ProgramEntry host_sync_of(const Scenario& scenario, std::size_t index) {
   return program_maker()(scenario, pipeline);
 }
 
+CaptureAlignmentEntry capture_alignment_of(const Scenario& scenario, std::size_t index) {
+  const std::string& name = scenario.pipelines[index].capture_alignment;
+  if (name.empty()) return {};
+  CaptureAlignmentEntry entry =
+      algorithm_at(scenario, index, "capture_alignment", name, capture_alignment_algorithms());
+  check_needs(scenario, index, "capture_alignment", entry.info);
+  return entry;
+}
+
 PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   const scenarios::Pipeline& pipeline = scenario.pipelines[index];
   const auto [host_sync, problem] = host_sync_of(scenario, index);
+  const CaptureAlignmentEntry alignment = capture_alignment_of(scenario, index);
   const DeviceTimeName variants = parse_device_time_name(pipeline.device_time);
   const DeviceTimeEntry& device_time =
       algorithm_at(scenario, index, "device_time", variants.base, device_time_algorithms());
@@ -251,6 +268,8 @@ PipelineChoice choose(const Scenario& scenario, std::size_t index) {
   PipelineChoice choice = {.pipeline = pipeline,
                            .host_sync = host_sync,
                            .host_sync_parameters = parameters_of(scenario, host_sync.info),
+                           .capture_alignment = alignment,
+                           .capture_alignment_parameters = parameters_of(scenario, alignment.info),
                            .device_time = device_time,
                            .device_time_variants = variants,
                            .device_time_parameters = parameters_of(scenario, device_time.info),
@@ -305,7 +324,8 @@ ScorerSetup scorer_setup(const Scenario& scenario, const PipelineChoice& choice)
   ScorerSetup setup;
   setup.stream = scenario.evaluation.stream;
   setup.median = scenario.evaluation.rmdv_median;
-  setup.genlock = scenario.cameras.sync_mode == scenarios::SyncMode::kGenlock;
+  setup.genlock =
+      scenario.cameras.sync_mode == scenarios::SyncMode::kGenlock && !choice.is_steered();
   setup.gathering_interval_periods = scenario.evaluation.gathering_interval_periods;
   setup.make_gatherer = [make = choice.gathering.make, parameters = choice.gathering_parameters](
                             const GatheringSetup& gathering) {
@@ -334,9 +354,14 @@ RecordingCost record_run(RecordingSource& source, const PipelineChoice& choice, 
                          RecordingSink& sink, WorldObserver* observer) {
   if (!choice.problem.empty()) throw RecordingFailed(choice.problem);
   const std::unique_ptr<HostSync> host_sync = choice.host_sync.make(choice.host_sync_parameters);
+  std::unique_ptr<CaptureAlignment> alignment;
+  if (choice.is_steered()) {
+    alignment = choice.capture_alignment.make(choice.capture_alignment_parameters);
+  }
   RecordingCost cost = source.record({.seed = seed,
                                       .pipeline = choice.pipeline.name,
                                       .host_sync = host_sync.get(),
+                                      .capture_alignment = alignment.get(),
                                       .observer = observer},
                                      sink);
   std::ranges::move(host_sync->notes(), std::back_inserter(cost.notes));

@@ -37,6 +37,8 @@ struct PipelineChoice {
   scenarios::Pipeline pipeline;
   HostSyncEntry host_sync;
   Parameters host_sync_parameters;
+  CaptureAlignmentEntry capture_alignment;  // without a name: none
+  Parameters capture_alignment_parameters;
   DeviceTimeEntry device_time;          // of the base name
   DeviceTimeName device_time_variants;  // the suffixes in the pipeline's name
   Parameters device_time_parameters;
@@ -52,6 +54,9 @@ struct PipelineChoice {
   std::shared_ptr<const scenarios::Scenario> scored_in{};
   // What a user of the scenario knows, for a device_time that subtracts it. Shared by all.
   scenarios::Lazy<CalibratedDelays> delays{};
+
+  // Whether no trigger reaches the cameras.
+  bool is_steered() const { return !pipeline.capture_alignment.empty(); }
 };
 
 // The host synchronisation that a pipeline's programs are, and why they cannot run here, one line;

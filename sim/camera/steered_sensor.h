@@ -41,6 +41,8 @@ struct SteeredSensorSettings {
   FrameControlLimits limits;
   Nanoseconds readout{};
   double jitter_sigma_ns = 0;
+  std::int64_t insert_stretches = 1;  // frames that get the length of an inserted one
+  double insert_noise_sigma_ns = 0;   // of that length
   // Ideal: the instants at which the exposures should have their middle.
   bool is_ideal = false;
   TrueTime first_due{};
@@ -93,7 +95,7 @@ class SteeredSensor {
   TrueTime next_readout_{};
   double next_readout_device_ns_ = 0;
   TrueTime next_exposure_{};
-  std::deque<TrueTime> readouts_;  // of the last frames, the newest is frame_
+  std::deque<TrueTime> readouts_;                 // of the last frames, the newest is frame_
   std::map<std::int64_t, Nanoseconds> single_;    // lengths of single frames
   std::map<std::int64_t, Nanoseconds> lengths_;   // from that frame on
   std::map<std::int64_t, Nanoseconds> inserted_;  // exposures of inserted frames

@@ -17,7 +17,7 @@ namespace simbench::sim {
 
 class FrameSupply {
  public:
-  // Until then there are no frames.
+  // Until then there are no frames, and commands have no effect.
   using Steer = std::function<void(std::uint32_t camera, const FrameCommand& command)>;
   void connect(std::function<void()> catch_up, std::function<void()> expect, Steer steer) {
     catch_up_ = std::move(catch_up);

@@ -13,6 +13,10 @@ namespace simbench::sim {
 namespace {
 
 constexpr ComponentKey kLateFrame("host: late delivery of a frame");
+// Of a period, where cameras are steered: what is made ahead is short against a frame.
+constexpr int kSteeredParts = 8;
+// Frames of steered cameras may come to lag behind the slots.
+constexpr std::int64_t kMoreSlots = 8;
 
 std::size_t bytes_of(const CameraPeriod& period) {
   return sizeof(CameraPeriod) + period.frames.capacity() * sizeof(CameraFrame) +
@@ -29,21 +33,26 @@ EvaluatedSlots evaluated_slots(const scenarios::Scenario& scenario) {
 }
 
 CameraWorld::CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
-                         const EngineLimits& limits, std::size_t kept_bytes)
+                         const EngineLimits& limits, std::size_t kept_bytes, Steering steering)
     : scenario_(scenario),
       seed_(seed),
       start_(start),
       max_events_(limits.max_events),
       slots_(evaluated_slots(scenario)),
+      parts_(steering == Steering::kByControls ? kSteeredParts : 1),
+      end_slot_(slots_.last + (has_steered_sensors(scenario, steering) ? kMoreSlots : 0)),
       unstable_start_(from_ms(scenario.cameras.unstable_start_ms)),
       stamp_noise_ns_(scenario.cameras.sensor_stamp_jitter_sigma_us * 1e3),
       trigger_(scenario.trigger, static_cast<std::size_t>(scenario.cameras.count), seed),
-      cameras_(scenario, seed),
+      cameras_(scenario, seed, start, steering),
       camera_faults_(scenario.faults),
-      last_exposure_(trigger_.due(slots_.last + 2)),
+      last_exposure_(trigger_.due(end_slot_ + 2)),
       polls_(scenario, seed, camera_faults_, last_exposure_),
       end_(last_exposure_),
-      kept_bytes_(kept_bytes) {
+      kept_bytes_(is_steered() ? 0 : kept_bytes) {
+  if (has_steered_sensors(scenario, steering)) {
+    reference_.emplace(trigger_.due(0), from_ns(1e9 / scenario.trigger.pulse_rate_hz()));
+  }
   camera_faults_.start(TrueTime{});
   make_hosts();
   plan_slot(TrueTime{});
@@ -105,22 +114,44 @@ const CameraPeriod* CameraWorld::period(std::size_t index) {
 
 // The first period ends with slot 0, the last one when all is over.
 void CameraWorld::make_period(CameraPeriod& period) {
-  period.pulse = has_begun_ ? begin_slot() : std::nullopt;
-  has_begun_ = true;
-  is_over_ = next_slot_ > slots_.last;
-  period.end = is_over_ ? TrueTime::max() : next_slot_at_;
+  period.end = begin_part(period);
   for (HostSide& host : hosts_) {
     if (period.pulse) expose_by_pulse(host, *period.pulse);
     expose_by_timers(host, std::min(period.end, last_exposure_));
     transfer(host, period.end);
     for (const Step& step : transferred_) deliver(host, step);
   }
+  made_until_ = std::min(period.end, last_exposure_);
   hand_out_frames(period.end, period.frames);
   polls_.hand_out(period.end, period.polls);
   events_ += period.polls.size();
   if (!is_over_) return;
   if (!period.frames.empty()) end_ = std::max(end_, period.frames.back().at);
   std::erase_if(period.polls, [this](const CameraPoll& poll) { return poll.end > end_; });
+}
+
+TrueTime CameraWorld::begin_part(CameraPeriod& period) {
+  period.pulse.reset();
+  if (part_ == 0) {
+    if (has_begun_) {
+      slot_at_ = next_slot_at_;
+      period.pulse = begin_slot();
+    }
+    has_begun_ = true;
+    is_over_ = next_slot_ > end_slot_;
+  }
+  if (is_over_) return TrueTime::max();
+  part_ = (part_ + 1) % parts_;
+  return part_ == 0 ? next_slot_at_ : slot_at_ + part_ * ((next_slot_at_ - slot_at_) / parts_);
+}
+
+void CameraWorld::steer(std::uint32_t camera, const FrameCommand& command, TrueTime at) {
+  for (CameraStream& stream : cameras_.streams()) {
+    if (stream.camera != camera || !stream.sensor) continue;
+    stream.sensor->latch(command, at, made_until_);
+    HostSide& host = hosts_[stream.host];
+    host.next_timer = std::min(host.next_timer, stream.next_timer());
+  }
 }
 
 void CameraWorld::sort(std::vector<Step>& steps) {
@@ -148,7 +179,7 @@ std::optional<CameraPulse> CameraWorld::begin_slot() {
 void CameraWorld::expose_by_pulse(const HostSide& host, const CameraPulse& pulse) {
   for (std::uint32_t id = host.first_stream; id < host.end_stream; ++id) {
     CameraStream& stream = cameras_.stream(id);
-    if (stream.shutter.mode() == ShutterMode::kFreeRunning) continue;
+    if (stream.runs_free()) continue;
     const TrueTime at_camera = pulse.at + trigger_.delay_to(stream.camera);
     stream.shutter.set_exposure(cameras_.exposure(stream.camera, at_camera));
     const auto exposure = stream.shutter.on_pulse(at_camera, pulse.slot);
@@ -164,13 +195,12 @@ void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
     for (;; ++events_) {
       const std::uint32_t id = next_timer(first);
       CameraStream& stream = cameras_.stream(id);
-      const TrueTime now = stream.shutter.next_timer();
+      const TrueTime now = stream.next_timer();
       if (now >= before) {
         host.next_timer = std::min(host.next_timer, now);
         break;
       }
-      stream.shutter.set_exposure(cameras_.exposure(stream.camera, now));
-      const auto exposure = stream.shutter.on_timer(now);
+      const auto exposure = stream.on_timer(now, cameras_.exposure(stream.camera, now));
       if (exposure) expose(id, *exposure, now);
     }
   }
@@ -180,8 +210,8 @@ void CameraWorld::expose_by_timers(HostSide& host, TrueTime before) {
 std::uint32_t CameraWorld::next_timer(std::uint32_t first) const {
   std::uint32_t next = first;
   for (std::uint32_t id = first + 1; id < first + transfer_ns_of_kind_.size(); ++id) {
-    const TrueTime timer = cameras_.stream(id).shutter.next_timer();
-    if (timer < cameras_.stream(next).shutter.next_timer()) next = id;
+    const TrueTime timer = cameras_.stream(id).next_timer();
+    if (timer < cameras_.stream(next).next_timer()) next = id;
   }
   return next;
 }
@@ -213,6 +243,7 @@ void CameraWorld::expose(std::uint32_t stream_id, const Exposure& planned, TrueT
                                     .exposure_start = exposure.start,
                                     .exposure_end = exposure.end,
                                     .readout_start = exposure.end - stream.readout};
+  if (reference_ && stream.camera == 0) reference_->add(frame.mid_exposure());
   if (cameras.drop_probability > 0 && stream.loss.chance(cameras.drop_probability)) {
     frame.fate = FrameFate::kLostInCamera;
     return ended_.push_back(step(now, now, id));
@@ -312,6 +343,7 @@ void CameraWorld::hand_out_frames(TrueTime before, std::vector<CameraFrame>& fra
   for (auto ended = ended_.begin(); ended != end; ++ended) {
     CameraFrame& frame = frames.emplace_back(frames_[ended->frame].frame);
     frame.at = ended->at;
+    if (reference_) frame.pulse = reference_->pulse_of(frame.mid_exposure());
     frames_.release(ended->frame);
     const auto at_ns = static_cast<std::uint64_t>(frame.at.time_since_epoch().count());
     trace_hash_ = SplitMix64::mix(trace_hash_ ^ (at_ns + frame.stream));

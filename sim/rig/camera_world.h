@@ -25,6 +25,12 @@
 // nanosecond, a transfer that ends makes room before a frame is offered, and frames are delivered
 // in the order in which their transfers ended, then host by host.
 //
+// Steered cameras (algorithms/ports/capture_alignment.h) depend on what the hosts do: their half is
+// of one capture alone, is read while it runs, and is made in small parts of a period, so that at
+// most one part is made ahead of the hosts. steer() hands a command to a camera. Frames of cameras
+// that no trigger reaches belong to the pulse of the reference camera's exposure that is nearest
+// (sim/rig/reference_pulses.h).
+//
 // Source: docs/design.md section 7, docs/reference/calibration.md section 2,
 // docs/reference/d455.md. Cost: three sorts a period; no allocation in steady state unless periods
 // are kept.
@@ -49,6 +55,7 @@
 #include "sim/network/load.h"
 #include "sim/rig/cameras.h"
 #include "sim/rig/clock_polls.h"
+#include "sim/rig/reference_pulses.h"
 #include "sim/trigger/trigger_tree.h"
 #include "sim/usb/host_stack.h"
 #include "sim/usb/usb_controller.h"
@@ -104,7 +111,8 @@ class CameraWorld {
   // Of a capture that starts at `start`. The scenario must outlive this. Of the limits, that of
   // events counts.
   CameraWorld(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
-              const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes);
+              const EngineLimits& limits = {}, std::size_t kept_bytes = kKeptBytes,
+              Steering steering = Steering::kNone);
   CameraWorld(const CameraWorld&) = delete;
   CameraWorld& operator=(const CameraWorld&) = delete;
 
@@ -115,8 +123,12 @@ class CameraWorld {
   bool is_whole() const { return dropped_ == 0; }
 
   static bool depends_on_start(const scenarios::Scenario& scenario) {
-    return scenario.hosts.load_burst.rate_hz > 0;
+    return scenario.hosts.load_burst.rate_hz > 0 || scenario.cameras.frame_control.has_value();
   }
+  // Whether what is made depends on commands: it must not be made before it is due.
+  bool is_steered() const { return parts_ > 1; }
+  // The command reaches the camera at `at`, which is not past the part that was made last.
+  void steer(std::uint32_t camera, const FrameCommand& command, TrueTime at);
 
   std::uint64_t seed() const { return seed_; }
   TrueTime start() const { return start_; }
@@ -165,6 +177,8 @@ class CameraWorld {
   }
   void make_hosts();
   void make_period(CameraPeriod& period);
+  // Begins the next part of a period, and returns when it ends.
+  TrueTime begin_part(CameraPeriod& period);
   // Slot next_slot_, not before `earliest`.
   void plan_slot(TrueTime earliest);
   std::optional<CameraPulse> begin_slot();
@@ -186,6 +200,8 @@ class CameraWorld {
   TrueTime start_;
   std::uint64_t max_events_;
   EvaluatedSlots slots_;
+  int parts_;              // of a period
+  std::int64_t end_slot_;  // the last one
   Nanoseconds unstable_start_;
   double stamp_noise_ns_;  // sigma
   TriggerTree trigger_;
@@ -203,6 +219,10 @@ class CameraWorld {
   std::int64_t next_slot_ = 0;
   TrueTime next_slot_at_{};
   bool next_slot_has_pulse_ = false;
+  TrueTime slot_at_{};  // of the present slot
+  int part_ = 0;        // the next one
+  TrueTime made_until_{};
+  std::optional<ReferencePulses> reference_;  // where no trigger reaches the cameras
   bool has_begun_ = false;
   bool is_over_ = false;
   std::uint64_t events_ = 0;

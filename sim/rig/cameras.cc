@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "algorithms/ports/assert.h"
+#include "sim/host/sim_frame_control.h"
 
 namespace simbench::sim {
 namespace {
@@ -27,6 +28,23 @@ Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
   return from_ms(spread.uniform(0, scenario.cameras.start_spread_ms));
 }
 
+namespace {
+
+// Its oscillator in a capture that starts at `start`.
+OscillatorModel camera_oscillator(const scenarios::Scenario& scenario, std::uint64_t seed,
+                                  std::size_t camera, TrueTime start) {
+  const scenarios::Cameras& cameras = scenario.cameras;
+  OscillatorModel oscillator(cameras.oscillator, seed,
+                             "camera/oscillator/" + std::to_string(camera),
+                             start + start_delay(scenario, seed, camera));
+  if (!cameras.skew_of_camera_ppm.empty()) {
+    oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
+  }
+  return oscillator;
+}
+
+}  // namespace
+
 std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std::uint64_t seed,
                                        TrueTime start) {
   const scenarios::Cameras& cameras = scenario.cameras;
@@ -35,18 +53,20 @@ std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std:
   clocks.reserve(count);
   for (std::size_t camera = 0; camera < count; ++camera) {
     RandomStream epoch(seed, "camera/epoch", camera);
-    OscillatorModel oscillator(cameras.oscillator, seed,
-                               "camera/oscillator/" + std::to_string(camera),
-                               start + start_delay(scenario, seed, camera));
-    if (!cameras.skew_of_camera_ppm.empty()) {
-      oscillator.set_skew(cameras.skew_of_camera_ppm[camera] * 1e-6);
-    }
-    clocks.emplace_back(std::move(oscillator), epoch.uniform(0, cameras.clock_epoch_max_ms), start);
+    clocks.emplace_back(camera_oscillator(scenario, seed, camera, start),
+                        epoch.uniform(0, cameras.clock_epoch_max_ms), start);
   }
   return clocks;
 }
 
-Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
+bool has_steered_sensors(const scenarios::Scenario& scenario, Steering steering) {
+  const scenarios::Cameras& cameras = scenario.cameras;
+  if (!cameras.frame_control) return false;
+  return steering != Steering::kNone || !cameras.follows_trigger(cameras.streams.front());
+}
+
+Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start,
+                 Steering steering)
     : scenario_(scenario), seed_(seed) {
   const auto count = static_cast<std::size_t>(scenario_.cameras.count);
   const std::size_t kinds = scenario_.cameras.streams.size();
@@ -71,6 +91,31 @@ Cameras::Cameras(const scenarios::Scenario& scenario, std::uint64_t seed)
       stream.index_on_controller = static_cast<std::uint32_t>(place * kinds + which);
       streams_.push_back(std::move(stream));
     }
+  }
+  if (has_steered_sensors(scenario, steering)) add_sensors(start, steering);
+}
+
+// Nothing aligns their frames at the start.
+void Cameras::add_sensors(TrueTime start, Steering steering) {
+  const scenarios::FrameControlModel& model = *scenario_.cameras.frame_control;
+  const double period_ns = 1e9 / scenario_.trigger.pulse_rate_hz();
+  SteeredSensorSettings settings{
+      .limits = frame_limits(scenario_),
+      .readout = streams_.front().readout,
+      .jitter_sigma_ns = model.frame_jitter_sigma_us * 1e3,
+      .insert_stretches = model.insert_stretches,
+      .insert_noise_sigma_ns = model.insert_noise_sigma_us * 1e3,
+      .is_ideal = steering == Steering::kIdeal,
+      .first_due = TrueTime{} + from_ms(scenario_.trigger.start_delay_ms),
+      .period_ns = period_ns};
+  for (CameraStream& stream : streams_) {
+    settings.limits.exposure = first_exposure(stream.camera);
+    RandomStream phase(seed_, "camera/free_running_phase", stream.camera);
+    stream.started = TrueTime{} + start_delay(scenario_, seed_, stream.camera) +
+                     from_ns(phase.uniform(0, period_ns));
+    stream.sensor = std::make_unique<SteeredSensor>(
+        settings, camera_oscillator(scenario_, seed_, stream.camera, start),
+        RandomStream(seed_, "camera/sensor", stream.camera), stream.started, start);
   }
 }
 
@@ -106,6 +151,7 @@ CameraStream Cameras::make_stream(const DeviceClock& clock, std::size_t camera,
           .late_ns = of_camera.normal(error.camera_delay_error_sigma_ms) * 1e6,
           .started = started,
           .shutter = Shutter(shutter, started),
+          .sensor = nullptr,
           .delays = FrameDelays(scenario_.usb, seed_, id),
           .stamp_noise = RandomStream(seed_, "camera/stamp_noise", id),
           .loss = RandomStream(seed_, "camera/loss", id),

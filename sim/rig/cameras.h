@@ -20,14 +20,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "recording/recording.h"
 #include "recording/true_time.h"
 #include "scenarios/scenario.h"
 #include "sim/camera/auto_exposure.h"
 #include "sim/camera/device_clock.h"
 #include "sim/camera/shutter.h"
+#include "sim/camera/steered_sensor.h"
 #include "sim/engine/random.h"
 #include "sim/usb/host_stack.h"
 #include "sim/usb/usb_controller.h"
@@ -48,12 +52,22 @@ struct CameraStream {
   double late_ns;       // delivered later than a camera of the model is (may be negative)
   TrueTime started;
   Shutter shutter;
+  std::unique_ptr<SteeredSensor> sensor;  // in place of the shutter, where no trigger reaches it
   FrameDelays delays;
   RandomStream stamp_noise;
   RandomStream loss;
   RandomStream unsteadiness;
   TrueTime last_arrival = TrueTime::min();
   std::uint32_t counter = 0;  // of the next frame
+
+  bool runs_free() const { return sensor || shutter.mode() == ShutterMode::kFreeRunning; }
+  // When it exposes without a pulse, or looks whether it should.
+  TrueTime next_timer() const { return sensor ? sensor->next_exposure() : shutter.next_timer(); }
+  std::optional<Exposure> on_timer(TrueTime now, Nanoseconds exposure) {
+    if (sensor) return sensor->expose(exposure);
+    shutter.set_exposure(exposure);
+    return shutter.on_timer(now);
+  }
 };
 
 // How long after the capture's start this camera starts.
@@ -65,10 +79,16 @@ Nanoseconds start_delay(const scenarios::Scenario& scenario, std::uint64_t seed,
 std::vector<DeviceClock> device_clocks(const scenarios::Scenario& scenario, std::uint64_t seed,
                                        TrueTime start);
 
+// Whether the world's cameras have steered sensors: the frames can be controlled, and no trigger
+// reaches the cameras.
+bool has_steered_sensors(const scenarios::Scenario& scenario, Steering steering);
+
 class Cameras {
  public:
-  // `scenario` must outlive the cameras.
-  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed);
+  // `scenario` must outlive the cameras. `start`: of the capture, which the oscillators of steered
+  // sensors depend on.
+  Cameras(const scenarios::Scenario& scenario, std::uint64_t seed, TrueTime start = {},
+          Steering steering = Steering::kNone);
   // The exposure time that a camera begins with at `at`.
   Nanoseconds exposure(std::size_t camera, TrueTime at) { return exposures_[camera].at(at); }
 
@@ -81,6 +101,7 @@ class Cameras {
 
  private:
   CameraStream make_stream(const DeviceClock& clock, std::size_t camera, std::size_t which) const;
+  void add_sensors(TrueTime start, Steering steering);
   ShutterSettings shutter_settings(const DeviceClock& clock, std::size_t camera,
                                    const scenarios::Stream& profile) const;
   Nanoseconds first_exposure(std::size_t camera) const;

@@ -9,6 +9,12 @@ namespace {
 
 constexpr std::size_t kAhead = 16;  // frames, for the cache
 
+// A camera's stamp by its host's steady clock, with the noise of its own stamps.
+DeviceStamp host_stamp(const CameraFrame& frame, SteadyTime reading) {
+  const SteadyTime noisy = reading + from_ns_down(frame.stamp_noise_ns);
+  return {static_cast<std::uint32_t>(floor_div(noisy.time_since_epoch().count(), 1000))};
+}
+
 }  // namespace
 
 Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
@@ -23,6 +29,7 @@ Capture::Capture(const scenarios::Scenario& scenario, Engine& engine,
       arrival_quantum_(from_ms(scenario.hosts.clock.arrival_quantum_ms)),
       backend_stamps_(scenario.usb.backend_stamp, arrival_quantum_),
       interfaces_(std::move(interfaces)),
+      stamps_on_host_(scenario.cameras.stamp_clock == scenarios::StampClock::kHost),
       host_errors_(clocks_.size()) {
   interfaces_.resize(clocks_.size(), ClockInterface({}, {}, {}));
 }
@@ -57,7 +64,7 @@ void Capture::start(CameraWorld& world, CameraStamps& stamps, std::function<void
   }
   engine_.call_at(date(world.last_exposure()), [this] { end(); });
   begin_period(0);
-  next_at_ = date(next_in_period());
+  next_at_ = date(next_in_period(TrueTime{}));
 }
 
 void Capture::step_clock(const scenarios::ClockStep& fault) {
@@ -94,12 +101,14 @@ TrueTime Capture::next_poll_at() const {
                                                  : TrueTime::max();
 }
 
-// Goes on to the next period if nothing is left of this one.
-TrueTime Capture::next_in_period() {
+// Goes on to the next period if nothing is left of this one. One of steered cameras is not made
+// before `now`: until then, its begin is what happens next.
+TrueTime Capture::next_in_period(TrueTime now) {
   while (period_ != nullptr) {
     if (period_->pulse && !is_pulse_reported_) return period_->pulse->at;
     const TrueTime next = std::min(next_frame_at(), next_poll_at());
     if (next != TrueTime::max()) return next;
+    if (world_->is_steered() && period_->end > now) return period_->end;
     begin_period(period_number_ + 1);
   }
   return TrueTime::max();
@@ -108,8 +117,8 @@ TrueTime Capture::next_in_period() {
 void Capture::report_through(TrueTime now) {
   next_at_ = TrueTime::max();  // who is reported to may ask again
   const TrueTime until = now - shift_;
-  TrueTime next = next_in_period();
-  for (; next <= until; next = next_in_period()) {
+  TrueTime next = next_in_period(until);
+  for (; next <= until; next = next_in_period(until)) {
     if (period_->pulse && !is_pulse_reported_) {
       is_pulse_reported_ = true;
       report_pulse(*period_->pulse);
@@ -189,12 +198,14 @@ void Capture::stamp(const CameraFrame& frame, const FrameStamps& stamps) {
   const SystemClock::Reading arrival = clock.read_both(at);
   const SystemClock::Reading exposed = clock.read_both(middle);
   const bool is_master = frame.host == 0;
+  const bool on_host = stamps_on_host_;
   records_.push_back({.camera = frame.camera,
                       .stream = frame.kind,
                       .counter = frame.counter,
                       .exposure_us = frame.exposure_us,
-                      .sensor = stamps.sensor,
-                      .frame = stamps.frame,
+                      .sensor = on_host ? host_stamp(frame, exposed.steady) : stamps.sensor,
+                      .frame = on_host ? host_stamp(frame, clock.steady(date(frame.readout_start)))
+                                       : stamps.frame,
                       .backend = backend_stamps_.stamp(clock, steady_starts_[frame.host],
                                                        date(frame.copied), arrival),
                       .arrival = round_down(arrival.system, arrival_quantum_),

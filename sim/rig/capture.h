@@ -76,7 +76,7 @@ class Capture {
   void begin_period(std::size_t number);
   TrueTime next_frame_at() const;
   TrueTime next_poll_at() const;
-  TrueTime next_in_period();
+  TrueTime next_in_period(TrueTime now);
   // The instant of what happens in the world `since_start`.
   TrueTime date(TrueTime since_start) const { return since_start + shift_; }
   void report_through(TrueTime now);
@@ -100,6 +100,7 @@ class Capture {
   Nanoseconds arrival_quantum_;
   BackendStamps backend_stamps_;
   std::vector<ClockInterface> interfaces_;
+  bool stamps_on_host_;
   std::vector<SteadyTime> steady_starts_;  // what the hosts' steady clocks read at the start
   std::vector<Nanoseconds> host_errors_;
   std::function<void()> on_end_;

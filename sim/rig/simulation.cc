@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
 #include "recording/forwarding_sink.h"
 #include "scenarios/frequency_limit.h"
@@ -42,6 +43,10 @@ class AfterCapture final : public ForwardingSink {
     catch_up();
     ForwardingSink::on_outcome(outcome);
   }
+  void on_alignment(const AlignmentReport& report) override {
+    catch_up();
+    ForwardingSink::on_alignment(report);
+  }
 
  private:
   void catch_up() {
@@ -65,6 +70,13 @@ class SharedCameras {
       world_ = std::make_unique<CameraWorld>(scenario_, seed, start, limits_);
     }
     return *world_;
+  }
+
+  // A half of its own, for one run whose cameras are steered.
+  std::unique_ptr<CameraWorld> make_steered(std::uint64_t seed, TrueTime start,
+                                            Steering steering) const {
+    return std::make_unique<CameraWorld>(scenario_, seed, start, limits_, CameraWorld::kKeptBytes,
+                                         steering);
   }
 
   // In the present world.
@@ -102,6 +114,7 @@ class Run {
       const EngineLimits& limits, SharedCameras& cameras, RecordingSink& sink)
       : scenario_(scenario),
         host_sync_(request.host_sync),
+        alignment_(request.capture_alignment),
         pipeline_(request.pipeline),
         start_(TrueTime{} - service_time().value_or(Nanoseconds(0))),
         cancel_(request.cancel),
@@ -126,7 +139,9 @@ class Run {
                  interfaces_of(hosts_)) {
     const auto catch_up = [this] { capture_.catch_up(); };
     after_capture_.follow(capture_);
-    hosts_.frames().connect(catch_up, [this] { expect_frame(); });
+    hosts_.frames().connect(
+        catch_up, [this] { expect_frame(); },
+        [this](std::uint32_t camera, const FrameCommand& command) { steer(camera, command); });
     if (sampling_) hosts_.network().observe(*sampling_);
     if (sampling_ || frame_feeds_.has_traffic()) hosts_.network().before_messages(catch_up);
   }
@@ -199,8 +214,8 @@ class Run {
 
   void start_capture_at(TrueTime at) {
     engine_.call_at(at, [this] {
-      camera_world_ = &cameras_.world(seed_, engine_.now());
-      camera_stamps_ = &cameras_.stamps(engine_.now());
+      make_cameras();
+      capture_start_ = engine_.now();
       trigger_.start(engine_.now());
       const auto on_end = [this] {
         captured_ = true;
@@ -208,8 +223,35 @@ class Run {
       };
       capture_.start(*camera_world_, *camera_stamps_, on_end, cancel_);
       hosts_.on_capture_start(trigger_, evaluated_slots(scenario_).last);
+      if (alignment_ != nullptr) synchronisation_.start(*alignment_);
       if (frame_feeds_.is_awaited()) expect_frame();
     });
+  }
+
+  // Cameras that are steered are of this run alone.
+  void make_cameras() {
+    const TrueTime now = engine_.now();
+    if (steering() == Steering::kNone) {
+      camera_world_ = &cameras_.world(seed_, now);
+      camera_stamps_ = &cameras_.stamps(now);
+      return;
+    }
+    steered_world_ = cameras_.make_steered(seed_, now, steering());
+    camera_world_ = steered_world_.get();
+    steered_stamps_ = std::make_unique<CameraStamps>(scenario_, *steered_world_, now);
+    camera_stamps_ = steered_stamps_.get();
+  }
+
+  Steering steering() const {
+    return alignment_ != nullptr ? alignment_->steering() : Steering::kNone;
+  }
+
+  void steer(std::uint32_t camera, const FrameCommand& command) {
+    if (camera_world_ == nullptr) return;  // not started yet
+    capture_.catch_up();
+    FrameCommand since_start = command;
+    since_start.at -= capture_start_.time_since_epoch();
+    camera_world_->steer(camera, since_start, engine_.now() - capture_start_.time_since_epoch());
   }
 
   // While a program waits for a frame, each delivery is an event.
@@ -231,6 +273,7 @@ class Run {
 
   const scenarios::Scenario& scenario_;
   HostSync* host_sync_;
+  CaptureAlignment* alignment_;
   std::string pipeline_;
   TrueTime start_;
   const std::atomic<bool>* cancel_;
@@ -239,6 +282,9 @@ class Run {
   SharedCameras& cameras_;
   CameraWorld* camera_world_ = nullptr;  // from the capture's start on
   CameraStamps* camera_stamps_ = nullptr;
+  std::unique_ptr<CameraWorld> steered_world_;  // these of steered cameras
+  std::unique_ptr<CameraStamps> steered_stamps_;
+  TrueTime capture_start_{};
   TriggerTree trigger_;  // for the hosts; its cables to cameras are the other half's
   std::unique_ptr<VirtualContext> context_;
   AfterCapture after_capture_;

@@ -1,4 +1,5 @@
-// The host synchronisation of a world under way: the coroutines of the master and of all slaves.
+// The host synchronisation of a world under way: the coroutines of the master and of all slaves;
+// and those of the capture alignment.
 //
 //   SynchronisationRun synchronisation(hosts, context);
 //   synchronisation.start(host_sync, [&] { start_capture(); });
@@ -19,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/ports/capture_alignment.h"
 #include "algorithms/ports/host_sync.h"
 #include "clocks/disciplined_clock.h"
 #include "scenarios/loader.h"
@@ -70,6 +72,18 @@ class SynchronisationRun {
                             ended(0, failure);
                             if (!failure) on_end_();
                           });
+  }
+
+  // The coroutines of a capture alignment, on all hosts, from now on.
+  void start(CaptureAlignment& alignment) {
+    std::vector<PeerId> slaves;
+    for (PeerId host = 1; host < hosts_.size(); ++host) slaves.push_back(host);
+    for (PeerId host = 0; host < hosts_.size(); ++host) {
+      Host& of = hosts_.host(host);
+      boost::asio::co_spawn(
+          context_, host == 0 ? alignment.run_master(of, slaves) : alignment.run_slave(of, 0),
+          [this, host](const std::exception_ptr& failure) { ended(host, failure); });
+    }
   }
 
   // Throws what a coroutine has thrown; for an adjustment that a clock refuses an InputError, which

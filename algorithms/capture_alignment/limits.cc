@@ -1,0 +1,45 @@
+// The limits of capture_alignment: cameras that nobody steers, and cameras that need no steering.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "algorithms/registry.h"
+
+namespace simbench {
+namespace {
+
+// Sends nothing.
+class Unaligned final : public CaptureAlignment {
+ public:
+  explicit Unaligned(Steering steering) : steering_(steering) {}
+  Steering steering() const override { return steering_; }
+  Task<void> run_master(Host& /*host*/, std::vector<PeerId> /*slaves*/) override { co_return; }
+  Task<void> run_slave(Host& /*host*/, PeerId /*master*/) override { co_return; }
+
+ private:
+  Steering steering_;
+};
+
+CaptureAlignmentEntry limit(const char* name, const char* summary, Steering steering,
+                            std::vector<Need> needs) {
+  CaptureAlignmentEntry entry;
+  entry.info.name = name;
+  entry.info.family = "limits";
+  entry.info.summary = summary;
+  entry.info.source = "a definition";
+  entry.info.needs = std::move(needs);
+  entry.make = [steering](const Parameters&) { return std::make_unique<Unaligned>(steering); };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<CaptureAlignmentEntry> capture_alignment_limits() {
+  return {limit("free_run", "nobody steers: each camera runs by its own oscillator",
+                Steering::kByControls, {Need::kFrameControl}),
+          limit("oracle", "all cameras expose at once, each to its nearest granule",
+                Steering::kIdeal, {Need::kFrameControl, Need::kTruth})};
+}
+
+}  // namespace simbench
