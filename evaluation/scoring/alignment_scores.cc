@@ -46,8 +46,8 @@ void by_second(const Items& items, SecondOf second_of, Use use) {
 }  // namespace
 
 AlignmentScores::AlignmentScores(const RigLayout& layout, Nanoseconds unsteady_start)
-    : unsteady_start_ns_(unsteady_start.count()),
-      period_ns_(1e9 / layout.frame_rate_hz),
+    : period_ns_(1e9 / layout.frame_rate_hz),
+      unsteady_ns_(unsteady_start > Nanoseconds(0) ? to_ns(unsteady_start) + period_ns_ : 0),
       first_pulse_(layout.first_pulse),
       end_pulse_(std::min<std::int64_t>(layout.first_pulse + layout.pulses,
                                         std::numeric_limits<std::int32_t>::max())),
@@ -146,7 +146,7 @@ void AlignmentScores::add_aligned(const std::vector<Pulse>& complete,
 std::optional<std::int64_t> AlignmentScores::disturbed_frames(
     const std::vector<Frame>& frames) const {
   const auto steady = std::ranges::find_if(frames, [&](const Frame& frame) {
-    return frame.mid_ns - frames.front().mid_ns >= unsteady_start_ns_;
+    return static_cast<double>(frame.mid_ns - frames.front().mid_ns) >= unsteady_ns_;
   });
   std::vector<double> lengths_ns;
   std::vector<double> exposures_ns;

@@ -95,8 +95,8 @@ class AlignmentScores {
   void add_aligned(const std::vector<Pulse>& complete, MetricValues<double>& score) const;
   void add_distances(MetricValues<double>& score) const;
 
-  std::int64_t unsteady_start_ns_;
   double period_ns_;
+  double unsteady_ns_;  // a frame more than stated: the first may itself be early
   std::int64_t first_pulse_;
   std::int64_t end_pulse_;
   std::int64_t start_ns_;  // of the first exposure

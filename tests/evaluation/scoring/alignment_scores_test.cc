@@ -148,7 +148,7 @@ TEST(AlignmentScores, TheUnsteadyStartDoesNotCount) {
   EXPECT_DOUBLE_EQ(capture.scored().disturbed_frames, 50.0 / 3);
   capture.unsteady_start = from_ms(1000);
   EXPECT_EQ(capture.scored().disturbed_frames, 0);
-  capture.unsteady_start = from_ms(980);
+  capture.unsteady_start = from_ms(960);  // and a frame more
   EXPECT_DOUBLE_EQ(capture.scored().disturbed_frames, 1.0 / 3);
 }
 
