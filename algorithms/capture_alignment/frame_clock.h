@@ -4,14 +4,17 @@
 // that steer the camera while it runs, so it uses the past only:
 //
 //   camera stamps with the host's steady clock   the stamp
-//   camera stamps with a clock of its own        the switching hull (hull.h) of the arrivals, on
+//   the host reads the camera's own clock        the two-way hulls of these readings
+//                                                (poll_estimators.h), on the host's steady clock
+//   neither                                      the switching hull (hull.h) of the arrivals, on
 //                                                the host's steady clock
 //
 // and the steady time becomes system time by the frame's own arrival, which was read on both
 // clocks. So a step or a slew of the system clock does not spoil the fit, and the next frame's
 // stamp is by the clock as it was set.
 //
-// A stamp by the hull is late by the least time from the middle of an exposure to its arrival. That
+// A stamp by readings is off by half of what a request takes longer than its reply, one by arrivals
+// is late by the least time from the middle of an exposure to its arrival. That
 // is a constant of the camera model and is not taken off here: it is the same for all cameras of
 // one model, so it moves them all alike. The first frames have little to fit; their error falls
 // with the number of frames (hull.h).
@@ -50,7 +53,9 @@ class FrameClock {
   SteadyTime estimated(const FrameArrival& frame);
 
   DeviceStampUnwrapper unwrapper_;
-  std::unique_ptr<DeviceTimeEstimator> estimator_;
+  std::unique_ptr<DeviceTimeEstimator> by_arrivals_;
+  std::unique_ptr<DeviceTimeEstimator> by_readings_;
+  std::uint32_t readings_ = 0;
 };
 
 }  // namespace simbench
