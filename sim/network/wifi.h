@@ -50,7 +50,7 @@
 // transmission, three with a wait; memory for the hosts and the messages under way.
 //
 //   WifiCell cell(engine, wifi, seed, hosts, [](std::uint32_t ticket, bool is_lost) {});
-//   cell.send({.ticket = 7, .station = 3, .is_up = true, .bytes = 100}, draw);
+//   cell.send({.ticket = 7, .station = 3, .is_up = true, .bytes = 100}, stream);
 #ifndef SIMBENCH_SIM_NETWORK_WIFI_H_
 #define SIMBENCH_SIM_NETWORK_WIFI_H_
 
