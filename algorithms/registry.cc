@@ -21,7 +21,9 @@
   FILE(ntp)                      \
   FILE(w32time)                  \
   FILE(chrony)
-#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) FILE(limits)
+#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
+  FILE(limits)                           \
+  FILE(periodic_ptp)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
   FILE(hull)                       \
