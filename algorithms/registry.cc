@@ -23,6 +23,7 @@
   FILE(chrony)
 #define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
   FILE(limits)                           \
+  FILE(libsoftwaresync)                  \
   FILE(periodic_ptp)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
