@@ -23,6 +23,8 @@
   FILE(chrony)
 #define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
   FILE(limits)                           \
+  FILE(libsoftwaresync)                  \
+  FILE(periodic_ptp)                     \
   FILE(phase_rate)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
