@@ -45,9 +45,7 @@ std::optional<Budget> affordable_budget(const Results& results, const Scenario& 
 }  // namespace
 
 evaluation::RankedBy ranked_by(const Scenario& scenario) {
-  return scenario.evaluation.table == scenarios::TableKind::kLeaderboard
-             ? evaluation::RankedBy::kAbsoluteError
-             : evaluation::RankedBy::kAmd;
+  return evaluation::ranked_by(scenario.evaluation.table);
 }
 
 reports::AnswerText run_answer(const Results& results, const Scenario& scenario,
