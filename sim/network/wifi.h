@@ -49,7 +49,7 @@
 // (dynamic_ps_timeout, ieee80211_get_buffered_bc); scenario /network/wifi. Cost: two events a
 // transmission, three with a wait; memory for the hosts and the messages under way.
 //
-//   WifiCell cell(engine, wifi, seed, hosts, [](std::uint32_t ticket, bool is_lost) {});
+//   WifiCell cell(engine, wifi, seed, host_count, [](std::uint32_t ticket, bool is_lost) {});
 //   cell.send({.ticket = 7, .station = 3, .is_up = true, .bytes = 100}, stream);
 #ifndef SIMBENCH_SIM_NETWORK_WIFI_H_
 #define SIMBENCH_SIM_NETWORK_WIFI_H_
