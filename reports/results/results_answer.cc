@@ -38,7 +38,8 @@ constexpr std::array<const char*, kStageCount> kIdeals = {"pulses on time",
                                                           "perfect camera clocks",
                                                           "frames that arrive without delay",
                                                           "perfect host clocks",
-                                                          "gathering by the true pulse"};
+                                                          "gathering by the true pulse",
+                                                          "frames of any length"};
 
 // "a, b and 7 more".
 std::string some_of(const std::vector<const Row*>& rows) {
@@ -103,14 +104,17 @@ std::string budget_sentences(const Answer& answer, const Budget& budget) {
     const double share = parts.stages[stage].mean / total;
     if (share < kSmallShare) break;
     shares += fmt::format("{}{} {:.0f} %", shares.empty() ? "" : ", ",
-                          evaluation::kStageNames[stage], 100 * share);
+                          evaluation::stage_name(budget, static_cast<evaluation::Stage>(stage)),
+                          100 * share);
   }
   std::string text = fmt::format("What limits it (error budget over {}): {}.",
                                  counted(parts.total.values.size(), "seed"), shares);
   const auto most = std::ranges::max_element(parts.alone, {}, &evaluation::BudgetPart::mean);
   if (most->mean < kWorthWinning * total) return text;
   const auto stage = static_cast<std::size_t>(most - parts.alone.begin());
-  return text + fmt::format(" Most would be won by {}: {:.0f} % of it.", kIdeals[stage],
+  const bool is_phase = stage == 0 && budget.is_steered;
+  return text + fmt::format(" Most would be won by {}: {:.0f} % of it.",
+                            is_phase ? "perfect phases" : kIdeals[stage],
                             100 * std::min(most->mean / total, 1.0));
 }
 
