@@ -99,6 +99,7 @@ const char* lacking(Need need) {
     case Need::kTruth:
       return "the truth";
     case Need::kPolls:
+    case Need::kHostStamps:
     case Need::kFrames:
       break;
   }
