@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tests/algorithms/device_time/registered.h"
 #include "tests/algorithms/device_time/streams.h"
@@ -74,6 +75,12 @@ TEST(HostStamps, TheSteadyVariantMapsAFrameFromBeforeAStep) {
   DeviceSample sample = host_sample(1'000'000'000, 30'000'000, 0);
   sample.arrival = HostTime(Nanoseconds(kHostZeroNs) + from_ms(1530));
   EXPECT_EQ(nanoseconds_of(estimator->stamp(sample)), kHostZeroNs + 1'000'000'000);
+}
+
+TEST(HostStamps, NeedCamerasThatStampWithTheirHostsClock) {
+  const DeviceTimeEntry* entry = find_device_time("host_stamps");
+  ASSERT_NE(entry, nullptr);
+  EXPECT_EQ(entry->info.needs, std::vector<Need>{Need::kHostStamps});
 }
 
 TEST(HostStamps, AnyReadingIsWithinHalfAWrapAndNothingOverflows) {
