@@ -31,7 +31,8 @@
   FILE(hull)                       \
   FILE(two_way_poll)               \
   FILE(offset_filters)             \
-  FILE(librealsense_global)
+  FILE(librealsense_global)        \
+  FILE(host_stamps)
 #define SIMBENCH_GATHERING(FILE) \
   FILE(yoon2021)                 \
   FILE(genlock)                  \

@@ -14,6 +14,7 @@
 #include "scenarios/camera_profile.h"
 #include "scenarios/document.h"
 #include "scenarios/fields.h"
+#include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
 #include "scenarios/wifi_checks.h"
@@ -587,6 +588,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_shutters(scenario);
   check_calibrations(scenario);
   check_auto_exposure(scenario);
+  check_frame_control(scenario);
   check_faults(scenario, document);
   check_pipelines(scenario);
   check_studio(scenario);

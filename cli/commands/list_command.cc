@@ -190,6 +190,18 @@ std::string latency_text(const scenarios::CameraProfile& camera) {
       kListIndent);
 }
 
+std::string frame_control_text(const scenarios::FrameControlProfile& control) {
+  std::vector<std::string_view> offered;
+  if (control.adjust_frame) offered.emplace_back("adjust_frame");
+  if (control.insert_frame) offered.emplace_back("insert_frame");
+  if (control.frame_length) offered.emplace_back("frame_length");
+  if (control.start_at) offered.emplace_back("start_at");
+  if (offered.empty()) offered.emplace_back("none");
+  return reports::wrapped(
+      fmt::format("controls of its frames: {} [{}]", fmt::join(offered, ", "), control.source),
+      kListIndent);
+}
+
 // The profiles of all camera models, with their sources.
 std::string camera_list_text() {
   std::string text;
@@ -200,6 +212,7 @@ std::string camera_list_text() {
     text += sync_text(camera);
     for (const scenarios::StampProfile& stamp : camera.stamps) text += stamp_text(stamp);
     text += latency_text(camera);
+    if (camera.frame_control) text += frame_control_text(*camera.frame_control);
   }
   return text;
 }

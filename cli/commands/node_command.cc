@@ -96,11 +96,14 @@ const char* lacking(Need need) {
       return "a GNSS receiver's pulses";
     case Need::kTriggerLine:
       return "the trigger line wired into the host";
+    case Need::kFrameControl:
+      return "cameras whose frames can be controlled";
     case Need::kTruth:
       return "the truth";
     case Need::kFrameControl:
       return "cameras whose frames can be controlled";
     case Need::kPolls:
+    case Need::kHostStamps:
     case Need::kFrames:
       break;
   }
