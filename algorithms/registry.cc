@@ -24,6 +24,7 @@
 #define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
   FILE(limits)                           \
   FILE(libsoftwaresync)                  \
+  FILE(rpi_sync)                         \
   FILE(periodic_ptp)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
