@@ -25,7 +25,9 @@
   FILE(limits)                           \
   FILE(libsoftwaresync)                  \
   FILE(rpi_sync)                         \
-  FILE(periodic_ptp)
+  FILE(scheduled_action)                 \
+  FILE(periodic_ptp)                     \
+  FILE(pid_frame_rate)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
   FILE(hull)                       \

@@ -42,8 +42,9 @@ TEST(RpiSyncTest, TheWholeErrorIsTakenOffOneFrameAtThe30th) {
   EXPECT_EQ(early[0].value, from_ms(10));
 }
 
-// A client whose newest frame is 22 ms older than the packet's: the code's integer is 0, not -1, and
-// so the frame is 22 ms longer instead of 8 ms shorter. Then it is a period older, at each packet.
+// A client whose newest frame is 22 ms older than the packet's: the code's integer is 0, not -1,
+// and so the frame is 22 ms longer instead of 8 ms shorter. Then it is a period older, at each
+// packet.
 TEST(RpiSyncTest, TheQuotientIsCutTowardsZero) {
   const std::vector<FakeControl> controls = controls_of_client(from_ms(8), from_ms(40));
   ASSERT_EQ(controls.size(), 4u);
