@@ -177,8 +177,8 @@ void warn_about_temperature(Lines& lines, const Scenario& scenario) {
 void warn_about_idle_hosts(Lines& lines, const Scenario& scenario) {
   const std::vector<std::size_t> counts = scenario.cameras_by_host();
   const bool is_master_left_out = scenario.cameras.stamp_clock == StampClock::kHost;
-  const std::int64_t idle = std::count(counts.begin() + (is_master_left_out ? 1 : 0),
-                                       counts.end(), 0U);
+  const std::int64_t idle =
+      std::count(counts.begin() + (is_master_left_out ? 1 : 0), counts.end(), 0U);
   if (idle == 0) return;
   warn(lines, scenario, "/hosts/count",
        fmt::format("{} of {} hosts have no camera", idle, scenario.hosts.count));
