@@ -21,7 +21,11 @@
   FILE(ntp)                      \
   FILE(w32time)                  \
   FILE(chrony)
-#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) FILE(limits)
+#define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
+  FILE(limits)                           \
+  FILE(libsoftwaresync)                  \
+  FILE(periodic_ptp)                     \
+  FILE(phase_rate)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \
   FILE(hull)                       \

@@ -17,6 +17,7 @@ struct Notifier {
     sink.on_exchange(exchange.host, exchange.exchange);
   }
   void operator()(const SyncOutcome& outcome) const { sink.on_outcome(outcome); }
+  void operator()(const AlignmentReport& report) const { sink.on_alignment(report); }
 };
 
 }  // namespace
@@ -49,6 +50,8 @@ void KeptRecording::on_exchange(std::uint32_t host, const Exchange& exchange) {
 }
 
 void KeptRecording::on_outcome(const SyncOutcome& outcome) { events_.emplace_back(outcome); }
+
+void KeptRecording::on_alignment(const AlignmentReport& report) { events_.emplace_back(report); }
 
 void KeptRecording::play(RecordingSink& sink) const {
   sink.on_start(layout_);

@@ -38,8 +38,8 @@ struct ExchangeEvent {
   Exchange exchange;
 };
 
-using RecordingEvent =
-    std::variant<FrameEvent, PulseEvent, ClockAdjustment, DevicePoll, ExchangeEvent, SyncOutcome>;
+using RecordingEvent = std::variant<FrameEvent, PulseEvent, ClockAdjustment, DevicePoll,
+                                    ExchangeEvent, SyncOutcome, AlignmentReport>;
 
 // Calls the member of `sink` for this event.
 void notify(const RecordingEvent& event, RecordingSink& sink);
@@ -57,6 +57,7 @@ class KeptRecording final : public RecordingSink {
   void on_poll(const DevicePoll& poll) override;
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
+  void on_alignment(const AlignmentReport& report) override;
 
   // The same calls with the same values in the same order, on_start first.
   void play(RecordingSink& sink) const;

@@ -55,6 +55,14 @@ std::optional<HostTime> read_optional(FieldReader& fields, const char* name) {
   return HostTime(Nanoseconds(*ns));
 }
 
+void append_flag(std::string& line, bool flag) { line += flag ? ",true" : ",false"; }
+
+bool read_flag(FieldReader& fields, const char* name) {
+  const std::string_view flag = fields.next(name);
+  if (flag != "true" && flag != "false") fields.fail(name, "true, false");
+  return flag == "true";
+}
+
 struct Appender {
   std::string& line;
 
@@ -91,10 +99,18 @@ struct Appender {
   void operator()(const SyncOutcome& outcome) const {
     line += "outcome";
     append_field(line, outcome.slave);
-    line += outcome.synchronised ? ",true" : ",false";
+    append_flag(line, outcome.synchronised);
     append_field(line, outcome.passes);
     line += ',';
     append_escaped(line, outcome.message);
+  }
+  void operator()(const AlignmentReport& report) const {
+    line += "alignment";
+    append_field(line, report.camera);
+    append_flag(line, report.aligned);
+    append_field(line, report.controls);
+    line += ',';
+    append_escaped(line, report.message);
   }
 };
 
@@ -153,14 +169,17 @@ ExchangeEvent read_exchange(FieldReader& fields) {
 SyncOutcome read_outcome(FieldReader& fields) {
   SyncOutcome outcome;
   outcome.slave = fields.whole<PeerId>("slave");
-  const std::string_view synchronised = fields.next("synchronised");
-  outcome.synchronised = synchronised == "true";
-  if (!outcome.synchronised && synchronised != "false") {
-    fields.fail("synchronised", "true, false");
-  }
+  outcome.synchronised = read_flag(fields, "synchronised");
   outcome.passes = fields.whole<std::uint32_t>("passes");
   outcome.message = fields.text("message");
   return outcome;
+}
+
+AlignmentReport read_alignment(FieldReader& fields) {
+  return {.camera = fields.whole<std::uint32_t>("camera"),
+          .aligned = read_flag(fields, "aligned"),
+          .controls = fields.whole<std::uint32_t>("controls"),
+          .message = fields.text("message")};
 }
 
 RecordingEvent read_members(std::string_view kind, FieldReader& fields) {
@@ -170,7 +189,8 @@ RecordingEvent read_members(std::string_view kind, FieldReader& fields) {
   if (kind == "poll") return read_poll(fields);
   if (kind == "exchange") return read_exchange(fields);
   if (kind == "outcome") return read_outcome(fields);
-  fields.fail("kind", "frame, pulse, adjustment, poll, exchange, outcome");
+  if (kind == "alignment") return read_alignment(fields);
+  fields.fail("kind", "frame, pulse, adjustment, poll, exchange, outcome, alignment");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 //   poll,camera,device_us,t0_ns,t1_ns,t0_steady_ns,t1_steady_ns
 //   exchange,host,peer,t1_ns,t2_ns,t3_ns,t4_ns
 //   outcome,slave,synchronised,passes,message
+//   alignment,camera,aligned,controls,message
 //
 // Errors: from_line throws EventTextError, with the column and what was found, for whatever to_line
 // does not write. Any bytes are safe to give to it. Complexity: linear in the line.

@@ -48,6 +48,7 @@ struct NumbersCheck {
     host("peer", event.exchange.peer);
   }
   void operator()(const SyncOutcome& event) const { host("slave", event.slave); }
+  void operator()(const AlignmentReport& event) const { camera(event.camera); }
 
   static void check(const char* name, std::size_t number, std::size_t count) {
     if (number < count) return;
@@ -431,6 +432,7 @@ class RecordingWriter::State final : public RecordingSink {
     add(ExchangeEvent{host, exchange});
   }
   void on_outcome(const SyncOutcome& outcome) override { add(outcome); }
+  void on_alignment(const AlignmentReport& report) override { add(report); }
 
  private:
   void add(const RecordingEvent& event) {

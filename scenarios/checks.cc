@@ -17,6 +17,7 @@
 #include "scenarios/frame_control_checks.h"
 #include "scenarios/loader.h"
 #include "scenarios/schema.h"
+#include "scenarios/wifi_checks.h"
 
 namespace simbench::scenarios {
 namespace {
@@ -580,6 +581,7 @@ void check(const Scenario& scenario, const nlohmann::json& document) {
   check_tables(scenario);
   check_links(scenario);
   check_switches(scenario);
+  check_wifi(scenario);
   check_stack(scenario);
   check_streams(scenario);
   check_rates(scenario);

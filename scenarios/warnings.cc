@@ -147,6 +147,13 @@ void warn_about_wires(Lines& lines, const Scenario& scenario) {
                    sigma_ms, least_ms));
 }
 
+void warn_about_wifi(Lines& lines, const Scenario& scenario) {
+  if (!scenario.network.wifi || !scenario.hosts.nic.hardware_stamps) return;
+  warn(lines, scenario, "/network/wifi",
+       "a card's transmit stamp is of the instant at which it has the message, not of its "
+       "transmission: hardware stamps see the wait for the channel as asymmetry");
+}
+
 // Controls that the scenario gives to a camera whose maker does not offer them.
 void warn_about_controls(Lines& lines, const Scenario& scenario) {
   const CameraProfile& camera = *find_camera_profile(scenario.cameras.model);
@@ -261,6 +268,7 @@ std::vector<std::string> warnings(const Scenario& scenario) {
   warn_about_idle_hosts(lines, scenario);
   warn_about_controls(lines, scenario);
   warn_about_wires(lines, scenario);
+  warn_about_wifi(lines, scenario);
   warn_about_temperature(lines, scenario);
   warn_about_oscillators(lines, scenario);
   warn_about_studio(lines, scenario);

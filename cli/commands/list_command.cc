@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ namespace simbench::cli {
 namespace {
 
 using reports::Align;
+using reports::Field;
 using reports::Table;
 
 constexpr const char* kListExamples = R"(
@@ -122,14 +124,22 @@ std::string details_text(const char* stage, const Entries& entries) {
 }
 
 std::string pipelines_text(const std::string& scenario) {
-  Table table({{"pipeline", Align::kLeft},
-               {"host_sync", Align::kLeft},
-               {"device_time", Align::kLeft},
-               {"gathering", Align::kLeft}});
-  for (const auto& pipeline : scenarios::load_scenario(scenario).pipelines) {
-    table.add({pipeline.name, pipeline.host_sync, pipeline.device_time, pipeline.gathering});
+  const std::vector<scenarios::Pipeline> pipelines = scenarios::load_scenario(scenario).pipelines;
+  const bool is_steered = std::ranges::any_of(
+      pipelines, [](const auto& pipeline) { return !pipeline.capture_alignment.empty(); });
+  std::vector<Field<scenarios::Pipeline>> fields = {
+      {{"pipeline", Align::kLeft}, [](const auto& pipeline) { return pipeline.name; }},
+      {{"host_sync", Align::kLeft}, [](const auto& pipeline) { return pipeline.host_sync; }},
+      {{"device_time", Align::kLeft}, [](const auto& pipeline) { return pipeline.device_time; }},
+      {{"gathering", Align::kLeft}, [](const auto& pipeline) { return pipeline.gathering; }}};
+  if (is_steered) {
+    fields.insert(fields.begin() + 2,
+                  {{"capture_alignment", Align::kLeft}, [](const auto& pipeline) {
+                     const std::string& name = pipeline.capture_alignment;
+                     return name.empty() ? std::string("-") : name;
+                   }});
   }
-  return plain(table);
+  return plain(reports::table_of(fields, pipelines));
 }
 
 constexpr std::size_t kListIndent = 2;

@@ -19,7 +19,7 @@ constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
     {"error", "absolute_error"}, {"recall", "seed_recall"}, {"precision", "seed_precision"}};
 
 std::string without_unit(std::string_view id) {
-  for (const std::string_view unit : {"_per_s", "_ms", "_s"}) {
+  for (const std::string_view unit : {"_per_s", "_ms", "_s", "_ppm"}) {
     if (id.ends_with(unit)) return std::string(id.substr(0, id.size() - unit.size()));
   }
   return std::string(id);
@@ -48,12 +48,18 @@ double factor_of(const Metric& metric, const std::string& unit, const std::strin
   const std::map<std::string, double> times = {{"s", 1e3}, {"ms", 1}, {"us", 1e-3}, {"ns", 1e-6}};
   const std::map<std::string, double> shares = {{"%", 0.01}, {"", 1}};
   const std::map<std::string, double> plain = {{"", 1}};
-  const bool is_time = std::string_view(metric.unit) == "ms";
-  const auto& units = is_time ? times : metric.is_share() ? shares : plain;
-  if (const auto found = units.find(unit); found != units.end()) return found->second;
+  const std::map<std::string, double> rates = {{"ppm", 1}};
+  const std::string_view of_metric = metric.unit;
+  const bool is_time = of_metric == "ms" || of_metric == "s";
+  const bool is_rate = of_metric == "ppm";
+  const auto& units = is_time ? times : metric.is_share() ? shares : is_rate ? rates : plain;
+  if (const auto found = units.find(unit); found != units.end()) {
+    return of_metric == "s" ? found->second / times.at("s") : found->second;
+  }
   refuse(text, fmt::format("{} with {}", metric.title,
                            is_time             ? "the unit s, ms, us or ns"
                            : metric.is_share() ? "% or as a share without unit"
+                           : is_rate           ? "the unit ppm"
                                                : "no unit"));
 }
 

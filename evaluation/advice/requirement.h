@@ -2,8 +2,9 @@
 //
 // The metric is one with a value for each seed (evaluation/scoring/metrics.h), by its id or without
 // the unit at its end; "error" is absolute_error_ms, "recall" and "precision" those of a seed. A
-// bound has a unit: s, ms, us or ns of times, % or none of shares, none of others. Metrics with a
-// sign (bias) are bounded by their size. A metric that no direction improves takes either bound.
+// bound has a unit: s, ms, us or ns of times, % or none of shares, ppm of drifts, none of others.
+// Metrics with a sign (bias) are bounded by their size. A metric that no direction improves takes
+// either bound.
 //
 // Refused are bounds that say nothing ("recall>0") and those that nothing can meet ("amd<0",
 // "recall>100%").

@@ -46,7 +46,8 @@ void sort_by_recall(std::vector<Rank>& ranks) {
 bool differ_in_gathering_alone(const std::vector<Rank>& ranks) {
   const Row& first = *ranks.front().row;
   const auto same_stamps = [&first](const Rank& rank) {
-    return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time;
+    return rank.row->host_sync == first.host_sync && rank.row->device_time == first.device_time &&
+           rank.row->capture_alignment == first.capture_alignment;
   };
   const auto other_gathering = [&first](const Rank& rank) {
     return rank.row->gathering != first.gathering;

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "algorithms/ports/assert.h"
+#include "evaluation/scoring/alignment_metrics.h"
 #include "evaluation/scoring/clock_metrics.h"
 #include "evaluation/scoring/results.h"
 #include "evaluation/statistics/statistics.h"
@@ -13,7 +14,11 @@ namespace simbench::evaluation {
 namespace {
 
 std::vector<Metric>& registered(ResultKind kind) {
-  static std::vector<Metric> captures(std::begin(kMetricTable), std::end(kMetricTable));
+  static std::vector<Metric> captures = [] {
+    std::vector<Metric> all(std::begin(kMetricTable), std::end(kMetricTable));
+    all.insert(all.end(), std::begin(kAlignmentMetricTable), std::end(kAlignmentMetricTable));
+    return all;
+  }();
   static std::vector<Metric> clocks(std::begin(kClockMetricTable), std::end(kClockMetricTable));
   return kind == ResultKind::kCaptures ? captures : clocks;
 }
@@ -85,6 +90,16 @@ std::vector<const Metric*> judged_metrics(ResultKind kind) {
   for (const Metric& each : metrics(kind)) {
     if (each.judged) judged.push_back(&each);
   }
+  return judged;
+}
+
+std::vector<const Metric*> judged_metrics(ResultKind kind, std::span<const Row* const> rows) {
+  std::vector<const Metric*> judged = judged_metrics(kind);
+  std::erase_if(judged, [rows](const Metric* each) {
+    return each->is_new && std::ranges::none_of(rows, [each](const Row* row) {
+             return count_of_existing(each->series(*row).values) > 0;
+           });
+  });
   return judged;
 }
 

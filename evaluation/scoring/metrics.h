@@ -3,9 +3,9 @@
 // There is a list for each kind of result, captures of cameras and runs of the hosts' clocks alone,
 // and there are no others: rows, sweeps, comparisons, gates, baselines, JSON, CSV, the archive
 // reader, tables and figures go through metrics(). A new metric is a member of MetricValues and an
-// entry of kMetricTable (both here) or of kClockMetricTable (clock_metrics.h), the line that
-// computes it (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md
-// section 8.
+// entry of kMetricTable (both here), kAlignmentMetricTable (alignment_metrics.h; captures whose
+// exposures are steered) or kClockMetricTable (clock_metrics.h), the line that computes it
+// (pulse_scores.cc, set_counter.cc, ...), and its tests. Definitions: docs/design.md section 8.
 //
 // A metric has one of three forms: a value for each seed, of which a row has the median and the
 // 5-95 % band (a Series); a number over all seeds together; a count, summed over the seeds.
@@ -69,6 +69,15 @@ struct MetricValues {
   Value dynamic_te_ms = no_value<Value>();   // largest range (peak to peak) of any host's TE
   // Messages that all hosts sent, the lost ones too, over the time of the whole run.
   Value packets_per_s = no_value<Value>();
+  // Of captures only whose exposures are steered (alignment_scores.h).
+  Value exposure_spread_median_ms = no_value<Value>();
+  Value exposure_spread_p95_ms = no_value<Value>();
+  Value aligned_1_ms_s = no_value<Value>();  // after this time the spread stays below 1 ms
+  Value aligned_0_1_ms_s = no_value<Value>();
+  Value aligned_0_01_ms_s = no_value<Value>();
+  Value disturbed_frames = no_value<Value>();    // a camera
+  Value exposure_drift_ppm = no_value<Value>();  // of the worst camera
+  Value wrong_locks = no_value<Value>();         // cameras
   // Of clock runs only (evaluation/clock_run/clock_score.h).
   Value clock_spread_ms = no_value<Value>();  // mean in time: largest minus smallest clock
   Value clock_spread_median_ms = no_value<Value>();
@@ -141,6 +150,7 @@ struct TablePlaces {
   int paper = 0;           // the paper's metrics
   int truth = 0;           // metrics that need true time
   int time_errors = 0;     // the hosts' time errors
+  int alignment = 0;       // exposures that are steered
   int sets = 0;            // gathered sets
   int clocks = 0;          // runs of the hosts' clocks
   int response = 0;        // the table of a sweep
@@ -170,7 +180,7 @@ using Place = std::variant<SeriesPlace, double PooledValues::*, std::int64_t Set
 struct Metric {
   const char* id = "";     // its name in JSON and CSV, with the unit last
   const char* title = "";  // in a sentence
-  const char* unit = "";   // "ms", "s", "1/s", "share", or "" of a count
+  const char* unit = "";   // "ms", "s", "1/s", "ppm", "share", or "" of a count
   Better better = Better::kLower;
   Needs needs = Needs::kNothing;
   Place place;
@@ -233,6 +243,9 @@ const Metric& metric(std::string_view id, ResultKind kind = ResultKind::kCapture
 
 // The metrics with `judged`, in order: those of comparisons and gates.
 std::vector<const Metric*> judged_metrics(ResultKind kind = ResultKind::kCaptures);
+// Those that the rows are judged by: without metrics that archives may lack (is_new) and of which no
+// row has a value.
+std::vector<const Metric*> judged_metrics(ResultKind kind, std::span<const Row* const> rows);
 // The columns of a sweep, in their order: series and numbers, then counts.
 std::vector<const Metric*> sweep_metrics(ResultKind kind = ResultKind::kCaptures);
 // The columns of a table, in their order: table_metrics(&TablePlaces::truth).

@@ -44,6 +44,7 @@ void PipelineScorer::on_start(const RigLayout& layout) {
   table_.emplace(layout.first_pulse, layout.pulses, cameras);
   sets_.emplace(*table_, observer_);
   host_errors_.emplace(layout.hosts);
+  if (setup_.is_steered) alignment_.emplace(layout);
   sources_.assign(cameras, {{}, GenlockOrder(period(), GenlockOrder::Variant::kReanchored)});
   for (std::uint32_t camera = 0; camera < cameras; ++camera) {
     const std::uint32_t host = layout.cameras[camera].host;
@@ -105,6 +106,7 @@ inline PipelineScorer::Place PipelineScorer::place_of(Source& source, const Fram
 
 void PipelineScorer::on_frames(std::span<const FrameRecord> frames,
                                std::span<const FrameTruth> truths) {
+  if (alignment_ && !truths.empty()) note_exposures(frames, truths);
   block_.start(frames.size());
   const FrameTruth* next_truth = truths.data();
   for (const FrameRecord& frame : frames) {
@@ -202,6 +204,13 @@ void PipelineScorer::note_anchor(const FrameRecord& frame) {
   if (anchor_camera_ == frame.camera) anchor_ = frame.arrival;
 }
 
+void PipelineScorer::note_exposures(std::span<const FrameRecord> frames,
+                                    std::span<const FrameTruth> truths) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].stream == setup_.stream) alignment_->add(frames[i], truths[i]);
+  }
+}
+
 GlobalTime PipelineScorer::oracle_stamp(const FrameTruth* truth) {
   if (truth == nullptr) {
     throw RecordingFailed(
@@ -242,6 +251,10 @@ void PipelineScorer::on_outcome(const SyncOutcome& outcome) {
   if (!outcome.synchronised) failures_.push_back(outcome);
 }
 
+void PipelineScorer::on_alignment(const AlignmentReport& report) {
+  if (alignment_) alignment_->add(report);
+}
+
 SeedScore PipelineScorer::finish() {
   SIMBENCH_ASSERT(table_.has_value(), "a capture starts before it ends");
   if (offline_) stamp_offline();
@@ -261,6 +274,7 @@ SeedScore PipelineScorer::finish() {
   score.host_error_ms = host_errors_->mean_absolute_ms();
   host_errors_->time_errors().add_to(score);
   score.host_errors_ms = host_errors_->signed_means_ms();
+  if (alignment_) alignment_->add_to(score);
   score.offline_amd_ms = second_bank_ ? second_amd_ms() : kNan;
   score.genlock_index_errors = genlock_index_errors_;
   score.failures = std::move(failures_);

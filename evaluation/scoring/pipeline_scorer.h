@@ -36,6 +36,7 @@
 #include "algorithms/device_time/unwrap.h"
 #include "algorithms/gathering/gathering.h"
 #include "algorithms/gathering/genlock_order.h"
+#include "evaluation/scoring/alignment_scores.h"
 #include "evaluation/scoring/kept_frames.h"
 #include "evaluation/scoring/pulse_scores.h"
 #include "evaluation/scoring/pulse_spread.h"
@@ -58,6 +59,7 @@ struct ScorerSetup {
   EstimatorFactory make_second_estimator;   // for SeedScore::offline_amd_ms; empty: none
   GathererFactory make_gatherer;
   bool gatherer_needs_pulses = false;  // the oracle of gathering
+  bool is_steered = false;             // there may be controls of frames: alignment is scored
 };
 
 class PipelineScorer final : public RecordingSink {
@@ -76,6 +78,7 @@ class PipelineScorer final : public RecordingSink {
   void on_poll(const DevicePoll& poll) override;
   void on_exchange(std::uint32_t host, const Exchange& exchange) override;
   void on_outcome(const SyncOutcome& outcome) override;
+  void on_alignment(const AlignmentReport& report) override;
 
   // Returns the scores of the capture with pulses, without seed and cost. Call once.
   SeedScore finish();
@@ -98,6 +101,7 @@ class PipelineScorer final : public RecordingSink {
   std::int64_t pulse_of(Source& source, const FrameTruth* truth, DeviceTime sensor);
   bool in_warm_up(std::int64_t pulse);
   void note_anchor(const FrameRecord& frame);
+  void note_exposures(std::span<const FrameRecord> frames, std::span<const FrameTruth> truths);
   // The block's way: device_time, then the table and gathering.
   void finish_block();
   void stamp(FrameBlock& block) const;
@@ -137,6 +141,7 @@ class PipelineScorer final : public RecordingSink {
   std::optional<SetCounter> sets_;
   std::optional<UnverifiedScores> unverified_;  // in place of sets_, where pulses are not known
   std::optional<HostErrors> host_errors_;
+  std::optional<AlignmentScores> alignment_;    // with is_steered
   std::optional<KeptFrames> kept_;  // for offline estimators
   std::int64_t genlock_index_errors_ = 0;
   std::vector<SyncOutcome> failures_;

@@ -65,6 +65,7 @@ struct PublishedComparison {
 struct Row : MetricValues<Series>, PooledValues, RunCounts {
   std::string pipeline;
   std::string host_sync;
+  std::string capture_alignment;  // empty: none
   std::string device_time;
   std::string gathering;
   std::string model;     // of real programs: the pipeline that models them; empty: none

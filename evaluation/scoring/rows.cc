@@ -120,6 +120,7 @@ Row make_row(const scenarios::Pipeline& pipeline, std::vector<SeedScore> seeds,
   Row row;
   row.pipeline = pipeline.name;
   row.host_sync = pipeline.host_sync;
+  row.capture_alignment = pipeline.capture_alignment;
   if (pipeline.programs) row.model = pipeline.programs->model;
   row.device_time = pipeline.device_time;
   row.gathering = pipeline.gathering;

@@ -173,6 +173,7 @@ Row read_stages(const JsonNode& node) {
   row.device_time = node["device_time"].text();
   row.gathering = node["gathering"].text();
   if (node.has("model")) row.model = node["model"].text();
+  if (node.has("capture_alignment")) row.capture_alignment = node["capture_alignment"].text();
   return row;
 }
 

@@ -33,7 +33,7 @@ Json pipelines_json(const Baseline& baseline) {
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
     Json entry = {{"pipeline", pipeline.name}};
     for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
-      entry[judged_metrics(baseline.kind)[i]->id] = values_json(pipeline.values[i]);
+      entry[baseline.judged[i]->id] = values_json(pipeline.values[i]);
     }
     all.push_back(std::move(entry));
   }
@@ -44,7 +44,7 @@ Json margins_json(const Baseline& baseline) {
   Json all;
   for (std::size_t i = 0; i < baseline.margins.size(); ++i) {
     const evaluation::GateMargin& margin = baseline.margins[i];
-    all[judged_metrics(baseline.kind)[i]->id] = {{"relative", margin.relative},
+    all[baseline.judged[i]->id] = {{"relative", margin.relative},
                                                  {"absolute", margin.absolute}};
   }
   return all;
@@ -67,10 +67,10 @@ evaluation::GateMargin read_margin(const JsonNode& node) {
   return margin;
 }
 
-BaselinePipeline read_pipeline(const JsonNode& node, std::size_t seeds,
-                               evaluation::ResultKind kind) {
+BaselinePipeline read_pipeline(const JsonNode& node, const Baseline& baseline) {
+  const std::size_t seeds = baseline.seeds.count;
   BaselinePipeline pipeline{.name = node["pipeline"].text(), .values = {}};
-  for (const evaluation::Metric* metric : judged_metrics(kind)) {
+  for (const evaluation::Metric* metric : baseline.judged) {
     pipeline.values.push_back(node[metric->id].values_of(*metric, seeds));
   }
   return pipeline;
@@ -100,12 +100,16 @@ Baseline make_baseline(const Archive& archive) {
                     .seeds = seeds_of(archive.results),
                     .margins = {},
                     .pipelines = {}};
-  for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
+  std::vector<const evaluation::Row*> rows;
+  rows.reserve(archive.results.rows.size());
+  for (const evaluation::Row& row : archive.results.rows) rows.push_back(&row);
+  baseline.judged = judged_metrics(baseline.kind, rows);
+  for (const evaluation::Metric* metric : baseline.judged) {
     baseline.margins.push_back(metric->judged->margin);
   }
   for (const evaluation::Row& row : archive.results.rows) {
     BaselinePipeline pipeline{.name = row.pipeline, .values = {}};
-    for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
+    for (const evaluation::Metric* metric : baseline.judged) {
       pipeline.values.push_back(metric->series(row).values);
     }
     baseline.pipelines.push_back(std::move(pipeline));
@@ -161,11 +165,13 @@ Baseline read_baseline(const std::string& path) {
                     static_cast<std::uint64_t>(root["seeds"]["count"].count())};
   if (baseline.seeds.count == 0) root["seeds"]["count"].refuse("a whole number from 1");
   for (const evaluation::Metric* metric : judged_metrics(baseline.kind)) {
+    if (metric->is_new && !root["margins"].has(metric->id)) continue;
+    baseline.judged.push_back(metric);
     baseline.margins.push_back(read_margin(root["margins"][metric->id]));
   }
   std::set<std::string> names;
   for (const JsonNode& node : root["pipelines"].elements()) {
-    baseline.pipelines.push_back(read_pipeline(node, baseline.seeds.count, baseline.kind));
+    baseline.pipelines.push_back(read_pipeline(node, baseline));
     if (!names.insert(baseline.pipelines.back().name).second) {
       node["pipeline"].refuse("each pipeline once");
     }

@@ -10,6 +10,9 @@
 //    "pipelines": [{"pipeline": "oracle", "amd_ms": [in seed order], rmdv_ms, absolute_error_ms,
 //                   seed_recall likewise}, ...]}
 //
+// Metrics that not all results have (of exposures that are steered) are there if a pipeline has
+// them.
+//
 // Margins may be edited by hand. Two digests (comparison_scenarios.h) reveal any other edit, and
 // the scenario shows where another one differs. Values have 12 digits, a thousand times finer than
 // the tolerated rounding (kRounding in gate.h). A value that does not exist is null.
@@ -34,7 +37,7 @@ inline constexpr int kBaselineSchemaVersion = 1;  // written, and the newest tha
 
 struct BaselinePipeline {
   std::string name;
-  std::vector<std::vector<double>> values;  // by evaluation::judged_metrics(), in seed order
+  std::vector<std::vector<double>> values;  // by Baseline::judged, in seed order
 };
 
 struct Baseline {
@@ -46,7 +49,8 @@ struct Baseline {
   std::string scenario;
   std::string scenario_json;  // resolved
   SeedRange seeds;
-  std::vector<evaluation::GateMargin> margins;  // by evaluation::judged_metrics()
+  std::vector<const evaluation::Metric*> judged{};  // those that any pipeline has
+  std::vector<evaluation::GateMargin> margins;      // by `judged`
   std::vector<BaselinePipeline> pipelines;
 };
 

@@ -35,10 +35,13 @@ struct RowPair {
 };
 
 // Judges every metric of every pair, all together.
-std::vector<ComparedPipeline> compared(const std::vector<RowPair>& rows, const SeedPairing& pairing,
-                                       const ComparisonOptions& options,
-                                       evaluation::ResultKind kind) {
-  const auto judged = evaluation::judged_metrics(kind);
+void compare(const std::vector<RowPair>& rows, const SeedPairing& pairing,
+             const ComparisonOptions& options, evaluation::ResultKind kind,
+             Comparison& comparison) {
+  std::vector<const Row*> all_rows;
+  all_rows.reserve(2 * rows.size());
+  for (const RowPair& row : rows) all_rows.insert(all_rows.end(), {row.a, row.b});
+  const auto judged = evaluation::judged_metrics(kind, all_rows);
   std::vector<evaluation::ComparisonTask> tasks;
   tasks.reserve(rows.size() * judged.size());
   for (const RowPair& row : rows) {
@@ -51,22 +54,20 @@ std::vector<ComparedPipeline> compared(const std::vector<RowPair>& rows, const S
     }
   }
   const std::vector<evaluation::PairedComparison> all = evaluation::compare_together(tasks);
-  std::vector<ComparedPipeline> pipelines;
-  pipelines.reserve(rows.size());
+  comparison.judged = judged;
+  comparison.pipelines.reserve(rows.size());
   auto first = all.begin();
   for (const RowPair& row : rows) {
     const auto end = first + static_cast<std::ptrdiff_t>(judged.size());
-    pipelines.push_back(
+    comparison.pipelines.push_back(
         {.pipeline_a = row.a->pipeline, .pipeline_b = row.b->pipeline, .metrics = {first, end}});
     first = end;
   }
-  return pipelines;
 }
 
 Comparison prepared(const Archive& a, const Archive& b, const SeedPairing& pairing,
                     const ComparisonOptions& options) {
   Comparison comparison;
-  comparison.kind = a.results.kind;
   comparison.scenario = a.results.scenario;
   comparison.derivation = a.results.derivation;
   comparison.by_index = options.by_index;
@@ -202,7 +203,7 @@ Comparison compare_archives(const Archive& a, const Archive& b, const Comparison
                                  fmt::join(names_of(a), ", "), b.path,
                                  fmt::join(names_of(b), ", ")));
   }
-  comparison.pipelines = compared(rows, pairing, options, comparison.kind);
+  compare(rows, pairing, options, a.results.kind, comparison);
   comparison.notes = std::move(notes);
   return comparison;
 }
@@ -213,9 +214,8 @@ Comparison compare_pipelines(const Archive& archive, const std::string& a, const
   Comparison comparison = prepared(archive, archive, pairing, options);
   comparison.a = fmt::format("pipeline {} of {}", a, described(archive));
   comparison.b = fmt::format("pipeline {} of {}", b, described(archive));
-  comparison.pipelines =
-      compared({{&row_of(archive, a, "--pipelines"), &row_of(archive, b, "--pipelines")}}, pairing,
-               options, comparison.kind);
+  compare({{&row_of(archive, a, "--pipelines"), &row_of(archive, b, "--pipelines")}}, pairing,
+          options, archive.results.kind, comparison);
   return comparison;
 }
 
@@ -236,7 +236,7 @@ Comparison compare_with_baseline(const Archive& archive, const std::string& base
     throw InputError(
         fmt::format("--with-baseline: {} has no pipeline beside {}", archive.path, baseline));
   }
-  comparison.pipelines = compared(rows, pairing, options, comparison.kind);
+  compare(rows, pairing, options, archive.results.kind, comparison);
   return comparison;
 }
 
@@ -306,11 +306,10 @@ std::string comparison_json(const Comparison& comparison) {
                {"verdicts", verdicts_json(count_verdicts(comparison))},
                {"pipelines", Json::array()},
                {"notes", comparison.notes}});
-  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     Json row = {{"a", pipeline.pipeline_a}, {"b", pipeline.pipeline_b}};
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      row[judged[i]->id] = paired_json(pipeline.metrics[i]);
+      row[comparison.judged[i]->id] = paired_json(pipeline.metrics[i]);
     }
     root["pipelines"].push_back(std::move(row));
   }
@@ -322,12 +321,11 @@ std::string comparison_csv(const Comparison& comparison) {
       "pipeline_a,pipeline_b,metric,pairs,left_out,mean_a,mean_b,median_a,median_b,difference,"
       "difference_low,difference_high,ratio,ratio_low,ratio_high,verdict,seeds_needed,"
       "b_higher,b_lower,p,adjusted_p,confidence\n";
-  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
       const evaluation::PairedComparison& c = pipeline.metrics[i];
       text += fmt::format("{},{},{},{},{}", csv_cell(pipeline.pipeline_a),
-                          csv_cell(pipeline.pipeline_b), judged[i]->id, c.pairs, c.left_out);
+                          csv_cell(pipeline.pipeline_b), comparison.judged[i]->id, c.pairs, c.left_out);
       for (const double value :
            {c.mean_a, c.mean_b, c.median_a, c.median_b, c.difference.value, c.difference.low,
             c.difference.high, c.ratio.value, c.ratio.low, c.ratio.high}) {

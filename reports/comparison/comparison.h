@@ -37,11 +37,11 @@ struct ComparisonOptions {
 struct ComparedPipeline {
   std::string pipeline_a;
   std::string pipeline_b;
-  std::vector<evaluation::PairedComparison> metrics;  // by evaluation::judged_metrics(kind)
+  std::vector<evaluation::PairedComparison> metrics;  // by Comparison::judged
 };
 
 struct Comparison {
-  evaluation::ResultKind kind = evaluation::ResultKind::kCaptures;
+  std::vector<const evaluation::Metric*> judged{};  // those that any of the rows has
   std::string scenario;
   scenarios::Derivation derivation{};  // of A's scenario
   std::string a;  // in words: "monday (simbench 0.1.0, commit 1234567)", "pipeline ntp of monday"

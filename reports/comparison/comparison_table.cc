@@ -140,13 +140,12 @@ Table comparison_table(const Comparison& comparison) {
                {"B / A\ninterval"},
                {.header = "B is", .align = Align::kLeft, .is_verdict = true}},
               2);
-  const auto judged = evaluation::judged_metrics(comparison.kind);
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     const std::string name = pipeline.pipeline_a == pipeline.pipeline_b || comparison.with_baseline
                                  ? pipeline.pipeline_b
                                  : fmt::format("{} / {}", pipeline.pipeline_b, pipeline.pipeline_a);
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      table.add(cells(name, *judged[i], pipeline.metrics[i], comparison.smallest_effect));
+      table.add(cells(name, *comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
   }
   return table;
@@ -163,12 +162,11 @@ std::string pairing_text(const Comparison& comparison) {
 }
 
 Block words(const Comparison& comparison) {
-  const auto judged = evaluation::judged_metrics(comparison.kind);
   Block block{.heading = "How much better"};
   for (const ComparedPipeline& pipeline : comparison.pipelines) {
     std::vector<std::string> effects;
     for (std::size_t i = 0; i < pipeline.metrics.size(); ++i) {
-      effects.push_back(effect_words(*judged[i], pipeline.metrics[i], comparison.smallest_effect));
+      effects.push_back(effect_words(*comparison.judged[i], pipeline.metrics[i], comparison.smallest_effect));
     }
     block.items.push_back(fmt::format("{} against {}: {}", pipeline.pipeline_b, pipeline.pipeline_a,
                                       fmt::join(effects, "; ")));

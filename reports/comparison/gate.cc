@@ -159,7 +159,6 @@ void end_statistically(const OpenCheck& open, const evaluation::HolmDecision& de
 
 void make_checks(const Archive& result, const Baseline& baseline, const SeedPairing& pairing,
                  GateReport& report) {
-  const auto judged = evaluation::judged_metrics(baseline.kind);
   std::vector<OpenCheck> open;
   std::vector<double> p;
   for (const BaselinePipeline& pipeline : baseline.pipelines) {
@@ -171,7 +170,7 @@ void make_checks(const Archive& result, const Baseline& baseline, const SeedPair
     for (std::size_t i = 0; i < pipeline.values.size(); ++i) {
       GateCheck check;
       check.pipeline = pipeline.name;
-      check.metric = judged[i];
+      check.metric = baseline.judged[i];
       const std::vector<double> before = pairing.of_a(pipeline.values[i]);
       const std::vector<double> now = pairing.of_b(check.metric->series(*row).values);
       count_changes(before, now, check);

@@ -45,8 +45,16 @@ void add_cells(CsvColumns form, const Row& row, std::vector<std::string>& cells)
   }
 }
 
-std::vector<std::string> header() {
-  std::vector<std::string> names = {"pipeline", "host_sync", "device_time", "gathering"};
+// Whether there is a column of what steers the exposures.
+bool has_capture_alignment(const evaluation::Results& results) {
+  return std::ranges::any_of(results.rows,
+                             [](const Row& row) { return !row.capture_alignment.empty(); });
+}
+
+std::vector<std::string> header(bool has_alignment) {
+  std::vector<std::string> names = {"pipeline", "host_sync"};
+  if (has_alignment) names.emplace_back("capture_alignment");
+  names.insert(names.end(), {"device_time", "gathering"});
   add_names(CsvColumns::kBand, names);
   add_names(CsvColumns::kValue, names);
   names.insert(names.end(),
@@ -107,14 +115,16 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string csv(const evaluation::Results& results) {
   const bool real = has_real_rows(results) || !note_lines(results).empty();
-  std::vector<std::string> names = header();
+  const bool has_alignment = has_capture_alignment(results);
+  std::vector<std::string> names = header(has_alignment);
   if (real) names.insert(names.end(), {"ground_truth", "verified", "notes"});
   const std::string changed = scenarios::changed_text(results.derivation);
   if (!changed.empty()) names.emplace_back("changed");
   std::string out = csv_line(names);
   for (const Row& row : results.rows) {
-    std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync),
-                                      csv_cell(row.device_time), csv_cell(row.gathering)};
+    std::vector<std::string> cells = {csv_cell(row.pipeline), csv_cell(row.host_sync)};
+    if (has_alignment) cells.push_back(csv_cell(row.capture_alignment));
+    cells.insert(cells.end(), {csv_cell(row.device_time), csv_cell(row.gathering)});
     add_cells(CsvColumns::kBand, row, cells);
     add_cells(CsvColumns::kValue, row, cells);
     const std::vector<std::string> published = published_cells(row);

@@ -44,6 +44,7 @@ Json row_json(const evaluation::Row& row) {
               {"gathering", row.gathering},
               {"offline", row.offline}};
   if (!row.model.empty()) all["model"] = row.model;
+  if (!row.capture_alignment.empty()) all["capture_alignment"] = row.capture_alignment;
   for (const evaluation::Metric& metric : evaluation::metrics()) {
     Json& object = *metric.json_in == '\0' ? all : all[metric.json_in];
     object[metric.member()] = metric_json(metric, row);

@@ -9,6 +9,7 @@
 //    "based_on", "changed", "published_left_out" (reports/results/derivation_json.h),
 //    "seeds": {"first": 1, "count": 32},
 //    "rows": [{"pipeline": ..., "host_sync": ..., "device_time": ..., "gathering": ...,
+//              "capture_alignment": what steers the exposures, only if something does,
 //              "offline": whether device_time needs the whole recording,
 //              each metric under the id and in the object of evaluation/scoring/metrics.h,
 //              {"median", "p05", "p95", "values": [in seed order]}, a number or a count: "amd_ms",

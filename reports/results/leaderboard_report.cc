@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "evaluation/run/leaderboard.h"
@@ -92,7 +94,11 @@ std::string composition(const Board& board) {
     }
     return rows.front()->*algorithm;
   };
-  return fmt::format("{} + {} + {}", stage("host_sync", &Row::host_sync),
+  const bool is_steered =
+      std::ranges::any_of(rows, [](const Row* row) { return !row->capture_alignment.empty(); });
+  const std::string alignment =
+      is_steered ? stage("capture_alignment", &Row::capture_alignment) + " + " : "";
+  return fmt::format("{} + {}{} + {}", stage("host_sync", &Row::host_sync), alignment,
                      stage("device_time", &Row::device_time), stage("gathering", &Row::gathering));
 }
 
@@ -147,6 +153,10 @@ Document leaderboard_document(const Results& results, const std::string& summary
   Document document{.title = results_title(results),
                     .head = results_head(results, summary),
                     .blocks = board_blocks(results)};
+  if (std::optional<Block> alignment = alignment_block(results)) {
+    alignment->prose = alignment_legend();
+    document.blocks.push_back(std::move(*alignment));
+  }
   if (Block failures = failures_block(results); !failures.prose.empty()) {
     document.blocks.push_back(std::move(failures));
   }

@@ -102,14 +102,12 @@ Table paper_table(const Results& results) {
   return table_of(fields, results.rows);
 }
 
-// Metrics that a real rig cannot measure.
-Table truth_table(const Results& results) {
+// A line per pipeline with the metrics that name the table.
+Table metrics_table(const Results& results, int TablePlaces::*table) {
+  const auto metrics = evaluation::table_metrics(table);
   RowFields fields = {pipeline_field<Row>()};
-  append(fields, scored_seeds_field(pointers_to(results.rows),
-                                    evaluation::table_metrics(&TablePlaces::truth)));
-  for (const Metric* metric : evaluation::table_metrics(&TablePlaces::truth)) {
-    append(fields, metric_fields(*metric));
-  }
+  append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
+  for (const Metric* metric : metrics) append(fields, metric_fields(*metric));
   return table_of(fields, results.rows);
 }
 
@@ -120,12 +118,14 @@ bool has_time_errors(const Results& results) {
   });
 }
 
-Table time_errors_table(const Results& results) {
-  const auto metrics = evaluation::table_metrics(&TablePlaces::time_errors);
-  RowFields fields = {pipeline_field<Row>()};
-  append(fields, scored_seeds_field(pointers_to(results.rows), metrics));
-  for (const Metric* metric : metrics) append(fields, metric_fields(*metric));
-  return table_of(fields, results.rows);
+// Whether a row is of exposures that may be steered.
+bool has_alignment(const Results& results) {
+  const auto metrics = evaluation::table_metrics(&TablePlaces::alignment);
+  return std::ranges::any_of(results.rows, [&metrics](const Row& row) {
+    return std::ranges::any_of(metrics, [&row](const Metric* metric) {
+      return evaluation::scored_seeds(row, *metric) > 0;
+    });
+  });
 }
 
 // Adds the legends of a table's metrics.
@@ -165,6 +165,7 @@ std::vector<std::string> results_legend(const Results& results) {
   append_legends(&TablePlaces::paper, lines);
   append_legends(&TablePlaces::truth, lines);
   if (has_time_errors(results)) append_legends(&TablePlaces::time_errors, lines);
+  if (has_alignment(results)) append_legends(&TablePlaces::alignment, lines);
   if (std::any_of(results.rows.begin(), results.rows.end(), evaluation::has_single_camera)) {
     lines.emplace_back(kSingleCameraLegend);
   }
@@ -272,6 +273,18 @@ RowFields scored_seeds_field(const std::vector<const Row*>& rows,
            [metrics](const Row& row) { return scored_seeds_text(scored_seeds_of(row, metrics)); }}};
 }
 
+std::optional<Block> alignment_block(const Results& results) {
+  if (!has_alignment(results)) return std::nullopt;
+  return Block{.heading = "Alignment of the exposures",
+               .table = metrics_table(results, &TablePlaces::alignment)};
+}
+
+std::vector<std::string> alignment_legend() {
+  std::vector<std::string> lines;
+  append_legends(&TablePlaces::alignment, lines);
+  return lines;
+}
+
 Table sets_table(const std::vector<const Row*>& rows) {
   RowFields fields = {pipeline_field<Row>(),
                       {{"gathering", Align::kLeft}, [](const Row& row) { return row.gathering; }}};
@@ -310,9 +323,13 @@ Document results_document(const Results& results, const std::string& summary) {
   Document document{.title = results_title(results), .head = results_head(results, summary)};
   std::vector<Block>& blocks = document.blocks;
   blocks.push_back({.heading = "The paper's metrics", .table = paper_table(results)});
-  blocks.push_back({.heading = "Metrics that need true time", .table = truth_table(results)});
+  blocks.push_back({.heading = "Metrics that need true time", .table = metrics_table(results, &TablePlaces::truth)});
   if (has_time_errors(results)) {
-    blocks.push_back({.heading = "Time error of the hosts", .table = time_errors_table(results)});
+    blocks.push_back({.heading = "Time error of the hosts",
+                      .table = metrics_table(results, &TablePlaces::time_errors)});
+  }
+  if (std::optional<Block> alignment = alignment_block(results)) {
+    blocks.push_back(std::move(*alignment));
   }
   if (std::optional<Block> gap = program_gap_block(results)) blocks.push_back(std::move(*gap));
   if (gatherings_differ(results)) {

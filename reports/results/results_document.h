@@ -1,8 +1,8 @@
 // Results for people: the output of `simbench run` and the tables of the HTML report.
 //
 // A block each, with a row per pipeline: the paper's metrics beside the published values, and the
-// metrics that need true time; a third about the gathered sets if the pipelines gather in different
-// ways. The columns are the entries of evaluation::metrics() that name the table. Rows of real rigs
+// metrics that need true time; others about the hosts' time errors, the alignment of exposures that
+// are steered, and the gathered sets if the pipelines gather in different ways. The columns are the entries of evaluation::metrics() that name the table. Rows of real rigs
 // state their ground truth; those without any are "unverified"
 // (evaluation/scoring/unverified_scores.h). Then follow failures, a legend for newcomers, the
 // paper's claims with the fraction of seeds in which each holds, and the cost of the run. About 145
@@ -12,6 +12,8 @@
 #ifndef SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
 #define SIMBENCH_REPORTS_RESULTS_RESULTS_DOCUMENT_H_
 
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,11 @@ std::vector<Field<evaluation::Row>> scored_seeds_field(
     const std::vector<const evaluation::Row*>& rows,
     const std::vector<const evaluation::Metric*>& metrics);
 
+// How well exposures that are steered coincide; nothing if no row has such a metric.
+std::optional<Block> alignment_block(const evaluation::Results& results);
+// The meaning of its columns.
+std::vector<std::string> alignment_legend();
+
 // The gathered sets: a line per pipeline, to compare policies.
 Table sets_table(const std::vector<const evaluation::Row*>& rows);
 // The meaning of its columns.
@@ -49,12 +56,25 @@ Block failures_block(const evaluation::Results& results);
 // The floor of two-way methods with unequal links; empty if links are equal.
 std::string asymmetry_line(const evaluation::Results& results);
 
+// What steers the exposures of a row of any kind; empty: nothing, or rows of the kind do not say.
+template <class AnyRow>
+std::string capture_alignment_of(const AnyRow& row) {
+  if constexpr (requires { row.capture_alignment; }) return row.capture_alignment;
+  return "";
+}
+
 // The stages of each pipeline, for rows of any kind that name them.
 template <class Rows>
 Block stages_block(const Rows& rows) {
-  Block block{.heading = "Pipelines = host_sync + device_time + gathering"};
+  const bool is_steered = std::any_of(
+      rows.begin(), rows.end(), [](const auto& row) { return !capture_alignment_of(row).empty(); });
+  Block block{.heading = is_steered
+                             ? "Pipelines = host_sync [+ capture_alignment] + device_time + gathering"
+                             : "Pipelines = host_sync + device_time + gathering"};
   for (const auto& row : rows) {
-    block.items.push_back(row.pipeline + " = " + row.host_sync + " + " + row.device_time + " + " +
+    const std::string alignment = capture_alignment_of(row);
+    block.items.push_back(row.pipeline + " = " + row.host_sync + " + " +
+                          (alignment.empty() ? "" : alignment + " + ") + row.device_time + " + " +
                           row.gathering);
   }
   return block;

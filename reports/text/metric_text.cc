@@ -17,6 +17,11 @@ double unit_ms(const evaluation::Metric& metric) {
   return unit == "ms" ? 1 : unit == "s" ? 1000 : 0;
 }
 
+// What follows the number of a metric that is no duration.
+const char* unit_text(const evaluation::Metric& metric) {
+  return metric.is_share() ? " %" : metric.unit == std::string_view("ppm") ? " ppm" : "";
+}
+
 }  // namespace
 
 std::string metric_text(const evaluation::Metric& metric, double value) {
@@ -27,16 +32,15 @@ std::string metric_text(const evaluation::Metric& metric, double value) {
 
 std::string difference_text(const evaluation::Metric& metric, double difference) {
   if (!std::isfinite(difference)) return "-";
-  if (metric.is_share()) return number_text(100 * difference) + " %";
-  const double ms = unit_ms(metric);
-  return ms > 0 ? time_text(ms * difference) : number_text(difference);
+  if (const double ms = unit_ms(metric); ms > 0) return time_text(ms * difference);
+  return number_text(shown_value(metric, difference)) + unit_text(metric);
 }
 
 std::string interval_text(const evaluation::Metric& metric, double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "-";
   if (const double ms = unit_ms(metric); ms > 0) return time_band_text(ms * low, ms * high);
   return fmt::format("[{}, {}]{}", number_text(shown_value(metric, low)),
-                     number_text(shown_value(metric, high)), metric.is_share() ? " %" : "");
+                     number_text(shown_value(metric, high)), unit_text(metric));
 }
 
 double shown_value(const evaluation::Metric& metric, double value) {

@@ -63,6 +63,7 @@ class Folder {
       for (std::uint32_t i = 0; i < 3; ++i) {
         sink.on_frame({}, nullptr);
         sink.on_outcome({});
+        sink.on_alignment({});
       }
       if (seed == 1) {
         writer.end({});

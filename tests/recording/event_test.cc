@@ -33,6 +33,9 @@ class Transcript final : public RecordingSink {
     add("exchange", host, exchange.peer, exchange.t1 ? "t1" : "", exchange.t2 ? "t2" : "");
   }
   void on_outcome(const SyncOutcome& outcome) override { add("outcome", outcome.message); }
+  void on_alignment(const AlignmentReport& report) override {
+    add("alignment", report.camera, report.aligned, report.controls, report.message);
+  }
 
   std::vector<std::string> lines;
 
@@ -64,6 +67,7 @@ void record_something(RecordingSink& sink) {
                 .t0_steady = {},
                 .t1_steady = {}});
   sink.on_outcome({.slave = 1, .synchronised = false, .passes = 200, .message = "no answer"});
+  sink.on_alignment({.camera = 1, .aligned = true, .controls = 12, .message = "near"});
   FrameTruth truth;
   truth.pulse = 4;
   sink.on_frame(frame_of(1, 100, 2000), &truth);
@@ -82,7 +86,7 @@ TEST(KeptRecordingTest, PlaysEverythingBackInOrder) {
   kept.play(played);
   EXPECT_THAT(played.lines,
               ElementsAre("start 2 ", "exchange 1 0  t2 ", "adjustment 1 9 ", "poll 1 77 3 4 ",
-                          "outcome no answer ", "frame 1 100 2000 4 ", "pulse 4 0 -5 ",
+                          "outcome no answer ", "alignment 1 1 12 near ", "frame 1 100 2000 4 ", "pulse 4 0 -5 ",
                           "pulse 5 0 6 ", "frame 0 101 1999 -1 "));
 }
 
@@ -99,7 +103,7 @@ TEST(KeptRecordingTest, PlaysTheSameTwice) {
 TEST(KeptRecordingTest, BeginsAnewWithTheNextCapture) {
   KeptRecording kept;
   record_something(kept);
-  EXPECT_EQ(kept.events().size(), 8U);
+  EXPECT_EQ(kept.events().size(), 9U);
   kept.on_start({.hosts = 1, .cameras = {{0}}, .frame_rate_hz = 50});
   EXPECT_EQ(kept.events().size(), 0U);
   EXPECT_EQ(kept.layout().cameras.size(), 1U);

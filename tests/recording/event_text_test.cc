@@ -67,6 +67,8 @@ TEST(EventTextTest, TheOtherKinds) {
             "exchange,1,0,1,,3,");
   EXPECT_EQ(to_line(SyncOutcome{2, false, 200, "a, b\\c\r\nd"}),
             "outcome,2,false,200,a\\, b\\\\c\\r\\nd");
+  EXPECT_EQ(to_line(AlignmentReport{7, true, 40, "1.2 ms, late"}),
+            "alignment,7,true,40,1.2 ms\\, late");
 }
 
 TEST(EventTextTest, ReadsBackWhateverWasWritten) {
@@ -127,7 +129,7 @@ TEST(EventTextTest, EveryPrefixOfALineIsSafe) {
 TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
   EXPECT_EQ(line_error("fraem,1"),
             "column 1 (kind): found 'fraem', allowed: frame, pulse, adjustment, poll, exchange, "
-            "outcome");
+            "outcome, alignment");
   EXPECT_EQ(line_error("poll,1x,2,3,4,5,6"),
             "column 2 (camera): found '1x', allowed: a whole number from 0 to 4294967295");
   EXPECT_EQ(line_error("poll,1,4294967296,3,4,5,6"),
@@ -139,6 +141,9 @@ TEST(EventTextTest, MessagesNameColumnFoundAndAllowed) {
             "column 3 (stream): found 'infrared', allowed: depth, colour");
   EXPECT_EQ(line_error("outcome,1,yes,0,"),
             "column 3 (synchronised): found 'yes', allowed: true, false");
+  EXPECT_EQ(line_error("alignment,1,1,0,"),
+            "column 3 (aligned): found '1', allowed: true, false");
+  EXPECT_THAT(line_error("alignment,1,true,3"), HasSubstr("column 5 (message): missing"));
   EXPECT_THAT(line_error("pulse,1,2,3;;4"), HasSubstr("column 4 (error_ns): found '3;;4'"));
   EXPECT_THAT(line_error("pulse,1,2,3;"), HasSubstr("column 4 (error_ns): found '3;'"));
   EXPECT_THAT(line_error("exchange,1,0,1,2,3"), HasSubstr("column 7 (t4_ns): missing"));

@@ -16,7 +16,7 @@ using Random = std::mt19937_64;
 template <class Number>
 Number any_number(Random& random) {
   using Limits = std::numeric_limits<Number>;
-  switch (random() % 6) {
+  switch (random() % 7) {
     case 0:
       return Limits::min();
     case 1:
@@ -133,6 +133,12 @@ struct Same {
     };
     return all(a) == all(b);
   }
+  bool operator()(const AlignmentReport& a, const AlignmentReport& b) const {
+    const auto all = [](const AlignmentReport& r) {
+      return members(r.camera, r.aligned, r.controls, r.message);
+    };
+    return all(a) == all(b);
+  }
   template <class A, class B>
   bool operator()(const A&, const B&) const {
     return false;
@@ -184,6 +190,9 @@ RecordingEvent random_event(Random& random, const RandomEventBounds& bounds) {
     case 4:
       return SyncOutcome{host(), random() % 2 == 0, any_number<std::uint32_t>(random),
                          any_text(random)};
+    case 5:
+      return AlignmentReport{any_number<std::uint32_t>(random) % bounds.cameras, random() % 2 == 0,
+                             any_number<std::uint32_t>(random), any_text(random)};
     default:
       return any_frame(random, bounds.cameras);
   }

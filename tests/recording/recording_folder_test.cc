@@ -247,6 +247,8 @@ TEST_F(RecordingFolderTest, DamagedLinesAreNamed) {
               HasSubstr("events.csv:11: found another line, allowed: 10"));
   EXPECT_THAT(error_with("3,outcome,1,true,3,", "3,frame,0,depth,hardware_clock,1,1,1,1,1,1,1"),
               HasSubstr("events.csv:4: found a frame"));
+  EXPECT_THAT(error_with("3,outcome,1,true,3,", "3,alignment,99,true,3,"),
+              HasSubstr("events.csv:4: camera: found 99, allowed: 0 to "));
   EXPECT_THAT(error_with("3,outcome,1,true,3,", "3,pulse,1,1,0;0"),
               HasSubstr("events.csv:4: found 2 clock errors, allowed: one for each of 3 hosts"));
 }

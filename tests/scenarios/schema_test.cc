@@ -68,7 +68,23 @@ json full_document() {
                   "start_jitter_sigma_us": 1, "frame_jitter_sigma_us": 1}},
     "studio": )" + studio_of("18cam_6host_30fps_studio"));
   json document = json::parse(load_scenario_text(text, "my.json").resolved_json());
-  // Beside which no link has a latency of its own, which only the checks say.
+  // Beside which there is no wireless cell, and no link has a latency of its own, which only the
+  // checks say.
+  document["network"]["wifi"] = {
+      {"access_point_host", 0},
+      {"wired_hosts", {5}},
+      {"rate_mbit_per_s", 54},
+      {"basic_rate_mbit_per_s", 6},
+      {"preamble_us", 20},
+      {"sifs_us", 16},
+      {"slot_us", 9},
+      {"contention_window_min", 15},
+      {"contention_window_max", 1023},
+      {"retry_limit", 7},
+      {"collision_probability", 0},
+      {"busy", {{"rate_hz", 0.1}, {"duration_exponential_ms", 100}, {"latency_ms", 20}}},
+      {"power_save",
+       {{"idle_ms", 100}, {"beacon_interval_ms", 102.4}, {"dtim_period", 1}, {"wake_up_ms", 2}}}};
   document["network"]["latency_quantiles_ms"] = {0.1, 0.2};
   json& stream = document["cameras"]["streams"][0];
   stream["calibrated_delay_ms"] = 10.5;
@@ -215,6 +231,8 @@ TEST(SchemaDrift, EveryMemberOfTheStructsIsWritten) {
   expect_all_members_written<Hosts>();
   expect_all_members_written<Burst>();
   expect_all_members_written<Link>();
+  expect_all_members_written<WifiPowerSave>();
+  expect_all_members_written<Wifi>();
   expect_all_members_written<Network>();
   expect_all_members_written<TriggerPause>();
   expect_all_members_written<Trigger>();
