@@ -24,7 +24,10 @@
 #define SIMBENCH_CAPTURE_ALIGNMENT(FILE) \
   FILE(limits)                           \
   FILE(libsoftwaresync)                  \
+  FILE(rpi_sync)                         \
+  FILE(scheduled_action)                 \
   FILE(periodic_ptp)                     \
+  FILE(pid_frame_rate)                   \
   FILE(phase_rate)
 #define SIMBENCH_DEVICE_TIME(FILE) \
   FILE(yoon2021)                   \

@@ -70,6 +70,7 @@ std::string bare_names(const ListOptions& options) {
   }
   if (options.what.empty() || options.what == "algorithms") {
     add_algorithms(host_sync_algorithms());
+    add_algorithms(capture_alignment_algorithms());
     add_algorithms(device_time_algorithms());
     add_algorithms(gathering_algorithms());
   }
@@ -276,10 +277,12 @@ std::string listing(const ListOptions& options) {
   if (options.what == "figures") return figure_list();
   if (options.what == "algorithms") {
     return details_text("host_sync", host_sync_algorithms()) + "\n" +
+           details_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
            details_text("device_time", device_time_algorithms()) + kVariants + "\n" +
            details_text("gathering", gathering_algorithms());
   }
   return scenarios_text() + "\n" + names_text("host_sync", host_sync_algorithms()) + "\n" +
+         names_text("capture_alignment", capture_alignment_algorithms()) + "\n" +
          names_text("device_time", device_time_algorithms()) + kVariants + "\n" +
          names_text("gathering", gathering_algorithms());
 }

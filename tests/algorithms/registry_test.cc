@@ -44,9 +44,11 @@ TEST(Registry, ListsTheBuiltInAlgorithmsInOrder) {
                   "regression_300", "regression_all", "hull_300", "hull_switch_10s",
                   "hull_switch_60s", "hull_offline", "two_way_poll", "olson_50ppm", "minimum_1s",
                   "theil_sen_300", "kalman", "librealsense_global", "host_stamps"));
-  std::vector<std::string> capture_alignment = entry_names(capture_alignment_algorithms());
-  capture_alignment.resize(2);  // the limits are first
-  EXPECT_THAT(capture_alignment, ElementsAre("free_run", "oracle"));
+  std::vector<std::string> alignments = entry_names(capture_alignment_algorithms());
+  alignments.resize(8);  // likewise
+  EXPECT_THAT(alignments, ElementsAre("free_run", "oracle", "libsoftwaresync", "rpi_sync",
+                                      "scheduled_action", "periodic_ptp", "pid_frame_rate",
+                                      "phase_rate"));
   EXPECT_THAT(entry_names(gathering_algorithms()),
               ElementsAre("yoon2021", "genlock", "genlock_printed", "approximate_time",
                           "approximate_time_bounded", "epsilon", "librealsense", "k4a",
