@@ -38,9 +38,9 @@ void require_all(json& node) {
 TEST(CameraProfiles, AllAreThereInOrder) {
   std::vector<std::string> models;
   for (const CameraProfile& camera : camera_profiles()) models.push_back(camera.model);
-  EXPECT_THAT(models, ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455",
-                                  "gige_ace", "l515", "oak_4", "pixel_phone",
-                                  "raspberry_camera_v3"));
+  EXPECT_THAT(models,
+              ElementsAre("astra_plus", "astra_s", "azure_kinect", "d435", "d455", "gige_ace",
+                          "l515", "oak_4", "pixel_phone", "raspberry_camera_v3"));
 }
 
 TEST(CameraProfiles, AreWhatTheirSchemaAsksFor) {
