@@ -180,7 +180,7 @@ TEST(CameraProfiles, ControlsOfFramesThatTheMakersOffer) {
   EXPECT_EQ(offered("d435"), "");
   EXPECT_EQ(offered("pixel_phone"), "insert length ");
   EXPECT_EQ(offered("raspberry_camera_v3"), "adjust length ");
-  EXPECT_EQ(offered("gige_ace"), "length start ");
+  EXPECT_EQ(offered("gige_ace"), "adjust length start ");
   EXPECT_EQ(offered("oak_4"), "length ");
   EXPECT_EQ(offered("azure_kinect"), "not known");
 }
