@@ -68,8 +68,10 @@ class PhaseRateCamera {
   void observe(const FrameArrival& frame);
   std::uint32_t next_effect(const FrameArrival& frame) const;
   bool only_inserts() const;
-  // Moves below this are part of the camera's course.
-  double large_ns() const { return 20 * to_ns(limits_.granularity); }
+  // Moves below this, a hundredth of a frame, are part of the camera's course.
+  double large_ns() const {
+    return std::max(to_ns(limits_.frame_length) / 100, 20 * to_ns(limits_.granularity));
+  }
   Correction exact(double error_ns) const;
   Correction inserted(double error_ns) const;
   Task<void> correct(std::uint32_t from, double error_ns);
@@ -233,7 +235,8 @@ Task<void> PhaseRateCamera::run() {
     const double band_ns = only_inserts()
                                ? to_ns(settings_.insert_band) * 2
                                : settings_.dead_band_granules * to_ns(limits_.granularity);
-    if (std::abs(error_ns) > band_ns) co_await correct(from, error_ns);
+    if (std::abs(error_ns) <= band_ns) continue;
+    co_await correct(from, error_ns);
   }
 }
 
